@@ -1,11 +1,11 @@
-// Clearance: the distance of two capsules, of all pairs of links of a pose, and surveys under a limit. `thick` is a
-// design whose platform and upper links are so thick that poses have to be tested one by one.
+// Clearance: distance of two capsules, minimum over all pairs of links at a pose, and workspace analyses with a minimum
+// clearance. `thick` is a design whose platform and upper links are so thick that each pose must be tested.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
+#include "engine/accelerators/four_ppa_two_par/clearance.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/four_ppa_two_par/clearance.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/workspace/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -44,9 +44,9 @@ std::vector<double> thick_design() {
   return all;
 }
 
-void survey(benchmark::State& state, const std::vector<double>& all, double least, SurveyPlan plan) {
-  plan.limits.given[kClearanceMin] = least;
-  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+void analyse(benchmark::State& state, const std::vector<double>& all, double clearance_min, WorkspacePlan plan) {
+  plan.limits.given[kClearanceMin] = clearance_min;
+  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
@@ -56,20 +56,20 @@ void survey(benchmark::State& state, const std::vector<double>& all, double leas
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["error"] = result.error;
 }
-void voxels_original(benchmark::State& state) { survey(state, original_design(), 0.02, voxel_plan(without_limits())); }
+void voxels_original(benchmark::State& state) { analyse(state, original_design(), 0.02, voxel_plan(without_limits())); }
 void columns_original(benchmark::State& state) {
-  survey(state, original_design(), 0.02, column_plan(without_limits()));
+  analyse(state, original_design(), 0.02, column_plan(without_limits()));
 }
-void voxels_thick(benchmark::State& state) { survey(state, thick_design(), 0.2, voxel_plan(without_limits())); }
-void columns_thick(benchmark::State& state) { survey(state, thick_design(), 0.2, column_plan(without_limits())); }
-void columns_thick_roughly(benchmark::State& state) {
-  survey(state, thick_design(), 0.2, column_plan(without_limits(), {}, 1e-2));
+void voxels_thick(benchmark::State& state) { analyse(state, thick_design(), 0.2, voxel_plan(without_limits())); }
+void columns_thick(benchmark::State& state) { analyse(state, thick_design(), 0.2, column_plan(without_limits())); }
+void columns_thick_coarse(benchmark::State& state) {
+  analyse(state, thick_design(), 0.2, column_plan(without_limits(), {}, 1e-2));
 }
 BENCHMARK(voxels_original)->Name("clearance/voxels_original")->Unit(benchmark::kMicrosecond);
 BENCHMARK(columns_original)->Name("clearance/columns_original")->Unit(benchmark::kMicrosecond);
 BENCHMARK(voxels_thick)->Name("clearance/voxels_thick")->Unit(benchmark::kMillisecond);
 BENCHMARK(columns_thick)->Name("clearance/columns_thick")->Unit(benchmark::kMillisecond);
-BENCHMARK(columns_thick_roughly)->Name("clearance/columns_thick_to_1e-2")->Unit(benchmark::kMillisecond);
+BENCHMARK(columns_thick_coarse)->Name("clearance/columns_thick_to_1e-2")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace pkm::benchmarks

@@ -1,11 +1,12 @@
-// Exact columns: one survey to 1e-8 in every situation that costs differently, and its derivative.
+// Exact volumes by cylindrical decomposition (method `columns`) to a tolerance of 1e-8, in cases of different cost, and
+// their gradients.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/timing.hpp"
+#include "engine/accelerators/four_ppa_two_par/columns.hpp"
 #include "engine/math/dual.hpp"
-#include "engine/mechanisms/four_ppa_two_par/columns.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/workspace/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -13,9 +14,9 @@ namespace {
 using namespace four_ppa_two_par;
 using Designs = std::vector<std::vector<double>>;
 
-// Surveys the designs one after the other; times and rates are per design.
-void survey(benchmark::State& state, const Designs& designs, const SurveyPlan& plan) {
-  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+// Analyses the designs one after the other; times and rates are per design.
+void analyse(benchmark::State& state, const Designs& designs, const WorkspacePlan& plan) {
+  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
   Survey<double> result;
   std::int64_t columns = 0;
@@ -31,36 +32,40 @@ void survey(benchmark::State& state, const Designs& designs, const SurveyPlan& p
   state.counters["columns_each"] = static_cast<double>(columns) / static_cast<double>(state.iterations());
 }
 
-const std::vector<HeldCoordinate> kOffPlane = {held_at(1, 0.4)};  // the stroke cuts there
-const std::vector<HeldCoordinate> kOverY = {{.coordinate = 1, .kind = HeldCoordinate::Kind::integrated}};
+const std::vector<FixedCoordinate> kFixedOffMidplane = {fixed_at(1, 0.4)};  // the stroke limits are active there
+const std::vector<FixedCoordinate> kIntegratedOverY = {{.coordinate = 1, .kind = FixedCoordinate::Kind::integrated}};
 
 void without_limits_original(benchmark::State& state) {
-  survey(state, {original_design()}, column_plan(without_limits()));
+  analyse(state, {original_design()}, column_plan(without_limits()));
 }
 void without_limits_optimal(benchmark::State& state) {
-  survey(state, {optimal_design()}, column_plan(without_limits()));
+  analyse(state, {optimal_design()}, column_plan(without_limits()));
 }
-void limits_original(benchmark::State& state) { survey(state, {original_design()}, column_plan(with_limits())); }
-void limits_optimal(benchmark::State& state) { survey(state, {optimal_design()}, column_plan(with_limits())); }
+void limits_original(benchmark::State& state) { analyse(state, {original_design()}, column_plan(with_limits())); }
+void limits_optimal(benchmark::State& state) { analyse(state, {optimal_design()}, column_plan(with_limits())); }
 void limits_random(benchmark::State& state) {
-  survey(state, designs_with_active_limits(200), column_plan(with_limits()));
+  analyse(state, designs_with_active_limits(200), column_plan(with_limits()));
 }
 void limits_off_plane(benchmark::State& state) {
-  survey(state, {original_design()}, column_plan(with_limits(), kOffPlane));
+  analyse(state, {original_design()}, column_plan(with_limits(), kFixedOffMidplane));
 }
-void over_y(benchmark::State& state) { survey(state, {original_design()}, column_plan(without_limits(), kOverY)); }
-void limits_over_y(benchmark::State& state) { survey(state, {original_design()}, column_plan(with_limits(), kOverY)); }
+void integrated_over_y(benchmark::State& state) {
+  analyse(state, {original_design()}, column_plan(without_limits(), kIntegratedOverY));
+}
+void limits_integrated_over_y(benchmark::State& state) {
+  analyse(state, {original_design()}, column_plan(with_limits(), kIntegratedOverY));
+}
 
-BENCHMARK(without_limits_original)->Name("column_survey/original")->Unit(benchmark::kMicrosecond);
-BENCHMARK(without_limits_optimal)->Name("column_survey/optimal")->Unit(benchmark::kMicrosecond);
-BENCHMARK(limits_original)->Name("column_survey/original_with_limits")->Unit(benchmark::kMicrosecond);
-BENCHMARK(limits_optimal)->Name("column_survey/optimal_with_limits")->Unit(benchmark::kMicrosecond);
-BENCHMARK(limits_random)->Name("column_survey/200_random_with_limits")->Unit(benchmark::kMicrosecond);
-BENCHMARK(limits_off_plane)->Name("column_survey/original_with_limits_off_plane")->Unit(benchmark::kMicrosecond);
-BENCHMARK(over_y)->Name("column_survey/original_over_y")->Unit(benchmark::kMicrosecond);
-BENCHMARK(limits_over_y)->Name("column_survey/original_with_limits_over_y")->Unit(benchmark::kMicrosecond);
+BENCHMARK(without_limits_original)->Name("columns/original")->Unit(benchmark::kMicrosecond);
+BENCHMARK(without_limits_optimal)->Name("columns/optimal")->Unit(benchmark::kMicrosecond);
+BENCHMARK(limits_original)->Name("columns/original_with_limits")->Unit(benchmark::kMicrosecond);
+BENCHMARK(limits_optimal)->Name("columns/optimal_with_limits")->Unit(benchmark::kMicrosecond);
+BENCHMARK(limits_random)->Name("columns/200_random_with_limits")->Unit(benchmark::kMicrosecond);
+BENCHMARK(limits_off_plane)->Name("columns/original_with_limits_off_plane")->Unit(benchmark::kMicrosecond);
+BENCHMARK(integrated_over_y)->Name("columns/original_over_y")->Unit(benchmark::kMicrosecond);
+BENCHMARK(limits_integrated_over_y)->Name("columns/original_with_limits_over_y")->Unit(benchmark::kMicrosecond);
 
-// Volume of a design on the middle plane; with duals also its derivatives by a, b, l_u and l_d.
+// Volume of a design on the symmetry plane; with dual numbers also its derivatives by a, b, l_u and l_d.
 template <class S>
 S volume(std::span<const S> parameters, const LimitSpec& spec, ColumnScratch<S>& scratch) {
   const Geometry<S> g = geometry(parameters);
@@ -68,26 +73,27 @@ S volume(std::span<const S> parameters, const LimitSpec& spec, ColumnScratch<S>&
 }
 
 void value_and_gradient(benchmark::State& state, const Designs& designs, const LimitSpec& spec) {
-  std::vector<std::vector<Dual4>> moving;
+  std::vector<std::vector<Dual4>> duals;
   for (const auto& all : designs) {
-    auto& duals = moving.emplace_back(all.begin(), all.end());
-    for (int i = 0; i < 4; ++i) duals[static_cast<std::size_t>(i)].v[i] = 1;
+    auto& variables = duals.emplace_back(all.begin(), all.end());
+    for (int i = 0; i < 4; ++i) variables[static_cast<std::size_t>(i)].v[i] = 1;
   }
-  ColumnScratch<double> plain;
-  ColumnScratch<Dual4> derivative;
-  const Duel duel = take_turns(
+  ColumnScratch<double> value_scratch;
+  ColumnScratch<Dual4> gradient_scratch;
+  const PairedTimes times = time_alternately(
       state, "value_and_gradient_s",
       [&] {
-        for (const auto& duals : moving)
-          benchmark::DoNotOptimize(volume(std::span<const Dual4>(duals), spec, derivative));
+        for (const auto& variables : duals)
+          benchmark::DoNotOptimize(volume(std::span<const Dual4>(variables), spec, gradient_scratch));
       },
       "value_s",
       [&] {
-        for (const auto& all : designs) benchmark::DoNotOptimize(volume(std::span<const double>(all), spec, plain));
+        for (const auto& all : designs)
+          benchmark::DoNotOptimize(volume(std::span<const double>(all), spec, value_scratch));
       });
   const auto count = static_cast<double>(designs.size());
   for (const char* name : {"value_and_gradient_s", "value_s"}) state.counters[name] = state.counters[name] / count;
-  state.counters["ratio"] = duel.ratio();
+  state.counters["ratio"] = times.ratio();
 }
 void gradient(benchmark::State& state) {
   value_and_gradient(state, {original_design(), optimal_design()}, without_limits());

@@ -4,11 +4,11 @@
     benchmarks/compare.py before/pkm_benchmarks after/pkm_benchmarks [--rounds N] [--filter REGEX] [--limit PERCENT]
     benchmarks/compare.py before.json after.json [--limit PERCENT]     (pkm_benchmarks --benchmark_out=before.json)
 
-Two programs take turns with each benchmark, so that a machine that changes its speed changes it for both; what only
-one of them has is named. Prints the median times, their ratio, and the spread of the repetitions; a change within the
-spread is noise. Benchmarks of several threads (their names end with /real_time) are compared by wall time, the others
-by CPU time. With --limit the exit code is 1 if a benchmark got slower by more than that many per cent and by more than
-its spread.
+Two programs run each benchmark alternately, so that changes of the machine's speed affect both. Prints the median
+times, their ratio, and the spread of the repetitions; a change within the spread is noise. Benchmarks that only one of
+the programs has are listed. Multithreaded benchmarks (their names end with /real_time) are compared by wall time, the
+others by CPU time. With --limit the exit code is 1 if a benchmark is slower by more than that percentage and by more
+than its spread.
 """
 
 import argparse
@@ -23,7 +23,7 @@ NANOSECONDS = {"ns": 1, "us": 1e3, "ms": 1e6, "s": 1e9}
 
 
 def repetitions(result):
-    """Benchmark's name -> times of its repetitions [ns]."""
+    """Returns the times of all repetitions [ns] by benchmark name."""
     times = {}
     for run in result["benchmarks"]:
         if run.get("run_type", "iteration") == "iteration" and not run.get("error_occurred"):
@@ -33,20 +33,20 @@ def repetitions(result):
 
 
 def read(path):
-    """The times in a result, and the machine's name."""
+    """Returns the times in a result file, and the name of the machine."""
     try:
         with open(path, encoding="utf-8") as file:
             result = json.load(file)
         times = repetitions(result)
     except (OSError, ValueError, KeyError) as error:
-        sys.exit(f"{path} is neither a program nor a result of Google Benchmark (--benchmark_out): {error!r}")
+        sys.exit(f"{path}: {error!r}; expected a program, or a result of Google Benchmark (--benchmark_out)")
     if not times:
-        sys.exit(f"{path} holds no repetition of any benchmark; write it without --benchmark_report_aggregates_only")
+        sys.exit(f"{path}: no repetitions of benchmarks; expected a result without --benchmark_report_aggregates_only")
     return times, result.get("context", {}).get("host_name", "?")
 
 
-def ask(program, *options):
-    """What a program of benchmarks prints."""
+def run_program(program, *options):
+    """Returns the output of a benchmark program."""
     try:
         return subprocess.run([program, *options], check=True, stdout=subprocess.PIPE, text=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
@@ -54,19 +54,19 @@ def ask(program, *options):
 
 
 def exactly(name):
-    """As an expression of POSIX, to which more escapes than these are errors."""
+    """Returns a POSIX regular expression that matches `name` only; POSIX does not allow other escapes than these."""
     return "^" + re.sub(r"([][.*^$+?(){}|\\])", r"\\\1", name) + "$"
 
 
-def run_in_turns(programs, rounds, pattern):
-    """The times of each program."""
-    lists = [ask(program, "--benchmark_list_tests", f"--benchmark_filter={pattern}").split() for program in programs]
+def run_alternately(programs, rounds, pattern):
+    """Returns the times of each program."""
+    lists = [run_program(each, "--benchmark_list_tests", f"--benchmark_filter={pattern}").split() for each in programs]
     times = [{}, {}]
     for name in dict.fromkeys(lists[0] + lists[1]):
         for _ in range(rounds):
             for program, known, mine in zip(programs, lists, times):
                 if name in known:
-                    result = ask(program, f"--benchmark_filter={exactly(name)}", "--benchmark_format=json",
+                    result = run_program(program, f"--benchmark_filter={exactly(name)}", "--benchmark_format=json",
                                  "--benchmark_min_time=0.05")
                     for run, values in repetitions(json.loads(result)).items():
                         mine.setdefault(run, []).extend(values)
@@ -74,7 +74,7 @@ def run_in_turns(programs, rounds, pattern):
 
 
 def spread(times):
-    """Half of the range that the middle half of the repetitions spans, over their median."""
+    """Relative spread: half of the interquartile range of the repetitions, divided by their median."""
     if len(times) < 3:
         return 0.0
     lower, median, upper = statistics.quantiles(times, n=4, method="inclusive")
@@ -92,17 +92,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before")
     parser.add_argument("after")
-    parser.add_argument("--limit", type=float, help="per cent that a benchmark may get slower")
-    parser.add_argument("--rounds", type=int, default=9, help="turns of each program, where programs are given")
-    parser.add_argument("--filter", default=".", help="benchmarks to run, where programs are given")
+    parser.add_argument("--limit", type=float, help="maximum slowdown of a benchmark, in per cent")
+    parser.add_argument("--rounds", type=int, default=9, help="repetitions of each benchmark, if programs are given")
+    parser.add_argument("--filter", default=".", help="benchmarks to run, if programs are given")
     arguments = parser.parse_args()
     programs = [arguments.before, arguments.after]
     if all(os.access(program, os.X_OK) for program in programs):
-        before, after = run_in_turns(programs, arguments.rounds, arguments.filter)
+        before, after = run_alternately(programs, arguments.rounds, arguments.filter)
     else:
         (before, host_before), (after, host_after) = read(arguments.before), read(arguments.after)
         if host_before != host_after:
-            print(f"two machines: {host_before} and {host_after}")
+            print(f"warning: results of two machines, {host_before} and {host_after}")
     slower = []
     width = max(map(len, before | after))
     print(f"{'':{width}}  {'before':>9}  {'after':>9}  after/before  spread")

@@ -1,10 +1,10 @@
-// Conditioning: one pose, and the surveys that average it over the workspace.
+// Conditioning: one pose, and its mean over the workspace.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
+#include "engine/accelerators/four_ppa_two_par/conditioning.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/four_ppa_two_par/conditioning.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/workspace/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -41,10 +41,10 @@ void pose(benchmark::State& state) {
 }
 BENCHMARK(pose)->Name("conditioning/pose")->Unit(benchmark::kMicrosecond);
 
-void survey(benchmark::State& state, SurveyPlan plan) {
+void analyse(benchmark::State& state, WorkspacePlan plan) {
   Demand demand;
   demand.add(kConditioning);
-  const auto surveyor = prepare_survey(four_ppa(), plan, demand);
+  const auto surveyor = prepare_workspace(four_ppa(), plan, demand);
   const auto all = original_design();
   Scratch scratch;
   Survey<double> result;
@@ -56,10 +56,10 @@ void survey(benchmark::State& state, SurveyPlan plan) {
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["poses"] = benchmark::Counter(poses, benchmark::Counter::kIsIterationInvariantRate);
 }
-void survey_voxels(benchmark::State& state) { survey(state, voxel_plan(without_limits())); }
-void survey_columns(benchmark::State& state) { survey(state, column_plan(without_limits())); }
-BENCHMARK(survey_voxels)->Name("conditioning/voxel_survey")->Unit(benchmark::kMicrosecond);
-BENCHMARK(survey_columns)->Name("conditioning/column_survey")->Unit(benchmark::kMicrosecond);
+void analyse_voxels(benchmark::State& state) { analyse(state, voxel_plan(without_limits())); }
+void analyse_columns(benchmark::State& state) { analyse(state, column_plan(without_limits())); }
+BENCHMARK(analyse_voxels)->Name("conditioning/voxels")->Unit(benchmark::kMicrosecond);
+BENCHMARK(analyse_columns)->Name("conditioning/columns")->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace pkm::benchmarks

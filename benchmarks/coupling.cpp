@@ -1,11 +1,11 @@
-// Joint-space inertia, coupling indices and drive forces of (3CRR/R)&CRU and the Quadrupteron, nominal.
+// Joint-space inertia, coupling indices and drive forces of the nominal (3CRR/R)&CRU and Quadrupteron.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/math/statistics.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/mechanisms/crr_cru/dynamics.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/mechanism/drive_along.hpp"
+#include "engine/workspace/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -16,8 +16,8 @@ std::vector<double> nominal(const Mechanism& m) {
   return parameters;
 }
 
-SurveyPlan plan_of(const std::variant<ColumnOptions, VoxelOptions>& method) {
-  SurveyPlan plan{.method = method, .held = {held_at(3, 0.3)}};
+WorkspacePlan plan_of(const std::variant<ColumnOptions, VoxelOptions>& method) {
+  WorkspacePlan plan{.method = method, .held = {fixed_at(3, 0.3)}};
   plan.limits = no_limits(mechanism_named("quadrupteron").info());
   plan.limits.given[0] = 0.2;
   plan.limits.given[1] = 0.1;
@@ -33,71 +33,82 @@ Demand coupling() {
   return demand;
 }
 
-/// A survey of 40 x 40 x 40 voxels that cover all that is reached; time per feasible pose besides.
+/// Workspace analysis on 40 x 40 x 40 voxels of the whole search box. The counter per_pose is the time per feasible
+/// pose.
 void voxels(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
-  const auto surveyor = prepare_survey(m, plan_of(VoxelOptions{.cells = kCells}), coupling());
+  const auto surveyor = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells}), coupling());
   Scratch scratch;
-  Survey<double> survey;
+  Survey<double> result;
   for (auto _ : state) {
-    surveyor->survey(parameters, scratch, survey);
-    benchmark::DoNotOptimize(survey.of(kCouplingIndex, 0).data());
+    surveyor->survey(parameters, scratch, result);
+    benchmark::DoNotOptimize(result.of(kCouplingIndex, 0).data());
   }
-  state.counters["feasible"] = static_cast<double>(survey.weight.size());
+  state.counters["feasible"] = static_cast<double>(result.weight.size());
   state.counters["per_pose"] =
-      benchmark::Counter(static_cast<double>(survey.weight.size()),
+      benchmark::Counter(static_cast<double>(result.weight.size()),
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// The same number of cells in a box that is feasible as a whole: 64000 poses.
+/// The same number of voxels in a box that is completely feasible: 64000 poses.
 void full_box(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
-  const auto surveyor = prepare_survey(m, plan_of(VoxelOptions{.cells = kCells, .box = kInside}), coupling());
+  const auto surveyor = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells, .box = kInside}), coupling());
   Scratch scratch;
-  Survey<double> survey;
+  Survey<double> result;
   for (auto _ : state) {
-    surveyor->survey(parameters, scratch, survey);
-    benchmark::DoNotOptimize(survey.of(kCouplingIndex, 0).data());
+    surveyor->survey(parameters, scratch, result);
+    benchmark::DoNotOptimize(result.of(kCouplingIndex, 0).data());
   }
-  state.counters["feasible"] = static_cast<double>(survey.weight.size());
+  state.counters["feasible"] = static_cast<double>(result.weight.size());
   state.counters["per_pose"] =
-      benchmark::Counter(static_cast<double>(survey.weight.size()),
+      benchmark::Counter(static_cast<double>(result.weight.size()),
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// Mean worst index over a task box at five angles, by column nodes.
+/// Mean of the largest index over a task box at five angles, by quadrature nodes of columns.
 template <class S>
 void task_box(benchmark::State& state) {
   const Mechanism& m = mechanism_named("3crr-r-cru");
   const auto values = nominal(m);
   const std::vector<S> parameters(values.begin(), values.end());
-  SurveyPlan plan = plan_of(ColumnOptions{.nodes = {4, 4}, .box = kInside});
-  plan.held = {{.coordinate = 3, .kind = HeldCoordinate::Kind::listed, .values = {-1, -0.5, 0, 0.5, 1}}};
-  const auto surveyor = prepare_survey(m, plan, coupling());
+  WorkspacePlan plan = plan_of(ColumnOptions{.nodes = {4, 4}, .box = kInside});
+  plan.held = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {-1, -0.5, 0, 0.5, 1}}};
+  const auto surveyor = prepare_workspace(m, plan, coupling());
   Scratch scratch;
-  Survey<S> survey;
+  Survey<S> result;
   for (auto _ : state) {
-    run_survey<S>(*surveyor, parameters, scratch, survey);
-    benchmark::DoNotOptimize(weighted_mean(survey.weight, survey.of(kCouplingIndex, 3)));
+    evaluate_workspace<S>(*surveyor, parameters, scratch, result);
+    benchmark::DoNotOptimize(weighted_mean(result.weight, result.of(kCouplingIndex, 3)));
   }
-  state.counters["poses"] = static_cast<double>(survey.weight.size());
+  state.counters["poses"] = static_cast<double>(result.weight.size());
 }
 
-/// Inverse dynamics by virtual work at one pose and motion.
+/// Inverse dynamics by the principle of virtual work, at 1024 motion states of one design. The counter per_state is the
+/// time per state.
 void inverse_dynamics(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
-  const auto p = nominal(m);
-  const auto platform = std::string(name) == "quadrupteron" ? crr_cru::Platform::rigid : crr_cru::Platform::jointed;
-  const auto g = crr_cru::geometry(platform, std::span<const double>(p));
-  const auto b = crr_cru::masses(crr_cru::MassModel::table, std::span<const double>(p));
-  MotionState<double, 4> at{{0.2, 0.17, 0.22, 0.3}, {{0.3, -0.2, 0.1, 1}}};
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(at);
-    const auto d = crr_cru::pose_dynamics(g, b, at, {-1, -1, 1, -1});
-    benchmark::DoNotOptimize(drive_forces(d, {{5, -4, 3, 20}}, {}));
+  const auto parameters = nominal(m);
+  std::vector<MotionSample> samples(1024);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double shift = 0.02 * static_cast<double>(k) / static_cast<double>(samples.size());
+    samples[k].pose = {0.2 - shift, 0.17 + shift, 0.22 - shift, 0.3 + shift};
+    samples[k].velocity = {0.3, -0.2, 0.1, 1};
+    samples[k].acceleration = {5, -4, 3, 20};
   }
+  DriveScratch<double> scratch;
+  std::size_t states = 0;
+  for (auto _ : state) {
+    double sum = 0;
+    states = drive_along<double>(*m.dynamics(), parameters, m.info().modes.front(), samples, {}, scratch,
+                                 [&](std::size_t, const Drive<double>& drive) { sum += drive.forces[0]; });
+    benchmark::DoNotOptimize(sum);
+  }
+  if (states < samples.size()) state.SkipWithError("a pose does not assemble");
+  state.counters["per_state"] = benchmark::Counter(
+      static_cast<double>(states), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void jointed_voxels(benchmark::State& state) { voxels(state, "3crr-r-cru"); }
@@ -113,8 +124,8 @@ BENCHMARK(jointed_box)->Name("coupling/feasible_box_40/3crr-r-cru")->Unit(benchm
 BENCHMARK(rigid_box)->Name("coupling/feasible_box_40/quadrupteron")->Unit(benchmark::kMillisecond);
 BENCHMARK(task_box<double>)->Name("coupling/task_box")->Unit(benchmark::kMicrosecond);
 BENCHMARK(task_box<Dual4>)->Name("coupling/task_box_gradient")->Unit(benchmark::kMicrosecond);
-BENCHMARK(jointed_forces)->Name("coupling/inverse_dynamics/3crr-r-cru")->Unit(benchmark::kNanosecond);
-BENCHMARK(rigid_forces)->Name("coupling/inverse_dynamics/quadrupteron")->Unit(benchmark::kNanosecond);
+BENCHMARK(jointed_forces)->Name("coupling/inverse_dynamics/3crr-r-cru")->Unit(benchmark::kMicrosecond);
+BENCHMARK(rigid_forces)->Name("coupling/inverse_dynamics/quadrupteron")->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace pkm::benchmarks

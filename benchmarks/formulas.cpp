@@ -1,7 +1,7 @@
-// Formulas: what an expression adds to a survey.
+// Cost of an expression: parsing, evaluation and gradient.
 #include <benchmark/benchmark.h>
 
-#include "engine/graph/formula.hpp"
+#include "engine/expression/formula.hpp"
 #include "engine/math/dual.hpp"
 
 namespace pkm::benchmarks {

@@ -1,4 +1,4 @@
-// One generation of designs on one and on two threads.
+// Parallel efficiency: one generation of designs on one and on two threads.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
@@ -8,7 +8,7 @@
 namespace pkm::benchmarks {
 namespace {
 
-// A table with one generation evaluated and room for the next, as an optimiser would have it.
+// A table with one evaluated generation and the designs of the next, like that of an optimiser.
 EvaluationTable two_generations(const Problem& problem, std::size_t population) {
   EvaluationTable table(problem.shape());
   table.extend(population);
@@ -28,14 +28,15 @@ void generation(benchmark::State& state, Study (*make_study)(), std::size_t popu
   ParallelEvaluator one(1), two(2);
   const auto by_one = [&] { one.evaluate(problem, table, population); };
   const auto by_two = [&] { two.evaluate(problem, table, population); };
-  Duel duel;
+  PairedTimes times;
   with_team(2, [&] {
-    duel = take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+    times = time_alternately(state, "ten_by_one_thread_s", repeat_10_times(by_one), "ten_by_two_threads_s",
+                             repeat_10_times(by_two));
   });
   const double designs = 10 * static_cast<double>(population) * static_cast<double>(state.iterations());
-  state.counters["designs_per_s_on_one"] = designs / duel.first;
-  state.counters["designs_per_s_on_two"] = designs / duel.second;
-  state.counters["efficiency_percent"] = 100 * duel.ratio() / 2;
+  state.counters["designs_per_s_on_one"] = designs / times.first;
+  state.counters["designs_per_s_on_two"] = designs / times.second;
+  state.counters["efficiency_percent"] = 100 * times.ratio() / 2;
 }
 void voxels_1000(benchmark::State& state) { generation(state, paper_study, 1000); }
 void voxels_200(benchmark::State& state) { generation(state, paper_study, 200); }

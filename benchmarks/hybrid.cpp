@@ -1,13 +1,13 @@
-// Surveys and pose tests of the hybrid robot: nominal, and random designs around it.
+// Workspace analyses and pose tests of the hybrid robot: the nominal design and random designs near it.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
+#include "engine/accelerators/hybrid/voxels.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/mechanisms/hybrid/voxels.hpp"
-#include "engine/survey/survey_set.hpp"
-#include "tests/unit/mechanisms/hybrid/plain_pose.hpp"
-#include "tests/unit/mechanisms/plain_loop.hpp"
+#include "engine/workspace/survey_set.hpp"
+#include "tests/unit/accelerators/hybrid/plain_pose.hpp"
+#include "tests/unit/generic/plain_loop.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -15,11 +15,11 @@ namespace {
 const Mechanism& hybrid_robot() { return mechanism_named("2t1r-p-hybrid"); }
 
 template <class Method>
-SurveyPlan plan_of(const Method& method) {
+WorkspacePlan plan_of(const Method& method) {
   return {.method = method, .limits = no_limits(hybrid_robot().info())};
 }
 
-/// The nominal design first, then such with every parameter up to a tenth off.
+/// The nominal design, followed by designs whose parameters deviate from it by up to 10 %.
 std::vector<std::vector<double>> designs(std::size_t count) {
   Stream random(1, 0, 0, Stream::Use::start);
   std::vector<std::vector<double>> all(count);
@@ -29,17 +29,17 @@ std::vector<std::vector<double>> designs(std::size_t count) {
   return all;
 }
 
-/// Times per design. @param S  with Dual4, derivatives by four variables
+/// Times are per design. @tparam S  with Dual4: with derivatives by four variables
 template <class S, class Method>
-void survey(benchmark::State& state, const Method& method, std::size_t count, const Demand& demand = {}) {
+void analyse(benchmark::State& state, const Method& method, std::size_t count, const Demand& demand = {}) {
   std::vector<std::vector<S>> all;
   for (const auto& design : designs(count)) all.emplace_back(design.begin(), design.end());
-  const auto surveyor = prepare_survey(hybrid_robot(), plan_of(method), demand);
+  const auto surveyor = prepare_workspace(hybrid_robot(), plan_of(method), demand);
   Scratch scratch;
   Survey<S> result;
   std::size_t next = 0;
   for (auto _ : state) {
-    run_survey<S>(*surveyor, all[next], scratch, result);
+    evaluate_workspace<S>(*surveyor, all[next], scratch, result);
     benchmark::DoNotOptimize(result.volume);
     next = next + 1 < count ? next + 1 : 0;
   }
@@ -51,35 +51,34 @@ Demand with_conditioning() {
   return demand;
 }
 
-void columns(benchmark::State& state) { survey<double>(state, ColumnOptions(), 1); }
-void columns_random(benchmark::State& state) { survey<double>(state, ColumnOptions(), 100); }
-void gradient(benchmark::State& state) { survey<Dual4>(state, ColumnOptions(), 1); }
-void columns_conditioning(benchmark::State& state) { survey<double>(state, ColumnOptions(), 1, with_conditioning()); }
-void voxels(benchmark::State& state) { survey<double>(state, kPaperGrid, 1); }
-void voxels_conditioning(benchmark::State& state) { survey<double>(state, kPaperGrid, 1, with_conditioning()); }
+void columns(benchmark::State& state) { analyse<double>(state, ColumnOptions(), 1); }
+void columns_random(benchmark::State& state) { analyse<double>(state, ColumnOptions(), 100); }
+void gradient(benchmark::State& state) { analyse<Dual4>(state, ColumnOptions(), 1); }
+void columns_conditioning(benchmark::State& state) { analyse<double>(state, ColumnOptions(), 1, with_conditioning()); }
+void voxels(benchmark::State& state) { analyse<double>(state, kPaperGrid, 1); }
+void voxels_conditioning(benchmark::State& state) { analyse<double>(state, kPaperGrid, 1, with_conditioning()); }
 
-using hybrid::VoxelDesign;
-
-VoxelDesign nominal() {
+hybrid::Frame<double> nominal_frame() {
   const std::vector<double> p = designs(1)[0];
   const std::span<const double> all(p);
-  return {hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1)};
+  return hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1);
 }
 
-/// The plain loop over the same cells; fails if the survey counts others.
-void plain_loop(benchmark::State& state) {
-  const VoxelDesign design = nominal();
-  const VoxelGrid grid(kPaperGrid.cells, hybrid::default_box(design));
-  Survey<double> plain, fast;
+/// A loop over the same voxels; fails if the workspace analysis counts a different number.
+void loop(benchmark::State& state) {
+  const hybrid::Frame<double> frame = nominal_frame();
+  const VoxelGrid grid(kPaperGrid.cells, hybrid::default_box(frame));
+  Survey<double> loop_result, result;
   for (auto _ : state) {
     summarise(grid,
               testing::test_every_cell(
-                  grid, [&](double x, double z, double beta) { return testing::hybrid::feasible(design, x, z, beta); }),
-              plain);
-    benchmark::DoNotOptimize(plain.volume);
+                  grid, [&](double x, double z, double beta) { return testing::hybrid::feasible(frame, x, z, beta); }),
+              loop_result);
+    benchmark::DoNotOptimize(loop_result.volume);
   }
-  survey_once<double>(*prepare_survey(hybrid_robot(), plan_of(kPaperGrid), {}), designs(1)[0], fast);
-  if (fast.feasible_cells != plain.feasible_cells) state.SkipWithError("the survey counts other cells");
+  evaluate_once<double>(*prepare_workspace(hybrid_robot(), plan_of(kPaperGrid), {}), designs(1)[0], result);
+  if (result.feasible_cells != loop_result.feasible_cells)
+    state.SkipWithError("the workspace analysis counts different voxels");
   state.counters["poses"] =
       benchmark::Counter(static_cast<double>(grid.count()), benchmark::Counter::kIsIterationInvariantRate);
 }
@@ -90,7 +89,7 @@ BENCHMARK(gradient)->Name("hybrid/columns_gradient")->Unit(benchmark::kMicroseco
 BENCHMARK(columns_conditioning)->Name("hybrid/columns_conditioning")->Unit(benchmark::kMicrosecond);
 BENCHMARK(voxels)->Name("hybrid/voxels")->Unit(benchmark::kMicrosecond);
 BENCHMARK(voxels_conditioning)->Name("hybrid/voxels_conditioning")->Unit(benchmark::kMicrosecond);
-BENCHMARK(plain_loop)->Name("hybrid/plain_loop")->Unit(benchmark::kMicrosecond);
+BENCHMARK(loop)->Name("hybrid/loop")->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace pkm::benchmarks

@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "constraints/all.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/workspace/survey_set.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm::benchmarks {
@@ -22,9 +22,9 @@ Study experiment(const std::string& name) {
   return load_study_toml(std::string(PKM_EXPERIMENTS) + "/4ppa-2par/" + name, catalogues());
 }
 
-double volume(const Surveyor& surveyor, std::span<const double> parameters) {
+double volume(const WorkspaceEvaluator& surveyor, std::span<const double> parameters) {
   Survey<double> survey;
-  survey_once(surveyor, parameters, survey);
+  evaluate_once(surveyor, parameters, survey);
   return survey.volume;
 }
 
@@ -57,8 +57,8 @@ LimitSpec with_limits() { return wide_study().problem->parts().plan.limits; }
 
 std::vector<std::vector<double>> designs_with_active_limits(std::size_t count) {
   const Study study = wide_study();
-  const auto limited = prepare_survey(four_ppa(), column_plan(with_limits()), {});
-  const auto free = prepare_survey(four_ppa(), column_plan(without_limits()), {});
+  const auto limited = prepare_workspace(four_ppa(), column_plan(with_limits()), {});
+  const auto free = prepare_workspace(four_ppa(), column_plan(without_limits()), {});
   std::vector<std::vector<double>> designs;
   std::vector<double> variables(study.problem->space().dimension());
   for (std::uint32_t row = 0; designs.size() < count; ++row) {
@@ -70,10 +70,11 @@ std::vector<std::vector<double>> designs_with_active_limits(std::size_t count) {
   return designs;
 }
 
-SurveyPlan voxel_plan(const LimitSpec& limits) { return {.method = kPaperGrid, .limits = limits}; }
+WorkspacePlan voxel_plan(const LimitSpec& limits) { return {.method = kPaperGrid, .limits = limits}; }
 
-SurveyPlan column_plan(const LimitSpec& limits, const std::vector<HeldCoordinate>& held, double tolerance) {
-  return {.method = ColumnOptions{.tolerance = tolerance}, .held = held, .limits = limits};
+WorkspacePlan column_plan(const LimitSpec& limits, const std::vector<FixedCoordinate>& fixed_coordinates,
+                          double tolerance) {
+  return {.method = ColumnOptions{.tolerance = tolerance}, .held = fixed_coordinates, .limits = limits};
 }
 
 Study paper_study() { return experiment("paper-problem.toml"); }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the most memory that `pkmopt run` takes, for studies of growing size: memory.py path/to/pkmopt"""
+"""Prints the peak memory of `pkmopt run` for studies of increasing size: memory.py path/to/pkmopt"""
 import os
 import resource
 import subprocess
@@ -10,11 +10,12 @@ EXPERIMENT = os.path.join(os.path.dirname(__file__), "..", "experiments", "4ppa-
 
 
 def run(program, folder, population, generations):
-    """MiB of one run, measured in a process of its own, because the system keeps the maximum over all children."""
+    """Returns memory and study file size of one run [MiB]. A separate process measures the memory, because the system
+    records the maximum over all children."""
     with open(EXPERIMENT) as file:
         head, _, stage = file.read().partition("[[stage]]")
     if not stage:
-        sys.exit(f"{EXPERIMENT} has no [[stage]]")
+        sys.exit(f"{EXPERIMENT}: no [[stage]] found")
     study = os.path.join(folder, f"{population}-{generations}.toml")
     with open(study, "w") as file:
         file.write(f'{head}[[stage]]\noptimiser = "ga"\npopulation = {population}\ngenerations = {generations}\n')

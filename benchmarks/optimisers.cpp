@@ -1,5 +1,5 @@
-// The random numbers that the genetic algorithm draws, and a whole study without a file. What it costs itself:
-// scaling.cpp.
+// Random numbers of the genetic algorithm, and complete studies without a study file. The cost of the algorithm itself
+// is measured in scaling.cpp.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
@@ -23,7 +23,7 @@ BENCHMARK(random_doubles)->Unit(benchmark::kMicrosecond);
 
 // From the TOML file to the best design.
 void whole_study(benchmark::State& state, Study (*make_study)()) {
-  Silent monitor;
+  SilentMonitor monitor;
   std::size_t evaluations = 0;
   double best = 0;
   for (auto _ : state) {

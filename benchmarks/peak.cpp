@@ -17,7 +17,7 @@
 namespace pkm::benchmarks {
 namespace {
 
-constexpr int kRounds = 200000, kChains = 16;  // as many sums side by side as hide the latency of each
+constexpr int kRounds = 200000, kChains = 16;  // independent chains, enough to hide the latency of an operation
 
 #if defined(__x86_64__)
 [[gnu::target("avx512f")]] void multiply_add_512() {
@@ -37,7 +37,7 @@ constexpr int kRounds = 200000, kChains = 16;  // as many sums side by side as h
   for (const __m256d& s : sum) benchmark::DoNotOptimize(s[0] + s[1] + s[2] + s[3]);
 }
 
-// Of vectors on which nothing depends but the next of the same chain.
+// Throughput of divisions and square roots, on independent chains of vectors.
 [[gnu::target("avx512f")]] void divide_512() {
   __m512d x[kChains], by = _mm512_set1_pd(1.0001);
   for (__m512d& each : x) each = by;
@@ -71,7 +71,7 @@ constexpr int kRounds = 200000, kChains = 16;  // as many sums side by side as h
   for (const __m256d& each : x) benchmark::DoNotOptimize(each[0]);
 }
 #endif
-void multiply_add_plainly() {
+void multiply_add_scalar() {
   double sum[kChains];
   for (double& s : sum) s = 0.5;
   for (int i = 0; i < kRounds; ++i)
@@ -79,7 +79,7 @@ void multiply_add_plainly() {
   for (double& s : sum) benchmark::DoNotOptimize(s);
 }
 
-void divide_plainly() {
+void divide_scalar() {
   double x[kChains], by = 1.0001;
   benchmark::DoNotOptimize(by);
   for (double& each : x) each = by;
@@ -87,7 +87,7 @@ void divide_plainly() {
     for (double& each : x) each = each / by;
   for (double& each : x) benchmark::DoNotOptimize(each);
 }
-void root_plainly() {
+void root_scalar() {
   double x[kChains];
   for (double& each : x) each = 1.0001;
   for (int i = 0; i < kRounds / 16; ++i)
@@ -95,7 +95,7 @@ void root_plainly() {
   for (double& each : x) benchmark::DoNotOptimize(each);
 }
 
-double least_time(void (*work)()) {
+double min_time(void (*work)()) {
   double best = 1e9;
   for (int i = 0; i < 10; ++i) best = std::min(best, seconds_of(work));
   return best;
@@ -105,7 +105,7 @@ double least_time(void (*work)()) {
 
 double peak_flops() {
   static const double peak = [] {
-    void (*work)() = multiply_add_plainly;
+    void (*work)() = multiply_add_scalar;
     double lanes = 1;
 #if defined(__x86_64__)
     if (widest_instruction_set() == InstructionSet::avx512) {
@@ -116,15 +116,15 @@ double peak_flops() {
       lanes = 4;
     }
 #endif
-    return 2.0 * kRounds * kChains * lanes / least_time(work);
+    return 2.0 * kRounds * kChains * lanes / min_time(work);
   }();
   return peak;
 }
 
-SlowOperations slow_operations() {
-  static const SlowOperations slow = [] {
-    void (*divide)() = divide_plainly;
-    void (*root)() = root_plainly;
+DivisionAndRootTimes division_and_root_times() {
+  static const DivisionAndRootTimes slow = [] {
+    void (*divide)() = divide_scalar;
+    void (*root)() = root_scalar;
     double lanes = 1;
 #if defined(__x86_64__)
     if (widest_instruction_set() == InstructionSet::avx512) {
@@ -138,7 +138,7 @@ SlowOperations slow_operations() {
     }
 #endif
     const double numbers = kRounds / 16 * kChains * lanes;
-    return SlowOperations{least_time(divide) / numbers, least_time(root) / numbers};
+    return DivisionAndRootTimes{min_time(divide) / numbers, min_time(root) / numbers};
   }();
   return slow;
 }
@@ -146,8 +146,8 @@ SlowOperations slow_operations() {
 void report_peak(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(peak_flops());
   state.counters["GFLOP_per_s"] = peak_flops() * 1e-9;
-  state.counters["division_ns"] = slow_operations().division * 1e9;
-  state.counters["root_ns"] = slow_operations().root * 1e9;
+  state.counters["division_ns"] = division_and_root_times().division * 1e9;
+  state.counters["root_ns"] = division_and_root_times().root * 1e9;
 }
 BENCHMARK(report_peak)->Name("peak/fused_multiply_add");
 

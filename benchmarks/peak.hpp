@@ -1,17 +1,17 @@
-// What this machine's floating-point units can do at most, measured.
+// Measured peak performance of the processor's floating-point units.
 #pragma once
 
 namespace pkm::benchmarks {
 
-/// Operations per second [1/s] of one thread doing nothing but fused multiply-adds of doubles, two operations each, on
-/// the widest vectors that the processor has. Measured once, in some 20 ms.
+/// Peak performance of one thread [1/s]: fused multiply-adds of doubles, two operations each, with the widest vector
+/// instructions of the processor. Measured once, in about 20 ms.
 double peak_flops();
 
-/// Seconds that a division and a square root take, per number, on the same vectors. They occupy one unit of the
-/// processor that does nothing else meanwhile, so however many of them a kernel needs, this is the least it takes.
-struct SlowOperations {
+/// Times of a division and a square root [s], per number, with the same vector instructions. Both occupy the same unit
+/// of the processor, so that a kernel takes at least the sum of these times.
+struct DivisionAndRootTimes {
   double division, root;
 };
-SlowOperations slow_operations();
+DivisionAndRootTimes division_and_root_times();
 
 }  // namespace pkm::benchmarks

@@ -1,4 +1,4 @@
-// How cost grows: with threads, population and number of variables. With the grid: voxel_survey/grid.
+// Growth of the cost with the number of threads, the population and the number of variables. For the grid: voxels/grid.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -12,14 +12,14 @@
 namespace pkm::benchmarks {
 namespace {
 
-// A problem whose evaluation costs next to nothing: the sum of squares.
+// A problem with negligible evaluation cost: the sum of squares.
 class Sphere final : public Problem {
  public:
   explicit Sphere(std::size_t variables) : space_(axes(variables)) {}
   const DesignSpace& space() const override { return space_; }
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
   const std::vector<MarginInfo>& margins() const override { return margins_; }
-  const std::vector<ReportInfo>& reports() const override { return reports_; }
+  const std::vector<OutputInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, Scratch&, EvaluationSlot result) const override {
     double sum = 0;
     for (const double x : design) sum += x * x;
@@ -37,10 +37,10 @@ class Sphere final : public Problem {
   DesignSpace space_;
   std::vector<ObjectiveInfo> objectives_{{"sphere", "m^2", "sum of squares", Direction::minimise}};
   std::vector<MarginInfo> margins_;
-  std::vector<ReportInfo> reports_;
+  std::vector<OutputInfo> reports_;
 };
 
-/// Runs the genetic algorithm and counts designs per second.
+/// Runs the genetic algorithm and reports the time per design.
 void run_ga(benchmark::State& state, const Problem& problem, std::int64_t population, std::int64_t generations,
             Evaluator& evaluator) {
   const OptimiserEntry& entry = *find_named(all_optimisers(), "ga");
@@ -48,7 +48,7 @@ void run_ga(benchmark::State& state, const Problem& problem, std::int64_t popula
   options.set("population", population);
   options.set("generations", generations);
   const auto optimiser = entry.make(options, problem.space());
-  Silent monitor;
+  SilentMonitor monitor;
   std::size_t evaluations = 0;
   for (auto _ : state) {
     EvaluationTable table(problem.shape());
@@ -59,7 +59,7 @@ void run_ga(benchmark::State& state, const Problem& problem, std::int64_t popula
   state.counters["s_per_design"] = Counter(static_cast<double>(evaluations), Counter::kIsRate | Counter::kInvert);
 }
 
-// The paper's study with a population of 200 on 1, 2, ... as many threads as there are cores.
+// The paper's study with a population of 200, on 1, 2, .. threads up to the number of cores.
 void threads(benchmark::State& state) {
   const Study study = paper_study();
   ParallelEvaluator evaluator(static_cast<int>(state.range(0)));
@@ -71,7 +71,7 @@ BENCHMARK(threads)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-// The paper's study: what a design takes of a population's evaluation and of the algorithm itself.
+// The paper's study: time per design of evaluation and algorithm together.
 void population(benchmark::State& state) {
   const Study study = paper_study();
   ParallelEvaluator evaluator(1);
@@ -79,31 +79,27 @@ void population(benchmark::State& state) {
 }
 BENCHMARK(population)->Name("scaling/population")->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMillisecond);
 
-// The algorithm alone, with free evaluations.
-void own(benchmark::State& state, std::int64_t generations) {
+// The algorithm alone, with evaluations of negligible cost.
+void ga_only(benchmark::State& state, std::int64_t generations) {
   const Sphere problem(4);
   ParallelEvaluator evaluator(1);
   run_ga(state, problem, state.range(0), generations, evaluator);
 }
-void ga_overhead(benchmark::State& state) { own(state, 100); }
+void ga_overhead(benchmark::State& state) { ga_only(state, 100); }
 BENCHMARK(ga_overhead)->Name("ga_overhead/population")->Arg(20)->Arg(1000)->Unit(benchmark::kMicrosecond);
-void own_population(benchmark::State& state) { own(state, 10); }
-BENCHMARK(own_population)
-    ->Name("scaling/own_population")
+void ga_population(benchmark::State& state) { ga_only(state, 10); }
+BENCHMARK(ga_population)
+    ->Name("scaling/ga_population")
     ->RangeMultiplier(10)
     ->Range(10, 100000)
     ->Unit(benchmark::kMillisecond);
 
-void own_variables(benchmark::State& state) {
+void ga_variables(benchmark::State& state) {
   const Sphere problem(static_cast<std::size_t>(state.range(0)));
   ParallelEvaluator evaluator(1);
   run_ga(state, problem, 100, 20, evaluator);
 }
-BENCHMARK(own_variables)
-    ->Name("scaling/own_variables")
-    ->RangeMultiplier(2)
-    ->Range(1, 128)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(ga_variables)->Name("scaling/ga_variables")->RangeMultiplier(2)->Range(1, 128)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace pkm::benchmarks

@@ -1,4 +1,4 @@
-// Checkpoints: writing and reading a study file in the folder for temporary files, both fsyncs included.
+// Checkpoints: time to write (with both fsyncs) and read a study file in the folder for temporary files.
 #include <filesystem>
 
 #include <benchmark/benchmark.h>
@@ -6,14 +6,14 @@
 
 #include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
+#include "engine/runner/records.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/records.hpp"
 
 namespace pkm::benchmarks {
 namespace {
 
-/// A study of the paper's problem (four variables, an objective, a report), its numbers random, so that they compress
-/// no better than real ones.
+/// A study of the paper's problem (four variables, one objective, one output) with random numbers, which compress no
+/// better than real ones.
 StudyContents study_of(std::int64_t generations, std::int64_t population) {
   const Study source = paper_study();
   const Problem& problem = *source.problem;
@@ -44,7 +44,7 @@ StudyContents study_of(std::int64_t generations, std::int64_t population) {
   return study;
 }
 
-/// A file of this process's own, removed at the end.
+/// Path of a temporary file, which the destructor removes.
 struct TemporaryFile {
   std::string path =
       (std::filesystem::temp_directory_path() / ("pkm-benchmark-" + std::to_string(getpid()) + ".h5")).string();

@@ -1,4 +1,4 @@
-// Poses and voxels: the test of one pose, the loop that a designer would write, and the survey in use.
+// Voxels: the test of one pose, a hand-written loop over the voxels, and the voxel counts of the workspace evaluator.
 #include <cmath>
 
 #include <benchmark/benchmark.h>
@@ -6,12 +6,12 @@
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/peers/voxel_loop.hpp"
 #include "benchmarks/timing.hpp"
+#include "engine/accelerators/four_ppa_two_par/voxels.hpp"
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
-#include "engine/survey/survey_set.hpp"
-#include "tests/unit/mechanisms/four_ppa_two_par/plain_pose.hpp"
+#include "engine/workspace/survey_set.hpp"
+#include "tests/unit/accelerators/four_ppa_two_par/plain_pose.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -47,9 +47,9 @@ void pose_test(benchmark::State& state) {
 }
 BENCHMARK(pose_test)->Unit(benchmark::kMicrosecond);
 
-void survey(benchmark::State& state, Design design, LimitSpec (*limits_of)()) {
+void analyse(benchmark::State& state, Design design, LimitSpec (*limits_of)()) {
   const auto all = design();
-  const auto surveyor = prepare_survey(four_ppa(), voxel_plan(limits_of()), {});
+  const auto surveyor = prepare_workspace(four_ppa(), voxel_plan(limits_of()), {});
   Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
@@ -59,22 +59,22 @@ void survey(benchmark::State& state, Design design, LimitSpec (*limits_of)()) {
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["cells_found"] = static_cast<double>(result.feasible_cells);
 }
-BENCHMARK_CAPTURE(survey, original, original_design, without_limits)
-    ->Name("voxel_survey/original")
+BENCHMARK_CAPTURE(analyse, original, original_design, without_limits)
+    ->Name("voxels/original")
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(survey, optimal, optimal_design, without_limits)
-    ->Name("voxel_survey/optimal")
+BENCHMARK_CAPTURE(analyse, optimal, optimal_design, without_limits)
+    ->Name("voxels/optimal")
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(survey, limits, original_design, with_limits)
-    ->Name("voxel_survey/original_with_limits")
+BENCHMARK_CAPTURE(analyse, limits, original_design, with_limits)
+    ->Name("voxels/original_with_limits")
     ->Unit(benchmark::kMicrosecond);
 
-// Off the middle plane nothing is symmetric: every column counts.
+// Off the symmetry plane all columns must be computed.
 void off_plane(benchmark::State& state) {
   const auto all = optimal_design();
-  SurveyPlan plan = voxel_plan(without_limits());
-  plan.held = {held_at(1, 1.2)};
-  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+  WorkspacePlan plan = voxel_plan(without_limits());
+  plan.held = {fixed_at(1, 1.2)};
+  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
@@ -82,14 +82,14 @@ void off_plane(benchmark::State& state) {
     benchmark::DoNotOptimize(result.feasible_cells);
   }
 }
-BENCHMARK(off_plane)->Name("voxel_survey/off_plane")->Unit(benchmark::kMicrosecond);
+BENCHMARK(off_plane)->Name("voxels/off_plane")->Unit(benchmark::kMicrosecond);
 
-// What wider vectors bring; `set` is 0 for the baseline, 1 for AVX2, 2 for AVX-512.
-void on_set(benchmark::State& state, bool conditioning) {
+// Effect of wider vectors; `set` is 0 for the baseline instruction set, 1 for AVX2, 2 for AVX-512.
+void with_instruction_set(benchmark::State& state, bool conditioning) {
   const auto all = optimal_design();
   Demand demand;
   if (conditioning) demand.add(kConditioning);
-  const auto surveyor = prepare_survey(four_ppa(), voxel_plan(without_limits()), demand);
+  const auto surveyor = prepare_workspace(four_ppa(), voxel_plan(without_limits()), demand);
   Scratch scratch;
   Survey<double> result;
   use_instruction_set(static_cast<InstructionSet>(state.range(0)));
@@ -99,24 +99,24 @@ void on_set(benchmark::State& state, bool conditioning) {
   }
   use_instruction_set(widest_instruction_set());
 }
-const int kWidest = static_cast<int>(widest_instruction_set());
-BENCHMARK_CAPTURE(on_set, count, false)
-    ->Name("instruction_set/voxel_survey")
+const int kWidestSet = static_cast<int>(widest_instruction_set());
+BENCHMARK_CAPTURE(with_instruction_set, count, false)
+    ->Name("instruction_set/voxels")
     ->ArgName("set")
-    ->DenseRange(0, kWidest)
+    ->DenseRange(0, kWidestSet)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(on_set, conditioning, true)
+BENCHMARK_CAPTURE(with_instruction_set, conditioning, true)
     ->Name("instruction_set/conditioning")
     ->ArgName("set")
-    ->DenseRange(0, kWidest)
+    ->DenseRange(0, kWidestSet)
     ->Unit(benchmark::kMicrosecond);
 
-// Grids of n^3 cells: the cost follows the n^2 columns.
+// Grids of n^3 voxels: the cost is proportional to the n^2 columns.
 void grid(benchmark::State& state) {
   const auto all = optimal_design();
-  SurveyPlan plan = voxel_plan(without_limits());
+  WorkspacePlan plan = voxel_plan(without_limits());
   plan.method = VoxelOptions{.cells = {state.range(0), state.range(0), state.range(0)}};
-  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
@@ -127,27 +127,28 @@ void grid(benchmark::State& state) {
   state.counters["columns"] = benchmark::Counter(n * n, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["cells"] = benchmark::Counter(n * n * n, benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(grid)->Name("voxel_survey/grid")->RangeMultiplier(2)->Range(16, 1024)->Unit(benchmark::kMicrosecond);
+BENCHMARK(grid)->Name("voxels/grid")->RangeMultiplier(2)->Range(16, 1024)->Unit(benchmark::kMicrosecond);
 
-// One design on a fine grid of n^3 cells, by one thread and by two.
+// One design on a fine grid of n^3 voxels, on one and on two threads.
 void fine_grid(benchmark::State& state, const Mechanism& mechanism, std::vector<double> parameters, std::int64_t n,
                const Demand& demand = {}) {
-  const SurveyPlan plan{.method = VoxelOptions{.cells = {n, n, n}}, .limits = no_limits(mechanism.info())};
-  const auto surveyor = prepare_survey(mechanism, plan, demand);
+  const WorkspacePlan plan{.method = VoxelOptions{.cells = {n, n, n}}, .limits = no_limits(mechanism.info())};
+  const auto surveyor = prepare_workspace(mechanism, plan, demand);
   if (parameters.empty())
     for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
   Scratch scratch;
   Survey<double> result;
   const auto by_one = [&] {
-    const WithoutTeam alone;
+    const SerialScope alone;
     surveyor->survey(parameters, scratch, result);
   };
   const auto by_two = [&] { surveyor->survey(parameters, scratch, result); };
-  Duel duel;
+  PairedTimes times;
   with_team(2, [&] {
-    duel = take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+    times = time_alternately(state, "ten_by_one_thread_s", repeat_10_times(by_one), "ten_by_two_threads_s",
+                             repeat_10_times(by_two));
   });
-  state.counters["efficiency_percent"] = 100 * duel.ratio() / 2;
+  state.counters["efficiency_percent"] = 100 * times.ratio() / 2;
 }
 void fine_four_ppa(benchmark::State& state) { fine_grid(state, four_ppa(), optimal_design(), 512); }
 void fine_conditioning(benchmark::State& state) {
@@ -162,23 +163,24 @@ BENCHMARK(fine_conditioning)->Name("fine_grid/conditioning_128_cubed")->Unit(ben
 BENCHMARK(fine_hybrid)->Name("fine_grid/2t1r-p-hybrid_512_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
 BENCHMARK(fine_jointed)->Name("fine_grid/3crr-r-cru_512_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
 
-void plain_loop_against_survey(benchmark::State& state, Design design) {
+void compare_with_loop(benchmark::State& state, Design design) {
   const auto all = design();
   const auto g = geometry(std::span<const double>(all));
-  const auto surveyor = prepare_survey(four_ppa(), voxel_plan(without_limits()), {});
+  const auto surveyor = prepare_workspace(four_ppa(), voxel_plan(without_limits()), {});
   const peers::Voxels voxels{g.d, g.L0, {32, 34, 60}, 0, 0, kPi / 2, 0, 0, 0};  // the paper's grid, no limits
   const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
-  std::int64_t plain = 0;
+  std::int64_t loop_count = 0;
   Scratch scratch;
   Survey<double> result;
-  const Duel duel = take_turns(
-      state, "plain_loop_s", [&] { benchmark::DoNotOptimize(plain = peers::feasible_cells(voxels, lengths)); },
-      "survey_s", [&] { surveyor->survey(all, scratch, result); });
-  state.counters["speedup"] = duel.ratio();
-  if (plain != result.feasible_cells) state.SkipWithError("the plain loop and the survey count different cells");
+  const PairedTimes times = time_alternately(
+      state, "loop_s", [&] { benchmark::DoNotOptimize(loop_count = peers::feasible_cells(voxels, lengths)); },
+      "analysis_s", [&] { surveyor->survey(all, scratch, result); });
+  state.counters["speedup"] = times.ratio();
+  if (loop_count != result.feasible_cells)
+    state.SkipWithError("the loop and the workspace analysis count different voxels");
 }
-BENCHMARK_CAPTURE(plain_loop_against_survey, original, original_design)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(plain_loop_against_survey, optimal, optimal_design)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(compare_with_loop, original, original_design)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(compare_with_loop, optimal, optimal_design)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace pkm::benchmarks

@@ -7,7 +7,7 @@
 
 namespace pkm {
 
-/// Every constraint there is, in the order in which `pkmopt list` shows them.
+/// All constraints, in the order in which `pkmopt list` prints them.
 const std::vector<ConstraintEntry>& all_constraints();
 
 }  // namespace pkm

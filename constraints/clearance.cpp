@@ -1,5 +1,5 @@
-// Links that are not joined keep clear of each other: different limbs, platforms, sliders on one rail, rails. Links are
-// capsules; which pairs count is written down with the mechanism.
+// Minimum clearance (distance) between links that are not joined: of different limbs, platforms, sliders on one rail,
+// rails. Links are modelled as capsules; the mechanism defines which pairs are tested.
 #include "constraints/list.hpp"
 #include "constraints/pose_level.hpp"
 
@@ -10,13 +10,13 @@ std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
   const auto owned = limits_of(mechanism, "clearance");
   if (owned.empty()) return {};
   const LimitInfo& limit = mechanism.limits[owned.front()];
-  return {
-      {.name = "min",
-       .unit = limit.unit,
-       .initial = 0.0,
-       .lower = limit.lower,
-       .upper = limit.upper,
-       .meaning = "least distance of links that are not joined; 0: they do not touch; < 0: they may overlap that far"}};
+  return {{.name = "min",
+           .unit = limit.unit,
+           .initial = 0.0,
+           .lower = limit.lower,
+           .upper = limit.upper,
+           .meaning =
+               "minimum distance of links that are not joined; 0: they do not touch; < 0: they may overlap that far"}};
 }
 
 LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
@@ -30,9 +30,9 @@ LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
 ConstraintEntry clearance() {
   return {
       .name = "clearance",
-      .meaning = "links that are not joined (limbs, platforms, sliders or rails), as capsules, keep a least distance",
+      .meaning = "minimum distance of links that are not joined (limbs, platforms, sliders or rails), as capsules",
       .options = options,
-      .refusal = refuse_without_limits("clearance"),
+      .refusal = check_limits("clearance"),
       .limits = limits,
   };
 }

@@ -1,5 +1,6 @@
-// A formula that the study writes itself and that must be >= 0, >= min or <= max. One of parameters, thresholds and
-// size alone is computed before the survey and may save it; one that names results of the survey is computed after it.
+// User-defined constraint: a formula in the study that must be >= 0, >= min or <= max. A formula that uses only
+// parameters, thresholds and the size is evaluated before the workspace analysis, which is skipped if it is violated. A
+// formula that uses results of the workspace analysis is evaluated after it.
 #include "engine/problem/expression.hpp"
 
 #include <optional>
@@ -11,8 +12,8 @@ namespace pkm {
 namespace {
 
 struct Bounds {
-  std::optional<double> greatest;
-  double least = 0;
+  std::optional<double> max;
+  double min = 0;  ///< without max
 };
 
 Bounds bounds(const Options& options) {
@@ -20,28 +21,28 @@ Bounds bounds(const Options& options) {
     throw std::invalid_argument(
         "found both min and max; a constraint has one of them (write two [[constraint]] tables)");
   Bounds bounds;
-  if (options.has("max")) bounds.greatest = options.number("max");
-  if (options.has("min")) bounds.least = options.number("min");
+  if (options.has("max")) bounds.max = options.number("max");
+  if (options.has("min")) bounds.min = options.number("min");
   return bounds;
 }
 
 std::vector<OptionSpec> options(const MechanismInfo&) {
   auto specs = expression_options();
-  specs.push_back({.name = "min", .unit = kUnitOfEntry, .meaning = "least value allowed; default without max: 0"});
-  specs.push_back({.name = "max", .unit = kUnitOfEntry, .meaning = "greatest value allowed"});
+  specs.push_back({.name = "min", .unit = kUnitOfEntry, .meaning = "minimum allowed value; default without max: 0"});
+  specs.push_back({.name = "max", .unit = kUnitOfEntry, .meaning = "maximum allowed value"});
   return specs;
 }
 
 std::string detail(const EntryContext& context) {
-  const auto [greatest, least] = bounds(context.options);
+  const auto [max, min] = bounds(context.options);
   const std::string& unit = context.options.word("unit");
-  return expression_text(context) + (greatest ? " <= " + with_unit(*greatest, unit) : " >= " + with_unit(least, unit));
+  return expression_text(context) + (max ? " <= " + with_unit(*max, unit) : " >= " + with_unit(min, unit));
 }
 
 std::unique_ptr<const Quantity> make(const EntryContext& context) {
   return make_quantity([expression = Expression(context), bounds = bounds(context.options)](const auto& design) {
     const auto value = expression.value(design);
-    return bounds.greatest ? *bounds.greatest - value : value - bounds.least;
+    return bounds.max ? *bounds.max - value : value - bounds.min;
   });
 }
 
@@ -50,11 +51,11 @@ std::unique_ptr<const Quantity> make(const EntryContext& context) {
 ConstraintEntry expression_constraint() {
   return {
       .name = "expression",
-      .meaning = "a formula of parameters, thresholds and results of the survey is >= 0, or min, or <= max",
+      .meaning = "a formula of parameters, thresholds and results of the workspace analysis is >= 0, or min, or <= max",
       .options = options,
       .unit = expression_unit,
       .make = make,
-      .needs_survey = [](const EntryContext& context) { return Expression(context).needs_survey(); },
+      .needs_workspace = [](const EntryContext& context) { return Expression(context).needs_workspace(); },
       .demand = [](const EntryContext& context, Demand& demand) { Expression(context).add_demand(context, demand); },
       .detail = detail,
   };

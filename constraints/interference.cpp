@@ -1,5 +1,5 @@
-// The two bars of a parallelogram stay clear of each other (4PPa-2PaR: eq 17). The thresholds follow from the bars'
-// radii and spacing, so they move with the design when those vary.
+// No interference between the two bars of a parallelogram (4PPa-2PaR: eq 17). The angle thresholds are derived from the
+// radii and the spacing of the bars; they therefore change with the design if these parameters vary.
 #include "constraints/list.hpp"
 #include "constraints/pose_level.hpp"
 
@@ -8,8 +8,8 @@ namespace pkm {
 ConstraintEntry interference() {
   return {
       .name = "interference",
-      .meaning = "links of one limb stay clear of each other; thresholds from the links' sizes",
-      .refusal = refuse_without_limits("interference"),
+      .meaning = "links of one limb do not collide; thresholds are derived from the sizes of the links",
+      .refusal = check_limits("interference"),
       .limits =
           [](const MechanismInfo& mechanism, const Options&) {
             LimitSpec spec = no_limits(mechanism);

@@ -1,21 +1,22 @@
-// A linear relation between parameters: sum of coefficient * parameter <= bound. The margin is bound minus sum, in the
-// unit of the parameters.
+// Linear inequality constraint on the parameters: sum of coefficient * parameter <= bound. The margin is the bound
+// minus the sum, in the unit of the parameters.
 #include "constraints/list.hpp"
 #include "engine/core/catalogue.hpp"
 
 namespace pkm {
 namespace {
 
-/// The coefficients in the order of the mechanism's parameters. Refuses unknown names and a relation of nothing.
+/// The coefficients in the order of the mechanism's parameters. Throws std::invalid_argument for unknown names and for
+/// an empty table.
 std::vector<double> coefficients(const EntryContext& context) {
   const auto& parameters = context.mechanism.info().parameters;
   const NamedNumbers& given = context.options.numbers("coefficients");
-  if (given.empty()) throw std::invalid_argument("coefficients = {} relates nothing; name at least one parameter");
+  if (given.empty()) throw std::invalid_argument("coefficients = {} is empty; expected at least one parameter");
   std::vector<double> values(parameters.size(), 0.0);
   for (const auto& [name, coefficient] : given) {
     const Parameter* const parameter = find_named(parameters, name);
     if (!parameter)
-      throw std::invalid_argument("coefficient of '" + name + "', which is no parameter of mechanism " +
+      throw std::invalid_argument("coefficient of '" + name + "', which is not a parameter of mechanism " +
                                   context.mechanism.info().name + "; expected one of " + join(names_of(parameters)) +
                                   did_you_mean(name, names_of(parameters)));
     values[static_cast<std::size_t>(parameter - parameters.data())] = coefficient;
@@ -32,9 +33,9 @@ std::unique_ptr<const Quantity> make(const EntryContext& context) {
       });
 }
 
-/// The unit that all parameters with a coefficient share; "1" when they differ.
+/// The common unit of the parameters that have a coefficient; "1" if their units differ.
 std::string unit(const EntryContext& context) {
-  coefficients(context);  // refuses what has no unit, before the bound is read in it
+  coefficients(context);  // rejects unknown names before the bound is read in the unit
   std::string shared;
   for (const auto& parameter : context.mechanism.info().parameters) {
     if (!context.options.numbers("coefficients").contains(parameter.name)) continue;
@@ -56,11 +57,11 @@ ConstraintEntry linear() {
                 {.name = "coefficients",
                  .kind = OptionKind::named_numbers,
                  .required = true,
-                 .meaning = "one number per parameter that takes part, such as { a = 1, b = -1 }"},
+                 .meaning = "one number for each parameter in the sum, such as { a = 1, b = -1 }"},
                 {.name = "bound",
                  .unit = kUnitOfEntry,
                  .initial = 0.0,
-                 .meaning = "greatest value of the sum, in the unit that the parameters share"},
+                 .meaning = "maximum of the sum, in the common unit of the parameters"},
             };
           },
       .unit = unit,

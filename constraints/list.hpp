@@ -1,4 +1,4 @@
-// The entries of the catalogue of constraints: one line per entry here and one in all.cpp.
+// Factories of the entries of the catalogue of constraints. A new entry needs one line here and one in all.cpp.
 #pragma once
 
 #include "engine/problem/quantity.hpp"

@@ -1,9 +1,9 @@
-// A motion keeps every limit of a pose.
+// Feasibility of a motion: every pose along it must satisfy the limits of poses.
 //
-// The margin is the minimum of all pose margins (reach, strokes, distances from singularities, clearance, ...) over
-// the motion's samples, under the study's limits. Gradient solvers are given a smooth lower bound of it
-// (soft_minimum). A study has this constraint for every motion that one of its objectives, constraints or reports
-// names, unless that [[motion]] says follow = false: forces of a motion that the robot cannot follow mean nothing.
+// The margin is the minimum of all pose margins (reach, strokes, distances from singularities, clearance, ...) over the
+// samples of the motion, with the limits of the study. For gradient solvers it is replaced by a smooth lower bound
+// (soft_minimum). Studies have this constraint for every motion that an objective, a constraint or an output uses,
+// unless that [[motion]] has follow = false: forces along a motion that the robot cannot follow are meaningless.
 #include "constraints/list.hpp"
 #include "constraints/pose_margins.hpp"
 #include "engine/problem/motion_options.hpp"
@@ -12,7 +12,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kUnlimited = 1;  // margin of a motion where nothing limits a pose
+constexpr double kUnlimited = 1;  // margin of a motion if the mechanism has no limits of poses
 
 std::unique_ptr<const Quantity> minimum_along(const EntryContext& context) {
   MarginPoses along{{}, mode_of(context), context.plan.limits};
@@ -35,7 +35,7 @@ std::unique_ptr<const Quantity> minimum_along(const EntryContext& context) {
 ConstraintEntry motion_constraint() {
   return {
       .name = kMotionConstraint,
-      .meaning = "a motion keeps every limit of a pose: minimum margin of its poses, in the margins' units",
+      .meaning = "every pose along a motion satisfies the limits of poses: minimum of all margins, in their units",
       .options =
           [](const MechanismInfo&) {
             return std::vector<OptionSpec>{motion_option(), samples_option(), mode_option(), sharpness_of_minimum()};

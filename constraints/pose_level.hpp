@@ -1,4 +1,4 @@
-// What the pose-level constraints share: the limits of the mechanism that a constraint owns.
+// Helpers of the pose-level constraints: each sets the limits of one group of the mechanism.
 #pragma once
 
 #include <string>
@@ -8,20 +8,19 @@
 
 namespace pkm {
 
-/// The limits that the constraint owns, as indices.
+/// Indices of the mechanism's limits whose group is the constraint.
 inline std::vector<std::size_t> limits_of(const MechanismInfo& mechanism, const std::string& constraint) {
-  std::vector<std::size_t> owned;
+  std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < mechanism.limits.size(); ++i)
-    if (mechanism.limits[i].group == constraint) owned.push_back(i);
-  return owned;
+    if (mechanism.limits[i].group == constraint) indices.push_back(i);
+  return indices;
 }
 
-/// Why a mechanism cannot serve the constraint: it has no limit that the constraint owns.
-inline auto refuse_without_limits(const std::string& constraint) {
-  return [constraint](const Mechanism& mechanism) -> Refusal {
+/// Capability check of a constraint: the mechanism needs a limit of its group.
+inline auto check_limits(const std::string& constraint) {
+  return [constraint](const Mechanism& mechanism) -> Unsupported {
     if (!limits_of(mechanism.info(), constraint).empty()) return {};
-    return "constraint " + constraint + " needs limits of its kind, and mechanism " + mechanism.info().name +
-           " has none";
+    return "constraint " + constraint + " sets limits that mechanism " + mechanism.info().name + " does not have";
   };
 }
 

@@ -1,4 +1,5 @@
-// What constraints on the margins of several poses share.
+// Minimum margin over several poses, with a smooth lower bound for gradient solvers: shared by the constraints on a
+// motion and on a region.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace pkm {
 
-/// The poses whose margins a constraint looks at.
+/// The poses that a constraint tests.
 struct MarginPoses {
   std::vector<Pose<double>> poses;
   std::string mode;
@@ -22,8 +23,9 @@ struct MarginsOfPoses {
   std::vector<S> all;
 };
 
-/// All margins of the poses: by the mechanism's ability, else those that inspect names, where a margin that is not a
-/// number, and a pose that does not assemble, count as -1. Valid until the next call with this scratch.
+/// All margins of all poses, from the mechanism's PoseMargins capability, else (double only) from inspect(): there a
+/// NaN margin and a pose that does not assemble count as -1. The reference is valid until the next call with this
+/// scratch.
 template <class S>
 const std::vector<S>& margins_of(const DesignView<S>& design, const MarginPoses& of) {
   const Mechanism& mechanism = design.mechanism;
@@ -41,7 +43,8 @@ const std::vector<S>& margins_of(const DesignView<S>& design, const MarginPoses&
   return margins;
 }
 
-/// A smooth lower bound of the minimum, below it by at most ln(number of margins) / sharpness.
+/// Smooth lower bound of the minimum (log-sum-exp, Kreisselmeier-Steinhauser function); the error is at most
+/// ln(number of margins) / sharpness.
 inline Dual4 soft_minimum(const std::vector<Dual4>& margins, double sharpness) {
   const double shift = least(margins).a;
   Dual4 sum(0.0);
@@ -49,16 +52,16 @@ inline Dual4 soft_minimum(const std::vector<Dual4>& margins, double sharpness) {
   return shift - log(sum) / sharpness;
 }
 
-/// Unit of the minimum: that of all margins, or "1" where they have different ones.
+/// Unit of the minimum: the common unit of the margins, or "1" if their units differ.
 inline std::string unit_of_minimum(const EntryContext& context) {
   const PoseMargins* const margins = context.mechanism.pose_margins();
   return margins && !margins->margin_unit().empty() ? margins->margin_unit() : std::string("1");
 }
 
-/// Why the minimum has no derivatives.
-inline Refusal no_margin_derivatives(const Mechanism& mechanism, const std::string& constraint) {
+/// Empty if the minimum has derivatives, else the reason why not.
+inline Unsupported no_margin_derivatives(const Mechanism& mechanism, const std::string& constraint) {
   if (mechanism.pose_margins()) return {};
-  return "the margins of mechanism " + mechanism.info().name + " under " + constraint + " have none";
+  return "the margins of constraint " + constraint + " have none for mechanism " + mechanism.info().name;
 }
 
 inline OptionSpec sharpness_of_minimum() {
@@ -66,7 +69,7 @@ inline OptionSpec sharpness_of_minimum() {
           .initial = 1e5,
           .lower = 1,
           .upper = 1e9,
-          .meaning = "of the smooth lower bound that gradient solvers are given: larger is nearer"};
+          .meaning = "sharpness of the smooth lower bound for gradient solvers; larger is more accurate"};
 }
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// The rails are long enough for the links (4PPa-2PaR: eq 18).
+// Design-level constraint: the rails are long enough for the links (4PPa-2PaR: eq 18).
 #include "constraints/list.hpp"
 #include "engine/problem/design_test.hpp"
 

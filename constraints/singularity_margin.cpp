@@ -1,4 +1,4 @@
-// Distance from serial and parallel singularities at every pose: one option per limit that the mechanism names.
+// Minimum distance from serial and parallel singularities at every pose: one option for each limit of the mechanism.
 #include "constraints/list.hpp"
 #include "constraints/pose_level.hpp"
 
@@ -12,10 +12,11 @@ std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
     specs.push_back(
         {.name = limit.name, .unit = limit.unit, .lower = limit.lower, .upper = limit.upper, .meaning = limit.meaning});
     if (!limit.derivation.empty())
-      specs.push_back({.name = limit.name + "_derived",
-                       .kind = OptionKind::flag,
-                       .initial = false,
-                       .meaning = limit.name + " = " + limit.derivation + ", from the design's parameters"});
+      specs.push_back(
+          {.name = limit.name + "_derived",
+           .kind = OptionKind::flag,
+           .initial = false,
+           .meaning = limit.name + " = " + limit.derivation + ", derived from the parameters of the design"});
   }
   return specs;
 }
@@ -30,10 +31,10 @@ LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
     if (options.has(limit.name)) spec.given[i] = options.number(limit.name);
     spec.derived[i] = !limit.derivation.empty() && options.flag(limit.name + "_derived");
     if (spec.given[i] && spec.derived[i])
-      throw std::invalid_argument("both " + limit.name + " and " + limit.name + "_derived; expected one of them");
+      throw std::invalid_argument("found both " + limit.name + " and " + limit.name + "_derived; expected one of them");
     any = any || spec.given[i] || spec.derived[i];
   }
-  if (!any) throw std::invalid_argument("no threshold; expected at least one of " + join(names));
+  if (!any) throw std::invalid_argument("found no threshold; expected at least one of " + join(names));
   return spec;
 }
 
@@ -42,9 +43,9 @@ LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
 ConstraintEntry singularity_margin() {
   return {
       .name = "singularity-margin",
-      .meaning = "every pose keeps its distance from singularities",
+      .meaning = "every pose has a minimum distance from singularities",
       .options = options,
-      .refusal = refuse_without_limits("singularity-margin"),
+      .refusal = check_limits("singularity-margin"),
       .limits = limits,
   };
 }

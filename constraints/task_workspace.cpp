@@ -1,8 +1,8 @@
-// A box of poses must be feasible, with margins: what the buyer of a robot asks for.
+// Prescribed workspace: a box of poses, the task of the robot, must be feasible with a minimum margin.
 //
-// The margin is the least of all pose margins (reach, strokes, distances from singularities, ...) over a grid of the
-// box that holds its corners and faces, at every value of the held coordinate. Gradient solvers see a smooth lower
-// bound of it, which is below it by at most ln(number of margins) / sharpness.
+// The constraint value is the minimum of all pose margins (reach, strokes, distances from singularities, ...) over a
+// regular grid of the box, including its faces and vertices, at every value of the fixed coordinates. For gradient
+// solvers it is replaced by a smooth lower bound, whose error is at most ln(number of margins) / sharpness.
 #include "constraints/list.hpp"
 #include "constraints/pose_margins.hpp"
 #include "engine/core/catalogue.hpp"
@@ -17,7 +17,7 @@ const Region& region_of(const EntryContext& context) {
                               did_you_mean(name, names_of(context.regions)));
 }
 
-/// The same poses, with each of the values at a coordinate.
+/// Cartesian product: each of the poses with each of the values of one coordinate.
 std::vector<Pose<double>> with_each(const std::vector<Pose<double>>& poses, int coordinate,
                                     const std::vector<double>& values) {
   std::vector<Pose<double>> more;
@@ -29,18 +29,19 @@ std::vector<Pose<double>> with_each(const std::vector<Pose<double>>& poses, int 
   return more;
 }
 
-/// Grid of the region's box, corners included, at every value of the held coordinates.
+/// Regular grid of the region's box, including its vertices, at every value of the fixed coordinates.
+/// @param points  number of grid points along each edge
 std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& info, int points) {
-  const SurveyPlan& plan = region.plan;
+  const WorkspacePlan& plan = region.plan;
   if (!plan.box()) throw std::invalid_argument("task-workspace needs a box, and region '" + region.name + "' has none");
   const Sweep& sweep = sweep_of(info, plan);
   std::vector<Pose<double>> poses = {Pose<double>(info.coordinates.size())};
   for (const int coordinate : sweep.held) {
-    const HeldCoordinate how = how_held(plan, coordinate);
-    using Kind = HeldCoordinate::Kind;
+    const FixedCoordinate how = how_fixed(plan, coordinate);
+    using Kind = FixedCoordinate::Kind;
     if (how.kind != Kind::value && how.kind != Kind::listed)
-      throw std::invalid_argument("task-workspace needs a number, or a list of them, for the coordinate that region '" +
-                                  region.name + "' holds");
+      throw std::invalid_argument(
+          "task-workspace needs a number or a list of them for each fixed coordinate of region '" + region.name + "'");
     poses = with_each(poses, coordinate, how.kind == Kind::listed ? how.values : std::vector<double>{how.value});
   }
   for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis) {
@@ -58,11 +59,11 @@ std::unique_ptr<const Quantity> make(const EntryContext& context) {
   const MechanismInfo& info = context.mechanism.info();
   const MarginPoses of{poses_of(region, info, static_cast<int>(context.options.integer("points"))), info.modes.front(),
                        region.plan.limits};
-  const double wanted = context.options.number("margin"), sharpness = context.options.number("sharpness");
+  const double required = context.options.number("margin"), sharpness = context.options.number("sharpness");
   return make_quantity(
-      [of, wanted](const DesignView<double>& design) { return least(margins_of(design, of)) - wanted; },
-      [of, wanted, sharpness](const DesignView<Dual4>& design) {
-        return Dual4(soft_minimum(margins_of(design, of), sharpness) - wanted);
+      [of, required](const DesignView<double>& design) { return least(margins_of(design, of)) - required; },
+      [of, required, sharpness](const DesignView<Dual4>& design) {
+        return Dual4(soft_minimum(margins_of(design, of), sharpness) - required);
       },
       no_margin_derivatives(context.mechanism, "task-workspace"));
 }
@@ -72,26 +73,26 @@ std::unique_ptr<const Quantity> make(const EntryContext& context) {
 ConstraintEntry task_workspace() {
   return {
       .name = "task-workspace",
-      .meaning = "the box of a region is feasible: least margin of its poses, in the margins' units",
+      .meaning = "the box of a region is feasible: minimum of all margins of its poses, in their units",
       .options =
           [](const MechanismInfo&) {
             return std::vector<OptionSpec>{
                 {.name = "region",
                  .kind = OptionKind::word,
                  .required = true,
-                 .meaning =
-                     "name of the [[region]] whose box, at the value or values that it holds, is to be feasible"},
+                 .meaning = "name of the [[region]] whose box must be feasible, at the value or values of its fixed "
+                            "coordinates"},
                 {.name = "margin",
                  .unit = kUnitOfEntry,
                  .initial = 0.0,
                  .lower = 0,
-                 .meaning = "least margin that is to be left"},
+                 .meaning = "required minimum margin"},
                 {.name = "points",
                  .kind = OptionKind::integer,
                  .initial = std::int64_t{5},
                  .lower = 2,
                  .upper = 65,
-                 .meaning = "poses along each edge of the box that are tested, its corners among them"},
+                 .meaning = "number of tested poses along each edge of the box, including its corners"},
                 sharpness_of_minimum()};
           },
       .unit = unit_of_minimum,

@@ -1,4 +1,4 @@
-// The workspace's shape is one that can be used (4PPa-2PaR: eq 21, upper and lower part separate).
+// Design-level constraint: the workspace has a usable shape (4PPa-2PaR: eq 21, its upper and lower part are separate).
 #include "constraints/list.hpp"
 #include "engine/problem/design_test.hpp"
 

@@ -1,27 +1,27 @@
 #!/usr/bin/env bash
-# Builds the documentation as a site: docs/build.sh [PROGRAM [FOLDER]]
-# The program writes the reference: by default build/release/bin/pkmopt. It has to be of the version of these pages, that
-# of CMakeLists.txt, which every page of the site names. The site's first page is FOLDER/html/index.html, FOLDER being
-# build/docs by default. Any warning is an error, and so is a link within the site that leads nowhere. Installs what is
-# missing.
+# Builds the documentation website with Sphinx: docs/build.sh [PROGRAM [FOLDER]]
+# PROGRAM (default: build/release/bin/pkmopt) generates the reference. It must have the version of these pages, i.e. that
+# of CMakeLists.txt, which every page shows. The start page is FOLDER/html/index.html (default FOLDER: build/docs).
+# Warnings and broken links within the site are errors. Installs missing packages.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath -- "${1:-$root/build/release/bin/pkmopt}")
 out=$(realpath -m -- "${2:-$root/build/docs}")
 if [[ ! -x $program ]]; then
-  echo "There is no program $program. Build it, or name another: docs/build.sh PROGRAM" >&2
+  echo "docs/build.sh: there is no program $program; build it, or name another: docs/build.sh PROGRAM" >&2
   exit 1
 fi
 version=$(sed -nE 's/^project\(pkmopt VERSION ([0-9.]+).*/\1/p' "$root/CMakeLists.txt")
 built=$("$program" --version | head -1)  # "pkmopt 0.1.0 (a1b2c3d4e5f6)"
 if [[ $built != "pkmopt $version ("* ]]; then
-  echo "These pages are of version $version, and $program says that it is $built: build it again" >&2
+  echo "docs/build.sh: $program is '$built'; expected version $version, which these pages describe: build it again" >&2
   exit 1
 fi
 source "$root/experiments/debian-packages.sh"
 pkm_install_missing "${pkm_docs_packages[@]}"
 
-# The pages and what is written for them, beside the rest of the repository, so that pages may include its READMEs.
+# A copy of the pages, to which generated pages are added, and links to the rest of the repository, because pages
+# include its READMEs.
 tree=$out/tree
 rm -rf -- "$tree" "$out"/{xml,doctrees,html}
 mkdir -p -- "$tree"
@@ -31,8 +31,8 @@ done
 cp -R -- "$root/docs" "$tree/docs"
 mkdir -p -- "$tree/docs/_static"
 cp -RL -- /usr/share/javascript/katex "$tree/docs/_static/katex"
-# Debian's furo has its script as modules, which a page from disk may not load, and has lost the colours that follow the
-# system's: one script, and its dark colours once more.
+# Two corrections of Debian's furo theme: its script is split into ES modules, which browsers do not load from disk, so
+# they are concatenated; its dark colours do not follow the system's setting, so they are repeated in a media query.
 furo=/usr/lib/python3/dist-packages/furo/theme/furo/static
 mkdir -- "$tree/docs/_static/scripts"
 sed '/^import /d' "$furo"/scripts/{gumshoe-patched,furo}.js > "$tree/docs/_static/scripts/furo.js"
@@ -40,7 +40,8 @@ sed -n '/^@media not print/,/^$/p' "$furo/styles/furo.css" |
   sed 's/@media not print/@media screen and (prefers-color-scheme: dark)/; s/data-theme="dark"/data-theme="auto"/' \
     >> "$tree/docs/_static/site.css"
 
-# What the headers say, for Breathe. The filter lets it see the names of arguments that a function does not use.
+# Doxygen's XML of the public headers, for Breathe. The filter restores the names of unused function arguments, which
+# are commented out in the source.
 cd -- "$tree"
 doxygen - <<SETTINGS
 INPUT = $(/usr/bin/python3 docs/cpp.py --headers)
@@ -61,6 +62,6 @@ SETTINGS
 /usr/bin/python3 docs/reference.py "$program" "$root" docs
 PKM_DOCS_VERSION=${built#pkmopt } PKM_DOCS_XML=$out/xml \
   /usr/bin/sphinx-build -q -W -n --keep-going -b html -d "$out/doctrees" docs "$out/html"
-cp -R -- experiments/mechanisms/pictures "$out/html/reference"  # named by <img> in an included README
+cp -R -- experiments/mechanisms/pictures "$out/html/reference"  # used by <img> in an included README
 /usr/bin/python3 "$root/docs/links.py" "$out/html"
 echo "$out/html/index.html"

@@ -1,4 +1,6 @@
-"""Sphinx' settings. docs/build.sh starts it, in a folder where docs/ lies beside the rest of the repository."""
+"""Sphinx configuration of the documentation website.
+
+docs/build.sh runs Sphinx in a folder with a copy of docs/ and links to the rest of the repository."""
 import os
 from pathlib import Path
 
@@ -7,10 +9,10 @@ from sphinx import addnodes
 
 project = "pkmopt"
 author = "the pkmopt authors"
-release = os.environ["PKM_DOCS_VERSION"]  # as the program that wrote the reference tells it
+release = os.environ["PKM_DOCS_VERSION"]  # version and revision of the program that wrote the reference
 version = release.split()[0]
 released = f"## [{version}] - unreleased" not in Path("../CHANGELOG.md").read_text()
-copyright = f"2026, the pkmopt authors. Of version {release}"
+copyright = f"2026, the pkmopt authors. Version {release}"
 
 extensions = ["myst_parser", "breathe", "sphinx.ext.mathjax", "sphinx_copybutton"]
 nitpicky = True
@@ -22,13 +24,14 @@ myst_heading_anchors = 4
 breathe_projects = {"pkmopt": os.environ["PKM_DOCS_XML"]}
 breathe_default_project = "pkmopt"
 breathe_show_include = False
-# Names that have no pages here: of the standard library and of Eigen, of template parameters, and of types that headers
-# for users only pass on.
+# Identifiers without a page: those of the standard library and Eigen, template parameters, and types that the public
+# headers use but users do not need.
 nitpick_ignore_regex = [
     ("cpp:identifier", r"(std|Eigen)(::.*)?"),
     ("cpp:identifier", r"u?int\d+_t|size_t|pkm|S|N"),
     ("cpp:identifier", r"(Dual4|AxisVector|AxisMatrix|Vector|Matrix|MatrixUpTo|MatrixOf|SmallMatrix|Capsule|Scratch|"
-                       r"SourceText|StartOutcome|StartAhead|StopReason|Front|kMostJoints|Obstacles|TimeGraph|graph)(<.*>|::.*)?"),
+                       r"SourceText|StartOutcome|UnmergedStart|StopReason|Front|kMaxJoints|Obstacles|TimeGraph|expression)"
+                       r"(<.*>|::.*)?"),
 ]
 
 html_theme = "furo"
@@ -38,18 +41,21 @@ html_css_files = ["katex/katex.css", "site.css"]
 html_js_files = [("katex/katex.js", {"defer": "defer"}), ("katex/contrib/auto-render.js", {"defer": "defer"})]
 html_copy_source = False
 html_show_sphinx = False
-mathjax_path = "formulas.js"  # KaTeX of the site itself sets the formulas: pages open without a network
+mathjax_path = "formulas.js"  # the site's own copy of KaTeX renders the formulas, so that pages work offline
 copybutton_prompt_text = "$ "
 copybutton_only_copy_prompt_lines = True
-pygments_style = "xcode"  # its colours can be read on the ground of site.css
+pygments_style = "xcode"  # sufficient contrast on the background of site.css
 pygments_dark_style = "github-dark"
 
-# Where the site has what a file of the repository says: file, or file#heading -> page#heading.
+# Pages of the site that include a file of the repository: file, or file#heading -> page#heading.
 PAGES = {
     "README.md": "index",
+    "engine/accelerators/four_ppa_two_par/README.md": "theory/4ppa-2par",
     "engine/storage/README.md": "reference/study-file",
     "experiments/README.md": "reference/studies",
+    "experiments/README.md#certified-bounds": "theory/certain",
     "experiments/README.md#clearance": "theory/clearance#clearance-of-links",
+    "experiments/README.md#motions": "reference/motions",
     "experiments/README.md#the-hybrid-robot": "theory/2t1r-p-hybrid#the-paper-and-this-program",
     "experiments/README.md#workspaces-and-tables-for-other-programs": "reference/exports",
     "experiments/catalogue.md": "reference/catalogue/index",
@@ -62,8 +68,9 @@ PAGES = {
 
 
 def links_of_included_files(app, document):
-    """Links of READMEs that pages include are relative to those READMEs. They lead to the page that has the file's
-    text, and to a copy of the file where no page has it."""
+    """Resolve links in included READMEs, which are relative to the README.
+
+    They are redirected to the page that includes the target, or to a copy of the target if no page includes it."""
     root = Path(app.srcdir).parent
     for node in list(document.findall(addnodes.pending_xref)):
         source = Path(str(node.source).split(":")[0])

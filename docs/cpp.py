@@ -1,30 +1,30 @@
 #!/usr/bin/env python3
-"""Writes the pages of the C++ interface: cpp.py REPOSITORY DOCS XML, with what Doxygen made of the headers in XML; or
-cpp.py --headers for their names.
+"""Writes the pages of the C++ library: cpp.py REPOSITORY DOCS XML, where XML is Doxygen's output for the headers.
+cpp.py --headers prints the names of the headers.
 
-A page has each header's first comment and Breathe's directives for what the header declares."""
+A page contains the first comment of each header, and Breathe directives for the declarations of the header."""
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-# Headers that users of the library include, in the order in which they are told of.
+# Public headers of the library by page, in the order of the documentation.
 HEADERS = {
     "The command line as a library": ["experiments/app/program.hpp"],
-    "A mechanism": ["engine/mechanism/mechanism.hpp", "engine/core/parameter.hpp", "engine/core/refusal.hpp",
-                    "engine/model/pose.hpp"],
-    "What a mechanism may be able to": [
+    "A mechanism": ["engine/mechanism/mechanism.hpp", "engine/mechanism/mechanism_list.hpp",
+                    "engine/core/parameter.hpp", "engine/core/unsupported.hpp", "engine/geometry/pose.hpp"],
+    "Capabilities of a mechanism": [
         "engine/mechanism/abilities/kinematics.hpp", "engine/mechanism/abilities/design.hpp",
         "engine/mechanism/abilities/columns.hpp", "engine/mechanism/abilities/dynamics.hpp",
         "engine/mechanism/abilities/bounds.hpp", "engine/dynamics/drive_train.hpp",
-        "engine/model/influence.hpp", "engine/model/placed_link.hpp", "engine/model/chain.hpp",
+        "engine/geometry/influence.hpp", "engine/geometry/placed_link.hpp",
         "engine/dynamics/pose_dynamics.hpp", "engine/dynamics/reactions.hpp", "engine/motion/motion.hpp",
         "engine/mechanism/pose_quantity.hpp"],
-    "Surveys": ["engine/mechanism/plan.hpp", "engine/mechanism/survey.hpp", "engine/mechanism/surveyor.hpp"],
+    "Workspace analysis": ["engine/mechanism/plan.hpp", "engine/mechanism/survey.hpp", "engine/mechanism/surveyor.hpp"],
     "A design problem": ["engine/problem/problem.hpp", "engine/problem/evaluation.hpp",
                          "engine/problem/evaluator.hpp", "engine/problem/design_problem.hpp",
                          "engine/problem/quantity.hpp"],
     "Optimisers and options": ["engine/optimisers/optimiser.hpp", "engine/core/options.hpp"],
-    "Studies": ["engine/setup/study.hpp", "engine/setup/study_changes.hpp", "engine/setup/mechanism_file.hpp",
+    "Studies": ["engine/config/study.hpp", "engine/config/study_changes.hpp", "engine/config/mechanism_file.hpp",
                 "engine/core/error.hpp"],
 }
 
@@ -44,7 +44,7 @@ def first_comment(header):
 
 
 def markdown_of(comment):
-    """Indented lines of a comment as a block of C++ or of formulas."""
+    """Convert a comment to Markdown: indented lines become blocks of C++ code or formulas."""
     text, code = "", []
     for line in comment.splitlines() + [""]:
         if line.startswith("  "):
@@ -56,7 +56,7 @@ def markdown_of(comment):
 
 
 def declared_in(header, xml):
-    """Breathe's directives for what a header declares, in the header's order."""
+    """Breathe directives for the public declarations of a header, in the order of the header."""
     directives = []
     compounds = [ElementTree.parse(file).getroot()[0] for file in sorted(xml.glob("*_1_1*.xml"))]
     for entry in compounds:
@@ -77,8 +77,8 @@ def declared_in(header, xml):
 
 
 def write_pages(repository, docs, xml):
-    index = ("# The library in C++\n\nHeaders that programs of your own include, `#include` lines as they stand here. "
-             "[A mechanism in C++](../../tutorials/own-mechanism.md#in-c) begins with a whole program.\n\n")
+    index = ("# The C++ library\n\nThe public headers, with the paths to use in `#include`. "
+             "[A mechanism in C++](../../tutorials/own-mechanism.md#in-c) shows a complete program.\n\n")
     toc = []
     for title, group in HEADERS.items():
         name = title.lower().replace(" ", "-")

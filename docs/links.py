@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Looks where the links of a site lead: links.py FOLDER. Says which of those within it lead nowhere, and fails then."""
+"""Checks the links within a website: links.py FOLDER. Prints the broken ones and fails if there are any."""
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
@@ -35,7 +35,7 @@ def main():
                 target /= "index.html"
             if not target.is_file() or (target in pages and unquote(parts.fragment) not in pages[target].anchors):
                 broken.append(f"{file.relative_to(folder)}: {link}")
-    print(f"{count} links in {len(pages)} pages, {len(broken)} lead nowhere")
+    print(f"{count} links in {len(pages)} pages, {len(broken)} of them broken")
     for line in broken:
         print(" ", line)
     sys.exit(bool(broken) or not pages)

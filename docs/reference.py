@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the pages of the reference that the program itself knows: reference.py PROGRAM REPOSITORY DOCS
+"""Generates reference pages with the program: reference.py PROGRAM REPOSITORY DOCS
 
-Catalogues come from `pkmopt list --json`, commands from `--help`, keys of JSON from what commands print, and the places
-in a study file, with a report, from a study that is run here."""
+Catalogues are generated from `pkmopt list --json`, commands from `--help`, JSON keys from the output of commands, and
+the contents of a study file from a study that is run here. The report of this study is the example on the site."""
 import json
 import subprocess
 import sys
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import h5py
 
-# Commands whose JSON is told, as they are typed.
+# Commands whose JSON output is documented.
 JSON = [
     "list mechanisms 4ppa-2par",
     "list optimisers nlopt",
@@ -32,7 +32,7 @@ JSON = [
 
 
 def cell(value):
-    """A value in a cell of a table."""
+    """Text of a value in a table cell."""
     if value is None or value == [] or value == "":
         return ""
     if isinstance(value, bool):
@@ -45,14 +45,14 @@ def cell(value):
 
 
 def table(head, rows):
-    """A Markdown table without the columns in which nothing stands."""
-    kept = [i for i in range(len(head)) if any(cell(row[i]) for row in rows)]
-    lines = ["| " + " | ".join(head[i] for i in kept) + " |", "|" + "---|" * len(kept)]
-    lines += ["| " + " | ".join(cell(row[i]) for i in kept) + " |" for row in rows]
+    """A Markdown table without its empty columns."""
+    shown = [i for i in range(len(head)) if any(cell(row[i]) for row in rows)]
+    lines = ["| " + " | ".join(head[i] for i in shown) + " |", "|" + "---|" * len(shown)]
+    lines += ["| " + " | ".join(cell(row[i]) for i in shown) + " |" for row in rows]
     return "\n".join(lines) + "\n\n"
 
 
-def span(entry):
+def value_range(entry):
     low, high = entry["min"], entry["max"]
     if low is None and high is None:
         return ""
@@ -71,31 +71,30 @@ def sentence(text):
 
 def parameters(entries):
     return table(["name", "unit", "default", "range", "meaning"],
-                 [[f"`{e['name']}`", unit(e), e["default"], span(e), e["meaning"]] for e in entries])
+                 [[f"`{e['name']}`", unit(e), e["default"], value_range(e), e["meaning"]] for e in entries])
 
 
 def options(entries):
     def default(entry):
         return "required" if entry["required"] else entry["default"]
     return table(["key", "kind", "unit", "default", "range", "choices", "meaning"],
-                 [[f"`{e['name']}`", e["kind"], unit(e), default(e), span(e), e["choices"], e["meaning"]]
+                 [[f"`{e['name']}`", e["kind"], unit(e), default(e), value_range(e), e["choices"], e["meaning"]]
                   for e in entries])
 
 
 def mechanism_page(entry):
     text = f"# {entry['name']}\n\n{sentence(entry['meaning'])}\n\nSource: {entry['source']}.\n\n"
     names = {"coordinates": "pose", "joints": "joints", "modes": "working modes; the first is the default",
-             "branches": "branches of the assembly", "swept": "swept by surveys", "held": "held by surveys",
-             "columns_along": "columns run along", "volume_unit": "unit of the volume",
-             "integrated_unit": "unit of the volume that is integrated over what is held",
+             "branches": "assembly branches", "swept": "swept coordinates", "held": "fixed coordinates",
+             "columns_along": "direction of columns", "volume_unit": "unit of the volume",
+             "integrated_unit": "unit of the volume integrated over the fixed coordinates",
              "size": "size, for workspace-ratio",
              "size_unit": "unit of the size", "characteristic_length": "characteristic length of the conditioning",
-             "mass_models": "where masses may come from", "masses": "where they come from unless a study says so",
-             "chain_input": "input of the auxiliary chain", "chain_output": "output of the auxiliary chain",
-             "objectives": "objectives that serve", "constraints": "constraints that serve"}
-    text += table(["what", "value"], [[title, entry[key]] for key, title in names.items() if cell(entry[key])])
+             "mass_models": "mass models", "masses": "default mass model",
+             "objectives": "supported objectives", "constraints": "supported constraints"}
+    text += table(["property", "value"], [[title, entry[key]] for key, title in names.items() if cell(entry[key])])
     if entry["other_sweeps"]:
-        text += "## Other sweeps\n\n" + table(["held", "swept", "columns along", "unit of the volume"], [
+        text += "## Other sweeps\n\n" + table(["fixed", "swept", "direction of columns", "unit of the volume"], [
             [s["held"], s["swept"], s["columns_along"], s["volume_unit"]] for s in entry["other_sweeps"]])
     text += "## Parameters\n\n" + parameters(entry["parameters"])
     for model, besides in entry.get("parameters_besides", {}).items():
@@ -103,25 +102,31 @@ def mechanism_page(entry):
     if entry["limits"]:
         text += "## Limits of poses\n\n" + table(
             ["name", "unit", "inactive", "range", "constraint", "derivation", "meaning"],
-            [[f"`{e['name']}`", unit(e), e["inactive"], span(e), f"`{e['constraint']}`", e["derivation"], e["meaning"]]
-             for e in entry["limits"]])
+            [[f"`{e['name']}`", unit(e), e["inactive"], value_range(e), f"`{e['constraint']}`", e["derivation"],
+              e["meaning"]] for e in entry["limits"]])
+    if entry["inputs"]:
+        text += "## Inputs\n\n" + table(["name", "unit", "default", "meaning"], [
+            [f"`{e['name']}`", unit(e), e["default"], e["meaning"]] for e in entry["inputs"]])
+    if entry["quantities"]:
+        text += "## Quantities\n\n" + table(["name", "unit", "depends on", "meaning"], [
+            [f"`{e['name']}`", unit(e), e["depends_on"], e["meaning"]] for e in entry["quantities"]])
     if entry["design_tests"]:
-        text += "## Tests of the design\n\n" + table(
+        text += "## Constraints of the design\n\n" + table(
             ["constraint", "unit", "meaning"],
             [[f"`{e['name']}`", unit(e), e["meaning"]] for e in entry["design_tests"]])
     own = {e["name"] for e in entry["parameters"]}
-    text += "## Names that formulas know besides the parameters\n\n" + table(
-        ["name", "unit", "known", "meaning"],
+    text += "## Names in formulas besides the parameters\n\n" + table(
+        ["name", "unit", "available", "meaning"],
         [[f"`{e['name']}`", unit(e), e["known"], e["meaning"]]
          for e in entry["expression_names"] if e["name"] not in own])
     return text
 
 
-def served(entry):
+def support(entry):
     if all(m["serves"] for m in entry["mechanisms"]):
-        return "It serves every mechanism that is built in.\n\n"
+        return "Supported by all built-in mechanisms.\n\n"
     able = [m["name"] for m in entry["mechanisms"] if m["serves"]]
-    return f"Of the mechanisms that are built in it serves {cell(able)}.\n\n"
+    return f"Supported by the built-in mechanisms {cell(able)}.\n\n"
 
 
 def objectives_page(entries):
@@ -129,40 +134,40 @@ def objectives_page(entries):
             "`[[constraint]]`. Options are keys of the same table.\n\n")
     for e in entries:
         text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\n"
-        text += f"A study wants it to {e['direction']} unless it says otherwise. "
-        text += served(e) + (options(e["options"]) if e["options"] else "")
+        text += f"Default direction: {e['direction']}. "
+        text += support(e) + (options(e["options"]) if e["options"] else "")
     return text
 
 
 def constraints_page(entries):
-    text = ("# Constraints\n\nThe `type` of a `[[constraint]]`. Those of poses cut the workspace; those of the design "
-            "give a margin, which holds where it is not negative. Every [objective](objectives.md) is a constraint, "
-            "too, with `min` or `max`.\n\n")
+    text = ("# Constraints\n\nThe `type` of a `[[constraint]]`. Constraints of poses restrict the workspace. "
+            "Constraints of the design have a margin, which is non-negative if they are satisfied. With `min` or "
+            "`max`, every [objective](objectives.md) can also be a constraint.\n\n")
     for e in entries:
-        text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\nIt looks at the {e['level']}. " + served(e)
-        alike = {}
+        text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\nConstraint of the {e['level']}. " + support(e)
+        by_options = {}
         for mechanism, specs in e["options"].items():
-            alike.setdefault(json.dumps(specs), []).append(mechanism)
-        for specs, mechanisms in alike.items():
+            by_options.setdefault(json.dumps(specs), []).append(mechanism)
+        for specs, mechanisms in by_options.items():
             if json.loads(specs):
-                text += ("Of " + ", ".join(f"`{m}`" for m in mechanisms) + ":\n\n" if len(alike) > 1 else "")
+                text += ("For " + ", ".join(f"`{m}`" for m in mechanisms) + ":\n\n" if len(by_options) > 1 else "")
                 text += options(json.loads(specs))
     return text
 
 
 def optimisers_page(entries):
     text = ("# Optimisers\n\nThe `optimiser` of a `[[stage]]`. Options are keys of the same table. Stages run one "
-            "after the other, each from what the ones before have found.\n\n")
+            "after the other; each one can start from the results of the previous ones.\n\n")
     for e in entries:
         c = e["capabilities"]
-        most = c["max_objectives"]
-        objectives = ("one objective" if most == 1 else "any number of objectives" if most is None else
-                      f"{c['min_objectives']} to {most} objectives")
-        facts = [objectives, "constraints" if c["constraints"] else "no constraints",
+        max_objectives = c["max_objectives"]
+        objectives = ("one objective" if max_objectives == 1 else "any number of objectives" if max_objectives is None
+                      else f"{c['min_objectives']} to {max_objectives} objectives")
+        supported = [objectives, "constraints" if c["constraints"] else "no constraints",
                  "variables with a step" if c["discrete"] else "no variables with a step"]
         if c["needs_gradient"]:
-            facts.append("asks for gradients")
-        text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\nIt takes: {', '.join(facts)}.\n\n"
+            supported.append("requires gradients")
+        text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\nSupports: {', '.join(supported)}.\n\n"
         text += options(e["options"])
     return text
 
@@ -172,9 +177,9 @@ def fenced(text, language="text"):
 
 
 def keys_of(value, path=""):
-    """(key, example) of every number and word in a JSON object; of a list its first element stands for all."""
+    """Generate (key, example) for all numbers and strings in a JSON object, of lists for the first element only."""
     if isinstance(value, dict):
-        if len(value) > 5 and all(isinstance(inner, float) for inner in value.values()):  # names are the mechanism's
+        if len(value) > 5 and all(isinstance(inner, float) for inner in value.values()):  # by names of the mechanism
             name, number = next(iter(value.items()))
             yield f"{path}.NAME", f"{name}: {number}"
             return
@@ -188,14 +193,14 @@ def keys_of(value, path=""):
 
 
 def json_page(run):
-    text = ("# JSON\n\nWith `--json` a command prints one object. Numbers have full precision, matrices are lists of "
-            "rows, `null` is what does not exist. `[]` in a key stands for each element of a list. The tables below "
-            "are made from what the commands print.\n\n")
+    text = ("# JSON\n\nWith `--json` a command prints one JSON object. Numbers have full precision, matrices are lists "
+            "of rows, and `null` means that a value does not exist. `[]` in a key stands for all elements of a list. "
+            "The tables below are generated from the output of the commands.\n\n")
     for line in JSON:
         answer = json.loads(run(*line.split(), "--json"))
         title = " ".join(word for word in line.split()[:2] if word.isalpha())
         text += f"## {title}\n\n" + fenced(f"pkmopt {line} --json", "sh")
-        text += table(["key", "here"], [[f"`{key}`", f"`{example}`"] for key, example in keys_of(answer)])
+        text += table(["key", "example"], [[f"`{key}`", f"`{example}`"] for key, example in keys_of(answer)])
     return text
 
 
@@ -203,7 +208,7 @@ def schema_page(study):
     rows, groups = [], []
 
     def words(attribute):
-        """Of an attribute that is a text or an array of texts."""
+        """List of the strings in an attribute, which is a string or an array of strings."""
         texts = [attribute] if isinstance(attribute, (str, bytes)) else attribute
         return [text.decode() if isinstance(text, bytes) else str(text) for text in texts]
 
@@ -216,11 +221,11 @@ def schema_page(study):
             else:
                 groups.append([f"`/{name}`", ", ".join(f"`{a}`" for a in item.attrs if a != "description"), about])
         file.visititems(visit)
-    return ("# Places in a study file\n\nWhat stands in the file of "
-            "`experiments/4ppa-2par/wide-bounds-20-by-2.toml`, told by the file itself. "
-            "[The study file](study-file.md) says how to read it.\n\n## Groups\n\n" +
+    return ("# Contents of a study file\n\nThe groups and datasets in the study file of "
+            "`experiments/4ppa-2par/wide-bounds-20-by-2.toml`, with the descriptions that the file contains. "
+            "[The study file](study-file.md) explains how to read it.\n\n## Groups\n\n" +
             table(["group", "attributes", "meaning"], groups) + "## Datasets\n\n" +
-            table(["dataset", "size here", "unit", "meaning"], rows))
+            table(["dataset", "size in this file", "unit", "meaning"], rows))
 
 
 def main():
@@ -240,7 +245,7 @@ def main():
     pages["objectives"] = objectives_page(catalogue["objectives"])
     pages["constraints"] = constraints_page(catalogue["constraints"])
     pages["optimisers"] = optimisers_page(catalogue["optimisers"])
-    index = "# What a study may name\n\nThe catalogues of the program, as `pkmopt list --json` tells them.\n\n"
+    index = "# Catalogue\n\nAll names that a study can use, generated from `pkmopt list --json`.\n\n"
     for kind, entries in catalogue.items():
         page = "{}.md" if kind == "mechanisms" else kind + ".md#{}"
         index += f"## {kind.capitalize()}\n\n" + table(
@@ -252,7 +257,8 @@ def main():
     help_text = run("--help")
     table_of_commands = help_text.split("Subcommands:\n")[1].split("\n\n")[0]
     commands = [line.split()[0] for line in table_of_commands.splitlines()]
-    text = "# Commands\n\nEvery command with its options, as `pkmopt --help` and `pkmopt COMMAND --help` print them.\n\n" + fenced(help_text)
+    text = ("# Commands\n\nAll commands with their options: the output of `pkmopt --help` and "
+            "`pkmopt COMMAND --help`.\n\n" + fenced(help_text))
     for command in commands:
         text += f"## {command}\n\n" + fenced(run(command, "--help"))
     (reference / "commands.md").write_text(text)

@@ -1,10 +1,10 @@
-# What `cmake --install` brings, and the packages that experiments/package.sh makes of it: one for Debian, whose libraries
-# it asks for, and an archive that brings them.
-if(NOT PKM_BUNDLE)  # for a compiler and libraries other than ours, the library is built from source
+# Rules for `cmake --install` and for the packages built by experiments/package.sh: a Debian package that depends on
+# Debian's libraries, and an archive (PKM_BUNDLE) that includes them.
+if(NOT PKM_BUNDLE)  # for the archive's users, other compilers and libraries apply: build from source
   include(CMakePackageConfigHelpers)
   set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pkmopt)
   write_basic_package_version_file(pkmopt-config-version.cmake COMPATIBILITY SameMinorVersion)
-  # The folder is added to users' include paths, so that their #include lines read like ours.
+  # This folder is added to the users' include path, so that #include lines are the same as in this repository.
   set(libraries pkmopt)
   if(PKM_PROGRAM)
     list(APPEND libraries pkmopt_program)
@@ -24,7 +24,7 @@ install(DIRECTORY experiments DESTINATION ${studies} FILES_MATCHING
     GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE
   PATTERN experiments/*.sh EXCLUDE PATTERN pictures/*.sh EXCLUDE PATTERN app EXCLUDE)
 
-# The pages, which lead to each other and to the studies as in the repository.
+# The documentation pages, with a link to the studies, so that relative links between them work as in the repository.
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN _static EXCLUDE)
 file(RELATIVE_PATH from_pages /${CMAKE_INSTALL_DOCDIR} /${studies}/experiments)
@@ -32,7 +32,7 @@ file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/pages)
 file(CREATE_LINK ${from_pages} ${PROJECT_BINARY_DIR}/pages/experiments SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/pages/experiments DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# Who wrote what is part of the program.
+# Copyright files of the libraries that are compiled into the program.
 foreach(part libhdf5-dev libcli11-dev nlohmann-json3-dev libeigen3-dev librandom123-dev)
   install(FILES /usr/share/doc/${part}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences RENAME ${part} OPTIONAL)
 endforeach()
@@ -45,16 +45,16 @@ if(NOT PKM_PROGRAM)
   return()
 endif()
 set(programs pkmopt_app pkmopt_check_proof)
-# Debian asks for an address. This one is reserved for those that there are not: docs/help.md says where people are.
+# Debian requires an address. The domain .invalid is reserved for non-existent addresses; see docs/help.md for contacts.
 set(CPACK_PACKAGE_CONTACT "pkmopt authors <pkmopt@pkmopt.invalid>")
 if(NOT PKM_BUNDLE)
   install(TARGETS ${programs} RUNTIME)
-  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # what Debian calls it
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # the name that Debian requires
   string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
   file(CONFIGURE OUTPUT debian/changelog @ONLY CONTENT [[
 pkmopt (@PROJECT_VERSION@) stable; urgency=medium
 
-  * What users see of the changes is told in CHANGELOG.md.
+  * See CHANGELOG.md for the changes.
 
  -- @CPACK_PACKAGE_CONTACT@  @now@
 ]])
@@ -65,13 +65,13 @@ else()
   set(CPACK_GENERATOR TGZ)
   set(beside ${CMAKE_INSTALL_LIBDIR}/pkmopt)
   set_target_properties(${programs} PROPERTIES INSTALL_RPATH $ORIGIN/../${beside})
-  foreach(program IN LISTS programs)  # found by the libraries' own libraries, too
+  foreach(program IN LISTS programs)  # RPATH instead of RUNPATH: also used for dependencies of the libraries
     target_link_options(${program} PRIVATE LINKER:--disable-new-dtags)
   endforeach()
   install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET pkmopt_libraries RUNTIME)
   install(RUNTIME_DEPENDENCY_SET pkmopt_libraries DESTINATION ${beside}
-    PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|ld-linux.*)\\.so")  # the system's own
-  # Who wrote these: of the Debian packages that they are from.
+    PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|ld-linux.*)\\.so")  # provided by the system
+  # Copyright files of the Debian packages from which these libraries are copied.
   install(CODE "set(beside ${beside})\nset(licences ${CMAKE_INSTALL_DOCDIR}/licences)")
   install(CODE [[
     set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
@@ -86,9 +86,9 @@ else()
     endforeach()]])
 endif()
 
-set(CPACK_PACKAGE_DESCRIPTION "For a parallel robot, pkmopt finds its workspace, its best dimensions, its
-coupling and its forces, with exact derivatives where there are closed forms.
-The robot is built in or described by a file.")
+set(CPACK_PACKAGE_DESCRIPTION "pkmopt computes the workspace, coupling and forces of a parallel robot and
+optimises its dimensions, with exact derivatives where closed forms exist.
+The robot is built in or defined by a mechanism file.")
 set(CPACK_PACKAGE_VENDOR pkmopt)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_STRIP_FILES ON)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes packages/: one for Debian 12, and an archive for other distributions that brings the libraries it needs. Both are
-# without MPI: who has a cluster builds from source.
+# Builds the packages in packages/: one for Debian 12, and an archive for other distributions that includes the required
+# libraries. Both are without MPI; for a cluster, build from source.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source experiments/debian-packages.sh

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12 packages), builds the program, runs the paper's study and prints the result.
-# Works from any folder and may be run again.
+# Installs missing Debian 12 packages, builds the program, runs the paper's study and prints the result. Can be run
+# repeatedly and from any folder.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source experiments/debian-packages.sh
@@ -15,4 +15,4 @@ study=$build/paper-problem.h5
 "$build/bin/pkmopt" run experiments/4ppa-2par/paper-problem.toml --output "$study" --force
 
 echo
-printf 'Look at it again with:  %q show %q\n' "$PWD/$build/bin/pkmopt" "$PWD/$study"
+printf 'Show the result again with:  %q show %q\n' "$PWD/$build/bin/pkmopt" "$PWD/$study"

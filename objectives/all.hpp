@@ -7,7 +7,7 @@
 
 namespace pkm {
 
-/// Every objective there is, in the order in which `pkmopt list` shows them.
+/// All objectives, in the order in which `pkmopt list` prints them.
 const std::vector<ObjectiveEntry>& all_objectives();
 
 }  // namespace pkm

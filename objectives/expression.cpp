@@ -1,4 +1,4 @@
-// A formula that the study writes itself. What takes the objective as a constraint is constraints/expression.cpp.
+// User-defined objective, given as a formula in the study. The constraint of that type is constraints/expression.cpp.
 #include "engine/problem/expression.hpp"
 
 #include "objectives/list.hpp"
@@ -8,7 +8,7 @@ namespace pkm {
 ObjectiveEntry expression_objective() {
   return {
       .name = "expression",
-      .meaning = "a formula of parameters, thresholds and results of the survey",
+      .meaning = "a formula of parameters, thresholds and results of the workspace analysis",
       .direction = Direction::maximise,
       .options = expression_options(),
       .unit = expression_unit,
@@ -19,7 +19,7 @@ ObjectiveEntry expression_objective() {
                 [expression = Expression(context)](const auto& design) { return expression.value(design); });
           },
       .detail = expression_text,
-      .needs_survey = [](const EntryContext& context) { return Expression(context).needs_survey(); },
+      .needs_workspace = [](const EntryContext& context) { return Expression(context).needs_workspace(); },
   };
 }
 

@@ -1,4 +1,4 @@
-// The entries of the catalogue of objectives: one line per entry here and one in all.cpp.
+// Factories of the entries of the catalogue of objectives. A new entry needs one line here and one in all.cpp.
 #pragma once
 
 #include "engine/problem/quantity.hpp"
@@ -7,8 +7,8 @@ namespace pkm {
 
 ObjectiveEntry workspace_volume();
 ObjectiveEntry workspace_ratio();
-std::vector<ObjectiveEntry> pose_objectives();  ///< of every quantity of poses
-std::vector<ObjectiveEntry> peak_objectives();  ///< of forces and power along a motion
+std::vector<ObjectiveEntry> pose_objectives();  ///< statistics of all pose quantities
+std::vector<ObjectiveEntry> peak_objectives();  ///< maximum forces, power, speeds, .. along a motion
 ObjectiveEntry expression_objective();
 
 }  // namespace pkm

@@ -1,11 +1,11 @@
-// Greatest magnitude along a motion, over its samples, of an actuator's force, of its power (force times speed, driving
-// or braking), of its speed and acceleration, and with drive trains of its motor's torque and speed; of the torque also
-// the root of the mean square. Speeds and accelerations need no masses.
-// Gradient solvers see the power mean of the magnitudes (power_mean).
+// Peak loads along a motion: maximum magnitude over the samples of the motion of actuator force, actuator power (force
+// times speed, driving or braking), joint speed and joint acceleration; with drive trains, of motor torque (also its
+// root mean square) and motor speed. Speeds and accelerations do not need masses. Gradient solvers use the power mean
+// of the magnitudes instead of the maximum (power_mean).
 //
-// They depend on the design alone: no survey, and none of the limits of poses, which the constraint `motion` tests
-// (constraints/motion.cpp). Where the mechanism does not assemble somewhere along the motion there is no force: the
-// value is NaN, the design `failed` unless the constraint has rejected it, and the reason names the time.
+// The values depend on the design only. They use neither a workspace analysis nor the limits of poses, which the
+// constraint `motion` tests (constraints/motion.cpp). If the mechanism does not assemble at a sample, the value is NaN
+// and the design `failed`, unless the constraint has rejected it; the reason states the time of the sample.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,10 +22,10 @@
 namespace pkm {
 namespace {
 
-/// What is looked at of each actuator.
+/// The magnitude that is evaluated for each actuator.
 enum class Load { force, power, motor_torque, motor_speed, joint_speed, joint_acceleration };
 
-/// Speeds and accelerations need no masses.
+/// Whether the load follows from the kinematics alone, without masses.
 bool is_kinematic(Load load) {
   return load == Load::motor_speed || load == Load::joint_speed || load == Load::joint_acceleration;
 }
@@ -39,21 +39,21 @@ Wrench<double> wrench_of(const Options& options) {
   return wrench;
 }
 
-/// Room for the samples' loads, and for what is found by several threads.
+/// Scratch memory for the loads of all samples, also if several threads compute them in batches.
 template <class S>
-struct Loads {
+struct LoadScratch {
   struct Batch {
     std::vector<S> loads;
-    std::size_t assembled;
+    std::size_t assembled;  ///< number of samples before the first that does not assemble
   };
-  std::vector<S> of_samples;
+  std::vector<S> loads;
   std::vector<Batch> batches;
-  std::vector<DriveScratch<S>> of_workers;
+  std::vector<DriveScratch<S>> by_worker;
 };
 
-class AlongMotion final : public Quantity {
+class PeakLoad final : public Quantity {
  public:
-  AlongMotion(const EntryContext& context, Load load)
+  PeakLoad(const EntryContext& context, Load load)
       : name_(motion_of(context).name),
         samples_(samples_of(context)),
         mode_(mode_of(context)),
@@ -62,36 +62,36 @@ class AlongMotion final : public Quantity {
         sharpness_(context.options.number("sharpness")),
         load_(load),
         by_rms_(load == Load::motor_torque && context.options.word("statistic") == "rms") {
-    if (const Refusal reason = no_joint_forces(context.mechanism))
-      why_no_derivatives_ = "speeds of the joints along a motion have none here: " + *reason;
+    if (const Unsupported reason = no_joint_forces(context.mechanism))
+      why_no_derivatives_ = "joint speeds along a motion have no derivatives without dynamics: " + *reason;
   }
 
-  Refusal no_derivatives() const override { return why_no_derivatives_; }
+  Unsupported no_derivatives() const override { return why_no_derivatives_; }
 
   double value(const DesignView<double>& design) const override {
-    std::vector<double>& loads = design.scratch.get<Loads<double>>().of_samples;
+    std::vector<double>& loads = design.scratch.get<LoadScratch<double>>().loads;
     if (collect(design, loads) < samples_.size()) return std::numeric_limits<double>::quiet_NaN();
-    if (by_rms_) take_roots_of_mean_squares(loads);
-    double greatest = 0;
+    if (by_rms_) replace_by_rms(loads);
+    double peak = 0;
     for (const double load : loads) {
       if (!std::isfinite(load)) return load;
-      greatest = std::fmax(greatest, load);
+      peak = std::fmax(peak, load);
     }
-    return greatest;
+    return peak;
   }
   Dual4 smooth(const DesignView<Dual4>& design) const override {
-    std::vector<Dual4>& loads = design.scratch.get<Loads<Dual4>>().of_samples;
-    const bool known = collect(design, loads) == samples_.size() &&
-                       std::ranges::all_of(loads, [](const Dual4& load) { return std::isfinite(load.a); });
-    if (!known) return Dual4(std::numeric_limits<double>::quiet_NaN());
-    if (by_rms_) take_roots_of_mean_squares(loads);
+    std::vector<Dual4>& loads = design.scratch.get<LoadScratch<Dual4>>().loads;
+    const bool defined = collect(design, loads) == samples_.size() &&
+                         std::ranges::all_of(loads, [](const Dual4& load) { return std::isfinite(load.a); });
+    if (!defined) return Dual4(std::numeric_limits<double>::quiet_NaN());
+    if (by_rms_) replace_by_rms(loads);
     return power_mean(loads, sharpness_);
   }
   std::string why_undefined(const DesignView<double>& design) const override {
     std::vector<double> loads;
-    const std::size_t last = collect(design, loads);
-    if (last < samples_.size()) {
-      const MotionSample& at = samples_[last];
+    const std::size_t assembled = collect(design, loads);
+    if (assembled < samples_.size()) {
+      const MotionSample& at = samples_[assembled];
       const PoseReport report =
           design.mechanism.inspect(design.parameters, at.pose, mode_, no_limits(design.mechanism.info()));
       return "the motion " + name_ + " leaves the reach of the mechanism at t = " + with_unit(at.time, "s") +
@@ -100,12 +100,13 @@ class AlongMotion final : public Quantity {
     const auto infinite = std::find_if(loads.begin(), loads.end(), [](double load) { return !std::isfinite(load); });
     if (infinite == loads.end()) return {};
     const auto k = static_cast<std::size_t>(infinite - loads.begin()) * samples_.size() / loads.size();
-    return "the motion " + name_ + " meets a singularity at t = " + with_unit(samples_[k].time, "s") + ", sample " +
-           std::to_string(k + 1) + " of " + std::to_string(samples_.size());
+    return "the motion " + name_ + " passes through a singularity at t = " + with_unit(samples_[k].time, "s") +
+           ", sample " + std::to_string(k + 1) + " of " + std::to_string(samples_.size());
   }
 
  private:
-  /// The loads of all samples, or of those before the first at which the mechanism does not assemble.
+  /// Computes the loads of all samples, up to the first at which the mechanism does not assemble. Returns the number of
+  /// samples evaluated.
   template <class S>
   std::size_t collect(const DesignView<S>& design, std::vector<S>& loads) const {
     loads.clear();
@@ -116,7 +117,7 @@ class AlongMotion final : public Quantity {
                           design.scratch.template get<DriveScratch<S>>(),
                           [&](std::size_t, const Drive<S>& drive) { append(design, drive, loads); });
   }
-  /// By influence coefficients, of mechanisms whose drives have no forces.
+  /// As collect(), by influence coefficients: for mechanisms without joint forces.
   std::size_t collect_rates(const DesignView<double>& design, std::vector<double>& loads) const {
     for (std::size_t k = 0; k < samples_.size(); ++k) {
       const MotionSample& at = samples_[k];
@@ -131,29 +132,29 @@ class AlongMotion final : public Quantity {
   }
   template <class S>
   std::size_t collect_with_team(const DesignView<S>& design, std::vector<S>& loads) const {
-    Loads<S>& room = design.scratch.template get<Loads<S>>();
-    room.batches.resize((samples_.size() + kDriveBatch - 1) / kDriveBatch);
-    room.of_workers.resize(workers());
-    share_pieces(room.batches.size(), [&](std::size_t number, std::size_t end, std::size_t worker) {
+    LoadScratch<S>& buffers = design.scratch.template get<LoadScratch<S>>();
+    buffers.batches.resize((samples_.size() + kDriveBatch - 1) / kDriveBatch);
+    buffers.by_worker.resize(workers());
+    parallel_for(buffers.batches.size(), [&](std::size_t number, std::size_t end, std::size_t worker) {
       for (; number < end; ++number) {
-        typename Loads<S>::Batch& batch = room.batches[number];
+        typename LoadScratch<S>::Batch& batch = buffers.batches[number];
         batch.loads.clear();
         const auto some = std::span(samples_).subspan(number * kDriveBatch);
         batch.assembled =
             drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_,
-                           some.first(std::min(kDriveBatch, some.size())), wrench_, room.of_workers[worker],
+                           some.first(std::min(kDriveBatch, some.size())), wrench_, buffers.by_worker[worker],
                            [&](std::size_t, const Drive<S>& drive) { append(design, drive, batch.loads); });
       }
     });
     std::size_t assembled = 0;
-    for (std::size_t number = 0; number < room.batches.size() && assembled == number * kDriveBatch; ++number) {
-      const auto& batch = room.batches[number];
+    for (std::size_t number = 0; number < buffers.batches.size() && assembled == number * kDriveBatch; ++number) {
+      const auto& batch = buffers.batches[number];
       loads.insert(loads.end(), batch.loads.begin(), batch.loads.end());
       assembled += batch.assembled;
     }
     return assembled;
   }
-  /// Appends those of one sample, of the joints looked at.
+  /// Appends the loads of one sample: of the selected joint, of all joints ("worst"), or their sum ("total").
   template <class S>
   void append(const DesignView<S>& design, const Drive<S>& drive, std::vector<S>& loads) const {
     S total(0.0);
@@ -173,14 +174,14 @@ class AlongMotion final : public Quantity {
     const DriveTrain& train = (*design.mechanism.drive_trains())[joint];
     return load_ == Load::motor_torque ? drive.torque(train, joint) : drive.speeds[joint] * train.ratio;
   }
-  /// Of each joint over the samples, in place of its loads.
+  /// Replaces the loads by one root mean square per joint over the samples.
   template <class S>
-  void take_roots_of_mean_squares(std::vector<S>& loads) const {
+  void replace_by_rms(std::vector<S>& loads) const {
     const std::size_t joints = loads.size() / samples_.size();
     for (std::size_t j = 0; j < joints; ++j) {
       S sum(0.0);
       for (std::size_t k = j; k < loads.size(); k += joints) sum += loads[k] * loads[k];
-      loads[j] = root_or_zero(S(sum / static_cast<double>(samples_.size())));
+      loads[j] = sqrt_or_zero(S(sum / static_cast<double>(samples_.size())));
     }
     loads.resize(joints);
   }
@@ -193,11 +194,11 @@ class AlongMotion final : public Quantity {
   double sharpness_;
   Load load_;
   bool by_rms_;
-  Refusal why_no_derivatives_;
+  Unsupported why_no_derivatives_;
 };
 
-/// @param joints  the words that `joint` knows besides numbers; the first is the default
-/// @param forces  whether they depend on a wrench
+/// @param joints  values of the option `joint` besides numbers; the first is the default
+/// @param forces  whether the load depends on a wrench on the platform
 std::vector<OptionSpec> load_options(const std::vector<std::string>& joints, bool forces = true) {
   std::vector<std::pair<std::string, std::string>> wrench;
   for (std::size_t i = 0; i < wrench_names().size(); ++i) wrench.emplace_back(wrench_names()[i], i < 3 ? "N" : "N m");
@@ -206,38 +207,39 @@ std::vector<OptionSpec> load_options(const std::vector<std::string>& joints, boo
       {.name = "joint",
        .kind = OptionKind::word,
        .initial = joints.front(),
-       .choices = numbers_of_joints(joints),
-       .meaning = "the joint looked at; worst: the greatest of all joints" +
+       .choices = joint_choices(joints),
+       .meaning = "number of the joint; worst: the maximum over all joints" +
                   std::string(joints.size() > 1 ? "; total: the sum over the joints" : "")},
       samples_option(),
       mode_option(),
       {.name = "wrench",
        .kind = OptionKind::named_numbers,
-       .meaning = "force and moment on the platform, the same all the time; default: none",
+       .meaning = "constant force and moment on the platform; default: none",
        .fields = wrench},
       {.name = "sharpness",
        .initial = 200.0,
        .lower = 1,
        .upper = 1e6,
-       .meaning = "of the smooth stand-in for the peak that gradient solvers are given, the mean of powers of this "
-                  "exponent: larger is nearer"},
+       .meaning = "exponent of the power mean, the smooth approximation of the peak for gradient solvers; larger is "
+                  "more accurate"},
   };
   if (!forces) std::erase_if(options, [](const OptionSpec& option) { return option.name == "wrench"; });
   return options;
 }
 
-/// The unit that the joints looked at share. Throws std::invalid_argument where they have different ones.
-/// @param what  "forces [N] and torques [N m]"
-std::string unit_of_joints(const EntryContext& context, const std::string& what, const std::string& of_slides,
-                           const std::string& of_turns) {
+/// The unit of the selected joints. Throws std::invalid_argument if "worst" would compare prismatic and revolute
+/// joints.
+/// @param what  the loads with their units, for the message: "forces [N] and torques [N m]"
+std::string unit_of_joints(const EntryContext& context, const std::string& what, const std::string& prismatic,
+                           const std::string& revolute) {
   const auto& joints = context.mechanism.info().joints;
   const std::string& joint = context.options.word("joint");
-  refuse_unknown_joint(context.mechanism, joint);
+  validate_joint(context.mechanism, joint);
   const bool turns = (joint == "worst" ? joints.front() : joints[static_cast<std::size_t>(joint[0] - '1')]).turns();
   if (joint == "worst" && std::ranges::any_of(joints, [turns](const AxisInfo& j) { return j.turns() != turns; }))
-    throw std::invalid_argument("mechanism " + context.mechanism.info().name + " has joints of both kinds, whose " +
-                                what + " have no greatest; name a joint");
-  return turns ? of_turns : of_slides;
+    throw std::invalid_argument("mechanism " + context.mechanism.info().name + " has prismatic and revolute joints: " +
+                                what + " cannot be compared; select one joint");
+  return turns ? revolute : prismatic;
 }
 std::string force_unit(const EntryContext& context) {
   return unit_of_joints(context, "forces [N] and torques [N m]", "N", "N m");
@@ -249,16 +251,16 @@ std::string acceleration_unit(const EntryContext& context) {
   return unit_of_joints(context, "accelerations [m/s^2] and [rad/s^2]", "m/s^2", "rad/s^2");
 }
 
-Refusal refuse_without_speeds(const std::string& objective, const Mechanism& mechanism) {
+Unsupported check_speeds(const std::string& objective, const Mechanism& mechanism) {
   if (mechanism.velocities() || !no_joint_forces(mechanism)) return {};
-  return "objective " + objective + " needs speeds of the joints, and mechanism " + mechanism.info().name +
+  return "objective " + objective + " needs joint speeds, and mechanism " + mechanism.info().name +
          " has neither influence coefficients nor masses";
 }
 
-Refusal refuse_without_drive_trains(const std::string& objective, const Mechanism& mechanism) {
+Unsupported check_drive_trains(const std::string& objective, const Mechanism& mechanism) {
   if (mechanism.drive_trains()) return {};
   return "objective " + objective + " needs drive trains, and mechanism " + mechanism.info().name +
-         " has none; a study gives it some in [[drive_train]]";
+         " has none; define them in the study in [[drive_train]]";
 }
 
 std::vector<OptionSpec> torque_options() {
@@ -267,11 +269,11 @@ std::vector<OptionSpec> torque_options() {
                      .kind = OptionKind::word,
                      .initial = std::string("peak"),
                      .choices = {"peak", "rms"},
-                     .meaning = "the greatest, or the root of the mean square over the samples"});
+                     .meaning = "peak: maximum over the samples; rms: root mean square over the samples"});
   return options;
 }
 
-/// @param what  "peak force", for listings: "peak force of joint 2 along the motion pick"
+/// @param what  name of the load with spaces: "peak force" (listed as "peak force of joint 2 along the motion pick")
 ObjectiveEntry load_entry(Load load, const std::string& what, const std::string& meaning,
                           const std::vector<OptionSpec>& options, std::string (*unit)(const EntryContext&)) {
   std::string name = what;
@@ -285,24 +287,23 @@ ObjectiveEntry load_entry(Load load, const std::string& what, const std::string&
       .unit = unit,
       .refusal =
           [name, load, of_motor](const Mechanism& mechanism) {
-            Refusal reason =
-                is_kinematic(load) ? refuse_without_speeds(name, mechanism) : refuse_without_dynamics(name, mechanism);
-            if (!reason && of_motor) reason = refuse_without_drive_trains(name, mechanism);
+            Unsupported reason = is_kinematic(load) ? check_speeds(name, mechanism) : check_dynamics(name, mechanism);
+            if (!reason && of_motor) reason = check_drive_trains(name, mechanism);
             return reason;
           },
-      .make = [load](const EntryContext& context) { return std::make_unique<AlongMotion>(context, load); },
+      .make = [load](const EntryContext& context) { return std::make_unique<PeakLoad>(context, load); },
       .detail =
           [what](const EntryContext& context) {
             const std::string& joint = context.options.word("joint");
-            refuse_unknown_joint(context.mechanism, joint);
+            validate_joint(context.mechanism, joint);
             const std::string of = joint == "worst"   ? "the worst joint"
                                    : joint == "total" ? "all joints together"
                                                       : "joint " + joint;
             const bool rms = context.options.has("statistic") && context.options.word("statistic") == "rms";
             return (rms ? "RMS " : "") + what + " of " + of + " along the motion " + context.options.word("motion");
           },
-      .range = not_negative,
-      .reads_survey = false,
+      .range = nonnegative,
+      .uses_workspace = false,
   };
 }
 
@@ -310,17 +311,17 @@ ObjectiveEntry load_entry(Load load, const std::string& what, const std::string&
 
 std::vector<ObjectiveEntry> peak_objectives() {
   return {
-      load_entry(Load::force, "peak force", "greatest force of the actuators along a motion", load_options({"worst"}),
+      load_entry(Load::force, "peak force", "maximum force of the actuators along a motion", load_options({"worst"}),
                  force_unit),
-      load_entry(Load::power, "peak power", "greatest power of the actuators along a motion, driving or braking",
+      load_entry(Load::power, "peak power", "maximum power of the actuators along a motion, driving or braking",
                  load_options({"worst", "total"}), [](const EntryContext&) { return std::string("W"); }),
       load_entry(Load::motor_torque, "motor torque", "torque of the motors along a motion, with drive trains",
                  torque_options(), [](const EntryContext&) { return std::string("N m"); }),
-      load_entry(Load::motor_speed, "motor speed", "greatest speed of the motors along a motion, with drive trains",
+      load_entry(Load::motor_speed, "motor speed", "maximum speed of the motors along a motion, with drive trains",
                  load_options({"worst"}, false), [](const EntryContext&) { return std::string("rad/s"); }),
-      load_entry(Load::joint_speed, "joint speed", "greatest speed of the joints along a motion",
+      load_entry(Load::joint_speed, "joint speed", "maximum speed of the joints along a motion",
                  load_options({"worst"}, false), speed_unit),
-      load_entry(Load::joint_acceleration, "joint acceleration", "greatest acceleration of the joints along a motion",
+      load_entry(Load::joint_acceleration, "joint acceleration", "maximum acceleration of the joints along a motion",
                  load_options({"worst"}, false), acceleration_unit)};
 }
 

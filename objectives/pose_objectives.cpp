@@ -1,9 +1,10 @@
-// Statistics over the workspace, or a region of it, of every quantity of poses: its mean and its worst case, and of
-// those of joints the spread.
+// Statistics of the pose quantities over the workspace or a region: the mean, the worst case and other statistics of
+// each quantity, and the standard deviation of those with one value per joint.
 //
-// The mean converges with the grid. The worst case is that of the samples: cell centres or quadrature nodes; the least
-// conditioning tends to 0 unless the singularity margins are positive. Gradient solvers see it through a smooth end of
-// the samples (soft_least, soft_greatest); a quantile is a sample and has no derivative.
+// The mean converges under grid refinement. The worst case is taken over the samples (cell centres or quadrature
+// nodes); with refinement the minimum conditioning tends to 0, unless the singularity margins are positive. For
+// gradient solvers the worst case is replaced by a Kreisselmeier-Steinhauser aggregate (soft_min, soft_max).
+// Quantiles have no derivatives.
 #include <algorithm>
 #include <cmath>
 
@@ -22,8 +23,8 @@ std::string name_of(const PoseQuantity& quantity) {
   return name;
 }
 
-/// ", in [0, 1]"; "" for any number.
-std::string range_words(const PoseQuantity& quantity) {
+/// Range of the values: ", in [0, 1]"; "" if it is unbounded.
+std::string range_text(const PoseQuantity& quantity) {
   if (!std::isfinite(quantity.least) || !std::isfinite(quantity.greatest)) return {};
   return ", in [" + shortest(quantity.least) + ", " + shortest(quantity.greatest) + "]";
 }
@@ -32,29 +33,30 @@ OptionSpec limb_option(Worst worst) {
   return {.name = "limb",
           .kind = OptionKind::word,
           .initial = std::string("worst"),
-          .choices = numbers_of_joints({"worst", "mean"}),
-          .meaning = std::string("whose index: one limb's, the ") + (worst == Worst::least ? "least" : "largest") +
-                     " of each pose, or the mean over the limbs"};
+          .choices = joint_choices({"worst", "mean"}),
+          .meaning = std::string("number of a limb, worst (the ") + (worst == Worst::least ? "minimum" : "maximum") +
+                     " over the limbs at each pose) or mean (over the limbs)"};
 }
 
 std::vector<OptionSpec> options_of(const PoseQuantity& quantity, bool with_statistic) {
-  const bool least = quantity.worst == Worst::least;
+  const bool worst_is_min = quantity.worst == Worst::least;
   std::vector<OptionSpec> options;
   if (with_statistic)
     options.push_back({.name = "statistic",
                        .kind = OptionKind::word,
                        .initial = std::string("mean"),
-                       .choices = least ? std::vector<std::string>{"mean", "min"}
-                                        : std::vector<std::string>{"mean", "max", "std", "p95"},
-                       .meaning = least ? "mean over the workspace, or the worst pose"
-                                        : "over the poses: mean, largest, standard deviation, or 95 % quantile"});
+                       .choices = worst_is_min ? std::vector<std::string>{"mean", "min"}
+                                               : std::vector<std::string>{"mean", "max", "std", "p95"},
+                       .meaning = worst_is_min
+                                      ? "mean or minimum over the workspace"
+                                      : "over the poses: mean, maximum, standard deviation, or 95 % quantile"});
   if (quantity.per_joint) options.push_back(limb_option(quantity.worst));
   options.push_back(quantity.needs_inertia() ? mode_option() : characteristic_length_option());
-  if (with_statistic) options.push_back(sharpness_option(least ? "min" : "max"));
+  if (with_statistic) options.push_back(sharpness_option(worst_is_min ? "min" : "max"));
   return options;
 }
 
-/// @param statistic  "": the option of that name
+/// @param statistic  fixed statistic; "": given by the option `statistic`
 ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, const std::string& meaning,
                      Direction direction, const std::string& statistic) {
   return {
@@ -63,10 +65,10 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
       .direction = direction,
       .options = options_of(quantity, statistic.empty()),
       .unit = [&quantity](const EntryContext&) { return std::string(quantity.unit); },
-      .refusal = [&quantity, name](const Mechanism& mechanism) -> Refusal {
-        if (quantity.needs_inertia()) return refuse_without_dynamics(name, mechanism);
-        const Refusal reason = no_conditioning(mechanism.info());
-        return reason ? "objective " + name + " is unavailable: " + *reason : Refusal();
+      .refusal = [&quantity, name](const Mechanism& mechanism) -> Unsupported {
+        if (quantity.needs_inertia()) return check_dynamics(name, mechanism);
+        const Unsupported reason = no_conditioning(mechanism.info());
+        return reason ? "objective " + name + " is unavailable: " + *reason : Unsupported();
       },
       .demand = [&quantity](const EntryContext& context, Demand& demand) { demand_field(quantity, context, demand); },
       .make = [&quantity, name, statistic](const EntryContext& context) -> std::unique_ptr<const Quantity> {
@@ -78,9 +80,10 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
           of.sharpness = options.number("sharpness");
         }
         if (of.statistic != "p95") return make_quantity(of);
-        return make_plain_quantity(of, name +
-                                           " with statistic = \"p95\" is a quantile, which has none; take \"mean\", "
-                                           "\"max\" or \"std\"");
+        return make_quantity_without_derivatives(
+            of, name +
+                    " with statistic = \"p95\" is a quantile, which has none; use \"mean\", "
+                    "\"max\" or \"std\"");
       },
       .range = [&quantity, statistic](const EntryContext& context) -> Range {
         if ((statistic.empty() ? context.options.word("statistic") : statistic) != "std")
@@ -95,12 +98,12 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
 std::vector<ObjectiveEntry> pose_objectives() {
   std::vector<ObjectiveEntry> entries;
   for (const PoseQuantity* const quantity : pose_quantities()) {
-    const bool least = quantity->worst == Worst::least;
+    const bool worst_is_min = quantity->worst == Worst::least;
     const std::string name = name_of(*quantity), meaning = quantity->meaning;
     entries.push_back(entry(*quantity, name,
                             meaning + (quantity->per_joint ? " of the joints" : "") + " over the workspace" +
-                                range_words(*quantity) + where_empty(*quantity),
-                            least ? Direction::maximise : Direction::minimise, ""));
+                                range_text(*quantity) + empty_workspace_note(*quantity),
+                            worst_is_min ? Direction::maximise : Direction::minimise, ""));
     if (quantity->per_joint)
       entries.push_back(entry(*quantity, name + "-uniformity",
                               "standard deviation of the " + meaning + " over the workspace: 0 is isotropic",

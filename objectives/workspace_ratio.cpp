@@ -1,10 +1,11 @@
-// Workspace volume over the mechanism's own size (4PPa-2PaR: V_mech = pi b (l_u + l_d), table 8 of its paper).
+// Ratio of the workspace volume to the size of the mechanism (4PPa-2PaR: V_mech = pi b (l_u + l_d), table 8 of its
+// paper).
 #include "objectives/list.hpp"
 
 namespace pkm {
 namespace {
 
-/// "m^2 rad" over "m^2" is "rad"; other pairs are written out.
+/// Unit of the ratio: "m^2 rad" over "m^2" is "rad"; other units are written as "volume/size".
 std::string quotient(const std::string& volume, const std::string& size) {
   return volume.starts_with(size + " ") ? volume.substr(size.size() + 1) : volume + "/" + size;
 }
@@ -22,7 +23,7 @@ ObjectiveEntry workspace_ratio() {
           },
       .refusal =
           [](const Mechanism& mechanism) {
-            return mechanism.size() ? Refusal()
+            return mechanism.size() ? Unsupported()
                                     : "objective workspace-ratio needs a size, and mechanism " + mechanism.info().name +
                                           " defines none";
           },
@@ -32,7 +33,7 @@ ObjectiveEntry workspace_ratio() {
               return S(design.survey->volume / design.mechanism.size()->of(design.parameters));
             });
           },
-      .range = not_negative,
+      .range = nonnegative,
   };
 }
 

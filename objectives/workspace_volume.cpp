@@ -1,4 +1,4 @@
-// The measure of the feasible set of poses, as the survey found it.
+// Workspace volume: the measure of the set of feasible poses in the swept coordinates.
 #include <algorithm>
 
 #include "objectives/list.hpp"
@@ -6,11 +6,11 @@
 namespace pkm {
 namespace {
 
-/// At most the box that a study gives.
+/// From 0 to the volume of the study's box, if there is one and no fixed coordinate is integrated over.
 Range range_of(const EntryContext& context) {
   Range range{.least = 0};
-  const SurveyPlan& plan = context.plan;
-  const auto integrated = [](const HeldCoordinate& held) { return held.kind == HeldCoordinate::Kind::integrated; };
+  const WorkspacePlan& plan = context.plan;
+  const auto integrated = [](const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; };
   if (!plan.box() || std::ranges::any_of(plan.held, integrated)) return range;
   range.greatest = 1;
   for (const auto& [lower, upper] : *plan.box()) range.greatest *= upper - lower;

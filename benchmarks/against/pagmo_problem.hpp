@@ -1,4 +1,4 @@
-// A problem of ours as pagmo takes it, without its margins.
+// Adapter from pkm::Problem to a pagmo problem, without the constraints.
 #pragma once
 
 #include <utility>

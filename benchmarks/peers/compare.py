@@ -1,7 +1,7 @@
-"""The paper's problem and the wide-bounds problem by the program and by its peers.
+"""Compares pkmopt with other optimisers (the peers) on the paper's problem and the wide-bounds problem.
 
-compare.py PKMOPT PAGMO PAGMO_COLUMNS FOLDER: three programs, and a folder for what is written. Prints a table per
-problem. Ends with an error if an evaluator counts other cells than the program.
+compare.py PKMOPT PAGMO PAGMO_COLUMNS FOLDER: three programs, and a folder for output files. Prints a table per problem.
+Fails if an evaluator counts different voxels than pkmopt.
 """
 
 import json
@@ -18,17 +18,17 @@ from table import Row, print_table
 HERE = Path(__file__).parent
 STUDIES = HERE.parent.parent / "experiments" / "4ppa-2par"
 SEEDS = 20
-LIMIT = 2020  # candidates of a search: the paper's 100 generations of 20, and their first population
+LIMIT = 2020  # maximum candidates of a search: the paper's 100 generations of 20, and the initial population
 LIMIT_ON_COLUMNS = 20000
-RUNS = 3  # of 100 generations
-DESIGNS = 20  # per problem, on which every evaluator has to count the program's cells
+RUNS = 3  # runs of 100 generations
+DESIGNS = 20  # random designs per problem for which all evaluators must count the same voxels
 
 
 @dataclass(frozen=True)
 class Peer:
     name: str
     evaluator: str
-    command: tuple  # to which the problem and an action are added
+    command: tuple  # without the problem and the action
 
 
 def pagmo(program, evaluator, problem):
@@ -46,8 +46,8 @@ def slower_peers():
 
 
 def check_counts(pkmopt, study, problem_file, peers):
-    """Raises RuntimeError unless every peer counts the cells of `pkmopt evaluate`, for designs within the bounds and
-    the bounds' two ends."""
+    """Raises RuntimeError unless every peer counts the same voxels as `pkmopt evaluate`, for random designs and for the
+    lower and upper bounds."""
     problem = json.loads(problem_file.read_text())
     stream = random.Random(1)
     designs = [[stream.uniform(*bounds) for bounds in zip(problem["lower"], problem["upper"])] for _ in range(DESIGNS)]
@@ -62,12 +62,12 @@ def check_counts(pkmopt, study, problem_file, peers):
     for peer in peers:
         counts = json.loads(run(*peer.command, str(problem_file), "counts", str(designs_file)).output)
         if counts != expected:
-            raise RuntimeError(f"{peer.name}, {peer.evaluator}: counts {counts}, the program {expected}")
+            raise RuntimeError(f"{peer.name}, {peer.evaluator}: counts {counts}; expected {expected} from pkmopt")
 
 
-def peer_row(peer, place, limit, optimum):
-    """Measures a peer; `place` tells its command the problem."""
-    command = (*peer.command, *place)
+def peer_row(peer, problem, limit, optimum):
+    """Measures a peer; `problem` holds the arguments of its command that define the problem."""
+    command = (*peer.command, *problem)
     searches = json.loads(run(*command, "search", str(SEEDS), str(limit)).output)
     costs = [run(*command, "generations", "100", str(seed)) for seed in range(1, RUNS + 1)]
     return Row(peer.name, peer.evaluator, searches, [json.loads(cost.output) for cost in costs], costs, optimum)

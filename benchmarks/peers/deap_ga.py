@@ -1,5 +1,6 @@
-"""DEAP's eaSimple as in its overview (tournament of 3, crossover 0.5, mutation 0.2), with the bounded operators of its
-examples for real variables (eta 20, one variable in four mutated) and its DeltaPenalty for constraints."""
+"""DEAP's eaSimple with the parameters of its documentation (tournament of 3, crossover 0.5, mutation 0.2), the bounded
+operators of its examples for real variables (eta 20, one variable in four mutated), and DeltaPenalty for the
+constraints."""
 
 import random
 

@@ -1,5 +1,5 @@
-% Number of feasible cells of 4PPa-2PaR's workspace: first all columns (x, theta), then the cells of those that are
-% left. Formulas as in voxel_loop.cpp.
+% Counts the feasible voxels of 4PPa-2PaR's workspace: first tests all columns (x, theta), then the voxels of the
+% remaining columns. Formulas as in voxel_loop.cpp.
 function count = feasible_cells(p, design)
   a = design(1); b = design(2); l_u = design(3); l_d = design(4);
   y = p.L0 / 2;
@@ -9,9 +9,9 @@ function count = feasible_cells(p, design)
   x_1 = x - a / 2 * cos(theta);
   x_2 = b - x - a / 2 * cos(theta);
   shift = repmat(a / 2 * sin(theta), rows(x), 1);
-  x_least = l_d * sin(p.beta_min);
-  x_most = l_d * sin(p.beta_max);
-  within = x_1 >= x_least & x_1 <= x_most & x_2 >= x_least & x_2 <= x_most;
+  x_min = l_d * sin(p.beta_min);
+  x_max = l_d * sin(p.beta_max);
+  within = x_1 >= x_min & x_1 <= x_max & x_2 >= x_min & x_2 <= x_max;
   x_1 = x_1(within)'; x_2 = x_2(within)'; shift = shift(within)';
   sigma_1 = sqrt(l_d^2 - x_1.^2);
   sigma_2 = sqrt(l_d^2 - x_2.^2);
@@ -21,11 +21,11 @@ function count = feasible_cells(p, design)
   depth = -(l_u + l_d) + ((1:p.cells(2))' - 0.5) * (l_u + l_d) / p.cells(2);  % z + d
   z_1 = depth + sigma_1;
   z_2 = depth + sigma_2;
-  z_most = -l_u * sin(p.alpha_min);
+  z_max = -l_u * sin(p.alpha_min);
   h_1 = sqrt(max(l_u^2 - z_1.^2, 0));
   h_2 = sqrt(max(l_u^2 - z_2.^2, 0));
-  h_1_most = min(y - shift, p.L0 - y + shift);  % from which on a slider leaves its rail
-  h_2_most = min(y + shift, p.L0 - y - shift);
-  count = nnz(z_1 >= -l_u & z_1 <= z_most & z_2 >= -l_u & z_2 <= z_most ...
-              & h_1 >= p.h_min & h_2 >= p.h_min & h_1 <= h_1_most & h_2 <= h_2_most);
+  h_1_max = min(y - shift, p.L0 - y + shift);  % larger values: a slider leaves its rail
+  h_2_max = min(y + shift, p.L0 - y - shift);
+  count = nnz(z_1 >= -l_u & z_1 <= z_max & z_2 >= -l_u & z_2 <= z_max ...
+              & h_1 >= p.h_min & h_2 >= p.h_min & h_1 <= h_1_max & h_2 <= h_2_max);
 end

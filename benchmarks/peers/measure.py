@@ -1,4 +1,4 @@
-"""Processes and what they cost."""
+"""Runs processes and measures their time and memory."""
 
 import os
 import subprocess
@@ -10,15 +10,15 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class Run:
     output: str
-    wall: float  # from start to end [s]
-    cpu: float  # user and system, all threads [s]
-    memory: float  # most at one time [MiB]
+    wall: float  # wall time [s]
+    cpu: float  # user and system time of all threads [s]
+    memory: float  # maximum resident set size [MiB]
 
 
 def run(*command):
-    """Runs a command to its end. Raises RuntimeError with what it said if it fails."""
+    """Runs a command to its end. Raises RuntimeError with its error output if it fails."""
     with tempfile.TemporaryFile("w+") as output, tempfile.NamedTemporaryFile("r") as memory:
-        # GNU time is in between because the memory of a direct child would count Python's, which it begins as.
+        # GNU time measures the memory: that of a direct child would include Python's, from which it is forked.
         begin = time.perf_counter()
         process = subprocess.Popen(["/usr/bin/time", "--format=%M", "--output=" + memory.name, *command],
                                    stdout=output, stderr=subprocess.PIPE, text=True)
@@ -27,6 +27,6 @@ def run(*command):
         wall = time.perf_counter() - begin
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode != 0:
-            raise RuntimeError(f"{' '.join(command)} ended with {process.returncode}:\n{errors}")
+            raise RuntimeError(f"{' '.join(command)} failed with exit code {process.returncode}:\n{errors}")
         output.seek(0)
         return Run(output.read(), wall, usage.ru_utime + usage.ru_stime, int(memory.read()) / 1024)

@@ -1,9 +1,10 @@
-% GNU Octave's ga with its defaults (stochastic uniform selection, scattered crossover 0.8, Gaussian mutation that
-% shrinks over the generations, 2 elites). It knows neither bounds nor constraints, so candidates are moved into the
-% bounds and pay an l1 penalty, as pagmo's do. octave_ga.m PROBLEM.json ACTION..., the actions of peer.py.
+% GNU Octave's ga with default settings (stochastic uniform selection, scattered crossover 0.8, Gaussian mutation that
+% shrinks over the generations, 2 elites). It supports neither bounds nor constraints, so candidates are projected onto
+% the bounds and penalised by an l1 penalty, as for pagmo. octave_ga.m PROBLEM.json ACTION..., with the actions of
+% peer.py.
 1;
 
-% Margins of the three constraints [m] (eq 21, eq 18, a <= b), none without constraints.
+% Values of the three constraints, satisfied if >= 0 (eq 21, eq 18, a <= b) [m]; empty if the problem has none.
 function values = margins(p, design)
   values = [];
   if p.constrained
@@ -12,14 +13,14 @@ function values = margins(p, design)
   end
 end
 
-% What ga minimises, of a population: a row per design. `trials` counts candidates and remembers the best ratio.
+% Fitness of a population, minimised by ga; one row per design. `trials` counts candidates and records the best ratio.
 function scores = fitness(p, population)
   global trials
   designs = min(max(population, p.lower'), p.upper');
   scores = zeros(rows(designs), 1);
   for i = 1:rows(designs)
     violation = -sum(min(margins(p, designs(i, :)), 0));
-    ratio = feasible_cells(p, designs(i, :)) / prod(p.cells);  % the box is as large as V_mech = pi b (l_u + l_d)
+    ratio = feasible_cells(p, designs(i, :)) / prod(p.cells);  % the volume of the box equals V_mech = pi b (l_u + l_d)
     scores(i) = -ratio + 10 * violation;
     if trials.reached, continue, end
     trials.tried++;

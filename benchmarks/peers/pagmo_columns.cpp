@@ -1,5 +1,5 @@
-// pagmo on the program's own exact columns, to compare optimisers on one function:
-// pkm_peer_pagmo_columns TOOL STUDY.toml TARGET ACTION... (pagmo_search.hpp).
+// pagmo's optimisers on the exact volumes of pkmopt, to compare only the optimisers: pkm_peer_pagmo_columns TOOL
+// STUDY.toml TARGET ACTION... (pagmo_search.hpp).
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -7,15 +7,15 @@
 
 #include "benchmarks/peers/pagmo_search.hpp"
 #include "constraints/all.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/setup/study.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
+#include "engine/config/study.hpp"
 #include "objectives/all.hpp"
 
 namespace {
 
 using namespace pkm;
 
-/// Ratio and margins of every design, whatever holds: a penalty needs both.
+/// Ratio and constraint values of a design, feasible or not, because the penalty needs both.
 peers::Candidate evaluate(const DesignProblem& problem, const std::vector<double>& design) {
   peers::Candidate candidate{0, std::vector<double>(problem.margins().size())};
   std::vector<double> reports(problem.reports().size());
@@ -29,7 +29,7 @@ peers::Candidate evaluate(const DesignProblem& problem, const std::vector<double
 
 int main(int count, char** arguments) {
   try {
-    if (count < 5) throw std::invalid_argument("expected a tool, STUDY.toml, a target and an action");
+    if (count < 5) throw std::invalid_argument("too few arguments; expected TOOL STUDY.toml TARGET ACTION...");
     const Study study =
         load_study_toml(arguments[2], {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
     const DesignProblem& problem = *study.problem;

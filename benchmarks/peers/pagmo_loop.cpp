@@ -1,5 +1,5 @@
-// pagmo over the plain voxel loop, with nothing of the program in it:
-// pkm_peer_pagmo TOOL PROBLEM.json ACTION..., where an action may also be `counts DESIGNS.json` (pagmo_search.hpp).
+// pagmo's optimisers on the hand-written voxel loop, without any code of pkmopt: pkm_peer_pagmo TOOL PROBLEM.json
+// ACTION..., where ACTION may also be `counts DESIGNS.json` (pagmo_search.hpp).
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -29,7 +29,7 @@ Voxels voxels(const json& problem) {
           problem.at("h_min"),     problem.at("sin_par_min"), problem.at("cos_theta_min")};
 }
 
-/// Eq 21, eq 18, a <= b [m].
+/// Values of the three constraints, satisfied if >= 0: eq 21, eq 18, a <= b [m].
 std::vector<double> margins(const Voxels& v, const Design& design) {
   const auto [a, b, l_u, l_d] = design;
   return {l_d - std::hypot(l_u, b - a * v.cos_theta_min) / 2, v.L0 - 2 * l_u * std::cos(v.alpha_min), b - a};
@@ -42,7 +42,7 @@ Task task(const json& problem) {
   return {problem.at("lower"), problem.at("upper"), constrained ? 3u : 0u,
           [=](const std::vector<double>& x) {
             const Design design = {x[0], x[1], x[2], x[3]};
-            // The box is as large as V_mech = pi b (l_u + l_d).
+            // The volume of the box equals V_mech = pi b (l_u + l_d).
             const double ratio = static_cast<double>(feasible_cells(v, design)) / cells;
             return Candidate{ratio, constrained ? margins(v, design) : std::vector<double>()};
           },
@@ -60,7 +60,7 @@ void print_counts(const json& problem, const json& designs) {
 
 int main(int count, char** arguments) {
   try {
-    if (count < 5) throw std::invalid_argument("expected a tool, PROBLEM.json and an action");
+    if (count < 5) throw std::invalid_argument("too few arguments; expected TOOL PROBLEM.json ACTION...");
     const json problem = read(arguments[2]);
     if (std::string(arguments[3]) == "counts") {
       print_counts(problem, read(arguments[4]));

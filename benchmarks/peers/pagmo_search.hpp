@@ -1,4 +1,4 @@
-// pagmo's optimisers on one of the two problems, whoever computes its candidates.
+// Runs pagmo's optimisers on one of the two problems, with any evaluator of candidates.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +9,23 @@
 
 namespace pkm::peers {
 
-/// Value of a candidate.
+/// Objective and constraints of a candidate design.
 struct Candidate {
   double ratio = 0;             ///< V / V_mech, to be maximised [rad]
-  std::vector<double> margins;  ///< of the task's constraints, which hold when >= 0
+  std::vector<double> margins;  ///< constraint values, satisfied if >= 0
 };
 
-/// What pagmo is given.
+/// Optimisation problem and target for pagmo.
 struct Task {
   std::vector<double> lower, upper;  ///< bounds of (a, b, l_u, l_d) [m]
   std::size_t constraints = 0;
   std::function<Candidate(const std::vector<double>& design)> evaluate;
-  double target = 0;  ///< the ratio from which a feasible design counts as found
+  double target = 0;  ///< ratio from which a feasible design counts as found
 };
 
-/// What peer.py calls `generations N SEED` and `search SEEDS LIMIT`, by one of pagmo's optimisers. Prints JSON.
-/// @throws std::invalid_argument for another tool or action
+/// Performs the action `generations N SEED` or `search SEEDS LIMIT`, as defined in peer.py, with one of pagmo's
+/// optimisers. Prints JSON.
+/// @throws std::invalid_argument for an unknown tool or action
 void run_pagmo(const std::string& tool, const Task& task, std::span<char* const> action);
 
 }  // namespace pkm::peers

@@ -1,10 +1,11 @@
-"""A Python peer: peer.py TOOL EVALUATOR PROBLEM.json ACTION, where TOOL is deap_ga or scipy_de, EVALUATOR voxels_numpy
-or voxels_numba. Prints JSON.
+"""Runs a Python optimiser: peer.py TOOL EVALUATOR PROBLEM.json ACTION, where TOOL is deap_ga or scipy_de, and EVALUATOR
+is voxels_numpy or voxels_numba. Prints JSON.
 
-counts DESIGNS.json      numbers of feasible cells of designs
-generations N SEED       N generations of 20: the candidates tried and the seconds they took
-search SEEDS LIMIT       per seed from 1: whether LIMIT candidates reach the target, which ends the search; the number
-                         of candidates tried, the best feasible ratio, CPU seconds from the start of the process
+counts DESIGNS.json      numbers of feasible voxels of designs
+generations N SEED       N generations of 20: number of candidates and seconds
+search SEEDS LIMIT       for seeds 1 to SEEDS, a search that ends at the target or after LIMIT candidates: whether the
+                         target was reached, number of candidates, best feasible ratio, CPU seconds since the start of
+                         the process
 """
 
 import importlib
@@ -35,7 +36,7 @@ def searches(search, problem, count, seeds, limit):
         trials = Trials(problem, count, int(limit), problem.target)
         begin, reached = time.process_time(), False
         try:
-            search(trials, seed, POPULATION, trials.limit)  # more generations than candidates are allowed
+            search(trials, seed, POPULATION, trials.limit)  # the candidates end the search, not the generations
         except Reached:
             reached = True
         except Exhausted:
@@ -48,7 +49,7 @@ def searches(search, problem, count, seeds, limit):
 def main(tool, evaluator, problem_file, action, *arguments):
     problem = load(problem_file)
     count = importlib.import_module(evaluator).counter(problem)
-    count(problem.lower)  # numba compiles, or loads what it has compiled
+    count(problem.lower)  # triggers the compilation by numba, or loads the cached result
     if action == "counts":
         return counts(count, *arguments)
     search = importlib.import_module(tool).search

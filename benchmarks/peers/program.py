@@ -1,4 +1,4 @@
-"""The program's own rows: its genetic algorithm with the defaults, from the start of the process to the study file."""
+"""Measures pkmopt: its genetic algorithm with default options, from the start of the process to the study file."""
 
 import json
 
@@ -9,7 +9,7 @@ from measure import run
 
 
 class Program:
-    """`pkmopt run` of a study whose stages are replaced by one `ga` without options."""
+    """Runs a study with `pkmopt run`, its stages replaced by one `ga` stage with default options."""
 
     def __init__(self, pkmopt, study, folder):
         self._pkmopt, self._folder = pkmopt, folder
@@ -17,13 +17,13 @@ class Program:
             self._problem = text.read().partition("[[stage]]")[0]
 
     def generations(self, seed):
-        """100 generations of 20, the defaults: seconds of the search, candidates, and what the process cost."""
+        """Runs 100 generations of 20 (default). Returns candidates and seconds of the search, and the process cost."""
         cost, study_file = self._run(seed, "")
         shown = json.loads(run(self._pkmopt, "show", study_file, "--json").output)
         return {"candidates": shown["evaluations"], "seconds": shown["seconds"]}, cost
 
     def search(self, seed, target):
-        """The same, ended by the generation in which the target is reached. As the peers' `search`."""
+        """Runs until the generation in which the target is reached. Returns the same data as the peers' `search`."""
         cost, study_file = self._run(seed, f"target = {target!r}\n")
         with h5py.File(study_file) as file:
             evaluations = file["stages/1/evaluations"]

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the peers (Debian 12 packages) and what the program needs, builds, and prints how the program and each of its
-# peers solve the paper's problem and the wide-bounds problem: some minutes, after the build. Leave the machine alone
-# meanwhile.
+# Installs the peers (Debian 12 packages) and the dependencies of pkmopt, builds it, and compares pkmopt with the peers
+# on the paper's problem and the wide-bounds problem. Takes some minutes after the build, during which the machine
+# should be idle.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 source experiments/debian-packages.sh
@@ -16,6 +16,6 @@ cmake --build --preset release --parallel "$(nproc)" --target pkmopt_app pkm_pee
 
 mkdir -p "$build/peers"
 export PYTHONPYCACHEPREFIX=$PWD/$build/peers NUMBA_CACHE_DIR=$PWD/$build/peers
-# Debian's Python, for which the packages are.
+# Debian's Python, for which the packages are installed.
 /usr/bin/python3 benchmarks/peers/compare.py "$build/bin/pkmopt" "$build/benchmarks/pkm_peer_pagmo" \
   "$build/benchmarks/pkm_peer_pagmo_columns" "$build/peers"

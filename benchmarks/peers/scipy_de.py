@@ -1,5 +1,6 @@
-"""scipy's differential_evolution with its defaults (best1bin, mutation 0.5 to 1, recombination 0.7, Latin hypercube),
-but for the polish, which needs gradients that counts do not have, and the tolerance, which would stop early."""
+"""scipy's differential_evolution with default settings (best1bin, mutation 0.5 to 1, recombination 0.7, Latin
+hypercube), except that polishing is off, because voxel counts have no gradients, and that the tolerance is 0, which
+prevents stopping early."""
 
 import numpy as np
 from scipy.optimize import Bounds, NonlinearConstraint, differential_evolution
@@ -8,8 +9,8 @@ from scipy.optimize import Bounds, NonlinearConstraint, differential_evolution
 def search(trials, seed, population, generations):
     problem = trials.problem
 
-    # With constraints scipy asks for a candidate's margins first, and for its ratio only if they hold. (Building the
-    # constraint costs it five designs for finite differences, which are counted.)
+    # With constraints, scipy evaluates the constraints of a candidate first, and its ratio only if they are satisfied.
+    # (Constructing the constraint evaluates five designs for finite differences, which are counted.)
     def objective(design):
         if not problem.constrained:
             trials.margins(design)

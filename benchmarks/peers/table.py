@@ -1,4 +1,4 @@
-"""What was measured, as a table in Markdown."""
+"""Formats the measurements as a Markdown table."""
 
 import math
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ from statistics import median
 
 @dataclass(frozen=True)
 class Row:
-    """A tool with an evaluator: its searches, one per seed, and runs of 100 generations with what their processes cost.
+    """An optimiser with an evaluator: its searches, one per seed, and runs of 100 generations with their process costs.
 
-    Medians are taken over the seeds; a search that did not get there counts as infinitely long.
+    Medians are over the seeds; a search that did not reach the target counts as infinitely long.
     """
 
     name: str
@@ -32,15 +32,15 @@ class Row:
         return self._until_reached("cpu")
 
     def missing(self):
-        """What the best ratio of a search falls short of the optimum [%]; not told where most got there."""
-        short = median(1 - each["best"] / self.optimum for each in self.searches)
-        return math.inf if math.isfinite(self.evaluations()) else 100 * short
+        """Median gap of the best ratio to the optimum [%]; infinite (not shown) if most searches reached the target."""
+        gap = median(1 - each["best"] / self.optimum for each in self.searches)
+        return math.inf if math.isfinite(self.evaluations()) else 100 * gap
 
     def wall(self):
         return median(each.wall for each in self.costs)
 
     def tried(self):
-        """Candidates of 100 generations: fewer than 2020 where a tool ends earlier, or breeds no more new ones."""
+        """Candidates of 100 generations; fewer than 2020 if an optimiser stops earlier or creates duplicates."""
         return median(each["candidates"] for each in self.generations)
 
     def memory(self):
@@ -50,7 +50,7 @@ class Row:
         return median(each[what] if each["reached"] else math.inf for each in self.searches)
 
 
-# Heading, value, which of the values is to be marked, and how they are printed.
+# Heading, value, function that selects the best value (printed in bold), and format.
 COLUMNS = (
     ("candidates/s", Row.rate, max, "{:.0f}"),
     ("found", Row.found, max, "{}"),
@@ -58,13 +58,13 @@ COLUMNS = (
     ("CPU, s", Row.cpu, min, "{:.3f}"),
     ("missing, %", Row.missing, None, "{:.2g}"),
     ("100 generations, s", Row.wall, None, "{:.2f}"),
-    ("candidates of them", Row.tried, None, "{:.0f}"),
+    ("their candidates", Row.tried, None, "{:.0f}"),
     ("memory, MiB", Row.memory, min, "{:.0f}"),
 )
 
 
 def print_table(title, groups):
-    """Rows of different groups are not compared: the best of each group are in bold."""
+    """Prints the rows of all groups; the best values of each group are in bold."""
     print(f"\n{title}\n")
     lines = [["", "evaluator", *(heading for heading, *_ in COLUMNS)]]
     lines.append(["-"] * len(lines[0]))

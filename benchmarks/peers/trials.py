@@ -1,4 +1,4 @@
-"""What the Python peers evaluate: designs of one problem, counted until one is as good as asked for."""
+"""Evaluates and counts the candidates of the Python peers, until one reaches the target."""
 
 import json
 import math
@@ -8,15 +8,15 @@ import numpy as np
 
 
 class Reached(Exception):
-    """A feasible design within the target is known: the search is over."""
+    """A feasible design has reached the target: the search ends."""
 
 
 class Exhausted(Exception):
-    """As many candidates as allowed have been tried."""
+    """The maximum number of candidates has been evaluated: the search ends."""
 
 
 class Trials:
-    """Candidates of one search. An optimiser asks for the margins of each candidate once, then for its ratio."""
+    """Candidates of one search. An optimiser calls margins() once per candidate, then ratio()."""
 
     def __init__(self, problem, count, limit=math.inf, target=math.inf):
         self.problem, self.limit, self.target = problem, limit, target
@@ -24,14 +24,14 @@ class Trials:
         self.made, self.best = 0, 0.0
 
     def margins(self, design):
-        """Counts a candidate. Its constraints, which hold when >= 0 (eq 21, eq 18, a <= b) [m]."""
+        """Counts a candidate and returns its constraint values, satisfied if >= 0 (eq 21, eq 18, a <= b) [m]."""
         if self.made == self.limit:
             raise Exhausted
         self.made += 1
         return margins(self.problem, design)
 
     def ratio(self, design):
-        """V / V_mech of a feasible candidate: the voxels' box is as large as V_mech = pi b (l_u + l_d)."""
+        """Returns V / V_mech of a feasible candidate: the volume of the box equals V_mech = pi b (l_u + l_d)."""
         ratio = self._count(design) / self._cells
         self.best = max(self.best, ratio)
         if ratio >= self.target:
@@ -40,7 +40,7 @@ class Trials:
 
 
 def margins(problem, design):
-    """The three constraints of the wide-bounds problem, none without constraints."""
+    """Values of the three constraints of the wide-bounds problem; empty for a problem without constraints."""
     if not problem.constrained:
         return np.empty(0)
     a, b, l_u, l_d = design
@@ -49,7 +49,7 @@ def margins(problem, design):
 
 
 def violation(values):
-    """Sum of what margins are below 0."""
+    """Total constraint violation."""
     return float(-np.minimum(values, 0).sum())
 
 

@@ -1,4 +1,4 @@
-"""The workspace of 4PPa-2PaR on voxels, compiled by numba: the loops of voxel_loop.cpp."""
+"""Voxel count of 4PPa-2PaR's workspace, compiled by numba: the loops of voxel_loop.cpp."""
 
 from math import cos, pi, sin, sqrt
 
@@ -9,8 +9,8 @@ from numba import njit
 def _feasible_cells(a, b, l_u, l_d, d, L0, n_x, n_z, n_theta, alpha_min, beta_min, beta_max, h_min, sin_par_min,
                     cos_theta_min):
     y = L0 / 2
-    x_least, x_most = l_d * sin(beta_min), l_d * sin(beta_max)
-    z_most = -l_u * sin(alpha_min)
+    x_min, x_max = l_d * sin(beta_min), l_d * sin(beta_max)
+    z_max = -l_u * sin(alpha_min)
     feasible = 0
     for k in range(n_theta):
         theta = -pi / 2 + (k + 0.5) * pi / n_theta
@@ -21,7 +21,7 @@ def _feasible_cells(a, b, l_u, l_d, d, L0, n_x, n_z, n_theta, alpha_min, beta_mi
         for i in range(n_x):
             x = (i + 0.5) * b / n_x
             x_1, x_2 = x - half, b - x - half
-            if x_1 < x_least or x_1 > x_most or x_2 < x_least or x_2 > x_most:
+            if x_1 < x_min or x_1 > x_max or x_2 < x_min or x_2 > x_max:
                 continue
             sigma_1, sigma_2 = sqrt(l_d * l_d - x_1 * x_1), sqrt(l_d * l_d - x_2 * x_2)
             if x_1 * sigma_2 + sigma_1 * x_2 < sin_par_min * l_d * l_d:
@@ -29,7 +29,7 @@ def _feasible_cells(a, b, l_u, l_d, d, L0, n_x, n_z, n_theta, alpha_min, beta_mi
             for j in range(n_z):
                 z = -(l_u + l_d + d) + (j + 0.5) * (l_u + l_d) / n_z
                 z_1, z_2 = z + d + sigma_1, z + d + sigma_2
-                if z_1 > z_most or z_1 < -l_u or z_2 > z_most or z_2 < -l_u:
+                if z_1 > z_max or z_1 < -l_u or z_2 > z_max or z_2 < -l_u:
                     continue
                 h_1, h_2 = sqrt(l_u * l_u - z_1 * z_1), sqrt(l_u * l_u - z_2 * z_2)
                 if h_1 < h_min or h_2 < h_min:
@@ -40,7 +40,7 @@ def _feasible_cells(a, b, l_u, l_d, d, L0, n_x, n_z, n_theta, alpha_min, beta_mi
 
 
 def counter(problem):
-    """The function from a design (a, b, l_u, l_d) to its number of feasible cells."""
+    """Returns a function that maps a design (a, b, l_u, l_d) to its number of feasible voxels."""
     p = problem
     fixed = (p.d, p.L0, *p.cells, p.alpha_min, p.beta_min, p.beta_max, p.h_min, p.sin_par_min, p.cos_theta_min)
     return lambda design: _feasible_cells(*design, *fixed)

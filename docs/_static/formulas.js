@@ -1,4 +1,4 @@
-// Sets the formulas of a page by KaTeX.
+// Renders the formulas of a page with KaTeX.
 document.addEventListener("DOMContentLoaded", () => renderMathInElement(document.body, {
   delimiters: [{ left: "\\(", right: "\\)", display: false }, { left: "\\[", right: "\\]", display: true }],
   throwOnError: false,

@@ -1,4 +1,4 @@
-// Look-up in a catalogue, any list whose elements have a `name`, and the words of messages about it.
+// Look-up by name in a catalogue (any list whose elements have a member `name`), and text for error messages about it.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace pkm {
 
-/// The names, in the order of the lists.
+/// The names of all elements, in the order of the lists.
 template <class... List>
 std::vector<std::string> names_of(const List&... lists) {
   std::vector<std::string> names;
@@ -21,7 +21,7 @@ std::vector<std::string> names_of(const List&... lists) {
   return names;
 }
 
-/// Whether the list holds the value.
+/// Whether the list contains the value.
 template <class List, class Value>
 bool contains(const List& list, const Value& value) {
   return std::ranges::find(list, value) != list.end();
@@ -35,13 +35,13 @@ auto find_named(const List& list, std::string_view name) -> decltype(&list[0]) {
   return nullptr;
 }
 
-/// "; did you mean 'a'?" for the nearest known name, "" where there is none.
+/// The suggestion "; did you mean 'a'?" with the known name most similar to `name`; "" if none is similar enough.
 inline std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
   const std::string nearest = nearest_name(name, known);
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
 }
 
-/// "a, b, c": the texts that `text_of` makes of the elements, for messages.
+/// "a, b, c": text_of(element) for each element of the list, separated by commas, for messages.
 template <class List, class Text>
 std::string join_of(const List& list, Text text_of) {
   std::vector<std::string> words;

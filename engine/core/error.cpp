@@ -13,26 +13,27 @@
 namespace pkm {
 namespace {
 
-// Bytes of a message's parts: all of them together are less than 2 kB.
-constexpr std::size_t kLongestFile = 300, kLongestKey = 160, kLongestFound = 160, kLongestExpected = 1000,
-                      kLongestName = 80, kLongestSentence = 1450, kLongestMessage = 1950;
+// Maximum lengths of the parts of a message in bytes; together they are less than 2 kB.
+constexpr std::size_t kMaxFile = 300, kMaxKey = 160, kMaxFound = 160, kMaxExpected = 1000, kMaxName = 80,
+                      kMaxSentence = 1450, kMaxMessage = 1950;
 
-/// Text of others as a message shows it.
-std::string shown(std::string_view text, std::size_t longest) {
-  return excerpt(printable(excerpt(text, longest)), longest);
+/// External text as it appears in a message: printable and at most `max_size` bytes long.
+std::string displayed(std::string_view text, std::size_t max_size) {
+  return excerpt(printable(excerpt(text, max_size)), max_size);
 }
 
-std::string prefix(const SourcePlace& place) {
+std::string prefix(const SourceLocation& place) {
   std::string text;
   if (!place.file.empty()) {
-    text += shown(place.file, kLongestFile);
+    text += displayed(place.file, kMaxFile);
     if (place.line > 0) text += ":" + std::to_string(place.line);
     text += ": ";
   }
-  if (!place.key.empty()) text += shown(place.key, kLongestKey) + ": ";
+  if (!place.key.empty()) text += displayed(place.key, kMaxKey) + ": ";
   return text;
 }
 
+/// Levenshtein distance, by dynamic programming on one row.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -50,37 +51,38 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-ConfigError::ConfigError(SourcePlace place, std::string_view found, std::string_view expected, std::string_view nearest)
+ConfigError::ConfigError(SourceLocation place, std::string_view found, std::string_view expected,
+                         std::string_view nearest)
     : ConfigError(std::move(place),
-                  "found " + shown(found, kLongestFound) + "; expected " + shown(expected, kLongestExpected) +
-                      (nearest.empty() ? "" : "; did you mean '" + shown(nearest, kLongestName) + "'?")) {}
+                  "found " + displayed(found, kMaxFound) + "; expected " + displayed(expected, kMaxExpected) +
+                      (nearest.empty() ? "" : "; did you mean '" + displayed(nearest, kMaxName) + "'?")) {}
 
-ConfigError::ConfigError(SourcePlace place, std::string_view sentence)
-    : std::runtime_error(prefix(place) + shown(sentence, kLongestSentence)), place_(std::move(place)) {}
+ConfigError::ConfigError(SourceLocation place, std::string_view sentence)
+    : std::runtime_error(prefix(place) + displayed(sentence, kMaxSentence)), place_(std::move(place)) {}
 
 StorageError::StorageError(std::string_view sentence)
-    : std::runtime_error(shown(sentence, kLongestFile + kLongestSentence)) {}
+    : std::runtime_error(displayed(sentence, kMaxFile + kMaxSentence)) {}
 
 std::string message_of(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error))
-    return "out of memory: this takes more than the program may have; fewer threads, cells or rows take less";
+    return "out of memory: this needs more than the program may use; use fewer threads, cells or rows";
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
-    return shown(file->path1().string(), kLongestFile) + ": " + file->code().message();
+    return displayed(file->path1().string(), kMaxFile) + ": " + file->code().message();
   if (const auto* system = dynamic_cast<const std::system_error*>(&error)) return system->code().message();
-  const bool ours = dynamic_cast<const std::runtime_error*>(&error) ||
-                    dynamic_cast<const std::invalid_argument*>(&error) ||
-                    dynamic_cast<const std::domain_error*>(&error);
-  if (ours) return shown(error.what(), kLongestMessage);
-  return "internal error: the program has asked itself for something that is not there; please report it with the "
-         "command line and the files that it was given";
+  const bool is_own = dynamic_cast<const std::runtime_error*>(&error) ||
+                      dynamic_cast<const std::invalid_argument*>(&error) ||
+                      dynamic_cast<const std::domain_error*>(&error);
+  if (is_own) return displayed(error.what(), kMaxMessage);
+  return "internal error: an unexpected exception occurred in the program; please report it with the command line and "
+         "the input files";
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   std::string best;
-  if (name.size() > kLongestName) return best;
-  std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);  // further away is another word
+  if (name.size() > kMaxName) return best;
+  std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);  // a larger distance is not a misspelling
   for (const auto& candidate : known) {
-    if (candidate.size() > 2 * kLongestName) continue;  // nor could it be shown
+    if (candidate.size() > 2 * kMaxName) continue;  // too long to be displayed in a message
     std::size_t distance = edit_distance(name, candidate);
     if (name.size() > 1 && candidate.starts_with(name)) distance = std::min<std::size_t>(distance, 1);
     if (distance < best_distance) {
@@ -100,8 +102,8 @@ std::string join(const std::vector<std::string>& words, std::string_view separat
   return text;
 }
 
-void contract_broken(const char* condition, const char* file, int line) {
-  std::fprintf(stderr, "pkmopt: broken contract %s at %s:%d\n", condition, file, line);
+void precondition_violated(const char* condition, const char* file, int line) {
+  std::fprintf(stderr, "pkmopt: precondition violated: %s at %s:%d\n", condition, file, line);
   std::abort();
 }
 

@@ -28,8 +28,8 @@ InstructionSet instruction_set() { return in_use().load(std::memory_order_relaxe
 
 void use_instruction_set(InstructionSet set) {
   if (set > widest_instruction_set())
-    throw std::invalid_argument("this processor has no " + std::string(name_of(set)) +
-                                ", its widest instruction set is " + std::string(name_of(widest_instruction_set())));
+    throw std::invalid_argument("this processor does not support " + std::string(name_of(set)) +
+                                "; its widest instruction set is " + std::string(name_of(widest_instruction_set())));
   in_use().store(set, std::memory_order_relaxed);
 }
 

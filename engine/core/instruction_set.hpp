@@ -1,9 +1,10 @@
-// Which of the processor's vector instructions kernels use, chosen at run time.
+// Run-time dispatch of SIMD kernels to the vector instruction set of the processor.
 //
 // Files named *_kernel.cpp are compiled once for every instruction set, with the set as PKM_INSTRUCTION_SET. They
-// define function templates over the set and instantiate them for theirs; with_instruction_set() calls the one in use.
-// The bits of results are the same on all: kernels work on kLanes numbers side by side whatever the width of vectors
-// (math/lanes.hpp), and the build forbids contraction. Sanitizers watch the baseline alone, whichever is chosen.
+// define function templates parameterised by the set and instantiate them for that one set; with_instruction_set()
+// calls the instantiation for the set in use. Results are bit-identical for all sets: kernels always process batches of
+// kLanes numbers, whatever the width of a vector register (math/lanes.hpp), and the build disables floating-point
+// contraction. Sanitizer builds always run the baseline kernels, whichever set is chosen.
 #pragma once
 
 #include <array>
@@ -12,22 +13,22 @@
 
 namespace pkm {
 
-enum class InstructionSet { baseline, avx2, avx512 };  ///< each has what those before it have; baseline: any x86-64
+enum class InstructionSet { baseline, avx2, avx512 };  ///< each includes the ones before it; baseline: any x86-64
 
 inline constexpr std::array<std::string_view, 3> kInstructionSets = {"baseline", "avx2", "avx512"};
 
 inline std::string_view name_of(InstructionSet set) { return kInstructionSets[static_cast<std::size_t>(set)]; }
 
-/// The widest set that this processor and its system have.
+/// The widest set that the processor and the operating system support.
 InstructionSet widest_instruction_set();
 
 /// The set in use: the widest, unless use_instruction_set() chose another.
 InstructionSet instruction_set();
 
-/// Chooses the set for the whole program. Throws std::invalid_argument where the processor has less.
+/// Selects the set for the whole program. Throws std::invalid_argument if the processor does not support it.
 void use_instruction_set(InstructionSet set);
 
-/// kernel.template operator()<set>() for the set in use, as in
+/// Calls kernel.template operator()<set>() for the set in use, for example
 ///   with_instruction_set([&]<InstructionSet set> { return tally<set>(columns); })
 template <class Kernel>
 decltype(auto) with_instruction_set(const Kernel& kernel) {

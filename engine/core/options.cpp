@@ -31,7 +31,7 @@ std::string quoted(const std::string& word) {
   return text + '"';
 }
 
-struct Writer {
+struct TomlWriter {
   std::string operator()(double number) const { return shortest(number); }
   std::string operator()(std::int64_t number) const { return std::to_string(number); }
   std::string operator()(bool flag) const { return flag ? "true" : "false"; }
@@ -47,6 +47,6 @@ struct Writer {
 
 }  // namespace
 
-std::string to_text(const OptionValue& value) { return std::visit(Writer{}, value); }
+std::string to_text(const OptionValue& value) { return std::visit(TomlWriter{}, value); }
 
 }  // namespace pkm

@@ -1,5 +1,6 @@
-// What an entry of a catalogue (objective, constraint, optimiser) can be told, as data: one description serves the
-// study file's reader, its error messages, `pkmopt list` and the documentation.
+// Declarative description of the options of a catalogue entry (objective, constraint, optimiser): name, type, unit,
+// default value and range. It is used by the reader of study files, its error messages, `pkmopt list` and the
+// documentation.
 #pragma once
 
 #include <cstdint>
@@ -14,34 +15,36 @@
 namespace pkm {
 
 using NamedNumbers = std::map<std::string, double>;
-using Setting = std::variant<double, std::int64_t, std::string>;  ///< an option of a library, passed through
+/// Value of an option that is passed on unchanged to an external library.
+using Setting = std::variant<double, std::int64_t, std::string>;
 using NamedSettings = std::map<std::string, Setting>;
 using OptionValue =
     std::variant<double, std::int64_t, bool, std::string, NamedNumbers, std::vector<NamedNumbers>, NamedSettings>;
 
 enum class OptionKind { number, integer, flag, word, named_numbers, list_of_numbers, named_settings };
 
-/// As the unit of a number: the unit of what the entry itself computes (a constraint's margin) or works on (an
-/// optimiser's objective). It is known only once the study is, so the study's reader puts it in.
+/// Placeholder for the unit of a number: the unit of the quantity that the entry computes (the value of a constraint)
+/// or works on (the objective of an optimiser). It depends on the study, so the reader of the study substitutes it.
 inline constexpr const char* kUnitOfEntry = "";
 
-/// Which names a list of numbers knows: the variables and objectives are known only once the study is.
+/// Which names are valid in a list of named numbers: those in OptionSpec::fields, or the names of the study's variables
+/// or objectives, which are substituted when the study is read.
 enum class FieldNames { listed, variables, objectives };
 
-/// One option. A `number` carries a unit ("m", "rad", "s", ... or "1"), in which the value is held (always SI).
+/// One option. A `number` has an SI unit ("m", "rad", "s", ... or "1"); its value is stored in that unit.
 struct OptionSpec {
   std::string name;
   OptionKind kind = OptionKind::number;
   std::string unit = "1";
-  std::optional<OptionValue> initial;                       ///< default; none: see `required`
-  bool required = false;                                    ///< neither default nor required: the option may be absent
-  double lower = -std::numeric_limits<double>::infinity();  ///< numbers and integers: least value allowed
-  double upper = std::numeric_limits<double>::infinity();   ///< and greatest
-  std::vector<std::string> choices;                         ///< words only: the words known; empty: any text
-  std::string meaning;                                      ///< one line for `pkmopt list`
+  std::optional<OptionValue> initial;  ///< default value, if any
+  bool required = false;               ///< an option that has no default and is not required may be absent
+  double lower = -std::numeric_limits<double>::infinity();  ///< minimum (numbers and integers)
+  double upper = std::numeric_limits<double>::infinity();   ///< maximum
+  std::vector<std::string> choices;                         ///< valid words (words only); empty: any text
+  std::string meaning;                                      ///< one-line description for `pkmopt list`
   std::vector<std::pair<std::string, std::string>> fields =
-      {};  ///< names known, and their units, of lists of numbers; of named numbers where they are given
-  FieldNames field_names = FieldNames::listed;  ///< in `fields`, or to be put there; objectives must all be given
+      {};  ///< valid names and their units: of lists of numbers, and of named numbers if not empty
+  FieldNames field_names = FieldNames::listed;  ///< FieldNames::objectives: a value is required for every objective
 };
 
 /// Validated values of one entry's options, defaults included.
@@ -50,8 +53,8 @@ class Options {
   void set(const std::string& name, OptionValue value) { values_[name] = std::move(value); }
   bool has(const std::string& name) const { return values_.contains(name); }
 
-  // Each throws std::out_of_range for a name without a value and std::bad_variant_access for the wrong kind: both
-  // are faults of the entry, not of the user, because the reader has checked the values against the specs.
+  // Each throws std::out_of_range if the option has no value, and std::bad_variant_access if it is of another kind.
+  // Both are programming errors of the entry, not of the user: the reader has validated the values against the specs.
   double number(const std::string& name) const { return std::get<double>(values_.at(name)); }
   std::int64_t integer(const std::string& name) const { return std::get<std::int64_t>(values_.at(name)); }
   bool flag(const std::string& name) const { return std::get<bool>(values_.at(name)); }
@@ -68,10 +71,10 @@ class Options {
   std::map<std::string, OptionValue> values_;
 };
 
-/// The options with every default of `specs` filled in and nothing else.
+/// The default values of `specs`. Options without a default are absent.
 Options default_options(const std::vector<OptionSpec>& specs);
 
-/// An option's value as it would be written in a study file.
+/// An option's value in the syntax of a study file (TOML).
 std::string to_text(const OptionValue& value);
 
 /// Shortest decimal form of a double that reads back to the same bits ("0.1", "1e-08", "inf").

@@ -8,7 +8,7 @@ namespace pkm {
 double DesignSpace::nearest(std::size_t i, double value) const {
   const Variable& v = variables_[i];
   if (v.step > 0) {
-    // The small allowance keeps upper on the lattice when (upper - lower) / step is a whole number but for rounding.
+    // The tolerance keeps `upper` on the lattice if (upper - lower) / step is an integer up to rounding errors.
     const double last = std::floor((v.upper - v.lower) / v.step + 1e-9);
     const double k = std::clamp(std::nearbyint((value - v.lower) / v.step), 0.0, last);
     value = v.lower + k * v.step;

@@ -1,4 +1,4 @@
-// What describes a mechanism's design: its parameters, and which of them a study varies.
+// Parameters of a mechanism, design variables of a study, and the design space that they span.
 #pragma once
 
 #include <cstddef>
@@ -7,14 +7,14 @@
 
 namespace pkm {
 
-/// One parameter of a mechanism, in the order in which the mechanism expects them.
+/// One parameter of a mechanism. The mechanism defines their order.
 struct Parameter {
-  std::string name;    ///< as in the mechanism's document, "_" before an index: "l_u"
-  std::string unit;    ///< SI: "m", "rad", "kg", ... or "1"
-  double nominal = 0;  ///< default
-  double lower = 0;    ///< the model is defined on [lower, upper]
-  double upper = 0;
-  std::string meaning;  ///< one line
+  std::string name;     ///< symbol in the mechanism's document, with "_" before an index: "l_u"
+  std::string unit;     ///< SI: "m", "rad", "kg", ... or "1"
+  double nominal = 0;   ///< default value
+  double lower = 0;     ///< minimum; the model is defined on [lower, upper]
+  double upper = 0;     ///< maximum
+  std::string meaning;  ///< one-line description
 };
 
 /// One design variable of a study.
@@ -23,10 +23,10 @@ struct Variable {
   std::string unit;
   double lower = 0;
   double upper = 0;
-  double step = 0;  ///< 0: continuous; otherwise the values are lower + k step, up to upper
+  double step = 0;  ///< 0: continuous variable; otherwise its values are lower + k step, k = 0, 1, .., up to upper
 };
 
-/// The box (or lattice) that optimisers search.
+/// The search space of the optimisers: a box in the design variables, with a lattice for discrete variables.
 class DesignSpace {
  public:
   DesignSpace() = default;
@@ -36,11 +36,12 @@ class DesignSpace {
   const std::vector<Variable>& variables() const { return variables_; }
   const Variable& operator[](std::size_t i) const { return variables_[i]; }
 
-  /// Physical value of unit coordinate u in [0, 1] of variable i, on the lattice if the variable has a step.
+  /// Value of variable i (in its unit) at the normalised coordinate u in [0, 1], rounded to the lattice if the variable
+  /// has a step.
   double from_unit(std::size_t i, double u) const;
-  /// Unit coordinate in [0, 1] of a physical value.
+  /// Normalised coordinate in [0, 1] of a value of variable i.
   double to_unit(std::size_t i, double value) const;
-  /// The value of variable i nearest to `value` that the space holds: inside the bounds, on the lattice.
+  /// The admissible value of variable i (within the bounds, on the lattice) that is nearest to `value`.
   double nearest(std::size_t i, double value) const;
 
  private:

@@ -1,4 +1,5 @@
-// Text of others (names, arguments, values of a file) as it may be shown: nothing in it steers a terminal.
+// Escapes and abbreviates external text (names, arguments, values from files) for display, so that it cannot contain
+// terminal control sequences.
 #pragma once
 
 #include <string>
@@ -6,15 +7,16 @@
 
 namespace pkm {
 
-/// The text with its control characters (those of Unicode and those that change the direction of writing, too) and
-/// with bytes that are no UTF-8 as "\x1b". All else, backslashes included, stays: printable text stays as it is.
-/// @param keep  control characters that stay, such as "\n"
+/// Escapes control characters (including the C1 and bidirectional controls of Unicode) and bytes that are not valid
+/// UTF-8 in the form "\x1b". Everything else, backslashes included, is unchanged.
+/// @param keep  control characters that are not escaped, such as "\n"
 std::string printable(std::string_view text, std::string_view keep = "");
 
-/// At most so many bytes of the text: of a longer one its beginning, "..." and its end.
-std::string excerpt(std::string_view text, std::size_t longest);
+/// The text abbreviated to at most `max_size` bytes: if it is longer, its beginning, "..." and its end. Characters of
+/// several bytes are not split.
+std::string excerpt(std::string_view text, std::size_t max_size);
 
-/// How many bytes at the end of the text begin a character of UTF-8 that more text may complete.
-std::size_t begun_character(std::string_view text);
+/// Number of bytes at the end of the text that are an incomplete UTF-8 character, which following text may complete.
+std::size_t incomplete_character_size(std::string_view text);
 
 }  // namespace pkm

@@ -19,109 +19,112 @@
 namespace pkm::ranks {
 namespace {
 
-/// A rank's host, and the cores that it may use.
-struct Place {
+/// The host of a rank and its affinity mask: the cores that it may use.
+struct Location {
   std::string host;
   std::set<int> cores;
 };
 
-std::unique_ptr<Backend> group;  // null: this process is alone
-std::vector<Place> places;       // of each rank
-double exchanging = 0;           // s
-std::mutex in_mailbox;
-std::deque<std::string> mailbox;  // what rank 0 has posted to itself
+std::unique_ptr<Backend> group;     // null: there is only this process
+std::vector<Location> locations;    // by rank
+double seconds_in_collectives = 0;  // time in s spent in collective functions
+std::mutex mailbox_mutex;
+std::deque<std::string> mailbox;  // messages that rank 0 has posted to itself
 
-std::optional<int> number_in(const char* variable) {
+/// The value of an environment variable that begins with a decimal number.
+std::optional<int> env_integer(const char* variable) {
   const char* const text = std::getenv(variable);
   if (!text || *text < '0' || *text > '9') return {};
   return std::atoi(text);
 }
 
-/// What a launcher has left in the environment.
+/// The launcher of the processes, as identified by its environment variables.
 struct Launcher {
   std::string name;
   std::optional<int> size, rank;
 };
 
-/// The first one counts: mpirun may itself be started by srun. What a batch script is given (SLURM_NTASKS) says
-/// nothing: it is one process.
+/// The first match counts, because mpirun may itself have been started by srun. SLURM_NTASKS is not used: it is also
+/// set for a batch script, which is a single process.
 std::optional<Launcher> launcher() {
-  struct Words {
+  struct Variables {
     const char *name, *size, *rank;
   };
-  constexpr std::array<Words, 4> known{{{"mpirun", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"},
-                                        {"mpiexec", "PMI_SIZE", "PMI_RANK"},
-                                        {"srun", "SLURM_STEP_NUM_TASKS", "SLURM_PROCID"},
-                                        {"the launcher", nullptr, "PMIX_RANK"}}};
-  for (const Words& each : known) {
-    const std::optional<int> rank = number_in(each.rank), size = each.size ? number_in(each.size) : std::nullopt;
+  constexpr std::array<Variables, 4> known{{{"mpirun", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"},
+                                            {"mpiexec", "PMI_SIZE", "PMI_RANK"},
+                                            {"srun", "SLURM_STEP_NUM_TASKS", "SLURM_PROCID"},
+                                            {"the launcher", nullptr, "PMIX_RANK"}}};
+  for (const Variables& each : known) {
+    const std::optional<int> rank = env_integer(each.rank), size = each.size ? env_integer(each.size) : std::nullopt;
     if (each.size ? size.has_value() : rank.has_value()) return Launcher{each.name, size, rank};
   }
   return {};
 }
 
-Place own_place() {
-  Place place;
+Location own_location() {
+  Location location;
   std::array<char, 256> name{};
   gethostname(name.data(), name.size() - 1);
-  place.host = name.data();
+  location.host = name.data();
   cpu_set_t cores;
   CPU_ZERO(&cores);
   if (sched_getaffinity(0, sizeof cores, &cores) == 0)
     for (int core = 0; core < CPU_SETSIZE; ++core)
-      if (CPU_ISSET(static_cast<std::size_t>(core), &cores)) place.cores.insert(core);
-  return place;
+      if (CPU_ISSET(static_cast<std::size_t>(core), &cores)) location.cores.insert(core);
+  return location;
 }
 
-std::vector<Place> exchange_places() {
-  const Place own = own_place();
+/// Collective: the locations of all ranks.
+std::vector<Location> gather_locations() {
+  const Location own = own_location();
   std::string message = own.host;
   for (const int core : own.cores) message += ' ' + std::to_string(core);
-  std::vector<Place> all;
+  std::vector<Location> all;
   for (const std::string& each : all_gather(message)) {
-    Place place{each.substr(0, each.find(' ')), {}};
+    Location location{each.substr(0, each.find(' ')), {}};
     for (std::size_t at = each.find(' '); at != std::string::npos; at = each.find(' ', at + 1))
-      place.cores.insert(std::atoi(each.c_str() + at));
-    all.push_back(std::move(place));
+      location.cores.insert(std::atoi(each.c_str() + at));
+    all.push_back(std::move(location));
   }
   return all;
 }
 
-/// Cores of a rank, each divided by the ranks that may use it.
-int threads_of(const Place& place) {
+/// Number of threads for a rank: its cores, each counted 1/k if k ranks may use it; at least 1.
+int threads_of(const Location& location) {
   double share = 0;
-  for (const int core : place.cores)
-    share += 1.0 / static_cast<double>(std::ranges::count_if(places, [&](const Place& other) {
-               return other.host == place.host && other.cores.contains(core);
+  for (const int core : location.cores)
+    share += 1.0 / static_cast<double>(std::ranges::count_if(locations, [&](const Location& other) {
+               return other.host == location.host && other.cores.contains(core);
              }));
   return std::max(1, static_cast<int>(share + 1e-6));
 }
 
-/// Counts the time spent here.
-class Exchange {
+/// RAII timer: adds its lifetime to seconds_in_collectives.
+class CommunicationTimer {
  public:
-  ~Exchange() { exchanging += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  ~CommunicationTimer() { seconds_in_collectives += std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point begin_ = Clock::now();
 };
 
-/// The beginning of a message, of a fixed size: short ones need no other.
-struct Envelope {
+/// First part of a message, of a fixed size: the length of the message and its first bytes. A message that fits needs
+/// no second transfer.
+struct Header {
   std::uint64_t size;
-  std::array<char, 120> beginning;
+  std::array<char, 120> head;
 };
 
-Envelope envelope_of(const std::string& bytes) {
-  Envelope envelope{bytes.size(), {}};
-  bytes.copy(envelope.beginning.data(), envelope.beginning.size());
-  return envelope;
+Header header_of(const std::string& bytes) {
+  Header header{bytes.size(), {}};
+  bytes.copy(header.head.data(), header.head.size());
+  return header;
 }
 
 }  // namespace
 
-bool launched_first() {
+bool is_first_launched() {
   const auto by = launcher();
   return !by || by->rank.value_or(0) == 0;
 }
@@ -129,28 +132,28 @@ bool launched_first() {
 Group::Group() {
   const std::optional<Launcher> by = launcher();
   if (!by || by->size == 1) return;
-  const std::string promise =
-      by->size ? by->name + " has started " + std::to_string(*by->size) + " processes" : by->name + " has started this";
+  const std::string situation = by->size ? by->name + " has started " + std::to_string(*by->size) + " processes"
+                                         : by->name + " has started this process";
   if (library().empty()) {
     if (!by->size) return;
-    throw std::runtime_error(promise +
-                             ", but this program was built without MPI, so each would do all the work: start " +
-                             "one process (it has threads), or build with -DPKM_MPI=ON");
+    throw std::runtime_error(situation +
+                             ", but this program was built without MPI, so each would do all the work; start " +
+                             "one process (it is multi-threaded), or build with -DPKM_MPI=ON");
   }
   std::unique_ptr<Backend> joined = join();
   if (by->size && joined->size != *by->size)
     throw std::runtime_error(
-        promise + ", but " + library() + " sees " + std::to_string(joined->size) +
+        situation + ", but " + library() + " sees " + std::to_string(joined->size) +
         (joined->size == 1 ? ", so each would do all the work" : "") +
-        ": use the mpirun of this MPI, or `srun --mpi=pmix` (`srun --mpi=list` shows what is there)");
+        "; use the mpirun of this MPI, or `srun --mpi=pmix` (`srun --mpi=list` lists the available types)");
   if (joined->size == 1) return;
   group = std::move(joined);
-  places = exchange_places();
+  locations = gather_locations();
 }
 
 Group::~Group() {
   group.reset();
-  places.clear();
+  locations.clear();
 }
 
 int rank() { return group ? group->rank : 0; }
@@ -158,42 +161,42 @@ int size() { return group ? group->size : 1; }
 
 void broadcast(std::string& bytes) {
   if (!group) return;
-  const Exchange timed;
-  Envelope envelope = envelope_of(bytes);
-  group->broadcast(reinterpret_cast<char*>(&envelope), sizeof envelope);
-  const std::size_t beginning = std::min<std::size_t>(envelope.size, envelope.beginning.size());
-  bytes.resize(envelope.size);
-  std::copy_n(envelope.beginning.data(), beginning, bytes.data());
-  if (bytes.size() > beginning) group->broadcast(bytes.data() + beginning, bytes.size() - beginning);
+  const CommunicationTimer timer;
+  Header header = header_of(bytes);
+  group->broadcast(reinterpret_cast<char*>(&header), sizeof header);
+  const std::size_t head = std::min<std::size_t>(header.size, header.head.size());
+  bytes.resize(header.size);
+  std::copy_n(header.head.data(), head, bytes.data());
+  if (bytes.size() > head) group->broadcast(bytes.data() + head, bytes.size() - head);
 }
 
 std::vector<std::string> all_gather(const std::string& mine) {
   if (!group) return {mine};
-  const Exchange timed;
+  const CommunicationTimer timer;
   const auto ranks = static_cast<std::size_t>(group->size);
-  const Envelope envelope = envelope_of(mine);
-  std::vector<Envelope> envelopes(ranks);
-  group->all_gather(reinterpret_cast<const char*>(&envelope), std::vector(ranks, sizeof envelope),
-                    reinterpret_cast<char*>(envelopes.data()));
-  std::vector<std::size_t> rests;
+  const Header header = header_of(mine);
+  std::vector<Header> headers(ranks);
+  group->all_gather(reinterpret_cast<const char*>(&header), std::vector(ranks, sizeof header),
+                    reinterpret_cast<char*>(headers.data()));
+  std::vector<std::size_t> tail_sizes;
   std::size_t sum = 0;
-  for (const Envelope& each : envelopes) {
-    rests.push_back(each.size - std::min<std::size_t>(each.size, each.beginning.size()));
-    sum += rests.back();
+  for (const Header& each : headers) {
+    tail_sizes.push_back(each.size - std::min<std::size_t>(each.size, each.head.size()));
+    sum += tail_sizes.back();
   }
-  std::string rest(sum, '\0');
-  if (sum > 0) group->all_gather(mine.data() + std::min(mine.size(), envelope.beginning.size()), rests, rest.data());
+  std::string tail(sum, '\0');
+  if (sum > 0) group->all_gather(mine.data() + std::min(mine.size(), header.head.size()), tail_sizes, tail.data());
   std::vector<std::string> all;
   std::size_t at = 0;
   for (std::size_t i = 0; i < ranks; ++i) {
-    all.emplace_back(envelopes[i].beginning.data(), envelopes[i].size - rests[i]);
-    all.back().append(rest, at, rests[i]);
-    at += rests[i];
+    all.emplace_back(headers[i].head.data(), headers[i].size - tail_sizes[i]);
+    all.back().append(tail, at, tail_sizes[i]);
+    at += tail_sizes[i];
   }
   return all;
 }
 
-double seconds_in_exchange() { return exchanging; }
+double communication_seconds() { return seconds_in_collectives; }
 
 Counter::Counter() {
   if (group) shared_ = group->counter();
@@ -201,17 +204,17 @@ Counter::Counter() {
 
 Counter::~Counter() = default;
 
-std::int64_t Counter::next(std::int64_t count) { return shared_ ? shared_->next(count) : own_.fetch_add(count); }
+std::int64_t Counter::next(std::int64_t count) { return shared_ ? shared_->next(count) : local_.fetch_add(count); }
 
 void post(const std::string& message) {
   if (rank() > 0) return group->post(message);
-  const std::lock_guard lock(in_mailbox);
+  const std::lock_guard lock(mailbox_mutex);
   mailbox.push_back(message);
 }
 
 std::optional<std::string> poll() {
   {
-    const std::lock_guard lock(in_mailbox);
+    const std::lock_guard lock(mailbox_mutex);
     if (!mailbox.empty()) {
       std::optional<std::string> message = std::move(mailbox.front());
       mailbox.pop_front();
@@ -222,38 +225,38 @@ std::optional<std::string> poll() {
 }
 
 const std::string& host(int rank) {
-  if (places.empty()) {
-    static const std::string own = own_place().host;
+  if (locations.empty()) {
+    static const std::string own = own_location().host;
     return own;
   }
-  return places.at(static_cast<std::size_t>(rank)).host;
+  return locations.at(static_cast<std::size_t>(rank)).host;
 }
 
 std::string name(int rank) { return "rank " + std::to_string(rank) + " on " + host(rank); }
 
 int threads() {
   if (!group || std::getenv("OMP_NUM_THREADS")) return 0;
-  return threads_of(places[static_cast<std::size_t>(group->rank)]);
+  return threads_of(locations[static_cast<std::size_t>(group->rank)]);
 }
 
 std::optional<std::string> crowded(int threads) {
-  std::map<std::string, std::pair<int, std::set<int>>> hosts;  // ranks and cores
-  for (const Place& place : places) {
-    auto& [ranks, cores] = hosts[place.host];
+  std::map<std::string, std::pair<int, std::set<int>>> hosts;  // number of ranks and set of cores
+  for (const Location& location : locations) {
+    auto& [ranks, cores] = hosts[location.host];
     ++ranks;
-    cores.insert(place.cores.begin(), place.cores.end());
+    cores.insert(location.cores.begin(), location.cores.end());
   }
   for (const auto& [host, has] : hosts) {
     const auto& [ranks, cores] = has;
     if (ranks * threads > std::ssize(cores))
       return host + " has " + std::to_string(ranks) + (ranks == 1 ? " rank" : " ranks") + " of " +
              std::to_string(threads) + (threads == 1 ? " thread" : " threads") + " on " + std::to_string(cores.size()) +
-             (cores.size() == 1 ? " core" : " cores") + ", which are slower than fewer";
+             (cores.size() == 1 ? " core" : " cores") + "; fewer threads would be faster";
   }
   return {};
 }
 
-void abandon(std::string_view sentence) {
+void abort_all_ranks(std::string_view sentence) {
   std::fprintf(stderr, "%s: %.*s\n", name(rank()).c_str(), static_cast<int>(sentence.size()), sentence.data());
   std::fflush(stderr);
   if (group) group->abort(EXIT_FAILURE);

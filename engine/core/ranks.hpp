@@ -1,7 +1,8 @@
-// The processes of one run: as many as mpirun or srun has started, on one host or on several; else this one alone.
+// Message passing between the processes (MPI ranks) of one run, which mpirun or srun has started on one or several
+// hosts. Without a launcher, the run has one process and these functions work locally.
 //
-// What they exchange is bytes. Where all have to take part ("collective"), each rank calls the same function in the
-// same order, from one thread at a time.
+// Messages are byte strings. A function marked "collective" must be called by every rank, in the same order, and by one
+// thread of a rank at a time.
 #pragma once
 
 #include <atomic>
@@ -14,45 +15,47 @@
 
 namespace pkm::ranks {
 
-/// While it lives, this process is one of those that a launcher has started together; without a launcher it costs
-/// nothing. Collective. At most one at a time, made before others of these functions are called.
+/// RAII: initialises MPI and joins this process to the others that the launcher has started; does nothing without a
+/// launcher. Collective. At most one instance at a time, constructed before any other function of this file is called.
 class Group {
  public:
-  /// Throws std::runtime_error, with what to do, where a launcher has started several processes that do not find one
-  /// another: each would do all the work.
+  /// Throws std::runtime_error, whose message says what to do, if a launcher has started several processes that cannot
+  /// communicate (for example, those of another MPI library): otherwise each of them would do all the work.
   Group();
   ~Group();
   Group(const Group&) = delete;
   Group& operator=(const Group&) = delete;
 };
 
-/// Whether this process is the first of those that a launcher has started, as the environment says: the one to complain
-/// where they do not find one another.
-bool launched_first();
+/// Whether this process is the first of those that a launcher has started, according to the environment variables of
+/// the launcher. It alone reports the error if the processes cannot communicate.
+bool is_first_launched();
 
-/// 0 and 1 without a Group, or without a launcher.
+/// Number of this rank; 0 without a Group or a launcher.
 int rank();
+/// Number of ranks; 1 without a Group or a launcher.
 int size();
 
-/// Collective: rank 0's bytes become everyone's.
+/// Collective: copies `bytes` of rank 0 to all ranks.
 void broadcast(std::string& bytes);
-/// Collective: everyone's bytes, by rank.
+/// Collective: the bytes of all ranks, in the order of their numbers.
 std::vector<std::string> all_gather(const std::string& mine);
-/// Seconds that this rank has spent in the two above, waiting for others included.
-double seconds_in_exchange();
+/// Time in s that this rank has spent in broadcast() and all_gather(), including waiting for other ranks.
+double communication_seconds();
 
-/// A number that all ranks and threads count up together. Made and ended collectively, without any of the above in
-/// between; at most 16 at a time.
+/// A counter shared by all ranks and threads, for dynamic load balancing. Construction and destruction are collective;
+/// no broadcast() or all_gather() is allowed in between. At most 16 counters at a time.
 class Counter {
  public:
   Counter();
   ~Counter();
   Counter(const Counter&) = delete;
   Counter& operator=(const Counter&) = delete;
-  /// The first of `count` numbers that nobody else gets: from 0 on, without gaps. On any thread of any rank.
+  /// Atomic fetch-and-add: reserves `count` consecutive numbers and returns the first. The counter starts at 0. May be
+  /// called by any thread of any rank.
   std::int64_t next(std::int64_t count = 1);
 
-  /// A counter in memory that other ranks reach.
+  /// Implementation for several ranks.
   class Shared {
    public:
     virtual ~Shared() = default;
@@ -60,26 +63,29 @@ class Counter {
   };
 
  private:
-  std::atomic<std::int64_t> own_ = 0;  ///< of a rank that is alone
+  std::atomic<std::int64_t> local_ = 0;  ///< used if there is only one rank
   std::unique_ptr<Shared> shared_;
 };
 
-/// Sends a message to rank 0 without waiting for it. On any thread.
+/// Sends a message to rank 0 and returns without waiting for its receipt. May be called by any thread.
 void post(const std::string& message);
-/// On rank 0: a message that has come, if any; those of one rank in the order in which they were posted. On any thread.
+/// On rank 0: the next message received, if any. Messages of one rank arrive in the order in which they were posted.
+/// May be called by any thread.
 std::optional<std::string> poll();
 
-/// The host of a rank.
+/// Host name of a rank.
 const std::string& host(int rank);
 /// "rank 3 on node7"
 std::string name(int rank);
-/// How many threads this rank has to itself, as for team_size(): the cores that it may use, shared with the other ranks
-/// that may use them. 0, which leaves it to OpenMP, for a rank that is alone, or where OMP_NUM_THREADS says it.
+/// Number of threads for this rank, as the argument of team_size(): the number of cores in its affinity mask, where a
+/// core that k ranks may use counts 1/k. 0 (leave the choice to OpenMP) if there is only one rank or OMP_NUM_THREADS is
+/// set.
 int threads();
-/// Where ranks of so many threads each have more threads than cores: a sentence on it.
+/// A warning if a host is oversubscribed: with `threads` threads per rank, it has more threads than cores.
 std::optional<std::string> crowded(int threads);
 
-/// Ends all ranks at once, because this one cannot go on and the others would wait for it. Tells the sentence.
-[[noreturn]] void abandon(std::string_view sentence);
+/// Prints the sentence to stderr and terminates all ranks, because this one cannot continue and the others would wait
+/// for it forever.
+[[noreturn]] void abort_all_ranks(std::string_view sentence);
 
 }  // namespace pkm::ranks

@@ -1,4 +1,5 @@
-// What a library for messages has to do for engine/core/ranks.
+// Interface to the message-passing library behind engine/core/ranks: implemented with MPI (ranks_mpi.cpp), or absent
+// (ranks_serial.cpp).
 #pragma once
 
 #include <cstddef>
@@ -13,10 +14,10 @@ namespace pkm::ranks {
 
 class Backend {
  public:
-  virtual ~Backend() = default;  ///< leaves the group; collective
+  virtual ~Backend() = default;  ///< collective; leaves the group of processes
   int rank = 0, size = 1;
   virtual void broadcast(char* bytes, std::size_t count) = 0;
-  /// Of each rank `sizes[rank]` bytes, one after the other.
+  /// Concatenates the bytes of all ranks in `all`. @param sizes  number of bytes of each rank
   virtual void all_gather(const char* mine, const std::vector<std::size_t>& sizes, char* all) = 0;
   virtual std::unique_ptr<Counter::Shared> counter() = 0;
   virtual void post(const std::string& message) = 0;
@@ -24,9 +25,10 @@ class Backend {
   [[noreturn]] virtual void abort(int exit_code) = 0;
 };
 
-/// "Open MPI 4.1.4"; "" in a build without such a library.
+/// Name and version of the library, "Open MPI 4.1.4"; "" in a build without MPI.
 std::string library();
-/// Joins the processes of a launcher. Throws std::runtime_error in a build without such a library.
+/// Connects the processes that the launcher has started. Throws std::runtime_error if the library has no thread
+/// support, and std::logic_error in a build without MPI.
 std::unique_ptr<Backend> join();
 
 }  // namespace pkm::ranks

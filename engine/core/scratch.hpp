@@ -1,4 +1,4 @@
-// Room for what a computation overwrites, kept for the next one, so that nothing is allocated per design.
+// Per-thread scratch memory, reused so that evaluating a design does not allocate.
 #pragma once
 
 #include <memory>
@@ -6,38 +6,39 @@
 
 namespace pkm {
 
-/// Holds one object of each type that it is asked for. Whoever computes asks for a struct of its own, and finds it as
-/// the last call left it: its vectors keep their memory, and what counts is set anew. Serves one computation at a time,
-/// so every worker has one.
+/// Type-indexed container with at most one object of each type. A computation defines a struct for its temporary data
+/// and obtains it with get(). The struct still contains the values of the previous call, so its vectors keep their
+/// capacity, and the computation must initialise all values that it reads. Not thread-safe: every worker thread has its
+/// own.
 class Scratch {
  public:
-  /// Made by its default constructor when it is asked for first, and then always the same object.
+  /// The object of type T. The first call default-constructs it; later calls return the same object.
   template <class T>
   T& get() {
-    for (const auto& held : held_)
-      if (held->type == &kType<T>) return static_cast<Holder<T>&>(*held).value;
+    for (const auto& holder : holders_)
+      if (holder->type == &kType<T>) return static_cast<Holder<T>&>(*holder).value;
     auto made = std::make_unique<Holder<T>>();
     T& value = made->value;
-    held_.push_back(std::move(made));
+    holders_.push_back(std::move(made));
     return value;
   }
 
  private:
   template <class T>
-  static constexpr char kType = 0;  // its address stands for the type
+  static constexpr char kType = 0;  // its address identifies the type
 
-  struct Held {
-    explicit Held(const char* of) : type(of) {}
-    virtual ~Held() = default;
+  struct HolderBase {
+    explicit HolderBase(const char* type_id) : type(type_id) {}
+    virtual ~HolderBase() = default;
     const char* type;
   };
   template <class T>
-  struct Holder : Held {
-    Holder() : Held(&kType<T>) {}
+  struct Holder : HolderBase {
+    Holder() : HolderBase(&kType<T>) {}
     T value{};
   };
 
-  std::vector<std::unique_ptr<Held>> held_;
+  std::vector<std::unique_ptr<HolderBase>> holders_;
 };
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// A text that a user wrote, and the file it was read from.
+// Source text written by a user, with the name of its file for error messages.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@ namespace pkm {
 
 struct SourceText {
   std::string text;
-  std::string file_name;  ///< as messages call it
+  std::string file_name;  ///< as shown in error messages
 };
 
 }  // namespace pkm

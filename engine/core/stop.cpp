@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-/// To some milliseconds, which takes a quarter of the time of an exact reading.
+/// Monotonic time in s with a resolution of a few milliseconds. Reading it is four times as fast as CLOCK_MONOTONIC.
 double coarse_seconds() {
   timespec time{};
   clock_gettime(CLOCK_MONOTONIC_COARSE, &time);
@@ -16,18 +16,18 @@ double coarse_seconds() {
 }  // namespace
 
 StopScope::StopScope(std::function<bool()> is_requested, double seconds)
-    : outer_(current_), is_requested_(std::move(is_requested)), end_(coarse_seconds() + seconds) {
+    : outer_(current_), is_requested_(std::move(is_requested)), deadline_(coarse_seconds() + seconds) {
   current_ = this;
 }
 
-SlowStep::SlowStep(std::function<void()> say, double after)
-    : say_(std::move(say)), slow_(coarse_seconds() + after), scope_([this] {
-        if (coarse_seconds() > slow_ && !said_.load(std::memory_order_relaxed) && !said_.exchange(true)) say_();
+SlowStepNotice::SlowStepNotice(std::function<void()> notify, double after)
+    : notify_(std::move(notify)), deadline_(coarse_seconds() + after), scope_([this] {
+        if (coarse_seconds() > deadline_ && !done_.load(std::memory_order_relaxed) && !done_.exchange(true)) notify_();
         return false;
       }) {}
 
 bool StopScope::is_requested() const {
-  return (is_requested_ && is_requested_()) || coarse_seconds() >= end_ || is_requested_outside();
+  return (is_requested_ && is_requested_()) || coarse_seconds() >= deadline_ || is_requested_by_outer_scope();
 }
 
 }  // namespace pkm

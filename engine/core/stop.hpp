@@ -1,9 +1,9 @@
-// Cooperative cancellation: long computations call check_stop(), which throws Stopped once a scope around them asks for
-// it.
+// Cooperative cancellation. Long computations call check_stop(), which throws Stopped as soon as an enclosing StopScope
+// requests it.
 //
-// Scopes are nested and belong to the thread that opens them; a team's threads work under the scope of the thread whose
-// work they share (engine/core/team.hpp). There is no other state, so several computations of one process can be
-// stopped separately.
+// Scopes are nested and belong to the thread that opens them. The threads of a team inherit the scope of the thread
+// whose work they execute (engine/core/team.hpp). There is no global state, so several computations in one process can
+// be stopped independently.
 #pragma once
 
 #include <atomic>
@@ -12,38 +12,39 @@
 
 namespace pkm {
 
-/// Thrown by check_stop(). Not a std::exception: a handler of errors must not take a stop for one.
+/// Thrown by check_stop(). Not derived from std::exception, so that error handlers do not catch it.
 struct Stopped {};
 
+/// While an instance exists, computations of this thread are stopped when its condition or its time limit is met.
 class StopScope {
  public:
-  /// @param is_requested  whether to stop; called often, by any thread of the team, also by several at once
-  /// @param seconds       from now on, after which to stop in any case
+  /// @param is_requested  returns true to stop; called frequently, by any thread of the team, possibly concurrently
+  /// @param seconds       time limit from now [s]
   explicit StopScope(std::function<bool()> is_requested, double seconds = std::numeric_limits<double>::infinity());
-  /// A time limit alone.
+  /// A time limit only.
   explicit StopScope(double seconds) : StopScope({}, seconds) {}
   ~StopScope() { current_ = outer_; }
   StopScope(const StopScope&) = delete;
   StopScope& operator=(const StopScope&) = delete;
 
-  /// Whether this scope asks to stop, or one around it.
+  /// Whether this scope or an enclosing one requests a stop.
   bool is_requested() const;
-  /// Whether one around it does: what this one limits is then not at fault.
-  bool is_requested_outside() const { return outer_ && outer_->is_requested(); }
+  /// Whether an enclosing scope requests a stop: then the limits of this scope are not the cause.
+  bool is_requested_by_outer_scope() const { return outer_ && outer_->is_requested(); }
 
-  /// The innermost scope of this thread; null: none.
+  /// The innermost scope of this thread; null if there is none.
   static const StopScope* current() { return current_; }
 
-  /// While it lives, this thread works under a scope of another thread.
-  class Adopted {
+  /// While an instance exists, this thread is subject to a scope of another thread.
+  class InheritedScope {
    public:
-    explicit Adopted(const StopScope* scope) : before_(current_) { current_ = scope; }
-    ~Adopted() { current_ = before_; }
-    Adopted(const Adopted&) = delete;
-    Adopted& operator=(const Adopted&) = delete;
+    explicit InheritedScope(const StopScope* scope) : previous_(current_) { current_ = scope; }
+    ~InheritedScope() { current_ = previous_; }
+    InheritedScope(const InheritedScope&) = delete;
+    InheritedScope& operator=(const InheritedScope&) = delete;
 
    private:
-    const StopScope* before_;
+    const StopScope* previous_;
   };
 
  private:
@@ -51,28 +52,29 @@ class StopScope {
 
   const StopScope* outer_;
   std::function<bool()> is_requested_;
-  double end_;  ///< s, of the clock
+  double deadline_;  ///< [s], on the monotonic clock
 };
 
-/// While it lives: calls `say` once, if what this thread computes takes long and calls check_stop().
-class SlowStep {
+/// While an instance exists: calls `notify` once if the computation of this thread, which must call check_stop(), takes
+/// longer than a given time.
+class SlowStepNotice {
  public:
-  /// @param say    may be called by any thread of the team
-  /// @param after  [s]
-  explicit SlowStep(std::function<void()> say, double after = 1);
+  /// @param notify  may be called by any thread of the team
+  /// @param after   time until the notification [s]
+  explicit SlowStepNotice(std::function<void()> notify, double after = 1);
 
  private:
-  std::function<void()> say_;
-  std::atomic<bool> said_ = false;
-  double slow_;  ///< s, of the clock: when it has taken long
+  std::function<void()> notify_;
+  std::atomic<bool> done_ = false;  ///< `notify` has been called
+  double deadline_;                 ///< [s], on the monotonic clock
   StopScope scope_;
 };
 
-/// Whether a scope of this thread asks to stop.
+/// Whether a scope of this thread requests a stop.
 inline bool stop_requested() { return StopScope::current() && StopScope::current()->is_requested(); }
 
-/// Throws Stopped if a scope of this thread asks to stop. Takes 10 to 20 ns within a scope, else 1 ns: it belongs into
-/// every loop that may take longer than some milliseconds.
+/// Throws Stopped if a scope of this thread requests a stop. Takes 10 to 20 ns within a scope and 1 ns otherwise; to be
+/// called in every loop that may take longer than a few milliseconds.
 inline void check_stop() {
   if (stop_requested()) throw Stopped();
 }

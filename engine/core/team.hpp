@@ -1,8 +1,9 @@
-// Work that is shared out among OpenMP's threads: one parallel region around a whole run, whose threads wait in it for
-// pieces of whatever comes.
+// Parallel loops on a persistent thread team: one OpenMP parallel region around a whole run, whose threads wait for the
+// iterations of loops.
 //
-// The thread that has the work takes part in it and never waits for one that has no piece. A region around each
-// generation would: its end waits for threads that other programs have pushed off their core.
+// The thread that starts a loop takes part in it, and at the end waits only for threads that are executing iterations
+// of it. An OpenMP region for every generation would wait for all threads, including those that the operating system
+// has preempted in favour of other programs.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +11,9 @@
 
 namespace pkm {
 
-/// A reference to a function object that works on the pieces [begin, end), and may ask which worker does it: two pieces
-/// that are worked on at once have different workers, so what belongs to a worker needs no lock. Work that is one whole
-/// takes no argument.
+/// Non-owning reference to a callable: a loop body work(begin, end) or work(begin, end, worker) that executes the
+/// iterations [begin, end), or a function without arguments. `worker` is the index of the executing thread: concurrent
+/// calls have different indices, so that data of one worker needs no lock.
 class WorkRef {
  public:
   template <class F>
@@ -33,45 +34,48 @@ class WorkRef {
   Call call_;
 };
 
-/// How many threads are meant: the number itself, or for 0 as many as OpenMP would take (OMP_NUM_THREADS, else as many
-/// as the process has cores); at most OMP_THREAD_LIMIT. Throws ConfigError where OMP_NUM_THREADS is out of range.
+/// Number of threads of a team: `threads` itself if it is positive, otherwise OpenMP's default (OMP_NUM_THREADS, or the
+/// number of cores available to the process); at most OMP_THREAD_LIMIT. Throws ConfigError if OMP_NUM_THREADS is
+/// invalid.
 int team_size(int threads);
 
-/// Runs body() on this thread, beside a team of so many threads, this one included, as for team_size(): share_pieces()
-/// in it uses them. What it throws is thrown here. One region serves all: within a region, ours or another's, body()
-/// keeps the team that it has. Throws std::runtime_error where so many threads cannot be started.
+/// Runs body() on this thread with a team of team_size(threads) threads, this one included, which execute the loops of
+/// parallel_for() in it. Exceptions of body() are rethrown. Calls do not nest: inside a parallel region, of this file
+/// or of other code, body() uses the team that exists already. Throws std::runtime_error if the threads cannot be
+/// started.
 void with_team(int threads, WorkRef body);
 
-/// While it lives, this thread has no team.
-class WithoutTeam {
+/// While an instance exists, this thread executes its loops alone.
+class SerialScope {
  public:
-  WithoutTeam();
-  ~WithoutTeam();
-  WithoutTeam(const WithoutTeam&) = delete;
-  WithoutTeam& operator=(const WithoutTeam&) = delete;
+  SerialScope();
+  ~SerialScope();
+  SerialScope(const SerialScope&) = delete;
+  SerialScope& operator=(const SerialScope&) = delete;
 
  private:
-  std::size_t before_;
+  std::size_t previous_;
 };
 
-/// Whether share_pieces() has more than this thread here.
+/// Whether parallel_for() uses more than one thread here.
 bool has_team();
 
-/// How many workers share_pieces() has here, at most: what each needs of its own can be prepared.
+/// Maximum number of workers of parallel_for() here, for allocating data per worker.
 std::size_t workers();
-/// This thread's number among them, < workers().
+/// Index of this thread among them, less than workers().
 std::size_t worker();
 
-/// Has work(begin, end), or work(begin, end, worker) with worker < workers(), done for all of [0, pieces), each piece
-/// once, in any order and on any thread; returns when all are done. Whoever is free takes a share of what is left, so
-/// shares get smaller towards the end. What a piece computes must not depend on which thread does it. Within one of
-/// several pieces there is no team, and the StopScope is the caller's. What the work throws is thrown here; of several
-/// exceptions one. Without a team: work(0, pieces, 0) on this thread.
-void share_pieces(std::size_t pieces, WorkRef work);
+/// Parallel loop: executes each of the iterations [0, iterations) once, by calls work(begin, end) or work(begin, end,
+/// worker) with worker < workers(), in any order and on any thread, and returns when all are complete. Guided
+/// self-scheduling: idle threads claim chunks in proportion to the iterations that remain. The result of an iteration
+/// must not depend on the thread. Iterations have no team of their own (loops in them are serial) and are subject to
+/// the caller's StopScope. An exception thrown by `work` is rethrown here; of several, one. Without a team: a single
+/// call work(0, iterations, 0) on this thread.
+void parallel_for(std::size_t iterations, WorkRef work);
 
-/// Has work(begin, end) done for all of [0, pieces), one piece at a time, for few pieces that take long: they are begun
-/// in their order, and threads that find none left help with what the others' pieces have shared out in turn. A single
-/// piece has the whole team. Throws as share_pieces() does.
-void share_long_pieces(std::size_t pieces, WorkRef work);
+/// Parallel loop for a few long iterations that contain parallel_for() loops (nested parallelism). Executes work(i, i +
+/// 1) for all i in [0, iterations); iterations are started in this order. Threads for which no iteration is left help
+/// with the inner loops of the others. A single iteration has the whole team. Exceptions as for parallel_for().
+void parallel_for_nested(std::size_t iterations, WorkRef work);
 
 }  // namespace pkm

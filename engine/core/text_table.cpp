@@ -11,32 +11,32 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// Places that a text takes: bytes, but for those that go on with a character of UTF-8.
+/// Width of a text in terminal columns: the number of UTF-8 characters, i.e. of bytes that are not continuation bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
 }
 
-/// Moves the numbers of a column to the right, until their points are where that of the widest is.
-void align_points(Rows& rows, std::size_t column) {
-  const bool has_head = rows[0].size() != 2 || rows[0][0].empty();  // else names and what belongs to them
-  std::size_t furthest = 0;
+/// Aligns the decimal points of a numeric column by indenting its cells; leaves other columns unchanged.
+void align_decimal_points(Rows& rows, std::size_t column) {
+  const bool has_heading = rows[0].size() != 2 || rows[0][0].empty();  // otherwise a list of names and values
+  std::size_t max_position = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (column >= rows[r].size()) continue;
     const std::string& cell = rows[r][column];
-    const auto point = point_of_number(cell);
-    const bool holds_none = cell.empty() || cell == "-" || cell == "not computed";
-    if (!point && !holds_none && (r > 0 || !has_head)) return;
-    furthest = std::max(furthest, point.value_or(0));
+    const auto position = decimal_point_index(cell);
+    const bool is_missing = cell.empty() || cell == "-" || cell == "not computed";
+    if (!position && !is_missing && (r > 0 || !has_heading)) return;
+    max_position = std::max(max_position, position.value_or(0));
   }
   for (auto& row : rows)
     if (column < row.size())
-      if (const auto point = point_of_number(row[column])) row[column].insert(0, furthest - *point, ' ');
+      if (const auto position = decimal_point_index(row[column])) row[column].insert(0, max_position - *position, ' ');
 }
 
 }  // namespace
 
-std::optional<std::size_t> point_of_number(std::string_view text) {
+std::optional<std::size_t> decimal_point_index(std::string_view text) {
   const std::size_t begin = std::min(text.find_first_not_of(' '), text.size());
   const std::size_t end = std::min(text.find(' ', begin), text.size());
   std::string_view digits = text.substr(begin, end - begin);
@@ -56,7 +56,7 @@ std::string aligned(Rows rows) {
   }
   std::vector<std::size_t> width(columns, 0);
   for (std::size_t c = 0; c < columns; ++c) {
-    align_points(rows, c);
+    align_decimal_points(rows, c);
     for (const auto& row : rows)
       if (c < row.size()) width[c] = std::max(width[c], width_of(row[c]));
   }
@@ -70,7 +70,7 @@ std::string aligned(Rows rows) {
   return text;
 }
 
-std::string titled(const std::string& title, const Rows& rows) {
+std::string format_titled_table(const std::string& title, const Rows& rows) {
   return '\n' + title + (rows.empty() ? ": none\n" : "\n") + aligned(rows);
 }
 

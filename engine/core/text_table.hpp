@@ -1,4 +1,4 @@
-// Tables of text with aligned columns.
+// Plain-text tables with aligned columns.
 #pragma once
 
 #include <optional>
@@ -8,14 +8,14 @@
 
 namespace pkm {
 
-/// Where the point of the number is, or would be, that a text begins with: of "12.5 mm" 2, of "7 of 9" 1. None: the
-/// first word is no number.
-std::optional<std::size_t> point_of_number(std::string_view text);
+/// Index of the decimal point in a text that begins with a number, or of the position after its integer part: 2 for
+/// "12.5 mm", 1 for "7 of 9". @return std::nullopt if the first word is not a number
+std::optional<std::size_t> decimal_point_index(std::string_view text);
 
-/// One line per row, two spaces before each cell, each column as wide as its widest cell; the cells are printable.
-/// Points of numbers stand below one another in columns of nothing else but a name in the first row of a table.
+/// Formats a table: one line per row, two spaces before each cell, each column as wide as its widest cell. Cells are
+/// escaped by printable(). In columns that contain only numbers, apart from a heading, the decimal points are aligned.
 std::string aligned(std::vector<std::vector<std::string>> rows);
-/// An empty line, the title (": none" where there are no rows), and the rows.
-std::string titled(const std::string& title, const std::vector<std::vector<std::string>>& rows);
+/// Formats an empty line, the title (with ": none" if there are no rows), and the table.
+std::string format_titled_table(const std::string& title, const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace pkm

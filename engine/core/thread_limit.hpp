@@ -1,8 +1,8 @@
-// How many threads may be asked for, by --threads and by OMP_NUM_THREADS.
+// Maximum number of threads that --threads and OMP_NUM_THREADS accept.
 #pragma once
 
 namespace pkm {
 
-inline constexpr int kMostThreads = 1024;
+inline constexpr int kMaxThreads = 1024;
 
 }  // namespace pkm

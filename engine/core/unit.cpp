@@ -13,11 +13,11 @@
 namespace pkm {
 namespace {
 
-constexpr double kHalfTurn = 3.141592653589793238462643383279502884;  // [rad]
+constexpr double kPi = 3.141592653589793238462643383279502884;
 
-using Dimension = std::array<int, 4>;  // powers of m, kg, s, rad
+using Dimension = std::array<int, 4>;  // exponents of m, kg, s, rad
 
-/// In SI, a number of this unit is number * multiply / divide.
+/// A unit: a number in this unit is number * multiply / divide in SI.
 struct Unit {
   Dimension dimension{};
   double multiply = 1;
@@ -33,43 +33,26 @@ constexpr Dimension kNone{0, 0, 0, 0}, kLength{1, 0, 0, 0}, kMass{0, 1, 0, 0}, k
     kForce{1, 1, -2, 0}, kEnergy{2, 1, -2, 0}, kPower{2, 1, -3, 0}, kAngularSpeed{0, 0, -1, 1};
 
 constexpr Symbol kSymbols[] = {
-    {"%", {kNone, 1, 100}},
-    {"um", {kLength, 1, 1e6}},
-    {"mm", {kLength, 1, 1e3}},
-    {"cm", {kLength, 1, 100}},
-    {"dm", {kLength, 1, 10}},
-    {"m", {kLength, 1, 1}},
-    {"km", {kLength, 1e3, 1}},
-    {"in", {kLength, 254, 1e4}},
-    {"mrad", {kAngle, 1, 1e3}},
-    {"rad", {kAngle, 1, 1}},
-    {"deg", {kAngle, kHalfTurn, 180}},
-    {"\u00b0", {kAngle, kHalfTurn, 180}},
-    {"us", {kTime, 1, 1e6}},
-    {"ms", {kTime, 1, 1e3}},
-    {"s", {kTime, 1, 1}},
-    {"min", {kTime, 60, 1}},
-    {"h", {kTime, 3600, 1}},
-    {"g", {kMass, 1, 1e3}},
-    {"kg", {kMass, 1, 1}},
-    {"t", {kMass, 1e3, 1}},
-    {"mN", {kForce, 1, 1e3}},
-    {"N", {kForce, 1, 1}},
-    {"kN", {kForce, 1e3, 1}},
-    {"J", {kEnergy, 1, 1}},
-    {"W", {kPower, 1, 1}},
-    {"kW", {kPower, 1e3, 1}},
-    {"rpm", {kAngularSpeed, kHalfTurn, 30}},
+    {"%", {kNone, 1, 100}},    {"um", {kLength, 1, 1e6}},   {"mm", {kLength, 1, 1e3}},
+    {"cm", {kLength, 1, 100}}, {"dm", {kLength, 1, 10}},    {"m", {kLength, 1, 1}},
+    {"km", {kLength, 1e3, 1}}, {"in", {kLength, 254, 1e4}}, {"mrad", {kAngle, 1, 1e3}},
+    {"rad", {kAngle, 1, 1}},   {"deg", {kAngle, kPi, 180}}, {"\u00b0", {kAngle, kPi, 180}},
+    {"us", {kTime, 1, 1e6}},   {"ms", {kTime, 1, 1e3}},     {"s", {kTime, 1, 1}},
+    {"min", {kTime, 60, 1}},   {"h", {kTime, 3600, 1}},     {"g", {kMass, 1, 1e3}},
+    {"kg", {kMass, 1, 1}},     {"t", {kMass, 1e3, 1}},      {"mN", {kForce, 1, 1e3}},
+    {"N", {kForce, 1, 1}},     {"kN", {kForce, 1e3, 1}},    {"J", {kEnergy, 1, 1}},
+    {"W", {kPower, 1, 1}},     {"kW", {kPower, 1e3, 1}},    {"rpm", {kAngularSpeed, kPi, 30}},
 };
 
-/// Also each byte of a letter beyond ASCII, such as the sign for degrees.
+/// Whether a byte may be part of a unit symbol; true for all bytes of non-ASCII characters, such as the degree sign.
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// Reads "kg m^2/s" symbol by symbol; `use` sees each with its power. False when the text is no product of known units.
-template <class Use>
-bool read_unit(std::string_view text, Use use) {
+/// Parses a product of units such as "kg m^2/s" and calls visit(symbol, power) for each factor.
+/// @return false if the text is not a product of known units
+template <class Visit>
+bool read_unit(std::string_view text, Visit visit) {
   int sign = 1;
   bool need_factor = true;
   while (true) {
@@ -95,7 +78,7 @@ bool read_unit(std::string_view text, Use use) {
         if (error != std::errc{} || power == 0 || std::abs(power) > 9) return false;
         text.remove_prefix(static_cast<std::size_t>(end - text.data()));
       }
-      use(*symbol, sign * power);
+      visit(*symbol, sign * power);
     }
     sign = 1;
     need_factor = false;
@@ -114,8 +97,8 @@ std::optional<Unit> unit_of(std::string_view text) {
   return known ? std::optional(product) : std::nullopt;
 }
 
-/// A finite number and what stands behind it.
-std::optional<std::pair<double, std::string_view>> number_and_unit(std::string_view text) {
+/// Splits a text into a finite number and the text that follows it, trimmed.
+std::optional<std::pair<double, std::string_view>> split_quantity(std::string_view text) {
   std::string_view rest = trimmed(text);
   if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
   double number = 0;
@@ -124,8 +107,8 @@ std::optional<std::pair<double, std::string_view>> number_and_unit(std::string_v
   return std::pair(number, trimmed(rest.substr(static_cast<std::size_t>(end - rest.data()))));
 }
 
-/// The names of the units that have the dimension of each symbol in `unit`: for "m^2 rad" those of m, then those of
-/// rad.
+/// The symbols that can replace the factors of `unit`, i.e. those with the same dimension: for "m^2 rad" all units of
+/// length, then all units of angle.
 std::vector<std::string> related_units(std::string_view unit) {
   std::vector<std::string> names;
   std::vector<Dimension> listed;
@@ -170,7 +153,7 @@ std::string kind_of_unit(std::string_view unit) {
 }
 
 std::string kind_of_quantity(std::string_view text) {
-  const auto parts = number_and_unit(text);
+  const auto parts = split_quantity(text);
   return parts && !parts->second.starts_with('1') && unit_of(parts->second) ? kind_of_unit(parts->second) : "";
 }
 
@@ -179,15 +162,15 @@ std::string with_unit(double value, std::string_view unit) {
 }
 
 std::string angle_hint(double value, std::string_view unit) {
-  if (unit != "rad" || std::fabs(value) <= kGreatestAngle) return "";
-  return "an angle within " + shortest(kGreatestAngle) +
-         " rad, beyond which digits would be lost; leave whole turns out";
+  if (unit != "rad" || std::fabs(value) <= kMaxAngle) return "";
+  return "an angle within " + shortest(kMaxAngle) +
+         " rad, because larger angles lose digits; subtract whole revolutions";
 }
 
 std::string in_degrees(double value, std::string_view unit) {
   if (unit != "rad" || std::isnan(value)) return "";
   std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), " (%.6g deg)", value * 180 / kHalfTurn);
+  std::snprintf(text.data(), text.size(), " (%.6g deg)", value * 180 / kPi);
   return text.data();
 }
 
@@ -195,7 +178,7 @@ std::string with_degrees(double value, std::string_view unit) {
   return with_unit(value, unit) + in_degrees(value, unit);
 }
 
-std::string from_to(double lower, double upper, std::string_view unit) {
+std::string format_range(double lower, double upper, std::string_view unit) {
   return shortest(lower) + in_degrees(lower, unit) + " .. " + with_degrees(upper, unit);
 }
 
@@ -209,13 +192,13 @@ std::optional<std::int64_t> parse_integer(std::string_view text) {
 }
 
 std::optional<double> parse_quantity(std::string_view text, std::string_view unit) {
-  const auto parts = number_and_unit(text);
+  const auto parts = split_quantity(text);
   if (!parts) return {};
-  const auto& [number, behind] = *parts;
-  if (behind.empty()) return number;
-  const auto written = unit_of(behind), wanted = unit_of(unit);
-  PKM_EXPECTS(wanted.has_value());
-  if (!written || behind[0] == '1' || !wanted || written->dimension != wanted->dimension) return {};
+  const auto& [number, suffix] = *parts;
+  if (suffix.empty()) return number;
+  const auto written = unit_of(suffix), expected = unit_of(unit);
+  PKM_EXPECTS(expected.has_value());
+  if (!written || suffix[0] == '1' || !expected || written->dimension != expected->dimension) return {};
   const double value = number * written->multiply / written->divide;
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }

@@ -1,9 +1,8 @@
-// Quantities with units, as users write them: "200 mm", "30deg", "30°", "0.5", "1e-3 m^2 rad".
+// Parsing and formatting of quantities with units, as users write them: "200 mm", "30deg", "30°", "1e-3 m^2 rad".
 //
-// The program computes in SI and radians; other units exist only where text comes in. A unit is a product of symbols
-// with whole powers ("kg m^2", "m/s", "N m"). The conversion is one multiplication and one division of the number
-// written, so that "35 mm" has the same bits as 0.035. Angles count as a dimension of their own: "m^2" is not "m^2
-// rad".
+// The program computes in SI units and radians; other units occur only in input text. A unit is a product of symbols
+// with integer powers ("kg m^2", "m/s", "N m"). The conversion is one multiplication and one division of the number, so
+// that "35 mm" gives the same bits as 0.035. The angle is a base dimension of its own: "m^2" differs from "m^2 rad".
 #pragma once
 
 #include <cstdint>
@@ -13,45 +12,47 @@
 
 namespace pkm {
 
-/// The value of `text` in the SI unit `unit` ("m", "rad", "s", "kg", "N", "kg m^2", ... or "1"). Text without a unit is
-/// taken to be in `unit`. Does not depend on the locale. None where `text` is no finite number, has another dimension,
-/// an unknown unit or anything behind it: see quantity_hint().
+/// Parses a quantity. Text without a unit is in `unit`. Does not depend on the locale.
+/// @param unit  SI unit: "m", "rad", "s", "kg", "N", "kg m^2", ... or "1"
+/// @return its value in `unit`; std::nullopt if `text` is not a finite number, has another dimension, has an unknown
+///         unit, or contains anything else. quantity_hint() describes what is expected.
 std::optional<double> parse_quantity(std::string_view text, std::string_view unit);
 
-/// What a text is that has a number and a unit: "an angle", "a length", or "a quantity in kg/m"; "" for any other text,
-/// also for numbers alone. The same of what is wanted, by its unit: kind_of_unit("rad").
+/// Describes the dimension of a text with a number and a unit: "an angle", "a length", or "a quantity in kg/m".
+/// @return "" for any other text, including numbers without a unit
 std::string kind_of_quantity(std::string_view text);
+/// Describes the dimension of a unit in the same way.
 std::string kind_of_unit(std::string_view unit);
 
-/// Angles beyond it [rad] are no input: a double holds fewer than 11 digits of what is left of them behind whole turns,
-/// and sin and cos are not reduced for them (engine/math/portable.hpp).
-inline constexpr double kGreatestAngle = 1e5;
+/// Maximum magnitude of an angle in the input [rad]. Of larger angles, a double represents the remainder modulo 2 pi
+/// with fewer than 11 digits, and the argument reduction of sin and cos is not exact (engine/math/portable.hpp).
+inline constexpr double kMaxAngle = 1e5;
 
-/// Why a number in `unit` is not taken, where it is an angle beyond kGreatestAngle: what is expected. Else "".
+/// What is expected instead of `value`, if it is an angle whose magnitude exceeds kMaxAngle; otherwise "".
 std::string angle_hint(double value, std::string_view unit);
 
-/// " (75 deg)" behind a number in rad; "" behind one in another unit, and behind NaN.
+/// The value in degrees, to be appended to a number in rad: " (75 deg)"; "" for other units and for NaN.
 std::string in_degrees(double value, std::string_view unit);
-/// "1.5 rad (85.9437 deg)", "2 m".
+/// Formats a number with its unit, angles also in degrees: "1.5 rad (85.9437 deg)", "2 m".
 std::string with_degrees(double value, std::string_view unit);
-/// "0 .. 2 m", "0 (0 deg) .. 1.5 rad (85.9437 deg)".
-std::string from_to(double lower, double upper, std::string_view unit);
+/// Formats a range: "0 .. 2 m", "0 (0 deg) .. 1.5 rad (85.9437 deg)".
+std::string format_range(double lower, double upper, std::string_view unit);
 
-/// A whole number in decimal digits, "-12", "0"; none for anything else, such as "010", "1e3", " 1", "+1" or what 64
-/// bits do not hold.
+/// Parses an integer in decimal digits: "-12", "0".
+/// @return std::nullopt for any other text, such as "010", "1e3", " 1" or "+1", and for integers that exceed 64 bits
 std::optional<std::int64_t> parse_integer(std::string_view text);
 
-/// The text without blanks and tabs around it.
+/// The text without leading and trailing blanks and tabs.
 std::string_view trimmed(std::string_view text);
 
-/// Whether `unit` is a product of SI units that the program knows, such as "m", "m^2 rad", "N m/rad" or "1".
+/// Whether `unit` is a product of known coherent SI units, such as "m", "m^2 rad", "N m/rad" or "1".
 bool is_si_unit(std::string_view unit);
 
-/// What may be written where a quantity in `unit` is expected, for messages: "a number in m, or text with a unit made
-/// of um, mm, cm, dm, m, km, in".
+/// Describes the valid input for a quantity in `unit`, for messages: "a number in m, or text with a unit made of um,
+/// mm, cm, dm, m, km, in".
 std::string quantity_hint(std::string_view unit);
 
-/// "0.2 m", "0.5" for unit "1": a number with its unit, for messages and listings.
+/// Formats a number with its unit, for messages and listings: "0.2 m", or "0.5" if the unit is "1".
 std::string with_unit(double value, std::string_view unit);
 
 }  // namespace pkm

@@ -1,4 +1,5 @@
-// What a joint-space inertia M_q says of a mechanism: coupling indices of the joints, and its condition.
+// Indices of the joint-space inertia matrix M_q: dynamic coupling indices of the joints, and its inverse condition
+// number.
 #pragma once
 
 #include <cmath>
@@ -11,7 +12,7 @@
 
 namespace pkm {
 
-/// Of each joint, from M_q.
+/// The dynamic coupling index of each joint.
 template <SmallMatrix M>
 auto coupling_indices(const M& M_q) {
   using S = typename M::Scalar;
@@ -25,7 +26,7 @@ auto coupling_indices(const M& M_q) {
   return indices;
 }
 
-/// The elements as a matrix.
+/// The symmetric matrix with these elements.
 template <class S>
 Matrix<S, 4, 4> matrix_of(const JointInertia<S>& of) {
   Matrix<S, 4, 4> M;
@@ -34,15 +35,15 @@ Matrix<S, 4, 4> matrix_of(const JointInertia<S>& of) {
   return M;
 }
 
-/// Least over greatest eigenvalue of M_q, in [0, 1]: 1 where every joint feels the same inertia and none couples.
-/// With derivatives d lambda = v^T dM v.
+/// Inverse condition number of M_q: minimum over maximum eigenvalue, in [0, 1]; 1: all joints have the same inertia and
+/// are decoupled; 0: M_q is singular or not finite. Derivatives of an eigenvalue: d lambda = v^T dM v.
 template <SmallMatrix M>
 typename M::Scalar inertia_condition(const M& M_q) {
   using S = typename M::Scalar;
   if constexpr (!M::kFixed)
-    if (M_q.rows() == 4) return inertia_condition(fixed<4, 4>(M_q));  // the same bits as where 4 is known
-  constexpr int kMost = static_cast<int>(M::kRows), kSize = M::kFixed ? kMost : Eigen::Dynamic;
-  using Values = Eigen::Matrix<double, kSize, kSize, 0, kMost, kMost>;
+    if (M_q.rows() == 4) return inertia_condition(fixed<4, 4>(M_q));  // the same bits as with the fixed size
+  constexpr int kMax = static_cast<int>(M::kRows), kSize = M::kFixed ? kMax : Eigen::Dynamic;
+  using Values = Eigen::Matrix<double, kSize, kSize, 0, kMax, kMax>;
   const auto n = static_cast<int>(M_q.rows());
   const auto element = [&](int i, int j) { return M_q(static_cast<std::size_t>(i), static_cast<std::size_t>(j)); };
   Values values(n, n);
@@ -50,15 +51,15 @@ typename M::Scalar inertia_condition(const M& M_q) {
     for (int j = 0; j < n; ++j) values(i, j) = value_of(element(i, j));
   if (!values.allFinite()) return S(0.0);
   const Eigen::SelfAdjointEigenSolver<Values> eigen(values);
-  const auto along = [&](int which) {
+  const auto eigenvalue = [&](int which) {  // v^T M v, for the derivatives
     S sum(0.0);
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
         sum += element(i, j) * (eigen.eigenvectors()(i, which) * eigen.eigenvectors()(j, which));
     return sum;
   };
-  const S least = along(0), greatest = along(n - 1);
-  return value_of(greatest) > 0 && value_of(least) > 0 ? S(least / greatest) : S(0.0);
+  const S smallest = eigenvalue(0), largest = eigenvalue(n - 1);
+  return value_of(largest) > 0 && value_of(smallest) > 0 ? S(smallest / largest) : S(0.0);
 }
 
 }  // namespace pkm

@@ -1,8 +1,9 @@
-// Dynamic coupling indices: how much of a joint's inertia force comes from the other joints.
+// Dynamic coupling indices (DCI): measure of the inertia forces in a joint that are caused by the other joints.
 //
 //   DCI_i = 1 - exp(-delta_i),   delta_i = sum over k != i of |M_q(i,k)| / |M_q(i,i)|
 //
-// 0: none; tends to 1. Free of units, because all entries of M_q are in kg. Source: as pose_dynamics.hpp, eq 42.
+// 0: decoupled; it tends to 1 for strong coupling. Dimensionless if all elements of M_q have the same unit, kg. Source:
+// as pose_dynamics.hpp, eq 42.
 #pragma once
 
 #include <array>
@@ -11,19 +12,19 @@
 
 namespace pkm {
 
-/// The elements of M_q [kg].
+/// The elements of a symmetric 4 x 4 matrix M_q [kg].
 template <class S>
 struct JointInertia {
   S m00, m11, m22, m33, m01, m02, m03, m12, m13, m23;
 };
 
-/// 1 - exp(-off / own).
+/// 1 - exp(-off / own), with the sum `off` of the off-diagonal magnitudes and the diagonal element `own`.
 template <class S>
 [[gnu::always_inline]] inline S coupling_index(const S& off, const S& own) {
   return S(1.0) - exp(S(off / own * -1.0));
 }
 
-/// S may be lanes.
+/// The coupling indices of four joints. S can be Lanes (SIMD).
 template <class S>
 [[gnu::always_inline]] inline std::array<S, 4> coupling_indices(const JointInertia<S>& M) {
   const S m01 = magnitude(M.m01), m02 = magnitude(M.m02), m03 = magnitude(M.m03), m12 = magnitude(M.m12),

@@ -17,14 +17,14 @@ MotorFit fit(const Motor& motor, DriveTrain train, std::span<const JointLoad> lo
   }
   found.rms_torque = std::sqrt(squares / static_cast<double>(loads.size()));
   found.reserve = std::numeric_limits<double>::infinity();
-  const auto bound = [&found](const char* by, double limit, double asked) {
-    if (!(limit / asked < found.reserve)) return;
-    found.reserve = limit / asked;
-    found.bounded_by = by;
+  const auto compare = [&found](const char* name, double rating, double demand) {
+    if (!(rating / demand < found.reserve)) return;
+    found.reserve = rating / demand;
+    found.bounded_by = name;
   };
-  bound("peak torque", motor.peak_torque, found.peak_torque);
-  bound("continuous torque", motor.continuous_torque, found.rms_torque);
-  bound("speed", motor.speed, found.speed);
+  compare("peak torque", motor.peak_torque, found.peak_torque);
+  compare("continuous torque", motor.continuous_torque, found.rms_torque);
+  compare("speed", motor.speed, found.speed);
   return found;
 }
 

@@ -5,6 +5,8 @@
 
 #include <Eigen/QR>
 
+#include "engine/dynamics/pose_dynamics.hpp"
+
 namespace pkm {
 namespace {
 
@@ -12,10 +14,10 @@ using Eigen::Index;
 
 Eigen::Vector3d eigen(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// A joint with the numbers of its columns: three forces from the first on, behind them its couples.
+/// A joint and its columns in the equations: three forces, followed by its couples.
 struct JointColumns {
   const Joint& joint;
-  Index first, couples;  ///< where they begin
+  Index first, couples;  ///< first column of the forces and of the couples
   Index couple_count;
 };
 std::vector<JointColumns> columns_of(const NewtonEuler& system) {
@@ -28,19 +30,19 @@ std::vector<JointColumns> columns_of(const NewtonEuler& system) {
   return columns;
 }
 
-/// A component of a joint's force, or of its couple, along a direction: how much of the unknowns from a column on.
+/// A component of a joint's force or couple along a direction, as a linear combination of consecutive unknowns.
 struct Component {
   Index first;
-  Eigen::VectorXd share;
+  Eigen::VectorXd weights;
 
-  double in(const Eigen::VectorXd& solution) const { return share.dot(solution.segment(first, share.size())); }
-  /// Whether no null vector of length 1 moves it.
-  bool is_determined(const LeastNorm& solution) const {
-    if (solution.null_space.cols() == 0 || share.size() == 0) return true;
-    const auto rows = solution.null_space.middleRows(first, share.size());
-    return (share.transpose() * rows).norm() < kUniqueTolerance;
+  double in(const Eigen::VectorXd& solution) const { return weights.dot(solution.segment(first, weights.size())); }
+  /// True if no unit vector of the null space changes it by more than the tolerance.
+  bool is_determined(const MinNormSolution& solution) const {
+    if (solution.null_space.cols() == 0 || weights.size() == 0) return true;
+    const auto rows = solution.null_space.middleRows(first, weights.size());
+    return (weights.transpose() * rows).norm() < kUniqueTolerance;
   }
-  std::optional<double> determined(const LeastNorm& solution) const {
+  std::optional<double> determined(const MinNormSolution& solution) const {
     return is_determined(solution) ? std::optional(in(solution.x)) : std::nullopt;
   }
 };
@@ -48,10 +50,11 @@ Component force_along(const JointColumns& at, const Eigen::Vector3d& direction) 
 Component couple_along(const JointColumns& at, const Eigen::Vector3d& direction) {
   Component component{at.couples, Eigen::VectorXd(at.couple_count)};
   for (Index k = 0; k < at.couple_count; ++k)
-    component.share[k] = direction.dot(eigen(at.joint.couples[static_cast<std::size_t>(k)]));
+    component.weights[k] = direction.dot(eigen(at.joint.couples[static_cast<std::size_t>(k)]));
   return component;
 }
-Component of_actuator(const JointColumns& at) {
+/// The component that the actuator of a joint exerts.
+Component actuation(const JointColumns& at) {
   const Eigen::Vector3d axis = eigen(at.joint.actuator->axis);
   return at.joint.actuator->turns ? couple_along(at, axis) : force_along(at, axis);
 }
@@ -63,7 +66,7 @@ LinearEquations equations(const NewtonEuler& system) {
   const auto rows = static_cast<Index>(6 * system.bodies.size());
   const Index unknowns = columns.empty() ? 0 : columns.back().couples + columns.back().couple_count;
   LinearEquations e{Eigen::MatrixXd::Zero(rows, unknowns), Eigen::VectorXd(rows)};
-  // what a joint's unknowns do to a body; sign -1 for the one that feels the opposite
+  // adds the columns of a joint to the rows of a body; sign: -1 for the body that the opposites act on
   const auto add_joint = [&](const JointColumns& at, std::size_t body, double sign) {
     const auto row = static_cast<Index>(6 * body);
     const Eigen::Vector3d r = eigen(at.joint.point - system.bodies[body].centre) * sign;
@@ -95,11 +98,11 @@ double couple_length(const NewtonEuler& system) {
   return sum > 0 ? std::sqrt(sum / static_cast<double>(system.joints.size())) : 1;
 }
 
-LeastNorm least_norm(const NewtonEuler& system) {
+MinNormSolution min_norm_solution(const NewtonEuler& system) {
   LinearEquations e = equations(system);
   const std::vector<JointColumns> columns = columns_of(system);
   const double length = couple_length(system);
-  // moments and couples divided by the length, so that all entries are forces per force
+  // divide moments and couples by the length, so that A is dimensionless
   for (Index row = 3; row < e.A.rows(); row += 6) {
     e.A.middleRows<3>(row) /= length;
     e.b.segment<3>(row) /= length;
@@ -109,9 +112,9 @@ LeastNorm least_norm(const NewtonEuler& system) {
   decomposition.setThreshold(kRankTolerance);
   decomposition.compute(e.A);
   const Index rank = decomposition.rank(), unknowns = e.A.cols();
-  LeastNorm solution{.x = decomposition.solve(e.b), .null_space = {}, .rank = static_cast<int>(rank)};
+  MinNormSolution solution{.x = decomposition.solve(e.b), .null_space = {}, .rank = static_cast<int>(rank)};
   for (const JointColumns& at : columns) solution.x.segment(at.couples, at.couple_count) *= length;
-  // A = Q [T 0; 0 0] Z P^T: the last columns of P Z^T span what A does not see.
+  // A = Q [T 0; 0 0] Z P^T: the last columns of P Z^T span the null space of A.
   solution.null_space.resize(unknowns, 0);
   if (rank < unknowns)
     solution.null_space = decomposition.colsPermutation() *
@@ -126,15 +129,15 @@ AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd
   AxisVector<double> forces(actuators);
   for (const JointColumns& at : columns_of(system))
     if (const auto& actuator = at.joint.actuator)
-      forces[actuator->joint] += of_actuator(at).in(solution) + actuator->on_slide;
+      forces[actuator->joint] += actuation(at).in(solution) + actuator->on_slide;
   return forces;
 }
 
 Reactions reactions(const NewtonEuler& system) {
-  const LeastNorm solution = least_norm(system);
+  const MinNormSolution solution = min_norm_solution(system);
   const std::vector<JointColumns> columns = columns_of(system);
   const bool drives_are_determined = std::ranges::all_of(
-      columns, [&](const JointColumns& at) { return !at.joint.actuator || of_actuator(at).is_determined(solution); });
+      columns, [&](const JointColumns& at) { return !at.joint.actuator || actuation(at).is_determined(solution); });
   Reactions found;
   found.equations = static_cast<int>(6 * system.bodies.size());
   found.unknowns = static_cast<int>(solution.x.size());

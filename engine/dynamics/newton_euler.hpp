@@ -1,14 +1,14 @@
-// Newton's and Euler's equations of every body of a mechanism, with all forces and couples in its joints unknown:
+// Newton-Euler equations of all bodies of a mechanism, with the forces and couples in all joints as unknowns:
 //
 //   sum F + m g = m a,     sum (M + r x F) = I epsilon + omega x I omega     (about the centre of mass)
 //
-// A mechanism whose joints constrain it more often than necessary has more unknowns than equations. The rank-revealing
-// solution tells what is determined all the same: an unknown is where its row of a basis of the null space vanishes.
-// What then remains of a null space are forces and couples that bodies hold against each other; those of the actuators
-// are unique.
+// An overconstrained mechanism has more unknowns than equations. A rank-revealing decomposition gives the minimum-norm
+// solution and a basis of the null space (internal forces and couples that are in equilibrium with each other). An
+// unknown is determined if its row of the null-space basis vanishes. The forces of the actuators are determined except
+// at singularities.
 //
 // Source: Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, section 2.4 with its
-// errata (60 equations have 64 unknowns there, not 60).
+// errata (the 60 equations there have 64 unknowns, not 60).
 #pragma once
 
 #include <cstddef>
@@ -23,62 +23,63 @@
 
 namespace pkm {
 
-/// Which component of a joint's force an actuator exerts, or of its couple, which the joint then carries. Those of one
-/// number together are one drive.
+/// Marks a component of a joint's force or couple as exerted by an actuator. Components with the same `joint` add up to
+/// one drive force.
 struct Actuator {
-  std::size_t joint;       ///< number among the mechanism's actuated joints
-  Vector<double, 3> axis;  ///< of unit length; forces along it are positive
-  /// What the actuator spends before the joint, on a slide of its own: mass times (acceleration - g) along the axis
-  /// [N].
+  std::size_t joint;       ///< index among the mechanism's actuated joints
+  Vector<double, 3> axis;  ///< unit vector of the positive direction
+  /// Additional force for a slide between actuator and joint that is not among the bodies: its mass times
+  /// (acceleration - g) along the axis [N].
   double on_slide = 0;
-  bool turns = false;
+  bool turns = false;  ///< rotary: acts on the couple, not on the force
 };
 
-/// Between two bodies, or a body and the ground. It transmits a force in every direction.
+/// A joint between two bodies, or a body and the ground. It transmits forces in all directions.
 struct Joint {
   std::string name;
   Vector<double, 3> point;                 ///< [m]
-  std::size_t on;                          ///< body that force and couples act on
-  std::optional<std::size_t> from;         ///< body that their opposites act on; none: the ground
-  std::vector<Vector<double, 3>> couples;  ///< that it can transmit: directions of unit length
+  std::size_t on;                          ///< index of the body that the force and the couples act on
+  std::optional<std::size_t> from;         ///< index of the body that the opposites act on; std::nullopt: the ground
+  std::vector<Vector<double, 3>> couples;  ///< unit vectors of the couples that it can transmit
   std::optional<Actuator> actuator;
 };
 
-/// Rows: for each body three forces, then three moments. Columns: for each joint three forces, then its couples.
+/// The system of equations. Rows: three force and three moment equations per body. Columns: three forces per joint,
+/// followed by its couples.
 struct NewtonEuler {
   std::vector<RigidBody> bodies;
   std::vector<Joint> joints;
 };
 
-/// A x = b in N, N m and m.
+/// A x = b, with forces in N, couples in N m and lengths in m.
 struct LinearEquations {
   Eigen::MatrixXd A;
   Eigen::VectorXd b;
 };
 LinearEquations equations(const NewtonEuler& system);
 
-/// Solution of least norm, and what of it is determined.
-struct LeastNorm {
+/// Minimum-norm solution, and the null space of the equations.
+struct MinNormSolution {
   Eigen::VectorXd x;           ///< the unknowns in column order [N, N m]
-  Eigen::MatrixXd null_space;  ///< orthonormal columns: changes of x / (1 N, couple_length N m) that no body feels
+  Eigen::MatrixXd null_space;  ///< orthonormal basis in columns; forces in 1 N, couples in couple_length() N m
   int rank = 0;
 };
 
-/// Length by which couples are divided to be compared with forces: root mean square distance of the joints from the
-/// centres of the bodies that they act on, 1 m where all are in them [m]. The least norm depends on it, what is
-/// determined does not.
+/// Characteristic length [m] that makes couples comparable with forces: root mean square distance of the joints from
+/// the centres of mass of the bodies that they act on; 1 m if all distances are 0. The minimum-norm solution depends on
+/// it, the determined components do not.
 double couple_length(const NewtonEuler& system);
 
-/// By complete orthogonal decomposition; pivots below kRankTolerance of the greatest are 0.
-inline constexpr double kRankTolerance = 1e-10;
-LeastNorm least_norm(const NewtonEuler& system);
+inline constexpr double kRankTolerance = 1e-10;  ///< relative to the largest pivot: smaller pivots count as 0
+/// Solves the equations by complete orthogonal decomposition.
+MinNormSolution min_norm_solution(const NewtonEuler& system);
 
-/// Forces of the actuators in a solution, by the number of their joints [N, N m].
+/// Forces of the actuators in a solution, by index of their joints [N, N m].
 AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution);
 
-/// Everything that is determined, by the solution of least norm. An unknown is when no null vector of length 1 moves
-/// it by kUniqueTolerance.
+/// A component is determined if unit vectors of the null space change it by less than this.
 inline constexpr double kUniqueTolerance = 1e-9;
+/// Joint reactions and drive forces, as far as the equations determine them.
 Reactions reactions(const NewtonEuler& system);
 
 }  // namespace pkm

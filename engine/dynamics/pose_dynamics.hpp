@@ -1,10 +1,12 @@
-// The equations of motion of one pose, in the coordinates X of the platform and in those q of the joints.
+// Equations of motion at one pose, in the coordinates X of the platform (task space) and in those of the joints q
+// (joint space).
 //
 //   J^T tau = M_X Xddot + h_X + G_X - W_X,   qdot = J Xdot,   W_X = J_w^T (F, M)
 //   tau     = M_q qddot + c_q + G_q - J^-T W_X,   M_q = J^-T M_X J^-1,   c_q = J^-T (h_X - M_X J^-1 Jdot Xdot)
 //
-// Source: virtual work with the bodies' Jacobians; Transactions of the Chinese Society for Agricultural Machinery 54
-// (9), 2023, 448-458, eqs 36 to 41, with its errata. A mechanism fills PoseDynamics in; the rest is here.
+// Derived by the principle of virtual work with the Jacobians of the bodies. Source: Transactions of the Chinese
+// Society for Agricultural Machinery 54 (9), 2023, 448-458, eqs 36 to 41, with its errata. A mechanism provides
+// PoseDynamics; the functions below derive forces, joint-space inertia and accelerations from it.
 #pragma once
 
 #include <limits>
@@ -12,15 +14,15 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/geometry/pose.hpp"
+#include "engine/geometry/singular.hpp"
 #include "engine/math/small_matrix.hpp"
-#include "engine/model/pose.hpp"
-#include "engine/model/singular.hpp"
 
 namespace pkm {
 
 inline constexpr double kGravity = 9.81;  ///< [m/s^2], along -z
 
-/// Force and moment on the platform [N, N m]: Fx, Fy, Fz, Mx, My, Mz.
+/// External force and moment on the platform [N, N m]: Fx, Fy, Fz, Mx, My, Mz.
 template <class S>
 using Wrench = Vector<S, 6>;
 
@@ -29,7 +31,7 @@ inline const std::vector<std::string>& wrench_names() {
   return names;
 }
 
-/// A pose on its way: what the equations of motion are evaluated at. N as in PoseDynamics.
+/// Pose and velocity at which the equations of motion are evaluated. N as in PoseDynamics.
 template <class S, std::size_t N = 0>
 struct MotionState {
   Pose<S> pose;
@@ -43,39 +45,40 @@ struct MotionState<S, 4> {
   Vector<S, 4> velocity;
 };
 
-/// For N coordinates and as many joints; N = 0: for any number of both.
+/// The equations of motion in the coordinates of the platform. For N coordinates and N joints; N = 0: numbers known at
+/// run time only.
 template <class S, std::size_t N = 0>
 struct PoseDynamics {
   using Vec = AxisVector<S, N>;
   using Mat = AxisMatrix<S, N>;
-  bool assembles = false;  ///< false: nothing below is set
+  bool assembles = false;  ///< false: the pose does not assemble, and nothing below is set
   Vec q;                   ///< joint positions [m, rad]
   Mat J;                   ///< qdot = J Xdot
   Vec J_rate_X;            ///< Jdot Xdot
-  Mat M_X;                 ///< inertia, kinetic energy = Xdot^T M_X Xdot / 2
-  Vec h_X;                 ///< centrifugal and Coriolis terms at the velocity given
-  Vec G_X;                 ///< weight: gradient of the potential energy
-  /// Velocity and angular velocity of the point where a wrench acts.
-  MatrixOf<S, 6, N ? N : kMostJoints, N != 0> J_wrench;
+  Mat M_X;                 ///< inertia matrix: kinetic energy = Xdot^T M_X Xdot / 2
+  Vec h_X;                 ///< centrifugal and Coriolis forces at the given velocity
+  Vec G_X;                 ///< gravity: gradient of the potential energy
+  /// Jacobian J_w of the point where a wrench acts: its velocity and angular velocity are J_w Xdot.
+  MatrixOf<S, 6, N ? N : kMaxJoints, N != 0> J_wrench;
 
   operator PoseDynamics<S>() const requires(N != 0) { return {assembles, q, J, J_rate_X, M_X, h_X, G_X, J_wrench}; }
 };
 
-/// Joint-space form; NaN where J is singular to working precision.
+/// The equations of motion in joint space; NaN if J is singular to working precision.
 template <class S, std::size_t N = 0>
 struct JointSpace {
-  AxisMatrix<S, N> M_q;       ///< [kg]
-  AxisVector<S, N> c_q, G_q;  ///< Coriolis and centrifugal forces, weight [N]
+  AxisMatrix<S, N> M_q;       ///< inertia matrix [kg, kg m, kg m^2]
+  AxisVector<S, N> c_q, G_q;  ///< Coriolis and centrifugal forces, gravity [N, N m]
 };
 
-/// The same size, and NaN everywhere: what does not exist where J is singular.
+/// A matrix of the same size whose elements are NaN, for quantities that do not exist at singularities.
 template <SmallMatrix M>
 M undetermined(M like) {
   for (auto& element : like) element = typename M::Scalar(std::numeric_limits<double>::quiet_NaN());
   return like;
 }
 
-/// J^-T f; NaN where J is singular to working precision.
+/// Joint forces J^-T f for forces f in the coordinates of the platform; NaN if J is singular to working precision.
 template <class S, std::size_t N>
 AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& f) {
   auto eliminated = transpose(d.J);
@@ -86,15 +89,15 @@ AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& 
   return forces;
 }
 
-/// Forces tau of the actuators for an acceleration Xddot under a wrench on the platform, by virtual work [N]; NaN where
-/// J is singular to working precision.
+/// Inverse dynamics: forces tau of the actuators for an acceleration Xddot under a wrench on the platform [N, N m]; NaN
+/// if J is singular to working precision.
 template <class S, std::size_t N>
 AxisVector<S, N> drive_forces(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& acceleration,
                               const Wrench<S>& wrench) {
   return at_joints<S, N>(d, d.M_X * acceleration + d.h_X + d.G_X - transpose(d.J_wrench) * wrench);
 }
 
-/// Inertia as the joints feel it [kg]; symmetric to the last bit. NaN where J is singular to working precision.
+/// Joint-space inertia matrix M_q [kg, kg m, kg m^2], exactly symmetric. NaN if J is singular to working precision.
 template <class S, std::size_t N>
 AxisMatrix<S, N> joint_inertia(const PoseDynamics<S, N>& d) {
   auto eliminated = transpose(d.J);
@@ -108,12 +111,13 @@ AxisMatrix<S, N> joint_inertia(const PoseDynamics<S, N>& d) {
   return M;
 }
 
+/// Transforms the equations of motion to joint space.
 template <class S, std::size_t N>
 JointSpace<S, N> joint_space(const PoseDynamics<S, N>& d) {
   return {joint_inertia(d), at_joints<S, N>(d, d.h_X - d.M_X * solve(d.J, d.J_rate_X)), at_joints<S, N>(d, d.G_X)};
 }
 
-/// Acceleration Xddot under forces of the actuators and a wrench on the platform (forward dynamics).
+/// Forward dynamics: acceleration Xddot under forces tau of the actuators and a wrench on the platform.
 template <class S, std::size_t N>
 AxisVector<S, N> acceleration(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& tau,
                               const Wrench<S>& wrench) {

@@ -1,4 +1,4 @@
-// What the joints of a mechanism carry.
+// Reaction forces and couples in the joints of a mechanism.
 #pragma once
 
 #include <array>
@@ -10,22 +10,23 @@
 
 namespace pkm {
 
-/// One joint: what it transmits, in world axes, acting on the body that is named first.
+/// Force and couple that a joint transmits to the body `on`, in world axes.
 struct JointReaction {
   std::string name;  ///< "a1"
-  std::string on;    ///< the body acted on; the opposite acts on the other
-  /// Along x, y, z [N]; none where the mechanism is overconstrained and rigid bodies do not determine it.
+  std::string on;    ///< the body they act on; the opposites act on the other body of the joint
+  /// Components along x, y, z [N]; std::nullopt if rigid bodies do not determine a component (overconstrained
+  /// mechanism).
   std::array<std::optional<double>, 3> force;
-  /// The same [N m]: 0 where the joint turns freely; a drive that turns is part of its joint's couple.
+  /// Components [N m]; 0 about free axes of the joint. The torque of a rotary drive is part of the couple of its joint.
   std::array<std::optional<double>, 3> couple;
 };
 
-/// Source of the model: Newton's and Euler's equations of every body.
+/// Solution of the Newton-Euler equations of all bodies (newton_euler.hpp).
 struct Reactions {
-  std::vector<JointReaction> joints;  ///< empty where the forces are not determined
-  AxisVector<double> drive_forces;    ///< of the actuators, found with the others [N, N m]
+  std::vector<JointReaction> joints;  ///< empty if the forces are not determined
+  AxisVector<double> drive_forces;    ///< of the actuators, from the same equations [N, N m]
   int equations = 0, unknowns = 0, rank = 0;
-  std::string reason;  ///< one sentence saying why the forces are not determined; "" where they are
+  std::string reason;  ///< one sentence why the forces are not determined; "" if they are
 };
 
 }  // namespace pkm

@@ -10,29 +10,31 @@
 namespace pkm {
 namespace {
 
+// Butcher tableau of the Gauss method: nodes c, weights b, and coefficients A.
 constexpr std::size_t kStages = 3;
-constexpr double kRoot = 3.872983346207417;  // sqrt(15)
-constexpr double kNode[kStages] = {0.5 - kRoot / 10, 0.5, 0.5 + kRoot / 10};
+constexpr double kSqrt15 = 3.872983346207417;
+constexpr double kNode[kStages] = {0.5 - kSqrt15 / 10, 0.5, 0.5 + kSqrt15 / 10};
 constexpr double kWeight[kStages] = {5.0 / 18, 4.0 / 9, 5.0 / 18};
-constexpr double kInner[kStages][kStages] = {{5.0 / 36, 2.0 / 9 - kRoot / 15, 5.0 / 36 - kRoot / 30},
-                                             {5.0 / 36 + kRoot / 24, 2.0 / 9, 5.0 / 36 - kRoot / 24},
-                                             {5.0 / 36 + kRoot / 30, 2.0 / 9 + kRoot / 15, 5.0 / 36}};
-constexpr int kMostIterations = 60;
+constexpr double kInner[kStages][kStages] = {{5.0 / 36, 2.0 / 9 - kSqrt15 / 15, 5.0 / 36 - kSqrt15 / 30},
+                                             {5.0 / 36 + kSqrt15 / 24, 2.0 / 9, 5.0 / 36 - kSqrt15 / 24},
+                                             {5.0 / 36 + kSqrt15 / 30, 2.0 / 9 + kSqrt15 / 15, 5.0 / 36}};
+constexpr int kMaxIterations = 60;
 
-const char* const kLeavesReach = "the mechanism leaves its reach";
-std::string odd_or_long(const SimulationSetup& setup) {
-  return std::string(": the mechanism is near a singularity, or the step is too long") +
-         (setup.friction ? " for friction, which turns round within `slow_speed`" : "");
+const char* const kOutOfReach = "the pose is out of reach";
+std::string likely_cause(const SimulationSetup& setup) {
+  return std::string(": the mechanism is near a singularity, or the time step is too long") +
+         (setup.friction ? " for friction, which changes sign within `slow_speed`" : "");
 }
 std::string at(double time) { return "at t = " + with_unit(time, "s") + " "; }
 
-double largest(const AxisVector<double>& x) {
-  double most = 0;
-  for (const double value : x) most = std::isfinite(value) ? std::fmax(most, std::fabs(value)) : INFINITY;
-  return most;
+/// Maximum norm; infinity if an element is not finite.
+double max_norm(const AxisVector<double>& x) {
+  double max = 0;
+  for (const double value : x) max = std::isfinite(value) ? std::fmax(max, std::fabs(value)) : INFINITY;
+  return max;
 }
 
-/// One state of a step on its way, and the powers there [W].
+/// One stage of a step: velocity, acceleration, and the powers of the forces [W].
 struct Stage {
   AxisVector<double> velocity, acceleration;
   double drives = 0, friction = 0, weight = 0, wrench = 0;
@@ -42,7 +44,7 @@ class Integrator {
  public:
   explicit Integrator(const SimulationSetup& setup) : setup_(setup) {}
 
-  /// "" or why there is no step.
+  /// Makes one step. @return "", or why it failed
   std::string step(const SimulationState& from, double end, SimulationState& to) const {
     const double h = end - from.time;
     std::array<Stage, kStages> stages;
@@ -62,23 +64,23 @@ class Integrator {
     return complete(to);
   }
 
-  /// Acceleration and kinetic energy of a state. "" or why there are none, or a limit that it breaks.
+  /// Computes acceleration and kinetic energy of a state. @return "", or why they do not exist, or the violated limit
   std::string complete(SimulationState& state) const {
     const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
-    if (!d.assembles) return at(state.time) + kLeavesReach;
-    if (is_singular(d.J)) return at(state.time) + "the mechanism is in a singularity";
-    state.acceleration = acceleration(d, at_joints(d, state.time, state.velocity).first, setup_.wrench);
+    if (!d.assembles) return at(state.time) + kOutOfReach;
+    if (is_singular(d.J)) return at(state.time) + "the mechanism is at a singularity";
+    state.acceleration = acceleration(d, joint_forces(d, state.time, state.velocity).first, setup_.wrench);
     state.kinetic_energy = kinetic_energy(d, state.velocity);
-    if (!std::isfinite(largest(state.acceleration))) return at(state.time) + "the mechanism has no finite acceleration";
+    if (!std::isfinite(max_norm(state.acceleration))) return at(state.time) + "the acceleration is not finite";
     const std::string refused = setup_.refuse ? setup_.refuse(state.pose) : std::string();
     return refused.empty() ? refused : at(state.time) + refused;
   }
 
  private:
-  /// By repetition: each turn takes the accelerations where those of the turn before lead.
+  /// Solves the implicit stage equations by fixed-point iteration on the accelerations. @return "", or why it failed
   std::string solve_stages(const SimulationState& from, double h, std::array<Stage, kStages>& stages) const {
-    double before = INFINITY;
-    for (int turn = 0; turn < kMostIterations; ++turn) {
+    double previous_change = INFINITY;
+    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       std::array<AxisVector<double>, kStages> pose, velocity;
       for (std::size_t i = 0; i < kStages; ++i) {
         pose[i] = from.pose;
@@ -91,31 +93,32 @@ class Integrator {
       for (std::size_t i = 0; i < kStages; ++i) {
         const double time = from.time + h * kNode[i];
         Stage now;
-        if (!evaluate(time, pose[i], velocity[i], now)) return at(time) + kLeavesReach;
-        change = std::fmax(change, largest(now.acceleration - stages[i].acceleration));
-        scale = std::fmax(scale, largest(now.acceleration));
+        if (!evaluate(time, pose[i], velocity[i], now)) return at(time) + kOutOfReach;
+        change = std::fmax(change, max_norm(now.acceleration - stages[i].acceleration));
+        scale = std::fmax(scale, max_norm(now.acceleration));
         stages[i] = now;
       }
       if (!std::isfinite(scale)) break;
-      const bool settled =
-          change <= 1e-12 * std::fmax(scale, kGravity);  // and then until rounding stops it from falling
-      if (change == 0 || (settled && change >= before)) return {};
-      before = change;
+      // after convergence, continue until rounding errors stop the decrease
+      const bool converged = change <= 1e-12 * std::fmax(scale, kGravity);
+      if (change == 0 || (converged && change >= previous_change)) return {};
+      previous_change = change;
     }
-    return at(from.time) + "the accelerations do not settle" + odd_or_long(setup_);
+    return at(from.time) + "the iteration for the accelerations does not converge" + likely_cause(setup_);
   }
 
-  /// What is left of the actuators' forces, and friction.
-  std::pair<AxisVector<double>, AxisVector<double>> at_joints(const PoseDynamics<double>& d, double time,
-                                                              const AxisVector<double>& velocity) const {
+  /// The actuator forces minus friction, and the friction forces.
+  std::pair<AxisVector<double>, AxisVector<double>> joint_forces(const PoseDynamics<double>& d, double time,
+                                                                 const AxisVector<double>& velocity) const {
     const AxisVector<double> tau = setup_.forces(time);
     const AxisVector<double> friction = setup_.friction ? setup_.friction(d.J * velocity) : tau * 0.0;
     return {tau - friction, friction};
   }
+  /// Evaluates a stage. @return false if the pose does not assemble
   bool evaluate(double time, const AxisVector<double>& pose, const AxisVector<double>& velocity, Stage& stage) const {
     const PoseDynamics<double> d = setup_.dynamics({pose, velocity});
     if (!d.assembles) return false;
-    const auto [forces, friction] = at_joints(d, time, velocity);
+    const auto [forces, friction] = joint_forces(d, time, velocity);
     const AxisVector<double> speeds = d.J * velocity;
     stage.velocity = velocity;
     stage.acceleration = acceleration(d, forces, setup_.wrench);
@@ -141,9 +144,9 @@ Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose
   result.stopped = integrator.complete(state);
   if (!result.stopped.empty()) return result;
   result.states.push_back(state);
-  const double at_first = state.kinetic_energy;
+  const double initial_energy = state.kinetic_energy;
   const auto steps = static_cast<std::size_t>(std::ceil(setup.duration / setup.step * (1 - 1e-12)));
-  result.turned_over = at_first;
+  result.turned_over = initial_energy;
   for (std::size_t k = 1; k <= steps; ++k) {
     const double end = k == steps ? setup.duration : static_cast<double>(k) * setup.step;
     SimulationState next;
@@ -154,9 +157,9 @@ Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose
                           std::fabs(next.work_of_weight - state.work_of_weight) +
                           std::fabs(next.work_of_wrench - state.work_of_wrench);
     const double work = next.work_of_drives + next.work_of_friction + next.work_of_weight + next.work_of_wrench;
-    const double imbalance = std::fabs(next.kinetic_energy - at_first - work);
+    const double imbalance = std::fabs(next.kinetic_energy - initial_energy - work);
     if (!(imbalance <= setup.tolerance * result.turned_over)) {
-      result.stopped = at(end) + "the energy is no longer conserved" + odd_or_long(setup);
+      result.stopped = at(end) + "the energy balance exceeds the tolerance" + likely_cause(setup);
       return result;
     }
     result.imbalance = std::fmax(result.imbalance, imbalance);

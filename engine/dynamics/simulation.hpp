@@ -1,12 +1,12 @@
-// Forward dynamics over time: the platform under given forces of the actuators, weight and a wrench.
+// Simulation (forward dynamics over time): motion of the platform under given actuator forces, gravity and a wrench.
 //
-// The equations of motion are integrated by Gauss' method of three stages (order 6, implicit, symmetric: run backwards
-// it returns to where it began, so the energy does not drift as it does with explicit methods). Along with the state it
-// adds up the work of the actuators, of friction, of the weight and of the wrench by the same rule. What the kinetic
-// energy differs from their sum is the error of the integration: a run ends, with a sentence, where it exceeds the
-// tolerance.
+// The equations of motion are integrated by the three-stage Gauss method, an implicit Runge-Kutta method of order 6. It
+// is symmetric (integrating backwards in time returns to the initial state), therefore the energy does not drift as
+// with explicit methods. The work of the actuators, of friction, of gravity and of the wrench is integrated by the same
+// quadrature. The difference between the kinetic energy and the sum of these works measures the integration error; the
+// simulation stops with a message if it exceeds the tolerance.
 //
-// Source of the method: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.7, table 7.4.
+// Reference: Hairer, Norsett, Wanner, "Solving Ordinary Differential Equations I", section II.7, table 7.4.
 #pragma once
 
 #include <functional>
@@ -17,35 +17,37 @@
 
 namespace pkm {
 
-/// Vectors: one number per coordinate, and their rates.
+/// State at one time. Vectors have one element per coordinate.
 struct SimulationState {
-  double time = 0;
+  double time = 0;  ///< [s]
   AxisVector<double> pose, velocity, acceleration;
   double kinetic_energy = 0;                                          ///< [J]
-  double work_of_drives = 0, work_of_weight = 0, work_of_wrench = 0;  ///< since the beginning [J]
-  double work_of_friction = 0;                                        ///< <= 0
+  double work_of_drives = 0, work_of_weight = 0, work_of_wrench = 0;  ///< since the start [J]
+  double work_of_friction = 0;                                        ///< since the start, <= 0 [J]
 };
 
 struct SimulationSetup {
+  /// The equations of motion of the mechanism.
   std::function<PoseDynamics<double>(const MotionState<double>&)> dynamics;
-  std::function<AxisVector<double>(double time)> forces;  ///< tau [N] at a time [s]
-  /// Forces against the joints' motion at their speeds [N, N m]; none: there is no friction.
+  std::function<AxisVector<double>(double time)> forces;  ///< actuator forces tau [N, N m]
+  /// Friction forces as a function of the joint speeds, positive against a positive speed [N, N m]; empty: no friction.
   std::function<AxisVector<double>(const AxisVector<double>& speeds)> friction;
-  Wrench<double> wrench;  ///< on the platform, the same all the time
-  /// "" or a sentence saying why a pose ends the run (a limit of the mechanism); none: nothing ends it.
+  Wrench<double> wrench;  ///< on the platform, constant
+  /// Returns "" or a sentence why the simulation stops at a pose, for example a violated limit; empty: no such check.
   std::function<std::string(const Pose<double>&)> refuse;
   double duration = 0;      ///< [s], > 0
-  double step = 0;          ///< [s], > 0; the last step ends at the duration
-  double tolerance = 1e-9;  ///< of the energy that has been turned over
+  double step = 0;          ///< [s], > 0; the last step is shortened to end at the duration
+  double tolerance = 1e-9;  ///< maximum energy error, relative to Simulation::turned_over
 };
 
 struct Simulation {
-  std::vector<SimulationState> states;  ///< the beginning and the end of every step that was made
-  std::string stopped;                  ///< why it ended before the duration; "" otherwise
-  double imbalance = 0;                 ///< greatest difference of kinetic energy and work [J]
-  double turned_over = 0;               ///< kinetic energy at the beginning and magnitudes of all works [J]
+  std::vector<SimulationState> states;  ///< the initial state and the state after every step
+  std::string stopped;                  ///< one sentence why it stopped early; "" if it did not
+  double imbalance = 0;                 ///< maximum difference between kinetic energy and work [J]
+  double turned_over = 0;               ///< initial kinetic energy plus the sum of |work| of all steps [J]
 };
 
+/// Simulates a motion from an initial pose and velocity.
 Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose, const AxisVector<double>& velocity);
 
 }  // namespace pkm

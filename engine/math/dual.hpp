@@ -1,19 +1,20 @@
-// The derivative scalar: a value and its derivatives with respect to N variables.
+// Dual numbers: forward-mode automatic differentiation with respect to N variables.
 //
-// Think of (a, v) as the number a that moves by v . dp when the variables p move by dp. Then every operation carries
-// the derivatives along by the chain rule:
+// A dual number (a, v) is a value a with its gradient v with respect to the variables p. Every operation applies the
+// chain rule:
 //
 //   (a, v) + (b, w) = (a + b, v + w)            (a, v) (b, w) = (a b, a w + b v)
 //   (a, v) / (b, w) = (a/b, (v - (a/b) w)/b)    sqrt(a, v)    = (sqrt a, v / (2 sqrt a))
 //
-// One formula, templated on the scalar, so gives exact derivatives. Values are computed by the same operations in the
-// same order as with double and have the same bits. Where a slope is infinite, at the ends of the range of asin and
-// acos, the derivatives are 0, as those of root_or_zero are: there, a formula has no derivative that could be used, and
-// 0 at least lets the others of a sum through.
+// So a formula that is a template over the scalar type gives derivatives exact to rounding. Values are computed by the
+// same operations in the same order as with double, and are bit-identical. At -1 and 1, where the derivatives of asin
+// and acos are infinite, they are set to 0, like those of sqrt_or_zero at 0: no usable derivative exists there, and
+// with 0 the other terms of a sum keep theirs.
 //
-// Ours rather than ceres::Jet or Eigen's AutoDiffScalar: their functions are libm's (see portable.hpp), their division
-// rounds differently from double's, and the column survey with 4 variables takes 2.15 times a value with this scalar
-// against 2.6 with Jet. What makes the difference is that every loop over the derivatives is inlined and unrolled.
+// Why not ceres::Jet or Eigen's AutoDiffScalar: they use the functions of libm (see portable.hpp), and their division
+// rounds differently from that of double. Workspace analysis by columns with 4 variables takes 2.15 times as long as
+// without derivatives, against 2.6 times with Jet; the difference is that all loops over derivatives are inlined and
+// unrolled here.
 #pragma once
 
 #include <cmath>
@@ -23,7 +24,7 @@
 
 namespace pkm {
 
-/// N numbers added and scaled component by component.
+/// Vector of N numbers with component-wise addition and scaling.
 template <int N>
 struct alignas(16) Components {
   double d[N] = {};
@@ -50,22 +51,23 @@ struct alignas(16) Components {
   }
 };
 
+/// A dual number with N derivatives.
 template <int N>
 struct Dual {
   double a = 0;     ///< value
-  Components<N> v;  ///< derivatives
+  Components<N> v;  ///< gradient
 
   [[gnu::always_inline]] Dual() {}
   [[gnu::always_inline]] Dual(double value) : a(value) {}  // not explicit: constants mix with duals in formulas
   [[gnu::always_inline]] Dual(double value, const Components<N>& derivatives) : a(value), v(derivatives) {}
-  /// Variable number `index` at `value`.
+  /// The independent variable with number `index` at `value`: its derivatives are those of the unit vector.
   static Dual variable(double value, int index) {
     Dual x(value);
     x.v[index] = 1;
     return x;
   }
 
-  /// f(x) of a function's value and its first derivative there.
+  /// Chain rule: f(x), given the value f and the first derivative f1 of the function at the value of x.
   [[gnu::always_inline]] Dual through(double f, double f1, double) const { return {f, v * f1}; }
 
   [[gnu::always_inline]] Dual& operator+=(const Dual& y) { return *this = *this + y; }
@@ -83,7 +85,7 @@ struct Dual {
     const double quotient = x.a / y.a, inverse = 1 / y.a;
     return {quotient, (x.v - y.v * quotient) * inverse};
   }
-  // with a constant
+  // One operand is a constant.
   [[gnu::always_inline]] friend Dual operator+(const Dual& x, double y) { return {x.a + y, x.v}; }
   [[gnu::always_inline]] friend Dual operator+(double x, const Dual& y) { return {x + y.a, y.v}; }
   [[gnu::always_inline]] friend Dual operator-(const Dual& x, double y) { return {x.a - y, x.v}; }
@@ -103,7 +105,7 @@ Dual<N> atan2(const Dual<N>& y, const Dual<N>& x) {
   return {portable::atan2(y.a, x.a), (y.v * x.a - x.v * y.a) * (1 / norm)};
 }
 
-/// Derivatives by four variables; more take several passes.
+/// Derivatives with respect to four variables; for more variables, a computation is repeated in blocks of four.
 using Dual4 = Dual<4>;
 
 }  // namespace pkm

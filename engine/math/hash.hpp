@@ -1,12 +1,13 @@
-// Hashes that tell structures apart; nothing that is stored depends on them.
+// 64-bit hash for comparing data structures within one run, such as combinatorial types. Stored data do not depend on
+// it.
 #pragma once
 
 #include <cstdint>
 
 namespace pkm {
 
-/// FNV-1a, a word at a time. What it ends with is mixed as MurmurHash3 does: sums of it tell apart what was added
-/// together from what was added crosswise.
+/// FNV-1a hash of a sequence of 64-bit words (instead of bytes), with the finaliser of MurmurHash3. Because of the
+/// finaliser, sums of hashes can represent unordered sets: those of {(1, a), (2, b)} and {(1, b), (2, a)} differ.
 class Fnv1a {
  public:
   void add(std::uint64_t word) { value_ = (value_ ^ word) * 1099511628211u; }

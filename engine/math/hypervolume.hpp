@@ -1,5 +1,5 @@
-// How much of the objectives' space a set of points dominates: the usual measure of a trade-off, which grows with every
-// point that no other dominates.
+// Hypervolume indicator of a set of points (Zitzler and Thiele 1999): the measure of the part of the objective space
+// that the set dominates. It increases with every additional non-dominated point.
 #pragma once
 
 #include <cstddef>
@@ -7,14 +7,14 @@
 
 namespace pkm {
 
-/// Measure of what at least one point dominates, up to the reference point: the union of the boxes [point, reference],
-/// exactly (but for rounding, a few bits), in the product of the objectives' units.
+/// Area or volume of the union of the boxes [point, reference], exact to rounding errors, in the product of the units
+/// of the objectives.
 ///
-/// Points that are not finite, or not better than the reference in every objective, count nothing. Neither the points'
-/// order nor dominated or repeated ones change a bit of the result.
-/// @param points      row by row, `objectives` values each, all to be minimised
-/// @param objectives  2 or 3; others throw std::invalid_argument, and so does a reference that is not finite
-/// @param reference   `objectives` values
+/// Points that are not finite, or not better than the reference point in every objective, are ignored. The result is
+/// bit-identical for any order of the points, and with or without dominated and duplicate points.
+/// @param points      row-major, `objectives` values per point, all to be minimised
+/// @param objectives  2 or 3; otherwise throws std::invalid_argument
+/// @param reference   reference point, `objectives` values; throws std::invalid_argument if it is not finite
 double hypervolume(std::span<const double> points, std::size_t objectives, std::span<const double> reference);
 
 }  // namespace pkm

@@ -13,19 +13,19 @@ double igd_plus(std::span<const double> points, std::size_t objectives, std::spa
                 std::span<const double> extents) {
   PKM_EXPECTS(objectives > 0 && points.size() % objectives == 0 && front.size() % objectives == 0);
   PKM_EXPECTS(extents.size() == objectives);
-  if (front.empty()) throw std::invalid_argument("IGD+ takes a front of at least one point");
+  if (front.empty()) throw std::invalid_argument("IGD+: the front is empty; expected at least one point");
   double sum = 0;
   for (std::size_t z = 0; z < front.size(); z += objectives) {
-    double least = std::numeric_limits<double>::infinity();  // squared
+    double minimum = std::numeric_limits<double>::infinity();  // squared distance
     for (std::size_t a = 0; a < points.size(); a += objectives) {
       double square = 0;
       for (std::size_t k = 0; k < objectives; ++k) {
-        const double worse = std::max(points[a + k] - front[z + k], 0.0) / extents[k];  // a NaN stays one
-        square += worse * worse;
+        const double excess = std::max(points[a + k] - front[z + k], 0.0) / extents[k];  // NaN is propagated
+        square += excess * excess;
       }
-      if (square < least) least = square;
+      if (square < minimum) minimum = square;
     }
-    sum += std::sqrt(least);
+    sum += std::sqrt(minimum);
   }
   return sum / static_cast<double>(front.size() / objectives);
 }

@@ -1,4 +1,4 @@
-// How far a known front is from the points found.
+// Modified inverted generational distance (IGD+) of a set of points from a known Pareto front.
 #pragma once
 
 #include <cstddef>
@@ -6,14 +6,14 @@
 
 namespace pkm {
 
-/// Modified inverted generational distance (Ishibuchi, Masuda, Tanigaki and Nojima 2015, IGD+): the mean, over the
-/// points z of the front, of the least of
-///   | max(a - z, 0) / extents |      (Euclidean norm, coordinate by coordinate inside)
-/// over the points a. A point that dominates z has distance 0 to it. Infinite without points; points with a NaN count
-/// nothing. The points' order changes no bit.
-/// @param points      row by row, `objectives` values each, all to be minimised
-/// @param front       likewise; an empty one throws std::invalid_argument
-/// @param extents     `objectives` lengths > 0, one for each objective, that make distances comparable
+/// IGD+ (Ishibuchi, Masuda, Tanigaki and Nojima 2015): the mean, over the points z of the front, of the minimum over
+/// the points a of
+///   || max(a - z, 0) / extents ||      (Euclidean norm; maximum and quotient component by component)
+/// A point that dominates z has distance 0 to it. Infinite if there are no points; points with a NaN are ignored. The
+/// result is bit-identical for any order of the points.
+/// @param points      row-major, `objectives` values per point, all to be minimised
+/// @param front       likewise; throws std::invalid_argument if it is empty
+/// @param extents     `objectives` lengths > 0 that scale the objectives to comparable sizes
 double igd_plus(std::span<const double> points, std::size_t objectives, std::span<const double> front,
                 std::span<const double> extents);
 

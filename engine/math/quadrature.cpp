@@ -7,8 +7,8 @@ GaussRule gauss_legendre(int n) {
   rule.node.resize(static_cast<std::size_t>(n));
   rule.weight.resize(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
-    double x = -portable::cos(kPi * (i + 0.75) / (n + 0.5));  // good to 1/n^2, Newton does the rest
-    double slope = 1;
+    double x = -portable::cos(kPi * (i + 0.75) / (n + 0.5));  // starting value with an error of O(1/n^2)
+    double derivative = 1;
     for (int step = 0; step < 12; ++step) {
       double previous = 1, value = x;  // P_0, P_1
       for (int k = 2; k <= n; ++k) {
@@ -17,19 +17,20 @@ GaussRule gauss_legendre(int n) {
         value = next;
       }
       if (n == 1) previous = 1;
-      slope = n * (x * value - previous) / (x * x - 1);
-      const double change = value / slope;
+      derivative = n * (x * value - previous) / (x * x - 1);
+      const double change = value / derivative;
       x -= change;
       if (std::fabs(change) < 1e-16) break;
     }
     rule.node[static_cast<std::size_t>(i)] = 0.5 * (1 + x);
-    rule.weight[static_cast<std::size_t>(i)] = 1 / ((1 - x * x) * slope * slope);
+    rule.weight[static_cast<std::size_t>(i)] = 1 / ((1 - x * x) * derivative * derivative);
   }
   return rule;
 }
 
 const NestedRule& kronrod_rule() {
-  // Nodes and weights on [-1, 1], non-negative half, computed from the Stieltjes polynomial with 50 digits.
+  // Non-negative nodes on [-1, 1] with their weights (w: Kronrod, g: Gauss), computed from the Stieltjes polynomial
+  // with 50 digits.
   static constexpr std::array<double, 8> x = {0.0,
                                               0.2077849550078984676,
                                               0.4058451513773971669,
@@ -58,8 +59,8 @@ const NestedRule& kronrod_rule() {
 }
 
 const NestedRule& patterson_rule() {
-  // Nodes and weights on [-1, 1], non-negative half, computed with 60 digits: those of the 3-point Gauss rule, then
-  // twice the zeros of the polynomial that makes the rule with them the most exact.
+  // Non-negative nodes on [-1, 1] with their weights, computed with 60 digits: the nodes of the 3-point Gauss rule,
+  // followed by the nodes that the 7-point and the 15-point rule add, which maximise the degree of exactness.
   static constexpr std::array<double, 8> x = {0.0,
                                               0.77459666924148337704,
                                               0.434243749346802558,
@@ -68,21 +69,21 @@ const NestedRule& patterson_rule() {
                                               0.62110294673722640294,
                                               0.88845923287225699889,
                                               0.99383196321275502221};
-  static constexpr std::array<double, 8> all = {0.22551049979820668739,  0.13441525524378422036, 0.20062852937698902103,
-                                                0.051603282997079739697, 0.2191568584015874964,  0.17151190913639138079,
-                                                0.092927195315124537686, 0.017001719629940260339};
-  static constexpr std::array<double, 4> first = {0.45091653865847414235, 0.26848808986833344073,
+  static constexpr std::array<double, 8> fifteen = {
+      0.22551049979820668739, 0.13441525524378422036, 0.20062852937698902103,  0.051603282997079739697,
+      0.2191568584015874964,  0.17151190913639138079, 0.092927195315124537686, 0.017001719629940260339};
+  static constexpr std::array<double, 4> seven = {0.45091653865847414235, 0.26848808986833344073,
                                                   0.40139741477596222291, 0.10465622602646726519};
-  static constexpr std::array<double, 2> least = {0.88888888888888888889, 0.55555555555555555556};
+  static constexpr std::array<double, 2> gauss = {0.88888888888888888889, 0.55555555555555555556};
   static const NestedRule rule = [] {
     NestedRule r{.node = {},
                  .level = {{.nodes = 7, .weight = {}, .fewer = {}}, {.nodes = 15, .weight = {}, .fewer = {}}}};
     std::size_t n = 0;
     const auto add = [&](std::size_t i, double sign) {
       r.node[n] = 0.5 + sign * 0.5 * x[i];
-      r.level[1].weight[n] = 0.5 * all[i];
-      if (i < first.size()) r.level[0].weight[n] = r.level[1].fewer[n] = 0.5 * first[i];
-      if (i < least.size()) r.level[0].fewer[n] = 0.5 * least[i];
+      r.level[1].weight[n] = 0.5 * fifteen[i];
+      if (i < seven.size()) r.level[0].weight[n] = r.level[1].fewer[n] = 0.5 * seven[i];
+      if (i < gauss.size()) r.level[0].fewer[n] = 0.5 * gauss[i];
       ++n;
     };
     add(0, 0);

@@ -27,14 +27,14 @@ void Stream::refill() {
 }
 
 double Stream::normal() {
-  if (has_spare_) {
-    has_spare_ = false;
-    return spare_;
+  if (has_second_normal_) {
+    has_second_normal_ = false;
+    return second_normal_;
   }
   const double radius = std::sqrt(-2.0 * portable::log(1.0 - u01()));
   const auto [sine, cosine] = portable::sincos(2.0 * kPi * u01());
-  spare_ = radius * sine;
-  has_spare_ = true;
+  second_normal_ = radius * sine;
+  has_second_normal_ = true;
   return radius * cosine;
 }
 

@@ -1,14 +1,14 @@
-// What a difference of rounded numbers says: nothing below their roundings.
+// Suppresses differences that are within the rounding errors of their operands.
 #pragma once
 
 #include <cmath>
 
 namespace pkm {
 
-/// The difference, or 0 where it is within the roundings of what it is a difference of: some hundred of them, 1e-13
-/// of `size`, the magnitude of those numbers. The ends of a range are known to that of its greater end, a sum to that
-/// of its greatest term, a slope to that of the greatest in the same unit.
-inline double beyond_rounding(double difference, double size) {
+/// The difference, or 0 if its magnitude is at most 1e-13 `size`, several hundred rounding errors of the operands.
+/// @param size  magnitude of the operands: the larger endpoint of a range, the largest term of a sum, or the largest
+///              of the derivatives with the same unit
+inline double zero_if_rounding_error(double difference, double size) {
   return std::fabs(difference) <= 1e-13 * size ? 0 : difference;
 }
 

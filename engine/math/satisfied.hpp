@@ -1,4 +1,4 @@
-// When a constraint is satisfied: one rule for poses, voxels, columns, motions and certified bounds.
+// Definition of a satisfied constraint, common to poses, voxels, columns, motions and certified bounds.
 #pragma once
 
 #include <limits>

@@ -1,7 +1,6 @@
-// The words that kernels are written in: one formula for double and for a derivative scalar.
+// Elementary functions for templates over the scalar type: double, or a type with derivatives (dual.hpp, taylor.hpp).
 //
-// Kernels call these unqualified, so that the overloads for the derivative scalar (dual.hpp) are found by argument
-// type.
+// Templates call these functions unqualified, so that the overload for the scalar type is selected by its argument.
 #pragma once
 
 #include <cmath>
@@ -12,10 +11,12 @@ namespace pkm {
 
 using portable::acos, portable::asin, portable::atan2, portable::exp, portable::log, portable::sincos, std::sqrt;
 
+/// The value of a number without its derivatives.
 inline double value_of(double x) { return x; }
 
-/// A scalar with derivatives: f(x) follows from f(a), f'(a) and f''(a) at its value a. Where a slope is infinite, at
-/// the ends of the range of asin and acos, the derivatives are 0.
+/// A scalar type with derivatives, such as Dual and Taylor. x.through(f, f1, f2) applies the chain rule: it computes
+/// f(x) from f(a), f'(a) and f''(a) at the value a of x. At -1 and 1, where the derivatives of asin and acos are
+/// infinite, they are set to 0.
 template <class S>
 concept Derivative = requires(const S& x) {
   x.through(x.a, x.a, x.a);
@@ -37,13 +38,13 @@ SinCosOf<S> sincos(const S& x) {
 }
 template <Derivative S>
 S asin(const S& x) {
-  const double cosine = std::sqrt((1 - x.a) * (1 + x.a)), slope = cosine > 0 ? 1 / cosine : 0;
-  return x.through(portable::asin(x.a), slope, x.a * slope * slope * slope);
+  const double cosine = std::sqrt((1 - x.a) * (1 + x.a)), derivative = cosine > 0 ? 1 / cosine : 0;
+  return x.through(portable::asin(x.a), derivative, x.a * derivative * derivative * derivative);
 }
 template <Derivative S>
 S acos(const S& x) {
-  const double sine = std::sqrt((1 - x.a) * (1 + x.a)), slope = sine > 0 ? -1 / sine : 0;
-  return x.through(portable::acos(x.a), slope, x.a * slope * slope * slope);
+  const double sine = std::sqrt((1 - x.a) * (1 + x.a)), derivative = sine > 0 ? -1 / sine : 0;
+  return x.through(portable::acos(x.a), derivative, x.a * derivative * derivative * derivative);
 }
 template <Derivative S>
 S exp(const S& x) {
@@ -55,13 +56,13 @@ S log(const S& x) {
   return x.through(portable::log(x.a), 1 / x.a, -1 / (x.a * x.a));
 }
 
-/// x if the condition holds, else y; both exist.
+/// x if the condition is true, otherwise y. Both arguments are evaluated.
 template <class S>
 [[gnu::always_inline]] inline S select(bool condition, const S& x, const S& y) {
   return condition ? x : y;
 }
 
-/// The smaller and the larger of two numbers, chosen by value.
+/// Minimum and maximum of two numbers by their values, with the derivatives of the chosen one.
 template <class S>
 S min(const S& a, const S& b) {
   return value_of(b) < value_of(a) ? b : a;
@@ -75,21 +76,22 @@ S clamp(const S& x, const S& lower, const S& upper) {
   return min(max(x, lower), upper);
 }
 
+/// Absolute value.
 template <class S>
 S magnitude(const S& x) {
   return value_of(x) < 0 ? S(-x) : x;
 }
 
-/// An angle [rad] less whole turns, in (-pi, pi].
+/// An angle [rad], reduced modulo 2 pi to (-pi, pi].
 template <class S>
 S wrapped(const S& angle) {
-  const double turns = std::ceil(value_of(angle) / (2 * kPi) - 0.5);
-  return turns == 0 ? angle : S(angle - turns * (2 * kPi));
+  const double revolutions = std::ceil(value_of(angle) / (2 * kPi) - 0.5);
+  return revolutions == 0 ? angle : S(angle - revolutions * (2 * kPi));
 }
 
-/// sqrt(x) where x > 0, else 0 with derivative 0 (the end of a range, where the true slope is infinite).
+/// sqrt(x) for x > 0, otherwise 0 with the derivatives 0 (at x = 0 the true derivative is infinite).
 template <class S>
-S root_or_zero(const S& x) {
+S sqrt_or_zero(const S& x) {
   return value_of(x) > 0 ? sqrt(x) : S(0.0);
 }
 

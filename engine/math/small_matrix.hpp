@@ -1,6 +1,7 @@
-// Matrices of a few rows and columns, for double and for a derivative scalar: what dynamics is written in. Sizes are
-// known when compiling (Matrix) or, up to a bound, when running (MatrixUpTo). Nothing is allocated, and sums are added
-// in the order of their index, so that bits do not depend on the kind of matrix, the compiler or the processor.
+// Small dense matrices over double or a scalar with derivatives, as used for the dynamics. Their size is a compile-time
+// constant (Matrix) or a run-time value with a compile-time bound (MatrixUpTo). There are no heap allocations. Sums are
+// accumulated in the order of the index, so that results are bit-identical for both types, all compilers and
+// processors.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@
 
 namespace pkm {
 
-/// R x C, by rows. A vector has one column.
+/// R x C matrix of fixed size, row-major. A vector has one column.
 template <class S, std::size_t R, std::size_t C = 1>
 struct Matrix {
   using Scalar = S;
@@ -49,7 +50,7 @@ struct Matrix {
 template <class S, std::size_t N>
 using Vector = Matrix<S, N, 1>;
 
-/// A matrix or vector, ours or one that is read the same way (Eigen's).
+/// A matrix or vector type of this file, or one with the same element access (such as Eigen's).
 template <class M>
 concept HasElements = requires(const M& m) {
   { m.rows() } -> std::convertible_to<std::size_t>;
@@ -57,7 +58,7 @@ concept HasElements = requires(const M& m) {
   m(0, 0);
 };
 
-/// At most R x C, by rows without gaps.
+/// Matrix of at most R x C elements, stored row-major and contiguously.
 template <class S, std::size_t R, std::size_t C = 1>
 class MatrixUpTo {
  public:
@@ -70,12 +71,12 @@ class MatrixUpTo {
     PKM_EXPECTS(rows <= R && cols <= C);
     for (std::size_t k = 0; k < size(); ++k) m_[k] = S{};
   }
-  /// A vector.
+  /// A column vector.
   MatrixUpTo(std::initializer_list<S> elements) : MatrixUpTo(elements.size()) {
     std::size_t k = 0;
     for (const S& element : elements) m_[k++] = element;
   }
-  /// The same elements.
+  /// Conversion from another matrix type.
   template <HasElements M>
   requires(!std::same_as<std::remove_cvref_t<M>, MatrixUpTo>) MatrixUpTo(const M& other)
       : MatrixUpTo(static_cast<std::size_t>(other.rows()), static_cast<std::size_t>(other.cols())) {
@@ -117,20 +118,21 @@ class MatrixUpTo {
 
  private:
   std::size_t rows_ = 0, cols_ = 0;
-  std::array<S, R * C> m_;  // set as far as it is used
+  std::array<S, R * C> m_;  // only the first size() elements are initialised
 };
 
+/// Matrix or MatrixUpTo.
 template <class M>
 concept SmallMatrix = requires {
   typename M::Scalar;
   { M::kFixed } -> std::convertible_to<bool>;
 };
 
-/// R x C where everything is known when compiling, else up to that.
+/// Type of an R x C matrix if its size is fixed, otherwise of a matrix of at most R x C elements.
 template <class S, std::size_t R, std::size_t C, bool fixed>
 using MatrixOf = std::conditional_t<fixed, Matrix<S, R, C>, MatrixUpTo<S, R, C>>;
 
-/// The same size and elements.
+/// Equality of the sizes and of all elements.
 template <SmallMatrix A, SmallMatrix B>
 bool operator==(const A& a, const B& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() && std::equal(a.begin(), a.end(), b.begin());
@@ -178,13 +180,13 @@ auto transpose(const A& a) {
   return t;
 }
 
-/// The same elements, where the size is known.
+/// Conversion to a matrix of fixed size, which must be the size of `a`.
 template <std::size_t R, std::size_t C = 1, SmallMatrix A>
 Matrix<typename A::Scalar, R, C> fixed(const A& a) {
   PKM_EXPECTS(a.rows() == R && a.cols() == C);
-  Matrix<typename A::Scalar, R, C> same;
-  for (std::size_t k = 0; k < R * C; ++k) same[k] = a[k];
-  return same;
+  Matrix<typename A::Scalar, R, C> result;
+  for (std::size_t k = 0; k < R * C; ++k) result[k] = a[k];
+  return result;
 }
 
 template <SmallMatrix A, SmallMatrix B>
@@ -199,37 +201,38 @@ Vector<S, 3> cross(const Vector<S, 3>& a, const Vector<S, 3>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 
-/// Makes `a` an upper triangle by taking rows from rows, and does the same to the rows of b; the largest value of a
-/// column leads.
+/// Gaussian elimination with partial pivoting: transforms `a` to upper triangular form (elements below the diagonal are
+/// not set to 0) and applies the same row operations to each b.
 template <SmallMatrix A, SmallMatrix... B>
 void eliminate(A& a, B&... b) {
   using S = typename A::Scalar;
   PKM_EXPECTS(a.rows() == a.cols() && ((a.rows() == b.rows()) && ...));
   const std::size_t n = a.rows();
   for (std::size_t k = 0; k < n; ++k) {
-    std::size_t lead = k;
+    std::size_t pivot = k;
     for (std::size_t i = k + 1; i < n; ++i)
-      if (std::fabs(value_of(a(i, k))) > std::fabs(value_of(a(lead, k)))) lead = i;
-    const auto exchange = [k, lead](auto& m, std::size_t first) {
-      for (std::size_t j = first; j < m.cols(); ++j) std::swap(m(k, j), m(lead, j));
+      if (std::fabs(value_of(a(i, k))) > std::fabs(value_of(a(pivot, k)))) pivot = i;
+    const auto exchange = [k, pivot](auto& m, std::size_t first) {
+      for (std::size_t j = first; j < m.cols(); ++j) std::swap(m(k, j), m(pivot, j));
     };
-    if (lead != k) {
+    if (pivot != k) {
       exchange(a, k);
       (exchange(b, 0), ...);
     }
     const S inverse = S(1.0) / a(k, k);
     for (std::size_t i = k + 1; i < n; ++i) {
       const S factor = a(i, k) * inverse;
-      const auto take = [&factor, i, k](auto& m, std::size_t first) {
+      const auto subtract_pivot_row = [&factor, i, k](auto& m, std::size_t first) {
         for (std::size_t j = first; j < m.cols(); ++j) m(i, j) = m(i, j) - factor * m(k, j);
       };
-      take(a, k + 1);
-      (take(b, 0), ...);
+      subtract_pivot_row(a, k + 1);
+      (subtract_pivot_row(b, 0), ...);
     }
   }
 }
 
-/// b becomes X with u X = b, where u is an upper triangle; what stands below does not count.
+/// Back substitution: replaces b by the solution X of u X = b, where u is upper triangular; elements of u below the
+/// diagonal are ignored.
 template <SmallMatrix A, SmallMatrix B>
 void substitute_back(const A& u, B& b) {
   const std::size_t n = u.rows();
@@ -240,7 +243,7 @@ void substitute_back(const A& u, B& b) {
     }
 }
 
-/// X with a X = b. Infinite or NaN where `a` is singular.
+/// The solution X of a X = b. Its elements are infinite or NaN if `a` is singular.
 template <SmallMatrix A, SmallMatrix B>
 B solve(A a, B b) {
   eliminate(a, b);
@@ -248,13 +251,14 @@ B solve(A a, B b) {
   return b;
 }
 
-// One number for each coordinate of a pose, or for each joint; and matrices between them.
-inline constexpr std::size_t kMostCoordinates = 6, kMostJoints = 8;
+/// Maximum number of coordinates of a pose, and of actuated joints.
+inline constexpr std::size_t kMaxCoordinates = 6, kMaxJoints = 8;
 
-/// N of them, or for N = 0 as many as there are.
+/// Vector with one element per pose coordinate or per actuated joint, and matrix of such rows and columns: of fixed
+/// size N, or of any size up to kMaxJoints if N = 0.
 template <class S, std::size_t N = 0>
-using AxisVector = std::conditional_t<N != 0, Vector<S, N>, MatrixUpTo<S, kMostJoints>>;
+using AxisVector = std::conditional_t<N != 0, Vector<S, N>, MatrixUpTo<S, kMaxJoints>>;
 template <class S, std::size_t N = 0>
-using AxisMatrix = std::conditional_t<N != 0, Matrix<S, N, N>, MatrixUpTo<S, kMostJoints, kMostJoints>>;
+using AxisMatrix = std::conditional_t<N != 0, Matrix<S, N, N>, MatrixUpTo<S, kMaxJoints, kMaxJoints>>;
 
 }  // namespace pkm

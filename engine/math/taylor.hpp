@@ -1,16 +1,18 @@
-// A number that moves with time: its value, first and second derivative by one variable.
+// Second-order forward-mode automatic differentiation with respect to one variable (time): a value with its first and
+// second derivative.
 //
 //   (x y)' = x' y + x y'          (x y)'' = x'' y + 2 x' y' + x y''
 //   f(x)'  = f'(x) x'             f(x)''  = f''(x) x'^2 + f'(x) x''
 //
-// Formulas of time are computed with it: position, velocity and acceleration come out of one pass, exact. Values have
-// the bits of the same formula with double.
+// A formula of time evaluated with this type gives position, velocity and acceleration at once, exact to rounding
+// errors. Values are bit-identical to those of the same formula with double.
 #pragma once
 
 #include "engine/math/scalar.hpp"
 
 namespace pkm {
 
+/// Value and the first two derivatives with respect to time.
 struct Taylor {
   double a = 0;   ///< value
   double d = 0;   ///< first derivative
@@ -19,7 +21,7 @@ struct Taylor {
   Taylor() = default;
   Taylor(double value) : a(value) {}  // not explicit: constants mix with it in formulas
   Taylor(double value, double first, double second) : a(value), d(first), dd(second) {}
-  /// The variable itself.
+  /// The independent variable.
   static Taylor variable(double value) { return {value, 1, 0}; }
 
   friend Taylor operator-(const Taylor& x) { return {-x.a, -x.d, -x.dd}; }
@@ -34,14 +36,14 @@ struct Taylor {
   }
   Taylor& operator+=(const Taylor& y) { return *this = *this + y; }
 
-  /// f(x) of a function's value and its first two derivatives there.
+  /// Chain rule: f(x), given the value f and the derivatives f1, f2 of the function at the value of x.
   Taylor through(double f, double f1, double f2) const { return {f, f1 * d, f2 * d * d + f1 * dd}; }
 };
 
 inline Taylor atan2(const Taylor& y, const Taylor& x) {
   const double n = x.a * x.a + y.a * y.a, dn = 2 * (x.a * x.d + y.a * y.d);
-  const double turn = (x.a * y.d - y.a * x.d) / n;
-  return {portable::atan2(y.a, x.a), turn, (x.a * y.dd - y.a * x.dd - turn * dn) / n};
+  const double rate = (x.a * y.d - y.a * x.d) / n;
+  return {portable::atan2(y.a, x.a), rate, (x.a * y.dd - y.a * x.dd - rate * dn) / n};
 }
 
 }  // namespace pkm

@@ -17,7 +17,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   }
 
   const MechanismInfo& info() const override { return bare_->info(); }
-  Refusal refuse(std::span<const double> parameters) const override { return bare_->refuse(parameters); }
+  Unsupported refuse(std::span<const double> parameters) const override { return bare_->refuse(parameters); }
   PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
                      const LimitSpec& limits) const override {
     return bare_->inspect(parameters, pose, mode, limits);
@@ -38,8 +38,9 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const override {
     bare_->thresholds(parameters, limits, values);
   }
-  NamedValues facts(std::span<const double> parameters, const LimitSpec& limits) const override {
-    return bare_->facts(parameters, limits);
+  std::vector<double> quantities(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
+                                 const MotionSample& at) const override {
+    return bare_->quantities(parameters, mode, limits, at);
   }
 
   /// Where its surveys do not know rotors, none: they are those of any mechanism, cell by cell.
@@ -48,7 +49,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   }
   const Columns* columns() const override { return bare_->columns() ? this : nullptr; }
   std::string why_no_columns() const override { return bare_->why_no_columns(); }
-  const CertainBounds* bounds() const override { return bare_->bounds(); }
+  const RigorousBounds* bounds() const override { return bare_->bounds(); }
   const Size* size() const override { return bare_->size(); }
   const DesignTests* design_tests() const override { return bare_->design_tests(); }
   const PoseMargins* pose_margins() const override { return bare_->pose_margins(); }
@@ -58,7 +59,6 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   const Dynamics* dynamics() const override { return bare_->dynamics() ? this : nullptr; }
   const JointReactions* reactions() const override { return bare_->reactions(); }
   std::string why_no_reactions() const override { return bare_->why_no_reactions(); }
-  const AuxiliaryChain* chain() const override { return bare_->chain(); }
   const DriveTrains* drive_trains() const override { return &trains_; }
 
  private:
@@ -71,14 +71,14 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
     demand.rotors = rotors_;
     return demand;
   }
-  std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
-                                               const Demand& demand) const override {
+  std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
+                                                const Demand& demand) const override {
     return bare_->voxels()->prepare(plan, voxels, with_rotors(demand));
   }
   bool take_rotors() const override { return true; }
   bool take_obstacles() const override { return bare_->voxels()->take_obstacles(); }
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
-                                          const Demand& demand) const override {
+  std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
+                                                    const Demand& demand) const override {
     if (demand.needs_inertia() && has_rotors() && !bare_->columns()->take_rotors())
       throw std::invalid_argument("column surveys of mechanism " + info().name +
                                   " have no inertia of drive trains; take workspace.method = \"voxels\"");

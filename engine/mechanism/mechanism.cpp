@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-Refusal Mechanism::refuse(std::span<const double> parameters) const {
+Unsupported Mechanism::refuse(std::span<const double> parameters) const {
   for (std::size_t i = 0; i < info().parameters.size(); ++i) {
     const Parameter& p = info().parameters[i];
     if (!(parameters[i] >= p.lower && parameters[i] <= p.upper))
@@ -32,7 +32,7 @@ void Mechanism::thresholds(std::span<const Dual4>, const LimitSpec& limits, std:
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = limits.given[i].value_or(info().limits[i].inactive);
 }
 
-Refusal no_joint_forces(const Mechanism& mechanism) {
+Unsupported no_joint_forces(const Mechanism& mechanism) {
   const MechanismInfo& info = mechanism.info();
   const std::size_t joints = info.joints.size(), coordinates = info.coordinates.size();
   if (!mechanism.dynamics()) return "mechanism " + info.name + " has no masses";
@@ -41,10 +41,22 @@ Refusal no_joint_forces(const Mechanism& mechanism) {
          " coordinates, not as many of both";
 }
 
-const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan) {
+NamedValues quantities_of_design(const Mechanism& mechanism, std::span<const double> parameters,
+                                 const LimitSpec& limits) {
+  const auto& infos = mechanism.info().quantities;
+  NamedValues found;
+  if (std::ranges::none_of(infos, &QuantityInfo::of_design)) return found;
+  const MotionSample anywhere{.pose = Pose<double>(mechanism.info().coordinates.size())};
+  const auto values = mechanism.quantities(parameters, mechanism.info().modes.front(), limits, anywhere);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (infos[i].of_design) found.emplace_back(infos[i].name, values[i]);
+  return found;
+}
+
+const Sweep& sweep_of(const MechanismInfo& info, const WorkspacePlan& plan) {
   for (const Sweep& sweep : info.sweeps)
     if ((plan.swept.empty() || std::ranges::is_permutation(sweep.swept, plan.swept)) &&
-        std::ranges::all_of(plan.held, [&](const HeldCoordinate& named) {
+        std::ranges::all_of(plan.held, [&](const FixedCoordinate& named) {
           return std::ranges::find(sweep.held, named.coordinate) != sweep.held.end();
         }))
       return sweep;
@@ -55,7 +67,7 @@ const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan) {
   };
   std::vector<std::string> swept, held;
   for (const int coordinate : plan.swept) swept.push_back(name_of(coordinate));
-  for (const HeldCoordinate& named : plan.held) held.push_back(name_of(named.coordinate));
+  for (const FixedCoordinate& named : plan.held) held.push_back(name_of(named.coordinate));
   throw std::invalid_argument(
       "mechanism " + info.name + " has no survey that " + (swept.empty() ? "" : "sweeps " + join(swept)) +
       (swept.empty() || held.empty() ? "" : " and ") + (held.empty() ? "" : "holds " + join(held, " and ")));
@@ -87,11 +99,11 @@ std::size_t number_of_mode(const MechanismInfo& info, const std::string& name) {
   return static_cast<std::size_t>(found - info.modes.begin());
 }
 
-double held_value(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
-                  int coordinate) {
-  const HeldCoordinate held = how_held(plan, coordinate);
-  if (held.kind == HeldCoordinate::Kind::value) return held.value;
-  if (held.kind == HeldCoordinate::Kind::listed) return held.values.front();
+double fixed_value(const Mechanism& mechanism, std::span<const double> parameters, const WorkspacePlan& plan,
+                   int coordinate) {
+  const FixedCoordinate held = how_fixed(plan, coordinate);
+  if (held.kind == FixedCoordinate::Kind::value) return held.value;
+  if (held.kind == FixedCoordinate::Kind::listed) return held.values.front();
   if (const auto middle = mechanism.middle(parameters, coordinate)) return *middle;
   throw std::invalid_argument("mechanism " + mechanism.info().name + " does not say where the middle of " +
                               mechanism.info().coordinates[static_cast<std::size_t>(coordinate)].name +
@@ -108,10 +120,10 @@ std::string unit_of_product(const MechanismInfo& info, const std::vector<int>& c
   return lengths + (lengths.empty() || turns.empty() ? "" : " ") + turns;
 }
 
-std::string volume_unit(const MechanismInfo& info, const SurveyPlan& plan) {
+std::string volume_unit(const MechanismInfo& info, const WorkspacePlan& plan) {
   std::vector<int> measured = sweep_of(info, plan).swept;
-  for (const HeldCoordinate& held : plan.held)
-    if (held.kind == HeldCoordinate::Kind::integrated) measured.push_back(held.coordinate);
+  for (const FixedCoordinate& held : plan.held)
+    if (held.kind == FixedCoordinate::Kind::integrated) measured.push_back(held.coordinate);
   return unit_of_product(info, measured);
 }
 

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "engine/geometry/obstacle.hpp"
 #include "engine/mechanism/pose_quantity.hpp"
-#include "engine/model/obstacle.hpp"
 
 namespace pkm {
 
@@ -24,7 +24,7 @@ struct LimitSpec {
 
 /// One coordinate that is not swept over: held at a value, at the design's own middle, at each of several values (one
 /// survey each, all of the same weight), or integrated over.
-struct HeldCoordinate {
+struct FixedCoordinate {
   enum class Kind { middle, value, listed, integrated };
   int coordinate = 0;  ///< which one, of MechanismInfo::coordinates
   Kind kind = Kind::middle;
@@ -49,10 +49,10 @@ struct ColumnOptions {
       {};  ///< gap of certain bounds that the volume of a design that is kept must be within
 };
 
-struct SurveyPlan {
+struct WorkspacePlan {
   std::variant<ColumnOptions, VoxelOptions> method;
-  std::vector<int> swept = {};       ///< all of them, where the study names them; else what it holds decides
-  std::vector<HeldCoordinate> held;  ///< those that the study names; the others of the sweep are in the middle
+  std::vector<int> swept = {};        ///< all of them, where the study names them; else what it holds decides
+  std::vector<FixedCoordinate> held;  ///< those that the study names; the others of the sweep are in the middle
   LimitSpec limits;
 
   const VoxelOptions* voxels() const { return std::get_if<VoxelOptions>(&method); }
@@ -61,17 +61,17 @@ struct SurveyPlan {
 };
 
 /// Of links: they overlap by the sum of their radii at most, and no radius is greater than 1 m.
-inline constexpr double kNoClearance = -2;
+inline constexpr double kInactiveClearance = -2;
 
 /// Whether a plan asks for a clearance.
 /// @param limit  the mechanism's number of it
-inline bool asks_clearance(const SurveyPlan& plan, std::size_t limit) {
-  return plan.limits.given[limit].value_or(kNoClearance) > kNoClearance;
+inline bool asks_clearance(const WorkspacePlan& plan, std::size_t limit) {
+  return plan.limits.given[limit].value_or(kInactiveClearance) > kInactiveClearance;
 }
 
 /// How the plan holds a coordinate: in the middle where it does not name it.
-inline HeldCoordinate how_held(const SurveyPlan& plan, int coordinate) {
-  for (const HeldCoordinate& held : plan.held)
+inline FixedCoordinate how_fixed(const WorkspacePlan& plan, int coordinate) {
+  for (const FixedCoordinate& held : plan.held)
     if (held.coordinate == coordinate) return held;
   return {.coordinate = coordinate};
 }

@@ -1,12 +1,12 @@
 // A number of every pose, or of every joint at every pose: stated once. Surveys of any mechanism, objectives, names of
-// expressions, pictures and exports follow from the definition. Those there are: engine/survey/pose_quantities.hpp.
+// expressions, pictures and exports follow from the definition. Those there are: engine/workspace/pose_quantities.hpp.
 #pragma once
 
 #include <array>
 #include <tuple>
 
+#include "engine/geometry/pose.hpp"
 #include "engine/math/dual.hpp"
-#include "engine/model/pose.hpp"
 
 namespace pkm {
 

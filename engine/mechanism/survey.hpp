@@ -29,7 +29,7 @@ struct Survey {
   // per feasible sample, only what was demanded (empty otherwise), all of one length
   std::vector<S> weight;
   std::vector<Pose<S>> pose;
-  std::map<const PoseQuantity*, std::array<std::vector<S>, kMostJoints>> fields;  ///< the first, or as many as joints
+  std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;  ///< the first, or as many as joints
 
   /// A field; empty where it was not demanded.
   const std::vector<S>& of(const PoseQuantity& quantity, std::size_t joint = 0) const {

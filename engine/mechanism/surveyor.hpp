@@ -10,41 +10,42 @@
 
 namespace pkm {
 
-class SlopeSurveyor;
+class GradientEvaluator;
 
 /// What does not depend on the design is computed once, when it is made. Immutable, shared by threads.
-class Surveyor {
+class WorkspaceEvaluator {
  public:
-  virtual ~Surveyor() = default;
+  virtual ~WorkspaceEvaluator() = default;
   /// @param parameters  all parameters of the design, order of MechanismInfo::parameters
   /// @param survey      overwritten; reuse one per thread
   virtual void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const = 0;
   /// The same surveys with derivatives; null: there are none, for the reason below.
-  virtual const SlopeSurveyor* slopes() const { return nullptr; }
+  virtual const GradientEvaluator* slopes() const { return nullptr; }
   /// Why surveys of this plan have no derivatives, where they have none.
-  virtual std::string why_no_slopes() const { return "the mechanism's surveys give no derivatives"; }
+  virtual std::string why_no_gradients() const { return "the mechanism's surveys give no derivatives"; }
 };
 
-class SlopeSurveyor {
+class GradientEvaluator {
  public:
-  virtual ~SlopeSurveyor() = default;
+  virtual ~GradientEvaluator() = default;
   /// The same survey with derivatives by up to four variables. Values have the bits of the survey without them.
   virtual void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const = 0;
 };
 
 /// Of a plan by voxels, whose cells it can show, too.
-class VoxelSurveyor : public Surveyor {
+class VoxelEvaluator : public WorkspaceEvaluator {
  public:
   /// The cells of one design, box as in a survey.
   virtual VoxelMap map(std::span<const double> parameters) const = 0;
-  std::string why_no_slopes() const final {
+  std::string why_no_gradients() const final {
     return "the study surveys voxels, whose sums have none; take workspace.method = \"columns\"";
   }
 };
 
 /// A survey of either kind.
 template <class S>
-void run_survey(const Surveyor& surveyor, std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) {
+void evaluate_workspace(const WorkspaceEvaluator& surveyor, std::span<const S> parameters, Scratch& scratch,
+                        Survey<S>& survey) {
   if constexpr (std::is_same_v<S, double>)
     surveyor.survey(parameters, scratch, survey);
   else
@@ -53,9 +54,9 @@ void run_survey(const Surveyor& surveyor, std::span<const S> parameters, Scratch
 
 /// With scratch of its own, for those who need no second survey.
 template <class S>
-void survey_once(const Surveyor& surveyor, std::span<const S> parameters, Survey<S>& survey) {
+void evaluate_once(const WorkspaceEvaluator& surveyor, std::span<const S> parameters, Survey<S>& survey) {
   Scratch scratch;
-  run_survey(surveyor, parameters, scratch, survey);
+  evaluate_workspace(surveyor, parameters, scratch, survey);
 }
 
 }  // namespace pkm

@@ -68,8 +68,7 @@ void mark_singular(TrajectoryPoint& point) {
 }  // namespace
 
 Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
-                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench,
-                  double phase) {
+                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench) {
   const MechanismInfo& info = mechanism.info();
   const Dynamics* const dynamics = no_joint_forces(mechanism) ? nullptr : mechanism.dynamics();
   const DriveTrains* const trains = mechanism.drive_trains();
@@ -82,7 +81,9 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
     TrajectoryPoint point;
     point.motion = at;
     if (!is_finite(at.pose) || !is_finite(at.velocity) || !is_finite(at.acceleration) ||
-        !is_finite({at.input.angle, at.input.speed, at.input.acceleration})) {
+        !std::ranges::all_of(at.inputs, [](const InputSample& input) {
+          return is_finite({input.value, input.rate, input.acceleration});
+        })) {
       point.reason = "the motion has no finite pose, velocity and acceleration";
       trajectory.points.push_back(std::move(point));
       continue;
@@ -114,7 +115,7 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
         set_rates(point, joints->G * at.velocity, accelerations<double, 0>(*joints, at.velocity, at.acceleration));
       if (!joints || (joints->G.rows() >= joints->G.cols() && is_rank_deficient(joints->G))) mark_singular(point);
     }
-    if (mechanism.chain()) point.chain = mechanism.chain()->report(parameters, at, phase);
+    point.quantities = mechanism.quantities(parameters, mode, limits, at);
     trajectory.points.push_back(std::move(point));
   }
   trajectory.summary = summarise(trajectory.points, info.joints.size());

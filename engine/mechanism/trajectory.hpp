@@ -13,8 +13,8 @@
 namespace pkm {
 
 /// One sample. What does not exist (the pose does not assemble, no masses) is absent. Where J is singular to working
-/// precision (engine/model/singular.hpp) no forces give the motion: the sample is not feasible and has none. Redundant
-/// drives have no unique forces: their samples have speeds alone, by the same rule.
+/// precision (engine/geometry/singular.hpp) no forces give the motion: the sample is not feasible and has none.
+/// Redundant drives have no unique forces: their samples have speeds alone, by the same rule.
 struct TrajectoryPoint {
   MotionSample motion;
   bool feasible = false;
@@ -23,7 +23,7 @@ struct TrajectoryPoint {
   std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
   std::optional<AxisVector<double>> forces, power;          ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
   std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, with drive trains [N m, rad/s]
-  std::optional<ChainReport> chain;                         ///< of the auxiliary chain
+  std::vector<double> quantities;                           ///< by MechanismInfo::quantities; NaN: undefined
   std::optional<Reactions> reactions;                       ///< in the joints, where add_reactions() has looked
 };
 
@@ -55,9 +55,7 @@ struct Trajectory {
 /// @param parameters  all parameters of the design
 /// @param mode        one of MechanismInfo::modes
 /// @param wrench      on the platform, the same all the time
-/// @param phase       of the auxiliary chain's forks [rad], where there is a chain
 Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
-                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench = {},
-                  double phase = 0);
+                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench = {});
 
 }  // namespace pkm

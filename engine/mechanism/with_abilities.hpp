@@ -12,7 +12,7 @@ class MechanismWith : public Mechanism, public Abilities... {
  public:
   const Voxels* voxels() const final { return as<Voxels>(); }
   const Columns* columns() const final { return as<Columns>(); }
-  const CertainBounds* bounds() const final { return as<CertainBounds>(); }
+  const RigorousBounds* bounds() const final { return as<RigorousBounds>(); }
   const Size* size() const final { return as<Size>(); }
   const DesignTests* design_tests() const final { return as<DesignTests>(); }
   const PoseMargins* pose_margins() const final { return as<PoseMargins>(); }
@@ -21,7 +21,6 @@ class MechanismWith : public Mechanism, public Abilities... {
   const Links* links() const final { return as<Links>(); }
   const Dynamics* dynamics() const final { return as<Dynamics>(); }
   const JointReactions* reactions() const final { return as<JointReactions>(); }
-  const AuxiliaryChain* chain() const final { return as<AuxiliaryChain>(); }
 
  private:
   template <class Ability>

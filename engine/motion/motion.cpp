@@ -6,9 +6,9 @@
 
 namespace pkm {
 
-std::vector<graph::Node> Motion::write(TimeGraph& to) const {
-  std::vector<graph::Node> pose = write_(to);
-  for (graph::Node& node : pose)  // a number would be folded, and so rounded, with those of a mechanism
+std::vector<expression::Node> Motion::write(TimeGraph& to) const {
+  std::vector<expression::Node> pose = write_(to);
+  for (expression::Node& node : pose)  // constants become inputs: folding them with a mechanism's constants would round
     if (to.graph[node].is_number()) node = to.input(to.graph[node].number).node();
   return pose;
 }
@@ -24,18 +24,22 @@ std::vector<MotionSample> sample(const Motion& motion, std::size_t count) {
 }
 
 bool is_periodic(const Motion& motion, std::span<const AxisInfo> coordinates) {
-  constexpr double kSame = 1e-9;
+  constexpr double kTolerance = 1e-9;
   const MotionSample first = motion.at(0), last = motion.at(motion.duration());
-  const auto same = [](double a, double b) { return std::fabs(a - b) <= kSame; };
-  const auto no_turn = [&](double turned) { return same(std::remainder(turned, 2 * kPi), 0); };
+  const auto same = [](double a, double b) { return std::fabs(a - b) <= kTolerance; };
+  const auto is_full_turn = [&](double angle) { return same(std::remainder(angle, 2 * kPi), 0); };
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const double moved = last.pose[i] - first.pose[i];
-    if (!(coordinates[i].turns() ? no_turn(moved) : same(moved, 0)) || !same(first.velocity[i], last.velocity[i]) ||
-        !same(first.acceleration[i], last.acceleration[i]))
+    if (!(coordinates[i].turns() ? is_full_turn(moved) : same(moved, 0)) ||
+        !same(first.velocity[i], last.velocity[i]) || !same(first.acceleration[i], last.acceleration[i]))
       return false;
   }
-  return no_turn(last.input.angle - first.input.angle) && same(first.input.speed, last.input.speed) &&
-         same(first.input.acceleration, last.input.acceleration);
+  for (std::size_t i = 0; i < last.inputs.size(); ++i) {
+    const InputSample &from = first.inputs[i], &to = last.inputs[i];
+    if (!is_full_turn(to.value - from.value) || !same(from.rate, to.rate) || !same(from.acceleration, to.acceleration))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace pkm

@@ -1,7 +1,7 @@
-// Motions of a platform: the pose, its velocity and acceleration at every time.
+// Motions of a platform: pose, velocity and acceleration as functions of time.
 //
-// A motion belongs to no mechanism: it is a curve in named coordinates. engine/mechanism/trajectory.hpp follows it with
-// a mechanism that has these.
+// A motion is independent of the mechanism: it is a curve in named coordinates. engine/mechanism/trajectory.hpp
+// evaluates a mechanism with these coordinates along it.
 #pragma once
 
 #include <functional>
@@ -10,32 +10,37 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/chain.hpp"
-#include "engine/motion/time_formulas.hpp"
+#include "engine/geometry/pose.hpp"
+#include "engine/motion/time_graph.hpp"
 
 namespace pkm {
+
+/// An input of a mechanism in addition to the pose, such as the angle of an additional shaft, and its time derivatives.
+struct InputSample {
+  double value = 0, rate = 0, acceleration = 0;
+};
 
 /// A motion at one time.
 struct MotionSample {
   double time = 0;                            ///< [s]
-  Pose<double> pose;                          ///< in SI units
-  AxisVector<double> velocity, acceleration;  ///< its derivatives by time
-  Turning input;                              ///< of the auxiliary chain, where there is one
+  Pose<double> pose;                          ///< [m, rad]
+  AxisVector<double> velocity, acceleration;  ///< time derivatives of the pose
+  std::vector<InputSample> inputs = {};       ///< by MechanismInfo::inputs; empty: their defaults, constant
 };
 
-/// Immutable, shared by threads.
+/// A motion, given by a function of time and by an equivalent expression graph. Immutable and thread-safe.
 class Motion {
  public:
   using At = std::function<MotionSample(double)>;
-  using Write = std::function<std::vector<graph::Node>(TimeGraph&)>;
+  using Write = std::function<std::vector<expression::Node>(TimeGraph&)>;
 
   Motion(double duration, At at, Write write) : duration_(duration), at_(std::move(at)), write_(std::move(write)) {}
-  /// [s], > 0; it begins at 0.
+  /// Duration [s], > 0; the motion begins at time 0.
   double duration() const { return duration_; }
   /// @param time  in [0, duration()]
   MotionSample at(double time) const { return at_(time); }
-  /// The coordinates of the pose as formulas of the time in [0, duration()].
-  std::vector<graph::Node> write(TimeGraph& to) const;
+  /// Adds the coordinates of the pose to a graph, as expressions of the time in [0, duration()].
+  std::vector<expression::Node> write(TimeGraph& to) const;
 
  private:
   double duration_;
@@ -43,17 +48,17 @@ class Motion {
   Write write_;
 };
 
-/// A motion with the name that a study gives it.
+/// A motion and its name in a study.
 struct NamedMotion {
   std::string name;
   std::shared_ptr<const Motion> motion;
 };
 
-/// `count` samples at equal distances in time, both ends included; count >= 2.
+/// `count` >= 2 samples at equidistant times, including the start and the end.
 std::vector<MotionSample> sample(const Motion& motion, std::size_t count);
 
-/// Whether it ends as it begins (within 1e-9 of a metre, a radian and their rates), so that it can be repeated without
-/// a jump of pose, velocity or acceleration. A full turn counts as none.
+/// True if pose, velocity and acceleration at the end equal those at the start, within 1e-9 in SI units, so that the
+/// motion can be repeated without a discontinuity. Angles may differ by full turns.
 bool is_periodic(const Motion& motion, std::span<const AxisInfo> coordinates);
 
 }  // namespace pkm

@@ -1,5 +1,6 @@
+// Harmonic oscillation.
 #include "engine/core/error.hpp"
-#include "engine/motion/motions.hpp"
+#include "engine/motion/motion_factories.hpp"
 
 namespace pkm {
 
@@ -9,11 +10,11 @@ std::shared_ptr<const Motion> oscillation(const SpaceAxes& axes, const AxisVecto
   const auto at = [=, rate = 2 * kPi / period](double time) {
     const auto [s, c] = sincos(rate * time);
     const double A = amplitude, v = A * rate, a = v * rate;
-    const AxisVector<double> still(centre.size());
-    MotionSample sample{time, centre, still, still, {}};
-    const auto add = [&sample](std::optional<std::size_t> axis, double way, double speed, double acceleration) {
+    const AxisVector<double> zero(centre.size());
+    MotionSample sample{time, centre, zero, zero, {}};
+    const auto add = [&sample](std::optional<std::size_t> axis, double offset, double speed, double acceleration) {
       if (!axis) return;
-      sample.pose[*axis] += way;
+      sample.pose[*axis] += offset;
       sample.velocity[*axis] = speed;
       sample.acceleration[*axis] = acceleration;
     };
@@ -23,12 +24,12 @@ std::shared_ptr<const Motion> oscillation(const SpaceAxes& axes, const AxisVecto
     return sample;
   };
   const auto write = [=](TimeGraph& to) {
-    const graph::Term turn = to.number(Interval(2 * kPi) / Interval(period)) * to.time, A = to.number(amplitude);
-    std::vector<graph::Node> pose;
+    const expression::Term phase = to.number(Interval(2 * kPi) / Interval(period)) * to.time, A = to.number(amplitude);
+    std::vector<expression::Node> pose;
     for (std::size_t i = 0; i < centre.size(); ++i) {
-      const graph::Term middle = to.number(centre[i]);
+      const expression::Term mean = to.number(centre[i]);
       const bool sine = i == axes.x || i == axes.z;
-      pose.push_back((sine ? middle + A * sin(turn) : i == axes.y ? middle + A * cos(turn) : middle).node());
+      pose.push_back((sine ? mean + A * sin(phase) : i == axes.y ? mean + A * cos(phase) : mean).node());
     }
     return pose;
   };

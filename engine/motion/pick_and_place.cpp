@@ -1,53 +1,56 @@
+// Pick-and-place cycle.
 #include "engine/core/error.hpp"
-#include "engine/motion/motions.hpp"
+#include "engine/motion/motion_factories.hpp"
 
 namespace pkm {
 namespace {
 
-/// One way of the cycle.
-/// @param t  since it began
-MotionSample there(const PickAndPlace& cycle, double time, double t, const AxisVector<double>& from,
-                   const AxisVector<double>& along) {
+/// A sample of one way of the cycle.
+/// @param t      time since the way began
+/// @param along  displacement of the whole way, without lifting
+MotionSample sample_way(const PickAndPlace& cycle, double time, double t, const AxisVector<double>& from,
+                        const AxisVector<double>& along) {
   const double reach_begins = cycle.lift_time - cycle.overlap;                     // t_h
   const double lowering_begins = reach_begins + cycle.reach_time - cycle.overlap;  // t_d
-  const Advance up = advance(cycle.law, t, cycle.lift_time, cycle.lift);
-  const Advance down = advance(cycle.law, t - lowering_begins, cycle.lift_time, cycle.lift);
-  const Advance share = advance(cycle.law, t - reach_begins, cycle.reach_time, 1);
-  MotionSample sample{time, from + along * share.way, along * share.speed, along * share.acceleration, {}};
+  const PathState up = evaluate(cycle.law, t, cycle.lift_time, cycle.lift);
+  const PathState down = evaluate(cycle.law, t - lowering_begins, cycle.lift_time, cycle.lift);
+  const PathState s = evaluate(cycle.law, t - reach_begins, cycle.reach_time, 1);
+  MotionSample sample{time, from + along * s.distance, along * s.speed, along * s.acceleration, {}};
   if (const auto z = cycle.axes.z) {
-    sample.pose[*z] += up.way - down.way;
+    sample.pose[*z] += up.distance - down.distance;
     sample.velocity[*z] += up.speed - down.speed;
     sample.acceleration[*z] += up.acceleration - down.acceleration;
   }
   return sample;
 }
 
-/// One way of the cycle as formulas of the time: how far the platform is lifted, and its share of the reach.
-/// @param begin  of the way
-std::array<graph::Term, 2> write_way(const PickAndPlace& cycle, TimeGraph& to, const Interval& begin) {
+/// One way of the cycle as expressions of the time.
+/// @param begin  time at which the way begins
+/// @return height above the start, and fraction of the displacement `along`
+std::array<expression::Term, 2> write_way(const PickAndPlace& cycle, TimeGraph& to, const Interval& begin) {
   const Interval reach_begins = begin + Interval(cycle.lift_time) - Interval(cycle.overlap);
   const Interval lowering_begins = reach_begins + Interval(cycle.reach_time) - Interval(cycle.overlap);
-  const auto share = [&](const Interval& from, double duration) { return share_of_way(cycle.law, to, from, duration); };
-  return {to.number(cycle.lift) * (share(begin, cycle.lift_time) - share(lowering_begins, cycle.lift_time)),
-          share(reach_begins, cycle.reach_time)};
+  const auto law = [&](const Interval& from, double duration) { return path_fraction(cycle.law, to, from, duration); };
+  return {to.number(cycle.lift) * (law(begin, cycle.lift_time) - law(lowering_begins, cycle.lift_time)),
+          law(reach_begins, cycle.reach_time)};
 }
 
-std::vector<graph::Node> write_cycle(const PickAndPlace& cycle, TimeGraph& to) {
+std::vector<expression::Node> write_cycle(const PickAndPlace& cycle, TimeGraph& to) {
   const Interval direction(cycle.direction), reach(cycle.reach);
-  auto [lifted, share] = write_way(cycle, to, 0.0);
+  auto [lifted, fraction] = write_way(cycle, to, 0.0);
   if (cycle.back) {
-    const Interval way = Interval(cycle.lift_time) - Interval(cycle.overlap) + Interval(cycle.reach_time) -
-                         Interval(cycle.overlap) + Interval(cycle.lift_time) + Interval(cycle.wait);
-    const auto [lifted_again, share_back] = write_way(cycle, to, way);
+    const Interval back_begins = Interval(cycle.lift_time) - Interval(cycle.overlap) + Interval(cycle.reach_time) -
+                                 Interval(cycle.overlap) + Interval(cycle.lift_time) + Interval(cycle.wait);
+    const auto [lifted_again, fraction_back] = write_way(cycle, to, back_begins);
     lifted = lifted + lifted_again;
-    share = share - share_back;
+    fraction = fraction - fraction_back;
   }
-  std::vector<graph::Node> pose;
+  std::vector<expression::Node> pose;
   for (std::size_t i = 0; i < cycle.start.size(); ++i) {
-    graph::Term at = to.number(cycle.start[i]);
-    if (i == cycle.axes.x) at = at + to.number(reach * cos(direction)) * share;
-    if (i == cycle.axes.y) at = at + to.number(reach * sin(direction)) * share;
-    if (i == cycle.axes.turn) at = at + to.number(cycle.turn) * share;
+    expression::Term at = to.number(cycle.start[i]);
+    if (i == cycle.axes.x) at = at + to.number(reach * cos(direction)) * fraction;
+    if (i == cycle.axes.y) at = at + to.number(reach * sin(direction)) * fraction;
+    if (i == cycle.axes.turn) at = at + to.number(cycle.turn) * fraction;
     if (i == cycle.axes.z) at = at + lifted;
     pose.push_back(at.node());
   }
@@ -60,7 +63,7 @@ std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle) {
   PKM_EXPECTS(cycle.axes.z || cycle.lift == 0);
   PKM_EXPECTS(cycle.lift_time > 0 && cycle.reach_time > 0 && cycle.overlap >= 0);
   PKM_EXPECTS(cycle.overlap <= cycle.lift_time && cycle.overlap <= cycle.reach_time);
-  const double way = cycle.lift_time - cycle.overlap + cycle.reach_time - cycle.overlap + cycle.lift_time + cycle.wait;
+  const double end = cycle.lift_time - cycle.overlap + cycle.reach_time - cycle.overlap + cycle.lift_time + cycle.wait;
   const auto [s, c] = sincos(cycle.direction);
   AxisVector<double> along(cycle.start.size());
   const auto set = [&along](std::optional<std::size_t> axis, double moved) {
@@ -70,11 +73,11 @@ std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle) {
   set(cycle.axes.x, cycle.reach * c);
   set(cycle.axes.y, cycle.reach * s);
   set(cycle.axes.turn, cycle.turn);
-  const auto at = [cycle, way, along](double time) {
-    if (!cycle.back || time <= way) return there(cycle, time, time, cycle.start, along);
-    return there(cycle, time, time - way, cycle.start + along, along * -1.0);
+  const auto at = [cycle, end, along](double time) {
+    if (!cycle.back || time <= end) return sample_way(cycle, time, time, cycle.start, along);
+    return sample_way(cycle, time, time - end, cycle.start + along, along * -1.0);
   };
-  return std::make_shared<const Motion>(cycle.back ? 2 * way : way, at,
+  return std::make_shared<const Motion>(cycle.back ? 2 * end : end, at,
                                         [cycle](TimeGraph& to) { return write_cycle(cycle, to); });
 }
 

@@ -1,8 +1,9 @@
+// Point-to-point motions.
 #include <algorithm>
 #include <cmath>
 
 #include "engine/core/error.hpp"
-#include "engine/motion/motions.hpp"
+#include "engine/motion/motion_factories.hpp"
 
 namespace pkm {
 namespace {
@@ -12,23 +13,24 @@ struct Leg {
   AxisVector<double> from, to;
 };
 
-/// Where it starts and every move's share: of those that have not begun nothing, of those that have ended all.
-std::vector<graph::Node> write_moves(const AxisVector<double>& start, const std::vector<Move>& moves, TimeLaw law,
-                                     TimeGraph& to) {
-  std::vector<graph::Term> pose;
+/// The pose as an expression of the time: the start plus the displacement of every move times its fraction, which is 0
+/// before the move and 1 after it.
+std::vector<expression::Node> write_moves(const AxisVector<double>& start, const std::vector<Move>& moves, TimeLaw law,
+                                          TimeGraph& to) {
+  std::vector<expression::Term> pose;
   for (const double value : start) pose.push_back(to.number(value));
   Interval begin(0.0);
   AxisVector<double> from = start;
   for (const Move& move : moves) {
     begin += Interval(move.wait);
-    const graph::Term share = share_of_way(law, to, begin, move.duration);
+    const expression::Term fraction = path_fraction(law, to, begin, move.duration);
     for (std::size_t i = 0; i < pose.size(); ++i)
-      pose[i] = pose[i] + to.number(Interval(move.to[i]) - Interval(from[i])) * share;
+      pose[i] = pose[i] + to.number(Interval(move.to[i]) - Interval(from[i])) * fraction;
     begin += Interval(move.duration);
     from = move.to;
   }
-  std::vector<graph::Node> nodes;
-  for (const graph::Term& coordinate : pose) nodes.push_back(coordinate.node());
+  std::vector<expression::Node> nodes;
+  for (const expression::Term& coordinate : pose) nodes.push_back(coordinate.node());
   return nodes;
 }
 
@@ -46,32 +48,32 @@ std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, co
     end += move.duration;
   }
   const auto at = [legs = std::move(legs), law](double time) {
-    // The last leg that has begun; a pause before the first belongs to it.
+    // the last leg that has begun, or the first leg during the pause before it
     const auto after = std::ranges::upper_bound(legs, time, {}, &Leg::begin);
     const Leg& leg = after == legs.begin() ? legs.front() : *(after - 1);
-    const Advance share = advance(law, time - leg.begin, leg.duration, 1);
+    const PathState fraction = evaluate(law, time - leg.begin, leg.duration, 1);
     const AxisVector<double> way = leg.to - leg.from;
-    const AxisVector<double> pose = share.way == 1 ? leg.to : leg.from + way * share.way;
-    return MotionSample{time, pose, way * share.speed, way * share.acceleration, {}};
+    const AxisVector<double> pose = fraction.distance == 1 ? leg.to : leg.from + way * fraction.distance;
+    return MotionSample{time, pose, way * fraction.speed, way * fraction.acceleration, {}};
   };
   return std::make_shared<const Motion>(end + wait, at,
                                         [=](TimeGraph& to) { return write_moves(start, moves, law, to); });
 }
 
-double time_within(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
-                   const AxisVector<double>& to, const PeakRates& most) {
-  const auto time_of = [law](double way, double acceleration, double speed) {
-    return std::max(time_of_move(law, way, acceleration), peak_speed(law) * std::fabs(way) / speed);
+double min_move_duration(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
+                         const AxisVector<double>& to, const PeakRates& limits) {
+  const auto duration = [law](double distance, double acceleration, double speed) {
+    return std::max(move_duration(law, distance, acceleration), peak_speed(law) * std::fabs(distance) / speed);
   };
   const AxisVector<double> way = to - from;
   double square = 0, time = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     if (coordinates[i].turns())
-      time = std::max(time, time_of(way[i], most.angular_acceleration, most.angular_speed));
+      time = std::max(time, duration(way[i], limits.angular_acceleration, limits.angular_speed));
     else
       square += way[i] * way[i];
   }
-  return std::max(time_of(std::sqrt(square), most.acceleration, most.speed), time);
+  return std::max(duration(std::sqrt(square), limits.acceleration, limits.speed), time);
 }
 
 SpaceAxes space_axes(std::span<const AxisInfo> coordinates) {

@@ -6,27 +6,27 @@
 
 namespace pkm {
 
-Advance advance(TimeLaw law, double time, double duration, double way) {
+PathState evaluate(TimeLaw law, double time, double duration, double distance) {
   const double u = time / duration;
   if (u <= 0) return {};
-  if (u >= 1) return {way, 0, 0};
-  const double rate = way / duration, rate_2 = rate / duration;
+  if (u >= 1) return {distance, 0, 0};
+  const double rate = distance / duration, rate_2 = rate / duration;
   if (law == TimeLaw::cycloid) {
     const auto [s, c] = sincos(2 * kPi * u);
-    return {way * (u - s / (2 * kPi)), rate * (1 - c), rate_2 * (2 * kPi * s)};
+    return {distance * (u - s / (2 * kPi)), rate * (1 - c), rate_2 * (2 * kPi * s)};
   }
-  return {way * (u * u * u * (10 - u * (15 - 6 * u))), rate * (30 * u * u * (1 - u) * (1 - u)),
+  return {distance * (u * u * u * (10 - u * (15 - 6 * u))), rate * (30 * u * u * (1 - u) * (1 - u)),
           rate_2 * (60 * u * (1 - u) * (1 - 2 * u))};
 }
 
-graph::Term share_of_way(TimeLaw law, TimeGraph& graph, const Interval& begin, double duration) {
-  using graph::Term, graph::operation;
+expression::Term path_fraction(TimeLaw law, TimeGraph& graph, const Interval& begin, double duration) {
+  using expression::Term, expression::operation;
   const auto number = [&graph](double value) { return graph.number(value); };
   const auto s = [&](const Term& u) {
     if (law == TimeLaw::cycloid) return u - sin(number(2 * kPi) * u) / number(2 * kPi);
     return u * u * u * (number(10) - u * (number(15) - number(6) * u));
   };
-  // s(1 - u) = 1 - s(u): each half from its own end, where intervals of it are narrow
+  // By symmetry s(1 - u) = 1 - s(u). Each half is computed from its own end, which gives tighter interval enclosures.
   const auto half = [&](const Term& u) {
     return s(call(operation("min"), call(operation("max"), u, number(0)), number(0.5)));
   };
@@ -38,8 +38,8 @@ double peak_acceleration(TimeLaw law) { return law == TimeLaw::cycloid ? 2 * kPi
 
 double peak_speed(TimeLaw law) { return law == TimeLaw::cycloid ? 2 : 1.875; }
 
-double time_of_move(TimeLaw law, double way, double peak) {
-  return std::sqrt(peak_acceleration(law) * std::fabs(way) / peak);
+double move_duration(TimeLaw law, double distance, double peak) {
+  return std::sqrt(peak_acceleration(law) * std::fabs(distance) / peak);
 }
 
 }  // namespace pkm

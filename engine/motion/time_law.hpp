@@ -1,35 +1,40 @@
-// From rest to rest: how far along its way a move is, s(u) in [0, 1] with u = t/T.
+// Time laws (motion laws) of rest-to-rest moves: the travelled fraction s(u) of the path as a function of u = t/T, both
+// in [0, 1].
 //
 //   quintic  s = 10 u^3 - 15 u^4 + 6 u^5          peak speed 1.875 S/T   peak acceleration 10/sqrt(3) S/T^2
 //   cycloid  s = u - sin(2 pi u)/(2 pi)            peak speed 2 S/T       peak acceleration 2 pi S/T^2
 //
-// Both begin and end with speed and acceleration 0.
+// where S is the length of the path. Both start and end with zero speed and acceleration.
+//
+// Reference: Biagiotti, Melchiorri, "Trajectory Planning for Automatic Machines and Robots", Springer 2008, chapter 2.
 #pragma once
 
-#include "engine/motion/time_formulas.hpp"
+#include "engine/motion/time_graph.hpp"
 
 namespace pkm {
 
 enum class TimeLaw { quintic, cycloid };
 
-/// A distance along a move, and its derivatives by time.
-struct Advance {
-  double way = 0, speed = 0, acceleration = 0;
+/// Travelled distance along a move, and its time derivatives.
+struct PathState {
+  double distance = 0, speed = 0, acceleration = 0;
 };
 
-/// A move over `way` in the time `duration`, at `time` after its beginning; at rest before and behind.
-Advance advance(TimeLaw law, double time, double duration, double way);
+/// Evaluates a move over `distance` with a duration; at rest before its start and after its end.
+/// @param time  since its start
+PathState evaluate(TimeLaw law, double time, double duration, double distance);
 
-/// The same way over 1, as a formula of the time in which a move begins.
-graph::Term share_of_way(TimeLaw law, TimeGraph& graph, const Interval& begin, double duration);
+/// The travelled fraction of a move, in [0, 1], as an expression of the time.
+/// @param begin  time at which the move starts
+expression::Term path_fraction(TimeLaw law, TimeGraph& graph, const Interval& begin, double duration);
 
-/// Peak acceleration of a move over 1 in the time 1.
+/// Peak acceleration of a move over the distance 1 in the time 1.
 double peak_acceleration(TimeLaw law);
 
-/// Peak speed of a move over 1 in the time 1.
+/// Peak speed of a move over the distance 1 in the time 1.
 double peak_speed(TimeLaw law);
 
-/// Time [s] in which a move over `way` reaches the peak acceleration `peak` and no more.
-double time_of_move(TimeLaw law, double way, double peak);
+/// Duration [s] of a move over `distance` whose peak acceleration is `peak`.
+double move_duration(TimeLaw law, double distance, double peak);
 
 }  // namespace pkm

@@ -1,5 +1,5 @@
-// Order among designs that are judged by several numbers. All scores are to be minimised; a design dominates another
-// when it is nowhere worse and somewhere better.
+// Non-dominated sorting and an incrementally maintained non-dominated set. All scores are minimised; a design dominates
+// another if it is not worse in any score and better in at least one (Pareto dominance).
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,28 @@
 
 namespace pkm {
 
-/// The designs in lexicographic order of their scores; of equal ones the first comes first.
-std::vector<std::uint32_t> in_order(const Scores& scores);
+/// Indices of the designs in lexicographic order of their scores; designs with equal scores by ascending index.
+std::vector<std::uint32_t> lexicographic_order(const Scores& scores);
 
-/// Non-dominated sorting: front 0 is dominated by nobody, front k only by members of the fronts before it. Designs with
-/// equal scores share a front. Each is put into the first front that does not cover it, found by bisection (Zhang et
-/// al. 2015), in an order in which later ones cannot dominate earlier ones; what a front covers is read from a
-/// staircase of one or two scores: O(n log n) for 2 objectives, O(n log^2 n) but for moving the steps for 3, and
-/// pairwise comparison for more.
-/// @param front  receives the number of each row's front
-void sort_fronts(const Scores& scores, std::vector<std::uint32_t>& front);
+/// Efficient non-dominated sort with binary search (ENS-BS, Zhang et al. 2015). No design dominates the members of
+/// front 0; every member of front k is dominated by a member of front k - 1. Designs with equal scores share a front.
+///
+/// The designs are inserted in lexicographic order, in which a later design cannot dominate an earlier one, each into
+/// the first front that does not weakly dominate it. That test uses a running minimum for 2 objectives, O(n log n) in
+/// all, a sorted staircase for 3, O(n log^2 n) plus the insertions into the staircase, and pairwise comparisons for
+/// more.
+/// @param front  receives the front index of each design
+void non_dominated_sort(const Scores& scores, std::vector<std::uint32_t>& front);
 
-/// All non-dominated designs of those it was given, each with an identity: in the order of their scores, the first one
-/// first. Of designs with equal scores it keeps the one that came first.
-class Archive {
+/// The non-dominated designs among all that were added, each with an identifier, in lexicographic order of their
+/// scores. Of designs with equal scores, the one added first is kept.
+class NonDominatedSet {
  public:
-  /// @param limit  most members; more are thinned out to it (see diversity.hpp). 0: no limit
-  explicit Archive(std::size_t objectives, std::size_t limit = 0) : limit_(limit), scores_{objectives} {}
+  /// @param limit  maximum size, to which a larger set is truncated by crowding distance (crowding.hpp); 0: unlimited
+  explicit NonDominatedSet(std::size_t objectives, std::size_t limit = 0) : limit_(limit), scores_{objectives} {}
 
-  /// Adds designs, `scores` and `ids` alike in length. Returns whether any of them became a member.
+  /// Adds designs; `ids` has one identifier per row of `scores`.
+  /// @return true if at least one of them became a member
   bool add(const Scores& scores, std::span<const std::int64_t> ids);
 
   std::size_t size() const { return ids_.size(); }

@@ -1,4 +1,4 @@
-// The entries of the catalogue of optimisers: one line per entry here and one in all.cpp.
+// Functions that return the catalogue entries of the optimisers. Each entry has one line here and one in all.cpp.
 #pragma once
 
 #include "engine/optimisers/optimiser.hpp"

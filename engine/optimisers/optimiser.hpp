@@ -1,8 +1,8 @@
-// What every optimiser of a study's chain is given, promises and returns.
+// Interface of an optimiser, which runs one stage of a study: its input, progress reports, result and catalogue entry.
 //
-// An optimiser is a deterministic function of (problem, seed, starts): all it learns comes through the evaluator. That
-// is what makes resuming simple: a resumed run starts the optimiser anew and serves the recorded evaluations first, so
-// there is no state of its own to store, and every optimiser resumes bit for bit.
+// An optimiser is a deterministic function of (problem, seed, start designs) that obtains all its information through
+// the evaluator. Resuming therefore needs no stored optimiser state: a resumed run restarts the optimiser, the recorded
+// evaluations are replayed first, and the run continues bit-identically.
 #pragma once
 
 #include <cstdint>
@@ -22,45 +22,46 @@
 
 namespace pkm {
 
-inline constexpr std::size_t kManyObjectives = std::numeric_limits<std::size_t>::max();  ///< any number
+inline constexpr std::size_t kUnlimitedObjectives = std::numeric_limits<std::size_t>::max();  ///< no upper limit
 
-/// What an optimiser can handle, as data: a study that asks for more is refused before it starts.
+/// The kinds of problem that an optimiser can handle. A study that needs more is rejected when it is read.
 struct Capabilities {
-  std::size_t min_objectives = 1;  ///< 0: a plain sweep
+  std::size_t min_objectives = 1;  ///< 0: a parameter sweep
   std::size_t max_objectives = 1;
-  const char* objectives_hint = "";  ///< said where a study has more
+  const char* too_many_objectives_hint = "";  ///< added to the error message where a study has more objectives
   bool constraints = true;
-  bool discrete = true;         ///< variables with a step
-  bool needs_gradient = false;  ///< refuses surveys without derivative (voxels)
-  bool starts = false;          ///< works on from given designs, several if asked
-  bool needs_front = false;     ///< works on from a front that a stage before it has found
+  bool discrete = true;         ///< supports variables with a step
+  bool needs_gradient = false;  ///< needs derivatives, which voxel counts do not have
+  bool starts = false;          ///< local search from one or several start designs
+  bool needs_front = false;     ///< starts from the Pareto front of an earlier stage
 };
 
-/// What an optimiser tells after each batch of evaluations ("generation").
+/// Progress report after each batch of evaluations ("generation").
 struct Generation {
-  std::int64_t number = 0;                            ///< 0 is the start population
-  std::size_t first_row = 0;                          ///< rows [first_row, table.size()) are new
-  const EvaluationTable* table = nullptr;             ///< all evaluations of this stage so far
-  const std::vector<std::int64_t>* population;        ///< rows that form the population now
-  std::int64_t best_row = -1;                         ///< best by `better`; -1 while nothing is evaluated
-  const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: the starts that have ended
-  /// Solvers: what is known of starts beyond the table, for a checkpoint.
-  std::function<std::vector<StartAhead>()> ahead = {};
-  /// Evaluations that the stage will still make, at most; none: its limit less those that it has made.
+  std::int64_t number = 0;                      ///< 0 is the initial population
+  std::size_t first_row = 0;                    ///< rows [first_row, table.size()) are new
+  const EvaluationTable* table = nullptr;       ///< all evaluations of this stage so far
+  const std::vector<std::int64_t>* population;  ///< rows of the current population
+  std::int64_t best_row = -1;                   ///< best row (several objectives: compromise solution); -1: none yet
+  const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: outcomes of the finished starts
+  /// Solvers: returns the evaluations and outcomes of starts that are not yet merged into the table, for a checkpoint.
+  std::function<std::vector<UnmergedStart>()> ahead = {};
+  /// Maximum number of evaluations still to be made; nullopt: the stage's limit less the evaluations made.
   std::optional<std::int64_t> left = {};
-  bool alone = false;  ///< reported by a rank as its own work comes along: the ranks compare at the stage's end
-  const Front* front = nullptr;  ///< several objectives
+  bool alone = false;  ///< reported without synchronising the ranks, whose results are compared at the stage's end
+  const Front* front = nullptr;  ///< several objectives: the Pareto front so far
 };
 
-/// Time limits, signals, checkpoints and the screen live behind this. Called by one thread at a time.
+/// Receives progress reports and decides when to stop: time limits, signals, checkpoints, screen output. Called by one
+/// thread at a time.
 class Monitor {
  public:
   virtual ~Monitor() = default;
-  /// After each generation. False: stop now (the stage then ends with StopReason::interrupted).
+  /// Reports a generation. @return false to stop the stage, which then ends with StopReason::interrupted
   virtual bool generation(const Generation& generation) = 0;
-  /// Between generations: false as generation().
+  /// Checked between generations. @return false to stop, as generation()
   virtual bool goes_on() { return true; }
-  /// Something that the user must be told, one sentence.
+  /// Shows a warning, one sentence, to the user.
   virtual void warn(const std::string& sentence) = 0;
 };
 
@@ -68,20 +69,20 @@ struct StageResult {
   StopReason reason = StopReason::generations;
   std::int64_t best_row = -1;             ///< row of the stage's table
   std::vector<StartOutcome> starts = {};  ///< solvers only
-  std::vector<StartAhead> ahead = {};     ///< solvers that were interrupted
-  std::optional<Front> front = {};        ///< several objectives
+  std::vector<UnmergedStart> ahead = {};  ///< interrupted solvers: starts not yet merged into the table
+  std::optional<Front> front = {};        ///< several objectives: the Pareto front
 };
 
-/// A design to begin from, and where it comes from.
+/// A start design and a description of its origin ("best of stage 1").
 struct StartDesign {
   std::vector<double> design;
   std::string origin;
 };
 
-/// Of the front that the stages before have found: what solvers scale by, and compare with.
-struct KnownFront {
-  std::vector<double> extents = {};    ///< range of each objective, else its size, > 0
-  std::vector<double> reference = {};  ///< corner of its hypervolume; empty: none
+/// Scaling data from the Pareto front of the earlier stages.
+struct PreviousFront {
+  std::vector<double> extents = {};    ///< range of each objective, > 0; its absolute value if the range is 0
+  std::vector<double> reference = {};  ///< reference point of its hypervolume; empty: none
 };
 
 struct StageInput {
@@ -89,15 +90,15 @@ struct StageInput {
   Evaluator& evaluator;
   Monitor& monitor;
   std::uint64_t seed = 1;
-  std::vector<StartDesign> starts;  ///< designs to begin from; may be empty
-  KnownFront known_front = {};      ///< several objectives
-  /// A resumed stage: the evaluations on record, of which those of recorded_starts, which had ended, come first, and
-  /// what was known of the starts beyond them.
+  std::vector<StartDesign> starts;    ///< start designs; may be empty
+  PreviousFront previous_front = {};  ///< several objectives
+  /// Resumed stage: the recorded evaluations (those of the finished starts `recorded_starts` come first), and the
+  /// evaluations of further starts that were not yet merged into the table. Otherwise null and empty.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};
-  std::vector<StartAhead> recorded_ahead = {};
+  std::vector<UnmergedStart> recorded_unmerged_starts = {};
 
-  /// Rows [first, table.size()) of the stage's table: from the record, where it has them, else by the evaluator.
+  /// Evaluates rows [first, table.size()) of the stage's table; recorded rows are replayed instead.
   void evaluate(EvaluationTable& table, std::size_t first) const {
     if (recorded)
       ReplayEvaluator(evaluator, *recorded).evaluate(problem, table, first);
@@ -109,13 +110,13 @@ struct StageInput {
 class Optimiser {
  public:
   virtual ~Optimiser() = default;
-  /// Runs the stage; `table` is empty and receives every evaluation in order.
+  /// Runs the stage. `table` is empty and receives all evaluations in order.
   virtual StageResult minimise(const StageInput& input, EvaluationTable& table) const = 0;
-  /// Evaluations the stage will make at most (for the estimate before a run).
+  /// Maximum number of evaluations of the stage, for the time estimate before a run.
   virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
-  /// How many evaluations it has under way at once, at most.
+  /// Maximum number of concurrent evaluations.
   virtual std::int64_t at_once() const { return std::numeric_limits<std::int64_t>::max(); }
-  /// What the stage's evaluations must hold.
+  /// Which results the stage needs of an evaluation.
   virtual Detail detail() const { return Detail::enough; }
 };
 
@@ -123,16 +124,16 @@ class Optimiser {
 struct OptimiserEntry {
   std::string name;
   std::string meaning;  ///< one line
-  /// May depend on options (the algorithm of a library).
+  /// Depends on the options where they choose a library's algorithm.
   Capabilities (*capabilities)(const Options&);
   std::vector<OptionSpec> options;
   std::unique_ptr<Optimiser> (*make)(const Options&, const DesignSpace&);
-  /// Fills in the options without value whose default depends on the variables, so that listings show what `make` would
-  /// take. Null: there are none.
+  /// Sets the unset options whose default value depends on the variables, so that listings show the values that `make`
+  /// uses. Null: there are no such options.
   void (*resolve)(Options&, const DesignSpace&) = nullptr;
 };
 
-/// Every optimiser there is, in the order in which `pkmopt list` shows them.
+/// All optimisers, in the order in which `pkmopt list` shows them.
 const std::vector<OptimiserEntry>& all_optimisers();
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// Short ways to write the options of an optimiser's catalogue entry.
+// Helper functions that build the option specifications of an optimiser's catalogue entry.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// An option without unit in [lower, upper]. No initial value: the option may be absent.
+/// A dimensionless number in [lower, upper]. Without an initial value the option is optional and has no default.
 inline OptionSpec number_option(std::string name, std::optional<OptionValue> initial, double lower, double upper,
                                 std::string meaning) {
   return {.name = std::move(name),
@@ -27,7 +27,7 @@ inline OptionSpec integer_option(std::string name, std::optional<OptionValue> in
   return spec;
 }
 
-/// The first choice is the default.
+/// One of `choices`; the first is the default.
 inline OptionSpec word_option(std::string name, std::vector<std::string> choices, std::string meaning) {
   return {.name = std::move(name),
           .kind = OptionKind::word,

@@ -1,29 +1,29 @@
-// Designs on a grid, evaluated one after the other without any search: how objectives depend on parameters.
+// Parameter sweep: evaluates the designs of a grid to show how the objectives depend on the variables. It is no search.
 //
-// one-at-a-time: generation 0 is the centre (the first start design, else the middle of the space), generation i + 1
-// moves variable i over its range and leaves the others at the centre. full-factorial: every combination, the last
-// variable fastest, in generations of at most 1000 designs.
+// one-at-a-time: generation 0 is the centre point (the first start design, otherwise the centre of the design space);
+// generation i + 1 varies variable i over its range and keeps the others at the centre point. full-factorial: all
+// combinations, the last variable varies fastest, in generations of at most 1000 designs.
 #include <algorithm>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "engine/optimisers/front_keeper.hpp"
 #include "engine/optimisers/list.hpp"
 #include "engine/optimisers/option_specs.hpp"
-#include "engine/problem/order.hpp"
+#include "engine/optimisers/pareto_archive.hpp"
+#include "engine/problem/ranking.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr std::size_t kBatch = 1000;
-constexpr double kMostDesigns = 1e8;
+constexpr std::size_t kMaxGenerationSize = 1000;
+constexpr double kMaxDesigns = 1e8;
 
-using Levels = std::vector<std::vector<double>>;  // values of each variable, rising
+using Levels = std::vector<std::vector<double>>;  // values of each variable, ascending
 
-// Even steps over each range; a variable with a step has no more values than its lattice.
-Levels levels_of(const DesignSpace& space, std::size_t points) {
+// Equally spaced values over each range, rounded to the lattice of a variable with a step, duplicates removed.
+Levels grid_levels(const DesignSpace& space, std::size_t points) {
   Levels levels(space.dimension());
   for (std::size_t i = 0; i < levels.size(); ++i) {
     for (std::size_t k = 0; k < points; ++k)
@@ -39,41 +39,41 @@ double combinations(const Levels& levels) {
   return product;
 }
 
-// Evaluates what was appended to the table, batch by batch, and remembers the best.
-class Batches {
+// Evaluates and reports the rows appended to the table, one generation at a time, and tracks the best design.
+class SweepRecorder {
  public:
-  Batches(const StageInput& input, EvaluationTable& table) : input_(input), table_(table) {
-    if (input.problem.objectives().size() > 1) front_.emplace(FrontPlan{}, input.problem, table);
+  SweepRecorder(const StageInput& input, EvaluationTable& table) : input_(input), table_(table) {
+    if (input.problem.objectives().size() > 1) archive_.emplace(ParetoArchivePlan{}, input.problem, table);
   }
 
-  /// Evaluates and reports the rows added since the last call. False: the monitor wants to stop.
+  /// Evaluates and reports the rows appended since the last call. @return false if the monitor requests a stop
   bool finish_generation() {
     input_.evaluate(table_, first_);
     for (std::size_t row = first_; row < table_.size(); ++row) {
-      const Ranked candidate = ranked(input_.problem.objectives(), table_, row);
+      const RankKey candidate = ranked(input_.problem.objectives(), table_, row);
       if (best_.row < 0 || candidate < best_) best_ = candidate;
     }
     rows_.resize(table_.size() - first_);
     std::iota(rows_.begin(), rows_.end(), static_cast<std::int64_t>(first_));
     const std::size_t first = std::exchange(first_, table_.size());
-    if (front_) front_->add(rows_);
+    if (archive_) archive_->add(rows_);
     return input_.monitor.generation({.number = generation_++,
                                       .first_row = first,
                                       .table = &table_,
                                       .population = &rows_,
                                       .best_row = best_row(),
-                                      .front = front_ ? &front_->front() : nullptr});
+                                      .front = archive_ ? &archive_->front() : nullptr});
   }
 
   StageResult result(StopReason reason) const {
     StageResult result{reason, best_row()};
-    if (front_) result.front = front_->front();
+    if (archive_) result.front = archive_->front();
     return result;
   }
 
  private:
   std::int64_t best_row() const {
-    return front_ && front_->compromise_row() >= 0 ? front_->compromise_row() : best_.row;
+    return archive_ && archive_->compromise_row() >= 0 ? archive_->compromise_row() : best_.row;
   }
 
   const StageInput& input_;
@@ -81,8 +81,8 @@ class Batches {
   std::size_t first_ = 0;
   std::int64_t generation_ = 0;
   std::vector<std::int64_t> rows_;
-  Ranked best_;
-  std::optional<FrontKeeper> front_;
+  RankKey best_;
+  std::optional<ParetoArchive> archive_;
 };
 
 class Sweep final : public Optimiser {
@@ -90,9 +90,9 @@ class Sweep final : public Optimiser {
   Sweep(Levels levels, bool factorial) : levels_(std::move(levels)), factorial_(factorial) {}
 
   StageResult minimise(const StageInput& input, EvaluationTable& table) const override {
-    Batches batches(input, table);
-    const bool finished = factorial_ ? all_combinations(batches, table) : one_at_a_time(input, batches, table);
-    return batches.result(finished ? StopReason::exhausted : StopReason::interrupted);
+    SweepRecorder recorder(input, table);
+    const bool finished = factorial_ ? all_combinations(recorder, table) : one_at_a_time(input, recorder, table);
+    return recorder.result(finished ? StopReason::exhausted : StopReason::interrupted);
   }
 
   std::int64_t evaluation_limit(const Problem&) const override {
@@ -103,36 +103,36 @@ class Sweep final : public Optimiser {
   }
 
  private:
-  // Both return false when the monitor stopped them before the last generation was done.
-  bool one_at_a_time(const StageInput& input, Batches& batches, EvaluationTable& table) const {
+  // Both return false if the monitor stopped them before the last generation.
+  bool one_at_a_time(const StageInput& input, SweepRecorder& recorder, EvaluationTable& table) const {
     const DesignSpace& space = input.problem.space();
     std::vector<double> centre(space.dimension());
     for (std::size_t i = 0; i < centre.size(); ++i)
       centre[i] = input.starts.empty() ? space.from_unit(i, 0.5) : space.nearest(i, input.starts.front().design[i]);
     append(table, centre);
-    bool goes_on = batches.finish_generation();
+    bool continues = recorder.finish_generation();
     for (std::size_t i = 0; i < centre.size(); ++i) {
-      if (!goes_on) return false;
+      if (!continues) return false;
       std::vector<double> design = centre;
       for (const double value : levels_[i]) {
         design[i] = value;
         append(table, design);
       }
-      goes_on = batches.finish_generation();
+      continues = recorder.finish_generation();
     }
     return true;
   }
 
-  bool all_combinations(Batches& batches, EvaluationTable& table) const {
+  bool all_combinations(SweepRecorder& recorder, EvaluationTable& table) const {
     std::vector<double> design(levels_.size());
     const auto count = static_cast<std::size_t>(combinations(levels_));
     for (std::size_t k = 0; k < count;) {
-      std::size_t rest = k++;
-      for (std::size_t i = design.size(); i-- > 0; rest /= levels_[i].size())
-        design[i] = levels_[i][rest % levels_[i].size()];
+      std::size_t quotient = k++;
+      for (std::size_t i = design.size(); i-- > 0; quotient /= levels_[i].size())
+        design[i] = levels_[i][quotient % levels_[i].size()];
       append(table, design);
-      if (k < count && k % kBatch != 0) continue;
-      if (!batches.finish_generation()) return k == count;
+      if (k < count && k % kMaxGenerationSize != 0) continue;
+      if (!recorder.finish_generation()) return k == count;
     }
     return true;
   }
@@ -147,26 +147,26 @@ class Sweep final : public Optimiser {
 };
 
 std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space) {
-  Levels levels = levels_of(space, static_cast<std::size_t>(options.integer("points")));
+  Levels levels = grid_levels(space, static_cast<std::size_t>(options.integer("points")));
   const bool factorial = options.word("design") == "full-factorial";
-  if (factorial && combinations(levels) > kMostDesigns)
-    throw std::invalid_argument("points = " + std::to_string(options.integer("points")) + " for " +
-                                std::to_string(space.dimension()) + " variables makes " +
-                                shortest(combinations(levels)) + " designs; a full-factorial sweep may have 1e+08.");
+  if (factorial && combinations(levels) > kMaxDesigns)
+    throw std::invalid_argument("points = " + std::to_string(options.integer("points")) + " with " +
+                                std::to_string(space.dimension()) + " variables gives " +
+                                shortest(combinations(levels)) + " designs; a full-factorial sweep has at most 1e+08");
   return std::make_unique<Sweep>(std::move(levels), factorial);
 }
 
 }  // namespace
 
 OptimiserEntry sweep() {
-  return {
-      .name = "sweep",
-      .meaning = "designs on a grid, one variable at a time or every combination",
-      .capabilities =
-          [](const Options&) { return Capabilities{.min_objectives = 0, .max_objectives = kManyObjectives}; },
-      .options = {word_option("design", {"one-at-a-time", "full-factorial"}, "which designs"),
-                  integer_option("points", std::int64_t{41}, 2, 1e6, "values of each variable, both bounds included")},
-      .make = make};
+  return {.name = "sweep",
+          .meaning = "parameter sweep on a grid, one variable at a time or full factorial",
+          .capabilities =
+              [](const Options&) { return Capabilities{.min_objectives = 0, .max_objectives = kUnlimitedObjectives}; },
+          .options = {word_option("design", {"one-at-a-time", "full-factorial"},
+                                  "vary one variable at a time, or combine all values"),
+                      integer_option("points", std::int64_t{41}, 2, 1e6, "values per variable, both bounds included")},
+          .make = make};
 }
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// The design problem of a study: a mechanism, what varies, objectives, constraints, reports.
+// The design optimisation problem of a study: a mechanism, the design variables, objectives, constraints and outputs.
 #pragma once
 
 #include <memory>
@@ -10,100 +10,105 @@
 
 namespace pkm {
 
-/// One objective, margin or report of a problem, ready to be computed.
+/// One objective, constraint or output of a problem, ready for evaluation.
 struct NamedQuantity {
   std::string name;
   std::string unit;
   std::string meaning;
   Direction direction = Direction::maximise;  ///< objectives only
   std::shared_ptr<const Quantity> quantity;
-  std::size_t survey = 0;  ///< which one it reads: 0 the workspace's, k the k-th region's
-  bool reads_survey = true;
-  Range range = {};  ///< of the quantity's values
-  /// Margins made from an objective: margin = value - least, or greatest - value. Neither: the value is the margin.
+  std::size_t survey = 0;  ///< workspace analysis that it uses: 0 the workspace, k the k-th region
+  bool uses_workspace = true;
+  Range range = {};  ///< possible values of the quantity
+  /// Bounds of a constraint on a quantity: its margin is value - least, or greatest - value. Neither: the quantity is
+  /// the margin itself.
   std::optional<double> least, greatest;
 };
 
-/// A motion along which a constraint keeps every limit of a pose.
+/// A motion along which a constraint requires every pose to satisfy its limits.
 struct FollowedMotion {
   std::string name;
   std::shared_ptr<const Motion> motion;
-  std::string mode;  ///< one of MechanismInfo::modes
+  std::string mode;  ///< working mode, one of MechanismInfo::modes
 };
 
 struct ProblemParts {
   std::shared_ptr<const Mechanism> mechanism;
-  std::vector<double> parameters;  ///< every parameter; those that vary are overwritten
+  std::vector<double> parameters;  ///< all parameters of the mechanism; variables overwrite theirs
   DesignSpace space;
   std::vector<std::size_t> varies;  ///< variable i is parameter varies[i]
-  SurveyPlan plan;
+  WorkspacePlan plan;
   Demand demand;
   std::vector<Region> regions;
   std::vector<NamedQuantity> objectives;
-  std::vector<NamedQuantity> design_margins;  ///< need no survey: computed first
-  std::vector<NamedQuantity> survey_margins;  ///< the others
+  std::vector<NamedQuantity> design_margins;     ///< constraints without workspace analysis: evaluated first
+  std::vector<NamedQuantity> workspace_margins;  ///< the other constraints
   std::vector<NamedQuantity> reports;
   std::vector<FollowedMotion> followed;
 };
 
-/// All that is known of one design, for the command line and /final.
+/// Complete evaluation of one design, for the command line and the group /final of the study file.
 struct DesignReport {
   std::vector<double> parameters;
-  std::vector<double> objectives, margins, reports;  ///< NaN where not computed
+  std::vector<double> objectives, margins, reports;  ///< NaN: not computed
   Status status = Status::failed;
-  std::string reason;  ///< why a number is missing, also of a rejected design; "" otherwise
+  std::string reason;  ///< why a value is missing (also of a rejected design); "" if none is
   Survey<double> survey;
 };
 
 class DesignProblem final : public Problem {
  public:
-  /// Throws std::invalid_argument where the mechanism cannot serve a survey's plan.
+  /// Throws std::invalid_argument if the mechanism does not support the plan of a workspace analysis.
   explicit DesignProblem(ProblemParts parts);
 
   const DesignSpace& space() const override { return parts_.space; }
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
   const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level ones first
-  const std::vector<ReportInfo>& reports() const override { return reports_; }
+  const std::vector<OutputInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const override;
-  /// A survey that is read or a quantity lacks them.
-  Refusal no_derivatives() const override;
+  /// There are none if a workspace analysis in use or a quantity has none.
+  Unsupported no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
-  /// All parameters of a design given by its variables.
+  /// The full parameter vector of a design. @param design  one value per variable
   std::vector<double> parameters(std::span<const double> design) const;
-  /// One survey alone: of the workspace, or of the k-th region.
+  /// A single workspace analysis. @param k  0: the workspace; otherwise the k-th region, from 1
   Survey<double> workspace(std::span<const double> parameters, std::size_t k = 0) const;
-  /// Evaluates a full parameter vector (a baseline may lie outside the variables' bounds). Computes what it can even
-  /// where a design-level margin is violated.
+  /// Evaluates a full parameter vector, which may violate the bounds of the variables (as a baseline may). Continues
+  /// if a design-level constraint is violated.
   DesignReport report(std::span<const double> parameters) const;
-  /// Why a design failed that was evaluated in that detail: the first thing without a finite value, and its reason.
-  std::string why_failed(std::span<const double> design, Detail detail) const;
-  /// Slopes of objectives and margins by any parameters, fixed ones included, laid out as in EvaluationShape::slopes.
-  /// @param by  indices of parameters
+  /// Evaluates a failed design again and returns the reason: the first quantity without a finite value, and why.
+  /// @param detail  of the evaluation that failed
+  std::string failure_reason(std::span<const double> design, Detail detail) const;
+  /// Derivatives of objectives and margins with respect to any parameters, also those that are not variables.
+  /// @param by  indices of the parameters
+  /// @return (objectives + margins) rows of 1 + by.size() numbers, as for EvaluationShape::slopes
   std::vector<double> slopes(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
-  /// The surveys of a design: of the workspace, then of the regions. Empty where no quantity reads it.
+  /// The analyses of a design: of the workspace, then of the regions; empty if no quantity uses it.
   template <class S>
   using Surveys = std::vector<Survey<S>>;
 
-  struct Room;  ///< what evaluations overwrite
+  struct Buffers;  ///< scratch memory of evaluations
 
   Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const;
   DesignReport empty_report(std::span<const double> parameters) const;
-  std::string why_failed(const DesignReport& report) const;
-  /// Fills `slopes`; the surveys of the scratch receive the values.
-  void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> slopes,
+  std::string failure_reason(const DesignReport& report) const;
+  /// Forward-mode automatic differentiation with respect to the parameters `by`, in blocks of four. Writes the
+  /// derivatives, and the values of the workspace analyses to the buffers in `scratch`.
+  void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> derivatives,
                      Scratch& scratch) const;
+  /// Runs the workspace analyses in use. @param all  also the workspace's, if no quantity uses it
   template <class S>
   void survey(std::span<const S> parameters, bool all, Scratch& scratch, Surveys<S>& surveys) const;
 
   ProblemParts parts_;
-  std::vector<std::unique_ptr<const Surveyor>> surveyors_;
-  std::vector<bool> used_;  ///< whether a quantity reads the survey
+  std::vector<std::unique_ptr<const WorkspaceEvaluator>> surveyors_;
+  std::vector<bool> used_;  ///< by workspace analysis: whether a quantity uses it
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;
-  std::vector<ReportInfo> reports_;
+  std::vector<OutputInfo> reports_;
 };
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// A design-level constraint whose formula belongs to the mechanism.
+// Design-level constraints whose formulas the mechanism provides.
 #pragma once
 
 #include <array>
@@ -10,22 +10,21 @@
 
 namespace pkm {
 
-/// The tests of a mechanism; none: it has no such ability.
+/// The design-level constraints that a mechanism provides; empty if it provides none.
 inline std::vector<DesignMarginInfo> design_tests_of(const Mechanism& mechanism) {
   return mechanism.design_tests() ? mechanism.design_tests()->list() : std::vector<DesignMarginInfo>();
 }
 
-/// A constraint whose margin is the mechanism's test of that name, under the plan's limits.
+/// Catalogue entry of the constraint `name`: the mechanism computes its margin, with the limits of the plan.
 inline ConstraintEntry design_test(const std::string& name, const std::string& meaning) {
   return {
       .name = name,
       .meaning = meaning,
       .unit =
           [name](const EntryContext& context) { return find_named(design_tests_of(context.mechanism), name)->unit; },
-      .refusal = [name](const Mechanism& mechanism) -> Refusal {
+      .refusal = [name](const Mechanism& mechanism) -> Unsupported {
         if (find_named(design_tests_of(mechanism), name)) return {};
-        return "constraint " + name + " is a test of other mechanisms: mechanism " + mechanism.info().name +
-               " has none of that name";
+        return "constraint " + name + " is not defined for mechanism " + mechanism.info().name;
       },
       .make =
           [name](const EntryContext& context) {

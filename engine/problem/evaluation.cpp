@@ -28,8 +28,8 @@ void EvaluationTable::copy_results(std::size_t row, const EvaluationTable& from,
   const EvaluationSlot to = slot(row);
   std::ranges::copy(from.objective_row(source), to.objectives.begin());
   std::ranges::copy(from.margin_row(source), to.margins.begin());
-  std::ranges::copy(from.report_row(source), to.reports.begin());
-  std::ranges::copy(from.slope_row(source), to.slopes.begin());
+  std::ranges::copy(from.output_row(source), to.reports.begin());
+  std::ranges::copy(from.derivative_row(source), to.slopes.begin());
   status[row] = from.status[source];
   seconds[row] = from.seconds[source];
 }

@@ -1,5 +1,5 @@
-// What is known of evaluated designs: one table, column by column, that optimisers fill, that the study file stores and
-// that a resumed run reads back.
+// Table of evaluated designs, stored by columns (structure of arrays). Optimisers append rows, the study file stores
+// them, and a resumed run reads them back.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +9,22 @@
 
 namespace pkm {
 
-/// Outcome of one evaluation. The order is the order of preference between designs (see `better`).
+/// Outcome of one evaluation, from best to worst: designs are ranked by it first (see `better`).
 enum class Status : std::uint8_t {
   feasible = 0,    ///< every margin >= 0
   infeasible = 1,  ///< evaluated, at least one margin < 0
-  rejected = 2,    ///< a design-level margin < 0: objectives and survey margins were not computed (NaN)
-  failed = 3,      ///< no usable number came out (NaN or an exception)
+  rejected = 2,    ///< a design-level margin < 0; with Detail::enough all later values are NaN (not computed)
+  failed = 3,      ///< the evaluation threw, or a value is not finite
 };
 
-/// How much an optimiser needs to know of a design.
+/// How much of a design is evaluated.
 enum class Detail : std::uint8_t {
-  enough,       ///< a design that breaks a design-level margin needs no more
-  complete,     ///< objectives and all margins, whatever holds
-  derivatives,  ///< and the slopes of all of them
+  enough,       ///< ends at a violated design-level constraint
+  complete,     ///< all objectives and margins, whether or not constraints are violated
+  derivatives,  ///< all objectives and margins with their derivatives
 };
 
-/// How many numbers belong to one evaluation.
+/// Number of values of one evaluation, by kind.
 struct EvaluationShape {
   std::size_t variables = 0;
   std::size_t objectives = 0;
@@ -33,24 +33,25 @@ struct EvaluationShape {
   Detail detail = Detail::enough;
   bool operator==(const EvaluationShape&) const = default;
 
-  /// Slopes of one evaluation: per objective, then per margin, a smooth value and its derivatives by each variable.
+  /// Number of derivative values: for each objective, then for each margin, one row of 1 + variables numbers: the value
+  /// of the smooth approximation and its derivative with respect to each variable.
   std::size_t slopes() const { return detail == Detail::derivatives ? (objectives + margins) * (1 + variables) : 0; }
 };
 
-/// Where one evaluation's results go. Objectives in their own unit and direction (nothing is negated here).
+/// Destination of the results of one evaluation. Objectives keep their unit and direction (no sign change).
 struct EvaluationSlot {
   std::span<double> objectives;
-  std::span<double> margins;  ///< >= 0 holds
+  std::span<double> margins;  ///< >= 0: satisfied
   std::span<double> reports;
   Status& status;
   Detail detail = Detail::enough;
-  std::span<double> slopes = {};  ///< Detail::derivatives only, see EvaluationShape::slopes
+  std::span<double> slopes = {};  ///< with Detail::derivatives only: layout of EvaluationShape::slopes
 };
 
-/// Evaluations in the order in which they were asked for. Row r of each array belongs to evaluation r.
+/// Evaluations in the order of their requests. Row r of each array belongs to evaluation r.
 class EvaluationTable {
   template <class Vector>
-  static auto part(Vector& v, std::size_t row, std::size_t width) {
+  static auto row_of(Vector& v, std::size_t row, std::size_t width) {
     return std::span{v.data() + row * width, width};
   }
 
@@ -63,28 +64,28 @@ class EvaluationTable {
 
   /// Adds `count` rows (designs zero, results NaN, status failed) and returns the first one's index.
   std::size_t extend(std::size_t count);
-  /// Forgets all rows but the first `rows`.
+  /// Removes all but the first `rows` rows.
   void truncate(std::size_t rows) { resize(rows); }
-  /// Adds a copy of a row of a table of the same shape, and returns its index.
+  /// Appends a copy of one row of a table of the same shape and returns its index.
   std::size_t append(const EvaluationTable& from, std::size_t row);
   /// Copies of rows [first, end).
   EvaluationTable slice(std::size_t first, std::size_t end) const;
-  /// Makes the results of a row, and its time, those of a row of a table of the same shape.
+  /// Copies the results and the time of row `source` of a table of the same shape into row `row`.
   void copy_results(std::size_t row, const EvaluationTable& from, std::size_t source);
 
   std::span<double> design(std::size_t row) { return {&designs[row * shape_.variables], shape_.variables}; }
   std::span<const double> design(std::size_t row) const { return {&designs[row * shape_.variables], shape_.variables}; }
-  std::span<const double> objective_row(std::size_t row) const { return part(objectives, row, shape_.objectives); }
-  std::span<const double> margin_row(std::size_t row) const { return part(margins, row, shape_.margins); }
-  std::span<const double> report_row(std::size_t row) const { return part(reports, row, shape_.reports); }
-  std::span<const double> slope_row(std::size_t row) const { return part(slopes, row, shape_.slopes()); }
+  std::span<const double> objective_row(std::size_t row) const { return row_of(objectives, row, shape_.objectives); }
+  std::span<const double> margin_row(std::size_t row) const { return row_of(margins, row, shape_.margins); }
+  std::span<const double> output_row(std::size_t row) const { return row_of(reports, row, shape_.reports); }
+  std::span<const double> derivative_row(std::size_t row) const { return row_of(slopes, row, shape_.slopes()); }
   EvaluationSlot slot(std::size_t row) {
-    return {part(objectives, row, shape_.objectives),
-            part(margins, row, shape_.margins),
-            part(reports, row, shape_.reports),
+    return {row_of(objectives, row, shape_.objectives),
+            row_of(margins, row, shape_.margins),
+            row_of(reports, row, shape_.reports),
             status[row],
             shape_.detail,
-            part(slopes, row, shape_.slopes())};
+            row_of(slopes, row, shape_.slopes())};
   }
 
   std::vector<double> designs;     ///< rows x variables
@@ -93,7 +94,7 @@ class EvaluationTable {
   std::vector<double> reports;     ///< rows x reports
   std::vector<double> slopes;      ///< rows x shape().slopes()
   std::vector<Status> status;      ///< rows
-  std::vector<float> seconds;      ///< rows; evaluation time, not part of what must repeat
+  std::vector<float> seconds;      ///< rows; evaluation time, excluded from reproducibility checks
 
  private:
   void resize(std::size_t rows);

@@ -1,4 +1,5 @@
-// Batch evaluation: an optimiser hands over a list of designs and gets a list of evaluations.
+// Parallel batch evaluation of designs, by a team of threads and by MPI ranks, with results that do not depend on how
+// the work is distributed.
 #pragma once
 
 #include <array>
@@ -14,45 +15,48 @@ class Evaluator {
  public:
   virtual ~Evaluator() = default;
 
-  /// Evaluates rows [first, table.size()), whose designs are set; how they are shared out does not show in the result.
-  /// An exception in one design marks its row failed; std::bad_alloc passes through, Stopped too: complete rows stay.
+  /// Evaluates rows [first, table.size()), whose designs are set. The results do not depend on the distribution of the
+  /// rows. An exception in one design marks its row failed, except std::bad_alloc and Stopped, which are rethrown.
+  /// After Stopped, the table ends before the first incomplete row.
   virtual void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) = 0;
 };
 
-/// By a team of threads: it shares out the designs, or, where they are few and take long, what surveys have to share
-/// out within each. The team is the caller's; outside with_team() one is made for each call, which a run of many calls
-/// is better without. Threads of one team may call it at once, each with a table of its own.
+/// Evaluates with a team of threads: in parallel over the designs, or, if there are few designs that take long, in
+/// parallel within the workspace analysis of each. It uses the caller's team; outside with_team(), every call creates a
+/// team, which is slow for many calls. The threads of one team may call it concurrently, each with its own table.
 ///
-/// Where there are several ranks, all of them hand over the same designs and get the same results. Each computes a
-/// share of the rows: by index, or, where that would leave ranks waiting or claims cost next to nothing, chunks that
-/// are claimed in turn and get smaller towards the end. One design, or some that take less than the messages would,
-/// each rank evaluates alone, without a message.
+/// With several MPI ranks, all ranks pass the same designs and receive the same results, and each computes a part of
+/// the rows. The rows are distributed statically by index, or, if that leaves ranks idle or if claims are cheap
+/// compared with the evaluations, dynamically: ranks claim chunks of decreasing size (guided self-scheduling). Batches
+/// that are cheaper than the messages (among them single designs) are evaluated by every rank without communication.
 class ParallelEvaluator final : public Evaluator {
  public:
-  /// @param threads  as for team_size(); within with_team(), 1 or those of the team
+  /// @param threads  number of threads as for team_size(); within with_team(), 1 or the size of the team
   explicit ParallelEvaluator(int threads = 0)
       : threads_(team_size(threads)), scratch_(static_cast<std::size_t>(threads_)) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
   int threads() const { return threads_; }
 
  private:
-  /// What batches that were shared among ranks have shown: the same on every rank, so that all decide alike.
-  struct Experience {
-    double each = 0;        ///< s, of a design; 0: there was none
-    bool uneven = true;     ///< shares by index would have left ranks waiting
-    std::size_t alone = 0;  ///< batches since then that each rank evaluated alone
+  /// Timings of the latest batch that was distributed among ranks. Identical on every rank, so that all ranks choose
+  /// the same distribution.
+  struct BatchTimings {
+    double seconds_per_design = 0;  ///< 0: no such batch yet
+    bool imbalanced = true;         ///< static distribution by index would have left ranks idle
+    std::size_t local_batches = 0;  ///< later batches that every rank evaluated without communication
   };
   using Rows = std::pair<std::size_t, std::size_t>;  // first, end
 
+  /// @param each  expected time per design on one thread [s]; 0: unknown
   void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double each);
-  void evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first, Experience& known);
+  void evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first, BatchTimings& timings);
   void compare_ranks(const EvaluationTable& table, std::size_t row);
   std::vector<Rows> claim_chunks(const Problem& problem, EvaluationTable& table, Rows rows);
 
   int threads_;
   std::vector<std::size_t> threads_of_ranks_;
-  std::vector<Scratch> scratch_;          ///< of each worker
-  std::array<Experience, 3> experience_;  ///< with each Detail
+  std::vector<Scratch> scratch_;         ///< by worker
+  std::array<BatchTimings, 3> timings_;  ///< by Detail
 };
 
 }  // namespace pkm

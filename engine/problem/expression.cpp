@@ -7,7 +7,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/graph/formula_words.hpp"
+#include "engine/expression/formula_lexer.hpp"
 #include "engine/problem/no_conditioning.hpp"
 #include "engine/problem/pose_statistic.hpp"
 
@@ -15,28 +15,28 @@ namespace pkm {
 namespace {
 
 template <class S>
-struct Room {
+struct ExpressionScratch {
   std::vector<S> values, thresholds, stack;
 };
 
-/// Whether a formula has the word.
+/// Whether a formula contains `word` as a whole identifier.
 bool has_word(const std::string& formula, const std::string& word) {
-  const auto is_letter = [&](std::size_t i) {
+  const auto is_name_char = [&](std::size_t i) {
     return i < formula.size() && (std::isalnum(static_cast<unsigned char>(formula[i])) || formula[i] == '_');
   };
   for (std::size_t at = formula.find(word); at != std::string::npos; at = formula.find(word, at + 1))
-    if (!(at > 0 && is_letter(at - 1)) && !is_letter(at + word.size())) return true;
+    if (!(at > 0 && is_name_char(at - 1)) && !is_name_char(at + word.size())) return true;
   return false;
 }
 
-/// The expression's formula. Throws std::invalid_argument with a sentence where it names a result of the survey that
-/// the mechanism does not have.
+/// The formula of the expression. Throws std::invalid_argument with a sentence if it uses a result of the workspace
+/// analysis that the mechanism does not support.
 const std::string& formula_text(const EntryContext& context) {
   const std::string& formula = context.options.word("expression");
-  for (const SurveyResult& result : survey_results()) {
+  for (const AnalysisResult& result : analysis_results()) {
     if (!result.quantity || !has_word(formula, result.name)) continue;
-    if (const Refusal reason = unavailable(context.mechanism, *result.quantity))
-      throw std::invalid_argument("the formula \"" + formula + "\" names " + result.name + ", and " + *reason);
+    if (const Unsupported reason = unavailable(context.mechanism, *result.quantity))
+      throw std::invalid_argument("the formula \"" + formula + "\" uses " + result.name + ", but " + *reason);
   }
   return formula;
 }
@@ -46,45 +46,45 @@ const std::string& formula_text(const EntryContext& context) {
 using Origin = ExpressionName::Origin;
 
 template <class S>
-S SurveyResult::value(const Survey<S>& survey, double sharpness, Scratch& scratch) const {
+S AnalysisResult::value(const Survey<S>& survey, double sharpness, Scratch& scratch) const {
   if (!quantity) return survey.volume;
   if (statistic == "worst") return PoseStatistic{*quantity, "mean", "worst"}(survey, scratch);
   return PoseStatistic{*quantity, statistic, statistic == "mean" ? "mean" : "worst", sharpness}(survey, scratch);
 }
 
-template double SurveyResult::value(const Survey<double>&, double, Scratch&) const;
-template Dual4 SurveyResult::value(const Survey<Dual4>&, double, Scratch&) const;
+template double AnalysisResult::value(const Survey<double>&, double, Scratch&) const;
+template Dual4 AnalysisResult::value(const Survey<Dual4>&, double, Scratch&) const;
 
-const std::vector<SurveyResult>& survey_results() {
-  static const std::vector<SurveyResult> list = [] {
-    std::vector<SurveyResult> all = {{"volume", "measure of the feasible poses over the swept coordinates"}};
+const std::vector<AnalysisResult>& analysis_results() {
+  static const std::vector<AnalysisResult> list = [] {
+    std::vector<AnalysisResult> all = {{"volume", "measure of the feasible poses over the swept coordinates"}};
     for (const PoseQuantity* const quantity : pose_quantities())
       for (const auto& [statistic, meaning] : quantity->results)
         if (statistic)
-          all.push_back(
-              {quantity->name + std::string("_") + statistic, meaning + where_empty(*quantity), quantity, statistic});
+          all.push_back({quantity->name + std::string("_") + statistic, meaning + empty_workspace_note(*quantity),
+                         quantity, statistic});
     return all;
   }();
   return list;
 }
 
-std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const SurveyPlan& plan) {
+std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const WorkspacePlan& plan) {
   const MechanismInfo& info = mechanism.info();
   std::vector<ExpressionName> names;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
-    if (find_named(info.limits, parameter.name)) continue;  // known as the threshold in force
-    if (!graph::may_be_name(parameter.name)) continue;      // of one limb: "arm2.l_b"
+    if (find_named(info.limits, parameter.name)) continue;   // the name stands for the threshold in effect
+    if (!expression::may_be_name(parameter.name)) continue;  // a parameter of one limb: "arm2.l_b"
     names.push_back({parameter.name, parameter.unit, parameter.meaning, Origin::parameter, i});
   }
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const LimitInfo& limit = info.limits[i];
-    names.push_back({limit.name, limit.unit, "threshold in force: " + limit.meaning, Origin::threshold, i});
+    names.push_back({limit.name, limit.unit, "threshold in effect: " + limit.meaning, Origin::threshold, i});
   }
   if (const Size* const size = mechanism.size())
     names.push_back({"size", size->unit(), size->meaning(), Origin::size, 0});
-  for (std::size_t i = 0; i < survey_results().size(); ++i) {
-    const auto& [name, meaning, quantity, statistic] = survey_results()[i];
+  for (std::size_t i = 0; i < analysis_results().size(); ++i) {
+    const auto& [name, meaning, quantity, statistic] = analysis_results()[i];
     if (!quantity || !unavailable(mechanism, *quantity))
       names.push_back({name, quantity ? quantity->unit : volume_unit(info, plan), meaning, Origin::survey, i});
   }
@@ -96,12 +96,13 @@ std::vector<OptionSpec> expression_options() {
       {.name = "expression",
        .kind = OptionKind::word,
        .required = true,
-       .meaning = "a formula in SI and radians of the names that `pkmopt list mechanisms NAME` shows; it may hold " +
+       .meaning = "a formula in SI units and radians, of the names that `pkmopt list mechanisms NAME` prints; it may "
+                  "contain " +
                   formula_help()},
       {.name = "unit",
        .kind = OptionKind::word,
        .initial = std::string("1"),
-       .meaning = "SI unit of the value, to show and to read bounds in"},
+       .meaning = "SI unit of the value and of its bounds"},
       characteristic_length_option(),
       sharpness_option("conditioning_min"),
   };
@@ -114,38 +115,38 @@ Expression::Expression(const EntryContext& context)
       sharpness_(context.options.number("sharpness")) {
   Demand demand;
   add_demand(context, demand);
-  refuse_idle_options(context.options, demand);
+  refuse_unused_options(context.options, demand);
 }
 
 bool Expression::uses(Origin origin) const {
   return std::ranges::any_of(formula_.used(), [&](std::size_t i) { return names_[i].origin == origin; });
 }
 
-bool Expression::needs_survey() const { return uses(Origin::survey); }
+bool Expression::needs_workspace() const { return uses(Origin::survey); }
 
 void Expression::add_demand(const EntryContext& context, Demand& demand) const {
   for (const std::size_t i : formula_.used())
     if (names_[i].origin == Origin::survey)
-      if (const auto* const quantity = survey_results()[names_[i].index].quantity)
+      if (const auto* const quantity = analysis_results()[names_[i].index].quantity)
         demand_field(*quantity, context, demand);
 }
 
-/// An option without effect was most likely meant for something that the expression does not name.
-void Expression::refuse_idle_options(const Options& options, const Demand& demand) const {
+/// Rejects options without effect: most likely the user expects the expression to use another quantity.
+void Expression::refuse_unused_options(const Options& options, const Demand& demand) const {
   if (options.has("characteristic_length") && !demand.needs_jacobian())
-    throw std::invalid_argument("characteristic_length has no effect: the expression names no conditioning");
-  const bool softens = std::ranges::any_of(formula_.used(), [&](std::size_t i) {
+    throw std::invalid_argument("characteristic_length has no effect: the expression does not use the conditioning");
+  const bool has_extremum = std::ranges::any_of(formula_.used(), [&](std::size_t i) {
     if (names_[i].origin != Origin::survey) return false;
-    const std::string& statistic = survey_results()[names_[i].index].statistic;
+    const std::string& statistic = analysis_results()[names_[i].index].statistic;
     return statistic == "min" || statistic == "max";
   });
-  if (options.values().at("sharpness") != sharpness_option("").initial && !softens)
-    throw std::invalid_argument("sharpness has no effect: the expression names no conditioning_min");
+  if (options.values().at("sharpness") != sharpness_option("").initial && !has_extremum)
+    throw std::invalid_argument("sharpness has no effect: the expression uses no worst case such as conditioning_min");
 }
 
 template <class S>
 S Expression::value(const DesignView<S>& design) const {
-  auto& [values, thresholds, stack] = design.scratch.template get<Room<S>>();
+  auto& [values, thresholds, stack] = design.scratch.template get<ExpressionScratch<S>>();
   values.resize(names_.size());
   thresholds.resize(limits_.given.size());
   if (uses(Origin::threshold)) design.mechanism.thresholds(design.parameters, limits_, thresholds);
@@ -162,7 +163,7 @@ S Expression::value(const DesignView<S>& design) const {
         values[i] = design.mechanism.size()->of(design.parameters);
         break;
       case Origin::survey:
-        values[i] = survey_results()[index].value(*design.survey, sharpness_, design.scratch);
+        values[i] = analysis_results()[index].value(*design.survey, sharpness_, design.scratch);
     }
   }
   return formula_.value(std::span<const S>(values), stack);
@@ -175,7 +176,7 @@ std::string expression_unit(const EntryContext& context) {
   const std::string& unit = context.options.word("unit");
   if (!is_si_unit(unit))
     throw std::invalid_argument("the unit \"" + unit +
-                                "\" is no product of SI units; expected one such as \"m^2 rad\", or \"1\"");
+                                "\" is not a product of SI units; expected one such as \"m^2 rad\", or \"1\"");
   return unit;
 }
 

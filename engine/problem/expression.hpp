@@ -1,18 +1,19 @@
-// Quantities that a study writes as formulas: `expression = "volume / (pi * b * (l_u + l_d))"`.
+// User-defined quantities, given as formulas in the study: `expression = "volume / (pi * b * (l_u + l_d))"`.
 //
-// An expression names parameters of the mechanism (those that vary and those that are fixed), the thresholds in force,
-// the mechanism's size and results of the survey, all in SI and radians. Its derivatives are theirs by the chain rule.
+// An expression may use the parameters of the mechanism (variable or fixed), the thresholds in effect, the size of the
+// mechanism and results of the workspace analysis, all in SI units and radians. Its derivatives follow by the chain
+// rule (forward-mode automatic differentiation).
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "engine/graph/formula.hpp"
+#include "engine/expression/formula.hpp"
 #include "engine/problem/quantity.hpp"
 
 namespace pkm {
 
-/// A number that an expression may name.
+/// A name that an expression may use, and the value that it stands for.
 struct ExpressionName {
   enum class Origin { parameter, threshold, size, survey };
 
@@ -20,46 +21,48 @@ struct ExpressionName {
   std::string unit;
   std::string meaning;
   Origin origin = Origin::parameter;
-  std::size_t index = 0;  ///< among the mechanism's parameters or limits, or in survey_results()
+  std::size_t index = 0;  ///< in the mechanism's parameters or limits, or in analysis_results()
 };
 
-/// A number that a survey gives.
-struct SurveyResult {
+/// A scalar result of a workspace analysis: the volume or a statistic of a pose quantity.
+struct AnalysisResult {
   std::string name;
   std::string meaning;
   const PoseQuantity* quantity = nullptr;  ///< null: the volume
-  std::string statistic = {};              ///< of PoseResult
+  std::string statistic = {};              ///< as in PoseResult
 
-  /// With derivatives, a worst case by its smooth stand-in of that sharpness.
+  /// With derivatives (Dual4), a worst case is replaced by its smooth approximation.
+  /// @param sharpness  of the smooth approximation
   template <class S>
   S value(const Survey<S>& survey, double sharpness, Scratch& scratch) const;
 };
 
-/// The volume, and those of every quantity of poses.
-const std::vector<SurveyResult>& survey_results();
+/// The volume and the statistics of all pose quantities.
+const std::vector<AnalysisResult>& analysis_results();
 
-/// Every name that the expressions of a mechanism know; `pi` and the functions are the formula's own.
-std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const SurveyPlan& plan);
+/// All names that expressions of a mechanism may use, except `pi` and the functions, which every formula has.
+std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const WorkspacePlan& plan);
 
-/// The options of every entry made of an expression.
+/// The options that all catalogue entries with an expression share.
 std::vector<OptionSpec> expression_options();
 
-/// The expression that an entry's options describe.
+/// The expression given by the options of a catalogue entry.
 class Expression {
  public:
-  /// Throws std::invalid_argument with a sentence when the options make no sense.
+  /// Throws std::invalid_argument with a sentence if an option is invalid or has no effect.
   explicit Expression(const EntryContext& context);
 
-  bool needs_survey() const;
-  /// Adds what the survey has to compute.
+  bool needs_workspace() const;
+  /// Adds the fields that the workspace analysis has to compute.
   void add_demand(const EntryContext& context, Demand& demand) const;
-  /// With derivatives: a worst case by its smooth stand-in. The survey may be null where none is needed.
+  /// With derivatives (Dual4), worst cases are replaced by smooth approximations. design.survey may be null if
+  /// needs_workspace() is false.
   template <class S>
   S value(const DesignView<S>& design) const;
 
  private:
   bool uses(ExpressionName::Origin origin) const;
-  void refuse_idle_options(const Options& options, const Demand& demand) const;
+  void refuse_unused_options(const Options& options, const Demand& demand) const;
 
   std::vector<ExpressionName> names_;
   Formula formula_;
@@ -67,9 +70,9 @@ class Expression {
   double sharpness_;
 };
 
-/// The unit of an expression's value, as the study says.
+/// The option `unit`: the SI unit of the expression. Throws std::invalid_argument for any other unit.
 std::string expression_unit(const EntryContext& context);
-/// An expression on one line, for listings.
+/// The formula on one line, for listings.
 std::string expression_text(const EntryContext& context);
 
 }  // namespace pkm

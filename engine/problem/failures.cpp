@@ -7,11 +7,11 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMostExamined = 64;
-constexpr double kMostSeconds = 1;  // of their first evaluations
+constexpr std::size_t kMaxExamined = 64;
+constexpr double kMaxSeconds = 1;  // sum of the first evaluation times of the examined designs
 
-/// A reason with each number as "#", except those inside names ("l_11").
-std::string without_numbers(const std::string& reason) {
+/// Replaces each number of a reason by "#", except numbers within names ("l_11").
+std::string mask_numbers(const std::string& reason) {
   const std::string digits = "0123456789";
   std::string text;
   for (std::size_t i = 0; i < reason.size(); ++i) {
@@ -25,7 +25,7 @@ std::string without_numbers(const std::string& reason) {
 
 }  // namespace
 
-Failures failures_in(const std::vector<const EvaluationTable*>& tables, const DesignProblem* problem) {
+Failures collect_failures(const std::vector<const EvaluationTable*>& tables, const DesignProblem* problem) {
   Failures found;
   std::vector<std::pair<const EvaluationTable*, std::size_t>> failed;
   for (const EvaluationTable* const table : tables) {
@@ -35,14 +35,14 @@ Failures failures_in(const std::vector<const EvaluationTable*>& tables, const De
   }
   found.failed = failed.size();
   if (!problem) return found;
-  const std::size_t most = std::min(kMostExamined, failed.size());
+  const std::size_t most = std::min(kMaxExamined, failed.size());
   std::map<std::string, FailureReason> by_kind;
   double seconds = 0;
-  for (std::size_t k = 0; k < most && (k == 0 || seconds <= kMostSeconds); ++k) {
+  for (std::size_t k = 0; k < most && (k == 0 || seconds <= kMaxSeconds); ++k) {
     const auto& [table, row] = failed[k * failed.size() / most];
     seconds += table->seconds[row];
-    const std::string reason = problem->why_failed(table->design(row), table->shape().detail);
-    FailureReason& kind = by_kind[without_numbers(reason)];
+    const std::string reason = problem->failure_reason(table->design(row), table->shape().detail);
+    FailureReason& kind = by_kind[mask_numbers(reason)];
     if (kind.count++ == 0) kind.example = reason;
     ++found.examined;
   }

@@ -1,5 +1,5 @@
-// Why evaluations of a study failed. Files do not store the reasons: they follow from the designs, some of which are
-// evaluated again.
+// Statistics of failed evaluations by reason. Study files do not store the reasons: a sample of the failed designs is
+// evaluated again to find them.
 #pragma once
 
 #include <string>
@@ -9,25 +9,25 @@
 
 namespace pkm {
 
-/// Failed evaluations with reasons that differ in their numbers only.
+/// Failed evaluations whose reasons differ only in their numbers.
 struct FailureReason {
-  std::string example;  ///< the reason of the first
+  std::string example;  ///< reason of the first of them
   std::size_t count = 0;
 };
 
 struct Failures {
   std::size_t evaluations = 0, failed = 0;
-  std::size_t examined = 0;            ///< of the failed: evaluated again
-  std::vector<FailureReason> reasons;  ///< of these, the most frequent first
+  std::size_t examined = 0;            ///< failed designs that were evaluated again
+  std::vector<FailureReason> reasons;  ///< of the examined designs, the most frequent first
 };
 
-/// Evaluates at most 64 failed designs again, at equal distances in their order; fewer where they took more than a
-/// second when they were first evaluated.
-/// @param problem  that they belong to; null: no reason is known
-Failures failures_in(const std::vector<const EvaluationTable*>& tables, const DesignProblem* problem);
+/// Evaluates up to 64 failed designs again, equally spaced in their order; fewer if their first evaluations took more
+/// than one second in total.
+/// @param problem  the problem of the tables; null: designs are counted without reasons
+Failures collect_failures(const std::vector<const EvaluationTable*>& tables, const DesignProblem* problem);
 
-/// "12 of 480 evaluations failed: 9 times motor-torque: the motion cycle leaves the reach of the mechanism at t = 0.1
-/// s, for example; once .."; "" where none failed.
+/// "12 of 480 evaluations failed: 9 because, for example, motor-torque: the motion cycle leaves the reach of the
+/// mechanism at t = 0.1 s; 3 because .."; "" if none failed.
 std::string failures_text(const Failures& failures);
 
 }  // namespace pkm

@@ -15,6 +15,7 @@ std::vector<std::size_t> indices(const Scores& scores) {
   return all;
 }
 
+/// Sum of the scores of each design.
 std::vector<double> sums(const Scores& scores) {
   std::vector<double> result;
   for (std::size_t i = 0; i < scores.size(); ++i)
@@ -22,11 +23,12 @@ std::vector<double> sums(const Scores& scores) {
   return result;
 }
 
+/// Distance of two designs in the maximum norm.
 double distance(const Scores& scores, std::size_t a, std::size_t b) {
-  double greatest = 0;
+  double largest = 0;
   for (std::size_t k = 0; k < scores.objectives; ++k)
-    greatest = std::max(greatest, std::fabs(scores[a][k] - scores[b][k]));
-  return greatest;
+    largest = std::max(largest, std::fabs(scores[a][k] - scores[b][k]));
+  return largest;
 }
 
 }  // namespace
@@ -76,39 +78,40 @@ std::vector<std::size_t> ends_of(const Scores& front) {
 
 std::size_t compromise(const Scores& front) {
   const Scores scaled = normalised(front);
-  const std::vector<double> price = sums(scaled);
+  const std::vector<double> cost = sums(scaled);
   return std::ranges::min(indices(scaled), {}, [&](std::size_t i) {
-    return std::pair(*std::max_element(scaled[i], scaled[i] + scaled.objectives), price[i]);
+    return std::pair(*std::max_element(scaled[i], scaled[i] + scaled.objectives), cost[i]);
   });
 }
 
 std::vector<std::size_t> knees(const Scores& front) {
-  constexpr double kRadius = 0.2;
-  constexpr double kCheaper = 0.01;  // than an end: a design next to an end is no knee, nor is one that rounding makes
+  constexpr double kRadius = 0.2;  // of the neighbourhood, in normalised scores
+  constexpr double kMinGain =
+      0.01;  // lower cost than the extreme points; excludes their neighbours and rounding effects
   const Scores scaled = normalised(front);
   const Ranges extent = ranges_of(front);
-  const std::vector<double> price = sums(scaled);
+  const std::vector<double> cost = sums(scaled);
   std::vector<std::size_t> order = indices(front), found;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return price[a] < price[b]; });
-  double end = std::numeric_limits<double>::infinity();  // price of the cheapest end
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cost[a] < cost[b]; });
+  double extreme_cost = std::numeric_limits<double>::infinity();  // minimum over the extreme points
   for (std::size_t k = 0; k < front.objectives; ++k)
     for (std::size_t i = 0; i < front.size(); ++i)
-      if (extent.range(k) > 0 && scaled[i][k] == 0) end = std::min(end, price[i]);
-  for (std::size_t i = 0; i < order.size() && price[order[i]] < end - kCheaper; ++i) {
-    // The next cheaper ones are the likeliest to be near.
+      if (extent.range(k) > 0 && scaled[i][k] == 0) extreme_cost = std::min(extreme_cost, cost[i]);
+  for (std::size_t i = 0; i < order.size() && cost[order[i]] < extreme_cost - kMinGain; ++i) {
+    // Search backwards: designs of similar cost are the most likely neighbours.
     const auto near = [&](std::size_t cheaper) { return distance(scaled, cheaper, order[i]) <= kRadius; };
     if (std::none_of(order.rend() - static_cast<std::ptrdiff_t>(i), order.rend(), near)) found.push_back(order[i]);
   }
   return found;
 }
 
-std::vector<std::size_t> spread_choice(const Scores& front, std::size_t count) {
+std::vector<std::size_t> select_representatives(const Scores& front, std::size_t count) {
   const std::size_t n = front.size();
   count = std::min(count, n);
   std::vector<std::size_t> chosen;
   if (count == 0) return chosen;
   const Scores scaled = normalised(front);
-  std::vector<double> away(n, std::numeric_limits<double>::infinity());  // from the nearest one chosen
+  std::vector<double> away(n, std::numeric_limits<double>::infinity());  // distance to the nearest chosen design
   const auto choose = [&](std::size_t i) {
     if (chosen.size() == count || away[i] == 0) return;
     chosen.push_back(i);

@@ -1,4 +1,5 @@
-// The trade-off that a stage has found: who is on it, how far it reaches, which points of it stand out.
+// The Pareto front of a stage: its designs and quality indicators, and the selection of designs from it (compromise,
+// knees, representative subset).
 #pragma once
 
 #include <cstdint>
@@ -10,19 +11,19 @@
 
 namespace pkm {
 
-/// A trade-off: feasible designs of a stage that no other one dominates (as many as an archive's limit allows); of a
-/// solver stage the ends of its starts.
+/// A Pareto front: the feasible non-dominated designs of a stage, up to the size limit of the archive. In a solver
+/// stage, the results of its starts.
 struct Front {
-  std::vector<std::int64_t> rows;  ///< of the stage's table; the best by the first objective first
-  /// Corner of the hypervolume, in the objectives' units, and what it encloses with the front: only what is better than
-  /// the corner in every objective counts. Empty and NaN while there is none.
+  std::vector<std::int64_t> rows;  ///< of the stage's table, sorted by the first objective, best first
+  /// Reference point of the hypervolume, in the objectives' units, and the hypervolume. Only designs that are better
+  /// than the reference point in every objective contribute. Empty and NaN if there is no reference point yet.
   std::vector<double> reference = {};
   double hypervolume = std::numeric_limits<double>::quiet_NaN();
-  double spread = std::numeric_limits<double>::quiet_NaN();    ///< of the population's part of it (see diversity.hpp)
-  double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< to the reference front; NaN where none is given
+  double spread = std::numeric_limits<double>::quiet_NaN();    ///< of the part in the population (see crowding.hpp)
+  double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< distance to the reference front; NaN without one
 };
 
-/// Scores of some designs, row by row.
+/// Objective vectors of several designs, row by row, with signs such that smaller scores are better.
 struct Scores {
   std::size_t objectives = 0;
   std::vector<double> values = {};
@@ -33,35 +34,38 @@ struct Scores {
   void clear() { values.clear(); }
 };
 
-/// Appends a row's objectives, turned so that less is better.
+/// Appends the objectives of a table row as scores: maximised objectives change their sign.
 void add_scores(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table, std::size_t row,
                 Scores& scores);
 Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table,
                  std::span<const std::int64_t> rows);
 
-/// Least and greatest of each score.
+/// Minimum and maximum of each score over a front (its ideal and nadir points).
 struct Ranges {
   std::vector<double> least, greatest;
   double range(std::size_t k) const { return greatest[k] - least[k]; }
 };
 Ranges ranges_of(const Scores& front);
 
-/// Scores from 0 to 1 over the front; 0 where all are alike.
+/// Scores scaled to [0, 1] over the front; a score that is constant over the front becomes 0.
 Scores normalised(const Scores& front);
 
-/// The best design of each score, the first of several. The front must not be empty.
+/// Extreme points: for each score, the first design with its minimum. The front must not be empty.
 std::vector<std::size_t> ends_of(const Scores& front);
 
-/// The design nearest to the ideal: its worst score, each from 0 for the front's best to 1 for its worst, is the least
-/// of all; of several the cheapest, then the first. The front must not be empty.
+/// Chebyshev compromise solution: the design that minimises the maximum of its normalised scores. Ties: the lowest sum
+/// of normalised scores, then the first. The front must not be empty.
 std::size_t compromise(const Scores& front);
 
-/// Knees: designs cheaper than every other one within a fifth of the ranges, and than the front's ends by a hundredth
-/// of them, cheapest first. To leave one in any direction costs more than it gains. Concave fronts have none.
+/// Knees of the front, by increasing cost; the cost of a design is the sum of its normalised scores. A knee has the
+/// lowest cost within a distance of 0.2 (maximum norm of the normalised scores), and at least 0.01 less than every
+/// extreme point. Moving away from a knee, the scores that get worse lose more than the others gain. A concave front
+/// has no knees.
 std::vector<std::size_t> knees(const Scores& front);
 
-/// `count` designs of a front that are spread over it: the compromise, the best of each score, then always the one
-/// farthest from those chosen, in units of the ranges. In the order of the front.
-std::vector<std::size_t> spread_choice(const Scores& front, std::size_t count);
+/// Representative subset of `count` designs by farthest-point sampling: starts with the compromise and the extreme
+/// points, then repeatedly adds the design farthest from those chosen (maximum norm of the normalised scores). Returns
+/// indices in the order of the front; fewer than `count` if the remaining designs coincide with chosen ones.
+std::vector<std::size_t> select_representatives(const Scores& front, std::size_t count);
 
 }  // namespace pkm

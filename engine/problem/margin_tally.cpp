@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMostReasons = 4;  // of one tally: more would hide what matters
+constexpr std::size_t kMaxReasons = 4;  // of one tally: more would hide the important ones
 
 std::string three_digits(double value) {
   char text[32];
@@ -18,78 +18,79 @@ std::string three_digits(double value) {
   return text;
 }
 
-/// "40 designs", "1 pose of the least bad design".
-std::string things_of(std::size_t count, const std::string& thing) {
-  const auto noun_end = std::min(thing.find(' '), thing.size());
-  return std::to_string(count) + " " + thing.substr(0, noun_end) + (count == 1 ? "" : "s") + thing.substr(noun_end);
+/// "40 designs", "1 pose sampled for the best-ranked design".
+std::string count_text(std::size_t count, const std::string& sample) {
+  const auto noun_end = std::min(sample.find(' '), sample.size());
+  return std::to_string(count) + " " + sample.substr(0, noun_end) + (count == 1 ? "" : "s") + sample.substr(noun_end);
 }
 
 }  // namespace
 
-std::size_t MarginTally::number_of(const std::string& name) {
-  const auto found = std::ranges::find(lines_, name, &Line::name);
-  const auto number = static_cast<std::size_t>(found - lines_.begin());
-  if (found == lines_.end())
-    lines_.push_back(
-        {.name = name, .known_with = std::vector<std::size_t>(number), .kept_with = std::vector<std::size_t>(number)});
-  return number;
+std::size_t MarginTally::index_of(const std::string& name) {
+  const auto found = std::ranges::find(counts_, name, &Count::name);
+  const auto index = static_cast<std::size_t>(found - counts_.begin());
+  if (found == counts_.end())
+    counts_.push_back({.name = name,
+                       .known_with = std::vector<std::size_t>(index),
+                       .satisfied_with = std::vector<std::size_t>(index)});
+  return index;
 }
 
 void MarginTally::add(const std::vector<std::pair<std::string, double>>& margins) {
-  ++things_;
-  std::vector<std::pair<std::size_t, bool>> known;  // margins of this thing, and whether it keeps them
+  ++samples_;
+  std::vector<std::pair<std::size_t, bool>> known;  // margins of this sample, and whether it satisfies them
   for (const auto& [name, margin] : margins) {
     if (std::isnan(margin)) continue;
-    const std::size_t number = number_of(name);
-    Line& line = lines_[number];
-    const bool kept = is_satisfied(margin);
-    const double miss = kept || std::isfinite(margin) ? margin : -std::numeric_limits<double>::infinity();
-    if (!kept && (line.known == line.kept || miss > line.nearest)) line.nearest = miss;
-    ++line.known;
-    line.kept += kept;
-    known.emplace_back(number, kept);
+    const std::size_t index = index_of(name);
+    Count& count = counts_[index];
+    const bool satisfied = is_satisfied(margin);
+    const double violation = satisfied || std::isfinite(margin) ? margin : -std::numeric_limits<double>::infinity();
+    if (!satisfied && (count.known == count.satisfied || violation > count.closest)) count.closest = violation;
+    ++count.known;
+    count.satisfied += satisfied;
+    known.emplace_back(index, satisfied);
   }
-  for (const auto& [a, keeps_a] : known)
-    for (const auto& [b, keeps_b] : known) {
+  for (const auto& [a, satisfies_a] : known)
+    for (const auto& [b, satisfies_b] : known) {
       if (b >= a) continue;
-      ++lines_[a].known_with[b];
-      lines_[a].kept_with[b] += keeps_a && keeps_b;
+      ++counts_[a].known_with[b];
+      counts_[a].satisfied_with[b] += satisfies_a && satisfies_b;
     }
 }
 
-std::vector<Reason> MarginTally::reasons(const std::string& kind, const std::string& thing) const {
+std::vector<Reason> MarginTally::reasons(const std::string& kind, const std::string& sample) const {
   std::vector<Reason> found;
-  const auto of_known = [&](std::size_t known) {
-    return known == things_ ? "" : ", of the " + std::to_string(known) + " for which it is known";
+  const auto known_text = [&](std::size_t known) {
+    return known == samples_ ? "" : " (" + std::to_string(known) + " evaluated)";
   };
-  for (const Line& line : lines_)
-    if (line.known > 0 && line.kept == 0)
+  for (const Count& count : counts_)
+    if (count.known > 0 && count.satisfied == 0)
       found.push_back({kind,
-                       {line.name},
-                       "no " + thing + " keeps " + line.name + of_known(line.known) + ": the nearest misses it by " +
-                           three_digits(-line.nearest)});
-  for (std::size_t a = 0; found.empty() && a < lines_.size(); ++a)
+                       {count.name},
+                       "no " + sample + " satisfies " + count.name + known_text(count.known) +
+                           "; the closest misses it by " + three_digits(-count.closest)});
+  for (std::size_t a = 0; found.empty() && a < counts_.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
-      if (lines_[a].known_with[b] > 0 && lines_[a].kept_with[b] == 0)
+      if (counts_[a].known_with[b] > 0 && counts_[a].satisfied_with[b] == 0)
         found.push_back({kind,
-                         {lines_[b].name, lines_[a].name},
-                         "no " + thing + " keeps both " + lines_[b].name + " (kept by " +
-                             std::to_string(lines_[b].kept) + " of " + std::to_string(lines_[b].known) + ") and " +
-                             lines_[a].name + " (" + std::to_string(lines_[a].kept) + " of " +
-                             std::to_string(lines_[a].known) + ")"});
+                         {counts_[b].name, counts_[a].name},
+                         "no " + sample + " satisfies both " + counts_[b].name + " (satisfied by " +
+                             std::to_string(counts_[b].satisfied) + " of " + std::to_string(counts_[b].known) +
+                             ") and " + counts_[a].name + " (" + std::to_string(counts_[a].satisfied) + " of " +
+                             std::to_string(counts_[a].known) + ")"});
   if (found.empty()) {
-    std::vector<const Line*> broken;
-    for (const Line& line : lines_)
-      if (line.kept < line.known) broken.push_back(&line);
-    std::ranges::stable_sort(broken,
-                             [](const Line* a, const Line* b) { return a->known - a->kept > b->known - b->kept; });
-    for (const Line* line : broken)
+    std::vector<const Count*> violated;
+    for (const Count& count : counts_)
+      if (count.satisfied < count.known) violated.push_back(&count);
+    const auto violations = [](const Count* count) { return count->known - count->satisfied; };
+    std::ranges::stable_sort(violated, std::ranges::greater(), violations);
+    for (const Count* count : violated)
       found.push_back({kind,
-                       {line->name},
-                       line->name + " is broken by " + std::to_string(line->known - line->kept) + " of " +
-                           things_of(line->known, thing)});
+                       {count->name},
+                       count->name + " is violated by " + std::to_string(violations(count)) + " of " +
+                           count_text(count->known, sample)});
   }
-  if (found.size() > kMostReasons) found.resize(kMostReasons);
+  if (found.size() > kMaxReasons) found.resize(kMaxReasons);
   return found;
 }
 

@@ -1,4 +1,5 @@
-// How many of several things (designs, poses) keep each of their margins, and which margins none keeps together.
+// Satisfaction counts of margins over a set of samples (designs or poses): how many samples satisfy each margin, and
+// each pair of margins. They show which requirements exclude each other.
 #pragma once
 
 #include <cstddef>
@@ -7,34 +8,35 @@
 #include <utility>
 #include <vector>
 
-#include "engine/problem/verdict.hpp"
+#include "engine/problem/diagnosis.hpp"
 
 namespace pkm {
 
 class MarginTally {
  public:
-  /// A thing's margins by name; NaN: not known.
+  /// Adds one sample, by its margins and their names. NaN: unknown, not counted.
   void add(const std::vector<std::pair<std::string, double>>& margins);
 
-  std::size_t things() const { return things_; }
-  /// Margins that nothing keeps; else pairs that nothing keeps together; else how often each is broken, the most broken
-  /// first. A few at most.
-  /// @param kind   of the reasons
-  /// @param thing  "design", "pose of the least bad design"
-  std::vector<Reason> reasons(const std::string& kind, const std::string& thing) const;
+  std::size_t samples() const { return samples_; }
+  /// At most four reasons: the margins that no sample satisfies; if there are none, the pairs that no sample satisfies
+  /// together; otherwise how often each margin is violated, most frequent first.
+  /// @param kind    Reason::kind of the reasons
+  /// @param sample  what a sample is, its noun first: "design", "pose sampled for the best-ranked design"
+  std::vector<Reason> reasons(const std::string& kind, const std::string& sample) const;
 
  private:
-  struct Line {
+  struct Count {
     std::string name;
-    std::size_t known = 0, kept = 0;
-    double nearest = 0;                        ///< the greatest of the broken ones
-    std::vector<std::size_t> known_with = {};  ///< of each earlier margin: how often both are known
-    std::vector<std::size_t> kept_with = {};   ///< and kept
+    std::size_t known = 0, satisfied = 0;
+    double closest = 0;                            ///< maximum of the negative values
+    std::vector<std::size_t> known_with = {};      ///< by earlier margin: number of samples that know both
+    std::vector<std::size_t> satisfied_with = {};  ///< by earlier margin: number of samples that satisfy both
   };
-  std::size_t number_of(const std::string& name);
+  /// Index of a margin in `counts_`; added if it is new.
+  std::size_t index_of(const std::string& name);
 
-  std::size_t things_ = 0;
-  std::vector<Line> lines_;
+  std::size_t samples_ = 0;
+  std::vector<Count> counts_;
 };
 
 }  // namespace pkm

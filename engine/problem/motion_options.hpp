@@ -1,4 +1,4 @@
-// Options that objectives and constraints of a motion have in common.
+// Options shared by the objectives and constraints that are evaluated along a motion.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace pkm {
 
-/// The type of the constraint that a motion keeps every limit of a pose (constraints/motion.cpp). Studies have it for
-/// every motion that an objective, a constraint or a report names (engine/setup/quantity_sections.cpp).
+/// Type of the constraint that all poses of a motion satisfy their limits (constraints/motion.cpp). The reader of study
+/// files adds it for every motion that an objective, a constraint or an output uses.
 inline constexpr const char* kMotionConstraint = "motion";
 
 inline OptionSpec motion_option() {
@@ -23,22 +23,22 @@ inline OptionSpec samples_option() {
           .initial = std::int64_t{201},
           .lower = 2,
           .upper = 100'000,
-          .meaning = "poses along the motion, at equal distances in time, both ends included"};
+          .meaning = "number of poses along the motion, equally spaced in time, including both ends"};
 }
 
-/// The motion that the options name. Throws std::invalid_argument where the study has none of that name.
+/// The motion named in the options. Throws std::invalid_argument if the study has none of that name.
 inline const NamedMotion& motion_of(const EntryContext& context) {
   const std::string& name = context.options.word("motion");
   if (const NamedMotion* found = find_named(context.motions, name)) return *found;
   const auto known = names_of(context.motions);
   if (known.empty())
     throw std::invalid_argument("the study has no motion called '" + name +
-                                "'; describe it in a table [[motion]] with name = \"" + name + "\"");
+                                "'; define it in a table [[motion]] with name = \"" + name + "\"");
   throw std::invalid_argument("the study has no motion called '" + name + "'; it has " + join(known) +
                               did_you_mean(name, known));
 }
 
-/// Its samples. Throws std::invalid_argument where one is not finite.
+/// Samples of that motion. Throws std::invalid_argument if one is not finite.
 inline std::vector<MotionSample> samples_of(const EntryContext& context) {
   const NamedMotion& named = motion_of(context);
   auto samples = sample(*named.motion, static_cast<std::size_t>(context.options.integer("samples")));

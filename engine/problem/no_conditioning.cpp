@@ -1,11 +1,11 @@
 #include "engine/problem/no_conditioning.hpp"
 
 #include "engine/core/error.hpp"
-#include "engine/model/mixed_units.hpp"
+#include "engine/geometry/mixed_units.hpp"
 
 namespace pkm {
 
-Refusal no_conditioning(const MechanismInfo& info) {
+Unsupported no_conditioning(const MechanismInfo& info) {
   if (!info.characteristic_length.empty()) return {};
   const std::string what = "the conditioning of mechanism " + info.name + " is undefined: ";
   if (info.joints.size() < info.coordinates.size())
@@ -20,12 +20,11 @@ Refusal no_conditioning(const MechanismInfo& info) {
     mixed.emplace_back("drives");
     keys.emplace_back("characteristic_radius");
   }
-  if (keys.empty()) return what + "it names no characteristic length";
-  return what + "its " + join(mixed, " and its ") + " are lengths and angles, so [platform] needs " +
-         join(keys, " and ");
+  if (keys.empty()) return what + "it defines no characteristic length";
+  return what + "its " + join(mixed, " and its ") + " mix lengths and angles; [platform] needs " + join(keys, " and ");
 }
 
-Refusal unavailable(const Mechanism& mechanism, const PoseQuantity& quantity) {
+Unsupported unavailable(const Mechanism& mechanism, const PoseQuantity& quantity) {
   return quantity.needs_inertia() ? no_joint_forces(mechanism) : no_conditioning(mechanism.info());
 }
 

@@ -1,4 +1,5 @@
-// Why poses of a mechanism have no conditioning, and why it has no other quantity of poses.
+// Availability of pose quantities for a mechanism: the conditioning needs consistent units and enough drives, the
+// quantities of the joint-space inertia need dynamics.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -6,10 +7,11 @@
 
 namespace pkm {
 
-/// Why the conditioning is undefined at every pose of every design, with the keys that define it.
-Refusal no_conditioning(const MechanismInfo& info);
+/// Empty if the conditioning is defined, else the reason why it is undefined at every pose of every design, with the
+/// keys of the mechanism file that define it.
+Unsupported no_conditioning(const MechanismInfo& info);
 
-/// The same of any quantity of poses.
-Refusal unavailable(const Mechanism& mechanism, const PoseQuantity& quantity);
+/// The same for any pose quantity.
+Unsupported unavailable(const Mechanism& mechanism, const PoseQuantity& quantity);
 
 }  // namespace pkm

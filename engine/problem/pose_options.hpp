@@ -1,4 +1,4 @@
-// What all quantities that read the conditioning or the joint-space inertia of poses have in common.
+// Options and capability checks shared by the quantities based on the conditioning or the joint-space inertia of poses.
 #pragma once
 
 #include "engine/core/catalogue.hpp"
@@ -6,7 +6,8 @@
 
 namespace pkm {
 
-inline bool has_jacobian(const Mechanism& mechanism) { return !mechanism.info().characteristic_length.empty(); }
+/// Whether the conditioning of the mechanism's Jacobian is defined: it needs a characteristic length.
+inline bool has_conditioning(const Mechanism& mechanism) { return !mechanism.info().characteristic_length.empty(); }
 
 inline OptionSpec characteristic_length_option() {
   return {.name = "characteristic_length",
@@ -17,22 +18,23 @@ inline OptionSpec characteristic_length_option() {
           .meaning = "length that the Jacobian's angular column is divided by; default: the mechanism's own"};
 }
 
-/// @param value  the name of the value with kinks
+/// @param value  name of the non-smooth value that is approximated
 inline OptionSpec sharpness_option(const std::string& value) {
   return {.name = "sharpness",
           .kind = OptionKind::number,
           .initial = 200.0,
           .lower = 1,
           .upper = 1e6,
-          .meaning = "of the smooth stand-in for " + value + " that gradient solvers are given: larger is nearer"};
+          .meaning =
+              "sharpness of the smooth approximation of " + value + " for gradient solvers; larger is more accurate"};
 }
 
 inline bool has_dynamics(const Mechanism& mechanism) { return mechanism.dynamics() != nullptr; }
 
-/// Why a mechanism cannot serve the objective.
-inline Refusal refuse_without_dynamics(const std::string& objective, const Mechanism& mechanism) {
-  const Refusal reason = no_joint_forces(mechanism);
-  return reason ? "objective " + objective + " needs dynamics, and " + *reason : Refusal();
+/// Whether the mechanism has the dynamics that the objective needs; empty if it has.
+inline Unsupported check_dynamics(const std::string& objective, const Mechanism& mechanism) {
+  const Unsupported reason = no_joint_forces(mechanism);
+  return reason ? "objective " + objective + " needs dynamics, and " + *reason : Unsupported();
 }
 
 inline OptionSpec mode_option() {
@@ -41,7 +43,7 @@ inline OptionSpec mode_option() {
           .meaning = "working mode (see 'pkmopt list mechanisms NAME'); default: the mechanism's first"};
 }
 
-/// The working mode asked for. Throws std::invalid_argument where the mechanism has none of that name.
+/// The working mode in the options, by default the mechanism's first. Throws std::invalid_argument if it is unknown.
 inline std::string mode_of(const EntryContext& context) {
   const std::vector<std::string>& known = context.mechanism.info().modes;
   if (!context.options.has("mode")) return known.front();
@@ -51,20 +53,20 @@ inline std::string mode_of(const EntryContext& context) {
                               did_you_mean(mode, known));
 }
 
-/// The numbers that a mechanism's joints can have, and what may stand instead.
-inline std::vector<std::string> numbers_of_joints(const std::vector<std::string>& others) {
+/// Choices of an option that selects a joint: the numbers of all joints, then `others`.
+inline std::vector<std::string> joint_choices(const std::vector<std::string>& others) {
   std::vector<std::string> choices;
-  for (std::size_t i = 1; i <= kMostJoints; ++i) choices.push_back(std::to_string(i));
+  for (std::size_t i = 1; i <= kMaxJoints; ++i) choices.push_back(std::to_string(i));
   choices.insert(choices.end(), others.begin(), others.end());
   return choices;
 }
 
-/// Throws std::invalid_argument where the number is that of no joint.
-inline void refuse_unknown_joint(const Mechanism& mechanism, const std::string& joint) {
+/// Throws std::invalid_argument if `joint` is a number greater than the mechanism's number of joints.
+inline void validate_joint(const Mechanism& mechanism, const std::string& joint) {
   const std::size_t joints = mechanism.info().joints.size();
   if (joint.size() == 1 && joint[0] > static_cast<char>('0' + joints))
     throw std::invalid_argument("mechanism " + mechanism.info().name + " has " + std::to_string(joints) +
-                                " joints, so none has the number " + joint);
+                                " joints; found joint " + joint);
 }
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// Everything an optimiser may ask about a problem.
+// Interface of an optimisation problem as the optimisers see it: design space, objectives, constraints, evaluation.
 #pragma once
 
 #include <span>
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/core/parameter.hpp"
-#include "engine/core/refusal.hpp"
 #include "engine/core/scratch.hpp"
+#include "engine/core/unsupported.hpp"
 #include "engine/problem/evaluation.hpp"
 
 namespace pkm {
@@ -21,17 +21,17 @@ struct ObjectiveInfo {
   Direction direction = Direction::minimise;
 };
 
-/// A number that must be >= 0.
+/// A constraint g >= 0; its value g is called margin.
 struct MarginInfo {
   std::string name;
   std::string unit;
   std::string meaning;
 };
 
-/// A number that is computed and stored, but not optimised.
-using ReportInfo = MarginInfo;
+/// An output: a value that is computed and stored, but neither optimised nor constrained.
+using OutputInfo = MarginInfo;
 
-/// A design problem. Immutable after construction, so threads share one.
+/// A constrained, possibly multi-objective design problem. Immutable after construction; threads may share it.
 class Problem {
  public:
   virtual ~Problem() = default;
@@ -39,22 +39,24 @@ class Problem {
   virtual const DesignSpace& space() const = 0;
   virtual const std::vector<ObjectiveInfo>& objectives() const = 0;
   virtual const std::vector<MarginInfo>& margins() const = 0;
-  virtual const std::vector<ReportInfo>& reports() const = 0;
+  virtual const std::vector<OutputInfo>& reports() const = 0;
 
-  /// Evaluates one design (dimension() values in the space's units). Thread-safe where each thread has a scratch of its
-  /// own. Neither an exception nor a NaN leaves it unmarked: whatever cannot be used has status `failed`.
-  ///
-  /// result.detail says how much is wanted. Under Detail::enough a broken design-level margin may save the rest.
+  /// Evaluates one design. Thread-safe if each thread passes its own scratch memory. A design whose evaluation throws
+  /// or gives NaN gets the status `failed`.
+  /// @param design  one value per variable, in the units of space()
+  /// @param result  receives the values; result.detail selects what is computed. With Detail::enough, the evaluation
+  ///                may end as soon as a design-level constraint is violated.
   virtual void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const = 0;
-  /// Why there are no derivatives (Detail::derivatives must then not be asked for).
-  virtual Refusal no_derivatives() const { return "the problem gives no derivatives"; }
+  /// Empty if the problem supports Detail::derivatives, else the reason why not.
+  virtual Unsupported no_derivatives() const { return "the problem gives no derivatives"; }
 
   EvaluationShape shape(Detail detail = Detail::enough) const {
     return {space().dimension(), objectives().size(), margins().size(), reports().size(), detail};
   }
 };
 
-/// Sum of max(0, -margin); a margin that was not computed (NaN) counts nothing, because the status says so already.
+/// Total constraint violation: the sum of max(0, -margin). Margins that were not computed (NaN) are skipped: the
+/// status of the design reflects them.
 inline double violation(std::span<const double> margins) {
   double sum = 0;
   for (const double margin : margins)

@@ -8,12 +8,12 @@ namespace pkm {
 void ReplayEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   const std::size_t end = std::max(first, std::min(table.size(), record_.size()));
   if (end > first && !(record_.shape() == table.shape()))
-    throw ReplayMismatch("The recorded evaluations do not have this problem's variables, objectives and constraints.");
+    throw ReplayMismatch("the recorded evaluations have other variables, objectives or constraints than the problem");
   for (std::size_t row = first; row < end; ++row) {
     const auto recorded = record_.design(row);
     if (std::memcmp(recorded.data(), table.design(row).data(), recorded.size_bytes()) != 0)
-      throw ReplayMismatch("Recorded evaluation " + std::to_string(row) +
-                           " is of another design than the optimiser asks for: the record cannot be continued.");
+      throw ReplayMismatch("recorded evaluation " + std::to_string(row) +
+                           " differs from the design that the optimiser requests; the record cannot be continued");
     table.copy_results(row, record_, row);
   }
   if (end < table.size()) inner_.evaluate(problem, table, end);

@@ -1,8 +1,9 @@
-// Serves recorded evaluations before it computes new ones: how a resumed run repeats its past.
+// Record and replay: an evaluator that returns the recorded evaluations of an interrupted run before it computes new
+// ones.
 //
-// An optimiser is a deterministic function of what it is told, so running it anew on the recorded results brings it to
-// exactly the state in which the earlier run stopped. A batch of which only the first rows are recorded (a limit cut
-// it short) is completed.
+// An optimiser is a deterministic function of the evaluations it receives. Running it again on the recorded results
+// therefore restores exactly the state in which the earlier run stopped. If only the first rows of a batch are recorded
+// (a limit stopped the run within the batch), the remaining rows are computed.
 #pragma once
 
 #include <stdexcept>
@@ -11,7 +12,7 @@
 
 namespace pkm {
 
-/// The optimiser asked for another design than the record holds: the record is of another study or another program.
+/// The optimiser requests another design than the recorded one: the record belongs to another study or program version.
 class ReplayMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,11 +20,12 @@ class ReplayMismatch : public std::runtime_error {
 
 class ReplayEvaluator final : public Evaluator {
  public:
-  /// Both must outlive this. `record` is the stage's table as stored; `inner` computes what it does not hold.
+  /// @param inner   computes the rows that are not recorded; must outlive this object
+  /// @param record  the stored table of the stage; must outlive this object
   ReplayEvaluator(Evaluator& inner, const EvaluationTable& record) : inner_(inner), record_(record) {}
 
-  /// Row r of `table` takes row r of the record, its seconds included. Throws ReplayMismatch, naming the row, when the
-  /// designs differ in any bit or the shapes differ.
+  /// Copies row r of the record, including its time, to row r of `table`. Throws ReplayMismatch if the shapes differ or
+  /// a design differs in any bit (the message gives the row).
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
 
  private:

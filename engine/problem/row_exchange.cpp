@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-void take(const std::string& bytes, std::size_t& at, void* to, std::size_t size) {
+void read_bytes(const std::string& bytes, std::size_t& at, void* to, std::size_t size) {
   PKM_EXPECTS(size <= bytes.size() - at);
   if (size > 0) std::memcpy(to, bytes.data() + at, size);
   at += size;
@@ -21,32 +21,32 @@ void pack_number(Number value, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 template <class Number>
-void take_number(const std::string& bytes, std::size_t& at, Number& value) {
-  take(bytes, at, &value, sizeof value);
+void read_number(const std::string& bytes, std::size_t& at, Number& value) {
+  read_bytes(bytes, at, &value, sizeof value);
 }
 
 void pack_text(const std::string& text, std::string& bytes) {
   pack_number(std::uint64_t{text.size()}, bytes);
   bytes += text;
 }
-void take_text(const std::string& bytes, std::size_t& at, std::string& text) {
+void read_text(const std::string& bytes, std::size_t& at, std::string& text) {
   std::uint64_t size = 0;
-  take_number(bytes, at, size);
+  read_number(bytes, at, size);
   PKM_EXPECTS(size <= bytes.size() - at);
   text = bytes.substr(at, size);
   at += size;
 }
 
-/// Calls part(array, width) for each array of results.
-template <class Table, class Part>
-void each_part(Table& table, const Part& part) {
+/// Calls action(array, numbers per row) for each array of results.
+template <class Table, class Action>
+void for_each_result(Table& table, const Action& action) {
   const EvaluationShape shape = table.shape();
-  part(table.seconds, 1);
-  part(table.status, 1);
-  part(table.objectives, shape.objectives);
-  part(table.margins, shape.margins);
-  part(table.reports, shape.reports);
-  part(table.slopes, shape.slopes());
+  action(table.seconds, 1);
+  action(table.status, 1);
+  action(table.objectives, shape.objectives);
+  action(table.margins, shape.margins);
+  action(table.reports, shape.reports);
+  action(table.slopes, shape.slopes());
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ void each_part(Table& table, const Part& part) {
 void pack_rows(const EvaluationTable& table, std::size_t first, std::size_t count, std::string& bytes) {
   const std::uint64_t rows[2] = {first, count};
   bytes.append(reinterpret_cast<const char*>(rows), sizeof rows);
-  each_part(table, [&](const auto& values, std::size_t width) {
+  for_each_result(table, [&](const auto& values, std::size_t width) {
     const auto* const begin = values.data() + first * width;
     bytes.append(reinterpret_cast<const char*>(begin), count * width * sizeof *begin);
   });
@@ -62,17 +62,17 @@ void pack_rows(const EvaluationTable& table, std::size_t first, std::size_t coun
 
 std::size_t unpack_rows(const std::string& bytes, std::size_t& at, EvaluationTable& table) {
   std::uint64_t rows[2];
-  take(bytes, at, rows, sizeof rows);
+  read_bytes(bytes, at, rows, sizeof rows);
   const std::size_t first = rows[0], count = rows[1];
   PKM_EXPECTS(first + count <= table.size());
-  each_part(table, [&](auto& values, std::size_t width) {
+  for_each_result(table, [&](auto& values, std::size_t width) {
     auto* const begin = values.data() + first * width;
-    take(bytes, at, begin, count * width * sizeof *begin);
+    read_bytes(bytes, at, begin, count * width * sizeof *begin);
   });
   return count;
 }
 
-void pack_start(const StartAhead& start, std::string& bytes) {
+void pack_unmerged_start(const UnmergedStart& start, std::string& bytes) {
   pack_number(start.number, bytes);
   pack_number(std::uint64_t{start.table.size()}, bytes);
   bytes.append(reinterpret_cast<const char*>(start.table.designs.data()), start.table.designs.size() * sizeof(double));
@@ -85,22 +85,22 @@ void pack_start(const StartAhead& start, std::string& bytes) {
   pack_number(end.optimality, bytes);
 }
 
-StartAhead unpack_start(const std::string& bytes, std::size_t& at, const EvaluationShape& shape) {
-  StartAhead start{0, EvaluationTable(shape), {}};
+UnmergedStart unpack_unmerged_start(const std::string& bytes, std::size_t& at, const EvaluationShape& shape) {
+  UnmergedStart start{0, EvaluationTable(shape), {}};
   std::uint64_t rows = 0;
-  take_number(bytes, at, start.number);
-  take_number(bytes, at, rows);
+  read_number(bytes, at, start.number);
+  read_number(bytes, at, rows);
   PKM_EXPECTS(rows <= bytes.size() - at);
   start.table.extend(rows);
-  take(bytes, at, start.table.designs.data(), start.table.designs.size() * sizeof(double));
+  read_bytes(bytes, at, start.table.designs.data(), start.table.designs.size() * sizeof(double));
   unpack_rows(bytes, at, start.table);
   bool ended = false;
-  take_number(bytes, at, ended);
+  read_number(bytes, at, ended);
   if (!ended) return start;
   StartOutcome& end = start.outcome.emplace();
-  for (std::string* text : {&end.origin, &end.stop, &end.message}) take_text(bytes, at, *text);
-  for (std::int64_t* number : {&end.first_row, &end.rows, &end.end_row}) take_number(bytes, at, *number);
-  take_number(bytes, at, end.optimality);
+  for (std::string* text : {&end.origin, &end.stop, &end.message}) read_text(bytes, at, *text);
+  for (std::int64_t* number : {&end.first_row, &end.rows, &end.end_row}) read_number(bytes, at, *number);
+  read_number(bytes, at, end.optimality);
   return start;
 }
 

@@ -1,4 +1,4 @@
-// Results of evaluations on their way between ranks: bytes that name the rows they belong to.
+// Serialisation of evaluation results for MPI messages: byte strings that contain the row numbers with the results.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,19 @@
 
 namespace pkm {
 
-/// Adds what the rows [first, first + count) hold beside their designs.
+/// Appends the results of `count` rows from row `first` on, without their designs, to `bytes`.
 void pack_rows(const EvaluationTable& table, std::size_t first, std::size_t count, std::string& bytes);
 
-/// Puts what pack_rows() has packed, from byte `at` on, into a table of the same shape. Returns how many rows came, the
-/// last byte's end in `at`.
+/// Reads rows written by pack_rows(), from byte `at` on, into a table of the same shape. Returns the number of rows and
+/// advances `at` past them.
 std::size_t unpack_rows(const std::string& bytes, std::size_t& at, EvaluationTable& table);
 
-/// A start with its designs.
-void pack_start(const StartAhead& start, std::string& bytes);
-/// What pack_start() has packed, from byte `at` on; `at` is moved behind it.
-StartAhead unpack_start(const std::string& bytes, std::size_t& at, const EvaluationShape& shape);
+/// Appends a multistart run with its designs to `bytes`.
+void pack_unmerged_start(const UnmergedStart& start, std::string& bytes);
+/// Reads a run written by pack_unmerged_start() from byte `at` on and advances `at` past it.
+UnmergedStart unpack_unmerged_start(const std::string& bytes, std::size_t& at, const EvaluationShape& shape);
 
-/// Of the rows [first, end), with their designs and results, and without their times.
+/// Hash of the designs and results of rows [first, end), without their times.
 std::uint64_t hash_of_rows(const EvaluationTable& table, std::size_t first, std::size_t end);
 
 }  // namespace pkm

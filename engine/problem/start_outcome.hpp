@@ -1,4 +1,4 @@
-// How stages and the starts of solvers end.
+// Stop reasons of stages, and outcomes of the single runs of a multistart solver stage.
 #pragma once
 
 #include <cstdint>
@@ -19,30 +19,30 @@ enum class StopReason {
   interrupted,
   time,
   failed,
-  starts,  ///< every start has come to its own end
+  starts,  ///< every multistart run has ended
 };
 
-/// "generation limit", ...: the words of the screen and the study file.
+/// The reason in words, for the terminal and the study file: "generation limit", ...
 std::string_view words(StopReason reason);
 
-/// How one start of a solver ended.
+/// Outcome of one multistart run of a solver. Row numbers refer to the stage's table.
 struct StartOutcome {
-  std::string origin;          ///< where the start came from: "best so far", "Sobol point 3"
-  std::int64_t first_row = 0;  ///< of its evaluations; this one is the start itself
-  std::int64_t rows = 0;       ///< evaluations made
-  std::int64_t end_row = 0;    ///< what is kept: the best of start, all that was seen and what the solver returned
+  std::string origin;          ///< of the starting point: "best so far", "Sobol point 3"
+  std::int64_t first_row = 0;  ///< row of its first evaluation, the starting point
+  std::int64_t rows = 0;       ///< number of evaluations
+  std::int64_t end_row = 0;    ///< row of the result: the best evaluated design, including starting and final point
   std::string stop;            ///< "converged", "evaluation limit", "time limit" or "failed"
-  std::string message;         ///< what the solver said
-  /// Norm of the projected gradient at the end (see optimality.hpp); NaN where the stage has no derivatives.
+  std::string message;         ///< message of the solver
+  /// KKT residual at the end, the norm of the projected gradient (see optimality.hpp); NaN without derivatives.
   double optimality = 0;
 };
 
-/// What is known of a start of a solver whose evaluations cannot follow those before it yet: starts are at work side by
-/// side, and an earlier one has not ended.
-struct StartAhead {
-  std::int64_t number = 0;              ///< 0 is the stage's first start
+/// A multistart run whose evaluations are buffered: the runs are concurrent, and their evaluations join the stage's
+/// table in the order of the starts, so they wait until every earlier run has ended.
+struct UnmergedStart {
+  std::int64_t number = 0;              ///< 0: the first run of the stage
   EvaluationTable table;                ///< its evaluations so far
-  std::optional<StartOutcome> outcome;  ///< once it has ended; its rows count from 0
+  std::optional<StartOutcome> outcome;  ///< set once the run has ended; rows are those of `table`
 };
 
 }  // namespace pkm

@@ -9,8 +9,8 @@
 namespace pkm {
 namespace {
 
-/// Whether a spreadsheet would take the text for a formula. A number such as -7 is none.
-bool runs_in_spreadsheets(const std::string& text) {
+/// Whether a spreadsheet would execute the text as a formula (CSV injection). Numbers such as -7 are harmless.
+bool is_spreadsheet_formula(const std::string& text) {
   if (text.empty() || std::string_view("=+-@\t\r").find(text[0]) == std::string_view::npos) return false;
   const char* const begin = text.data() + (text[0] == '+' ? 1 : 0);
   const char* const end = text.data() + text.size();
@@ -27,12 +27,12 @@ CsvTable::CsvTable(const std::vector<std::string>& columns) {
 
 void CsvTable::begin_row() {
   text_ += '\n';
-  row_begins_ = true;
+  at_row_start_ = true;
 }
 
 void CsvTable::add_cell(const std::string& text) {
-  if (!row_begins_) text_ += ',';
-  row_begins_ = false;
+  if (!at_row_start_) text_ += ',';
+  at_row_start_ = false;
   text_ += text;
 }
 
@@ -40,11 +40,11 @@ void CsvTable::add(double value) {
   if (std::isinf(value))
     add_cell(value > 0 ? "inf" : "-inf");
   else
-    add_cell(std::isnan(value) ? "" : shortest(value + 0.0));  // no "-0"
+    add_cell(std::isnan(value) ? "" : shortest(value + 0.0));  // + 0.0 turns -0 into 0
 }
 
 void CsvTable::add(const std::string& text) {
-  const std::string cell = (runs_in_spreadsheets(text) ? "'" : "") + text;
+  const std::string cell = (is_spreadsheet_formula(text) ? "'" : "") + text;
   if (cell.find_first_of(",\"\n\r") == std::string::npos) return add_cell(cell);
   std::string quoted;
   for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string{c};

@@ -1,5 +1,6 @@
-// Tables for other programs: comma-separated values (RFC 4180, lines end with a line feed), numbers in full precision,
-// empty cells for what does not exist. Text that a spreadsheet would run as a formula ("=..", "@..") begins with a '.
+// Writer for tables of comma-separated values (RFC 4180, but lines end with a line feed). Numbers have full precision,
+// missing values are empty cells. Text that a spreadsheet would execute as a formula ("=..", "@..") is prefixed with
+// an apostrophe.
 #pragma once
 
 #include <concepts>
@@ -9,8 +10,8 @@
 
 namespace pkm {
 
-/// A column's header, "a [m]"; the name alone for unit "1".
-inline std::string header(const std::string& name, const std::string& unit) {
+/// Header of a column: "a [m]", or only the name if the unit is "1".
+inline std::string column_header(const std::string& name, const std::string& unit) {
   return unit == "1" ? name : name + " [" + unit + "]";
 }
 
@@ -19,26 +20,26 @@ class CsvTable {
   explicit CsvTable(const std::vector<std::string>& columns);
 
   void begin_row();
-  /// A row that begins with these cells.
+  /// Starts a row with these cells; further cells can be added.
   template <class... Cells>
   void row(const Cells&... cells) {
     begin_row();
     (add(cells), ...);
   }
-  void add(double value);  ///< NaN leaves the cell empty; infinities are "inf" and "-inf"
+  void add(double value);  ///< NaN is written as an empty cell, infinities as "inf" and "-inf"
   void add(std::integral auto number) { add_cell(std::to_string(number)); }
   void add(const std::string& text);
   void add_empty(std::size_t cells);
   void add(std::span<const double> values);
 
-  /// The whole file.
+  /// The complete file.
   std::string text() const { return text_ + '\n'; }
 
  private:
   void add_cell(const std::string& text);
 
   std::string text_;
-  bool row_begins_ = true;
+  bool at_row_start_ = true;
 };
 
 }  // namespace pkm

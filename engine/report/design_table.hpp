@@ -1,36 +1,36 @@
-// The best design beside the others of its study and beside published ones: the table that every account of a study
-// shows.
+// Table that compares the best design with the rounded design, the baseline and published reference designs. It is
+// shared by terminal and HTML output.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/report/standing.hpp"
-#include "engine/setup/study.hpp"
+#include "engine/config/study.hpp"
+#include "engine/report/comparison.hpp"
 
 namespace pkm {
 
 struct DesignTable {
-  /// A design: "best" (name_of_best), and the same on exact columns where there are both.
+  /// One design. `exact` has its values by the exact method, where `record` has values by voxels.
   struct Column {
     std::string name;
     std::optional<DesignRecord> record, exact;
   };
-  /// What is said of every design; none where a design or a reference does not know it.
+  /// One quantity of all designs; std::nullopt where the value is unknown.
   struct Line {
-    std::string kind;  ///< "variable", "objective", "report", "constraint" or "certain" (of the volume)
+    std::string kind;  ///< "variable", "objective", "output", "constraint" or "certified" (bounds of the volume)
     std::string name, unit, meaning;
-    std::vector<std::optional<double>> values, published;  ///< of the columns, of the references
+    std::vector<std::optional<double>> values, published;  ///< one value per column; one value per reference design
     std::optional<Gain> gain;                              ///< of the first column over the baseline
   };
-  std::vector<Column> columns;  ///< none while nothing is evaluated; the baseline is the last
+  std::vector<Column> columns;  ///< best design first, baseline last; empty while nothing has been evaluated
   std::vector<Line> lines;
 
   bool has_baseline() const { return !columns.empty() && columns.back().name == "baseline"; }
 };
 
-/// @param references  what was published
+/// @param references  published designs ([[reference]] of the study)
 DesignTable design_table(const StudyContents& contents, const std::vector<Reference>& references);
 
 }  // namespace pkm

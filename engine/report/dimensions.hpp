@@ -1,4 +1,4 @@
-// Which parameters of a mechanism are lengths that can be seen in its drawing.
+// Finds the length parameters of a mechanism that can be dimensioned in its drawing.
 #pragma once
 
 #include <span>
@@ -9,16 +9,18 @@
 
 namespace pkm {
 
-/// A parameter that is the distance between two ends of links.
+/// A parameter that equals the distance between two ends of links.
 struct Dimension {
-  std::size_t parameter;
-  std::size_t from, to;  ///< end 2 k is where link k begins, 2 k + 1 where it ends
+  std::size_t parameter;  ///< index in MechanismInfo::parameters
+  std::size_t from, to;   ///< ends of links: end 2 k is the start of link k, end 2 k + 1 its other end
 };
 
-/// The dimensions of a design at a pose, in the order of the parameters, each parameter once: along a link before
-/// between two links of one part before anywhere else. A distance belongs to a parameter when it equals it, grows as it
-/// does and depends on no other one, so two lengths that happen to be equal are told apart. Empty where the pose does
-/// not assemble.
+/// The dimensions of a design at a pose, in the order of the parameters, at most one per parameter. A distance
+/// represents a parameter if it equals the parameter, its derivative by this parameter is 1, and its derivatives by all
+/// other parameters are 0; so parameters with equal values are distinguished. The derivatives are forward differences.
+/// If several distances qualify, one along a single link is preferred, then one between two links of the same part. The
+/// result is empty if the pose does not assemble.
+/// @param mode  working mode, one of MechanismInfo::modes
 std::vector<Dimension> dimensions_of(const Mechanism& mechanism, std::span<const double> parameters,
                                      const Pose<double>& pose, const std::string& mode);
 

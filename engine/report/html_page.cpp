@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "engine/report/sections.hpp"
+#include "engine/report/panels.hpp"
 
 #ifdef PKM_PAGE_EMBEDDED
 extern "C" {
@@ -16,33 +16,34 @@ extern const char pkm_page_plotly[], pkm_page_plotly_end[];
 namespace pkm {
 namespace {
 
-void add(Json& study, const char* name, Json section) {
-  if (!section.is_null()) study[name] = std::move(section);
+/// Adds the data of a panel unless it is null.
+void add_panel(Json& study, const char* name, Json data) {
+  if (!data.is_null()) study[name] = std::move(data);
 }
 
-void add_views(Json& study, const Views& views) {
-  add(study, "workspace", workspace_data(views));
-  add(study, "mechanism", mechanism_data(views));
-  add(study, "coupling", coupling_data(views));
-  add(study, "motions", motions_data(views));
+void add_design_panels(Json& study, const ShownDesigns& shown) {
+  add_panel(study, "workspace", workspace_data(shown));
+  add_panel(study, "mechanism", mechanism_data(shown));
+  add_panel(study, "coupling", coupling_data(shown));
+  add_panel(study, "motions", motions_data(shown));
 }
 
 Json study_data(const PageStudy& page) {
   const StudyContents& contents = page.contents;
   Json study = {{"name", contents.name}, {"file", page.file}};
-  add(study, "problem", problem_data(page));
-  add(study, "summary", summary_data(page));
-  add(study, "convergence", convergence_data(contents));
-  add(study, "populations", populations_data(contents));
-  add(study, "front", front_data(page));
+  add_panel(study, "problem", problem_data(page));
+  add_panel(study, "summary", summary_data(page));
+  add_panel(study, "convergence", convergence_data(contents));
+  add_panel(study, "populations", populations_data(contents));
+  add_panel(study, "front", front_data(page));
   if (page.study)
-    add_views(study, views_of(page));
+    add_design_panels(study, evaluate_shown_designs(page));
   else
-    add(study, "workspace", workspace_data(contents));
+    add_panel(study, "workspace", workspace_data(contents));
   return study;
 }
 
-std::string text_of(Json studies, const std::string& program) {
+std::string report_text(Json studies, const std::string& program) {
   Json page = {{"program", program}};
   page["studies"] = std::move(studies);
   return json_text(page);
@@ -53,17 +54,17 @@ std::string text_of(Json studies, const std::string& program) {
 std::string page_data(const std::vector<PageStudy>& studies, const std::string& program) {
   Json list = Json::array();
   for (const PageStudy& page : studies) list.push_back(study_data(page));
-  return text_of(std::move(list), program);
+  return report_text(std::move(list), program);
 }
 
-std::string page_data(const Views& views, const std::string& program) {
-  Json study = {{"name", views.mechanism.info().name + ", " + views.designs.front().name}, {"file", ""}};
-  add(study, "design", design_data(views));
-  add_views(study, views);
-  return text_of(Json::array({std::move(study)}), program);
+std::string page_data(const ShownDesigns& shown, const std::string& program) {
+  Json study = {{"name", shown.mechanism.info().name + ", " + shown.designs.front().name}, {"file", ""}};
+  add_panel(study, "design", design_data(shown));
+  add_design_panels(study, shown);
+  return report_text(Json::array({std::move(study)}), program);
 }
 
-PageParts page_parts() {
+PageAssets page_assets() {
 #ifdef PKM_PAGE_EMBEDDED
   return {{pkm_page_html, pkm_page_html_end},
           {pkm_page_style, pkm_page_style_end},
@@ -71,21 +72,21 @@ PageParts page_parts() {
           {pkm_page_plotly, pkm_page_plotly_end}};
 #else
   throw std::runtime_error(
-      "this pkmopt was built without its page, because npm or its registry was missing or PKM_REPORT was off: with npm "
-      "installed, configure and build it again");
+      "this pkmopt was built without the report page, because npm or its registry was missing or PKM_REPORT was off; "
+      "install npm, then configure and build pkmopt again");
 #endif
 }
 
 std::string html_page(const std::string& data) {
-  const PageParts parts = page_parts();
-  const std::vector<std::pair<std::string_view, std::string_view>> marks = {
-      {"{{style}}", parts.style}, {"{{data}}", data}, {"{{plotly}}", parts.plotly}, {"{{script}}", parts.script}};
+  const PageAssets assets = page_assets();
+  const std::vector<std::pair<std::string_view, std::string_view>> placeholders = {
+      {"{{style}}", assets.style}, {"{{data}}", data}, {"{{plotly}}", assets.plotly}, {"{{script}}", assets.script}};
   std::string page;
-  std::string_view rest = parts.html;
-  for (const auto& [mark, text] : marks) {  // in the order in which the page has them
-    const std::size_t at = rest.find(mark);
+  std::string_view rest = assets.html;
+  for (const auto& [placeholder, text] : placeholders) {  // in their order in the template
+    const std::size_t at = rest.find(placeholder);
     page.append(rest.substr(0, at)).append(text);
-    rest.remove_prefix(at + mark.size());
+    rest.remove_prefix(at + placeholder.size());
   }
   return page.append(rest);
 }

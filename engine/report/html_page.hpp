@@ -1,32 +1,35 @@
-// `pkmopt report`: one HTML file that shows what studies found, opens from disk and asks no network for anything.
+// Writes the results of studies, or one design, as a self-contained HTML page with plots (`pkmopt report`). The page
+// opens from disk and makes no network requests.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "engine/report/views.hpp"
+#include "engine/report/shown_designs.hpp"
 
 namespace pkm {
 
-/// The page's data: {"program": .., "studies": [..]}, a study having the sections that it has something for.
-/// @param program  what made it, "pkmopt 0.1.0 (a1b2c3d)"
+/// The data of the page as JSON text: {"program": .., "studies": [..]}. Each study has one member per panel; panels
+/// without content are omitted.
+/// @param program  name and version of the program, "pkmopt 0.1.0 (a1b2c3d)"
 std::string page_data(const std::vector<PageStudy>& studies, const std::string& program);
 
-/// The same of one design, without a study: {"program": .., "studies": [one with the sections on the design]}.
-std::string page_data(const Views& views, const std::string& program);
+/// The data of a page for one design without a study: "studies" has one entry with the panels of that design.
+std::string page_data(const ShownDesigns& shown, const std::string& program);
 
-/// The page without data, as it lies in engine/report/page/: what the build has put into the library.
-struct PageParts {
-  std::string_view html;  ///< with marks where the others and the data belong
+/// The files of engine/report/page/, which the build embeds into the library.
+struct PageAssets {
+  std::string_view html;  ///< template with the placeholders {{style}}, {{data}}, {{plotly}}, {{script}}
   std::string_view style;
   std::string_view script;
   std::string_view plotly;
 };
-/// Throws std::runtime_error with a sentence where the library was built without them.
-PageParts page_parts();
+/// Throws std::runtime_error if the library was built without them.
+PageAssets page_assets();
 
-/// The page around its data. Throws as page_parts() does.
+/// The complete page. Throws as page_assets() does.
+/// @param data  result of page_data()
 std::string html_page(const std::string& data);
 
 }  // namespace pkm

@@ -1,10 +1,11 @@
-// The surface of a workspace as triangles: where the field `margin` passes through 0.
+// Triangulates the boundary of a workspace, the zero isosurface of the field `margin`, by marching tetrahedra (Doi and
+// Koide 1991).
 //
-// Marching tetrahedra: nodes are the centres of the cells, cubes of eight nodes are cut into six tetrahedra around
-// their diagonal, and in each tetrahedron the surface is a triangle or a quadrilateral between the edges on which the
-// margin changes its sign. Neighbouring tetrahedra share edges, so the surface is closed and every edge belongs to
-// two triangles. So that it is closed on the box, too, a layer of nodes on the box's faces repeats the margins of the
-// outer cells, and a second one at the same place is outside; there the surface goes through the nodes.
+// The nodes are the centres of the cells. Each cube of eight nodes is divided into six tetrahedra around its diagonal;
+// in each tetrahedron the surface is a triangle or a quadrilateral between the edges on which the margin changes sign.
+// Neighbouring tetrahedra share edges, so the surface is closed and every edge belongs to two triangles. Two additional
+// layers of nodes on the faces of the box close the surface there: both have the coordinates of the faces; the inner
+// layer repeats the margins of the outer cells, the outer layer is infeasible.
 #pragma once
 
 #include <array>
@@ -17,18 +18,18 @@ namespace pkm {
 
 struct Isosurface {
   std::vector<std::array<double, 3>> vertices;  ///< in the order of WorkspaceFields::axes
-  std::vector<std::array<double, 3>> inside;    ///< per vertex: a feasible place near it, whose fields it may show
+  std::vector<std::array<double, 3>> inside;    ///< per vertex: a feasible point nearby, where fields have values
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 
-/// Why a workspace has no surface: it takes three swept coordinates.
-/// @param swept  their names
-Refusal refuse_surface(const std::vector<std::string>& swept);
+/// Reports why a workspace has no surface, unless three coordinates are swept.
+/// @param swept  names of the swept coordinates
+Unsupported surface_unsupported(const std::vector<std::string>& swept);
 
-/// Empty where no cell is feasible. Throws std::invalid_argument with that sentence.
-/// @param margin  of the same design. Without it vertices lie where the margins of two cells, taken as linear between
-///                them, have their zero; with it where the pose's own margin changes its sign, to a 128th of a cell,
-///                which takes some time and is shared among the team lent to the caller
+/// The surface; empty if no cell is feasible. Throws std::invalid_argument if surface_unsupported() gives a reason.
+/// @param margin  margin function of the same design. If given, each vertex is located on its edge by bisection of the
+///                margin to 1/128 of a cell, in parallel on the caller's threads; if null, by linear interpolation of
+///                the margins of the two cells
 Isosurface isosurface(const WorkspaceFields& workspace, const PoseMargin* margin = nullptr);
 
 }  // namespace pkm

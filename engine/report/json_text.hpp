@@ -1,18 +1,18 @@
-// JSON that may stand inside an HTML page.
+// JSON text that is safe inside a script element of an HTML page, and JSON objects that several panels share.
 #pragma once
 
 #include <string>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/problem/verdict.hpp"
+#include "engine/problem/diagnosis.hpp"
 
 namespace pkm {
 
 using Json = nlohmann::ordered_json;
 
-/// The JSON's text in ASCII, without any "<": whatever a study is called, it cannot end the script element that holds
-/// it. Text that is no UTF-8 gets replacement characters; numbers that are not finite become null.
+/// Serialises JSON as ASCII without "<", so that no text of a study can end the script element that contains it.
+/// Invalid UTF-8 is replaced by U+FFFD; non-finite numbers become null.
 inline std::string json_text(const Json& json) {
   std::string safe;
   for (const char c : json.dump(-1, ' ', true, Json::error_handler_t::replace)) {
@@ -24,11 +24,11 @@ inline std::string json_text(const Json& json) {
   return safe;
 }
 
-/// How the page knows coordinates and joints: { name, unit, role }, the role being what a coordinate is in the room,
-/// "x", "y" or "z" for the length of that name, "turn" for an angle, else "other".
+/// A coordinate or joint: { name, unit, role }. The role is "rotation" for an angle, the name for Cartesian coordinates
+/// "x", "y" and "z", and "other" otherwise.
 inline Json axis_data(const std::string& name, const std::string& unit) {
-  const bool in_room = name == "x" || name == "y" || name == "z";
-  return {{"name", name}, {"unit", unit}, {"role", unit == "rad" ? "turn" : in_room ? name : "other"}};
+  const bool is_cartesian = name == "x" || name == "y" || name == "z";
+  return {{"name", name}, {"unit", unit}, {"role", unit == "rad" ? "rotation" : is_cartesian ? name : "other"}};
 }
 template <class Axes>
 Json axes_data(const Axes& axes) {
@@ -37,23 +37,23 @@ Json axes_data(const Axes& axes) {
   return list;
 }
 
-/// { name, unit, meaning } of each.
+/// An array of { name, unit, meaning }.
 template <class Infos>
-Json named(const Infos& infos) {
+Json infos_json(const Infos& infos) {
   Json list = Json::array();
   for (const auto& info : infos) list.push_back({{"name", info.name}, {"unit", info.unit}, {"meaning", info.meaning}});
   return list;
 }
 
-/// { kind, names, sentence } of each.
+/// An array of { kind, names, sentence }.
 inline Json reasons_json(const std::vector<Reason>& reasons) {
   Json list = Json::array();
   for (const Reason& reason : reasons)
     list.push_back({{"kind", reason.kind}, {"names", reason.names}, {"sentence", reason.sentence}});
   return list;
 }
-/// { finding, sentence, reasons }; null for none.
-inline Json verdict_json(const std::optional<Verdict>& verdict) {
+/// { finding, sentence, reasons }; null if there is no diagnosis.
+inline Json diagnosis_json(const std::optional<Diagnosis>& verdict) {
   if (!verdict) return Json();
   return {{"finding", verdict->finding}, {"sentence", verdict->sentence}, {"reasons", reasons_json(verdict->reasons)}};
 }

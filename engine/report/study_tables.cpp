@@ -3,40 +3,40 @@
 #include <algorithm>
 
 #include "engine/problem/front.hpp"
-#include "engine/report/standing.hpp"
+#include "engine/report/comparison.hpp"
 
 namespace pkm {
 namespace {
 
 using Names = std::vector<std::string>;
 
-/// Headers "objective conditioning", "margin rail-length [m]".
+/// Appends headers such as "objective conditioning" or "margin rail-length [m]".
 template <class Named>
-void add_names(Names& columns, const std::string& kind, const std::vector<Named>& items) {
-  for (const Named& item : items) columns.push_back(header(kind + item.name, item.unit));
+void add_headers(Names& columns, const std::string& prefix, const std::vector<Named>& items) {
+  for (const Named& item : items) columns.push_back(column_header(prefix + item.name, item.unit));
 }
 
 CsvTable evaluations(const StudyContents& contents) {
   const ProblemRecord& problem = contents.problem;
   Names columns = {"stage", "evaluation", "generation", "status"};
-  add_names(columns, "", problem.variables);
-  add_names(columns, "objective ", problem.objectives);
-  add_names(columns, "margin ", problem.margins);
-  add_names(columns, "report ", problem.reports);
+  add_headers(columns, "", problem.variables);
+  add_headers(columns, "objective ", problem.objectives);
+  add_headers(columns, "margin ", problem.margins);
+  add_headers(columns, "report ", problem.reports);
   CsvTable table(columns);
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const EvaluationTable& rows = contents.stages[s].table;
     const auto generation = contents.stages[s].generations.generation_of_rows(rows.size());
     for (std::size_t row = 0; row < rows.size(); ++row)
       table.row(s + 1, row, generation[row], words(rows.status[row]), rows.design(row), rows.objective_row(row),
-                rows.margin_row(row), rows.report_row(row));
+                rows.margin_row(row), rows.output_row(row));
   }
   return table;
 }
 
 CsvTable generations(const StudyContents& contents) {
   Names columns = {"stage", "generation", "evaluations", "best evaluation"};
-  add_names(columns, "objective ", contents.problem.objectives);
+  add_headers(columns, "objective ", contents.problem.objectives);
   columns.insert(columns.end(), {"feasible_share", "diversity", "seconds [s]", "hypervolume", "spread", "igd_plus"});
   CsvTable table(columns);
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
@@ -78,14 +78,14 @@ CsvTable best(const StudyContents& contents) {
   const auto& final = contents.final;
   if (!final || !final->best) designs.emplace_back("best", best_so_far(contents).value());
   if (final) {
-    const auto take = [&](const char* name, const std::optional<DesignRecord>& record) {
+    const auto add = [&](const char* name, const std::optional<DesignRecord>& record) {
       if (record) designs.emplace_back(name, *record);
     };
-    take("best", final->best);
-    take("rounded", final->rounded);
-    take("baseline", final->baseline);
-    take("best_exact", final->best_exact);
-    take("baseline_exact", final->baseline_exact);
+    add("best", final->best);
+    add("rounded", final->rounded);
+    add("baseline", final->baseline);
+    add("best_exact", final->best_exact);
+    add("baseline_exact", final->baseline_exact);
   }
   Names columns = {"kind", "name", "unit"};
   for (const auto& [name, design] : designs) columns.push_back(name);
@@ -93,7 +93,7 @@ CsvTable best(const StudyContents& contents) {
   const auto add_rows = [&](const auto& items, std::vector<double> DesignRecord::*values, const auto& kind) {
     for (std::size_t i = 0; i < items.size(); ++i) {
       table.row(kind(items[i]), items[i].name, items[i].unit);
-      for (const auto& named : designs) table.add((named.second.*values)[i]);
+      for (const auto& entry : designs) table.add((entry.second.*values)[i]);
     }
   };
   const ProblemRecord& problem = contents.problem;
@@ -103,26 +103,26 @@ CsvTable best(const StudyContents& contents) {
   add_rows(problem.margins, &DesignRecord::margins, [](const auto&) { return "margin"; });
   add_rows(problem.reports, &DesignRecord::reports, [](const auto&) { return "report"; });
   const auto add_bounds = [&](const char* name, double VolumeBounds::*end) {
-    if (std::ranges::none_of(designs, [](const auto& named) { return named.second.certain.has_value(); })) return;
+    if (std::ranges::none_of(designs, [](const auto& entry) { return entry.second.certain.has_value(); })) return;
     table.row("workspace", name, final->volume_unit);
-    for (const auto& [of, design] : designs) design.certain ? table.add((*design.certain).*end) : table.add_empty(1);
+    for (const auto& [label, design] : designs) design.certain ? table.add((*design.certain).*end) : table.add_empty(1);
   };
   if (final) {
     table.row("workspace", "volume", final->volume_unit);
-    for (const auto& named : designs) table.add(named.second.volume);
+    for (const auto& entry : designs) table.add(entry.second.volume);
     add_bounds("volume at least", &VolumeBounds::lower);
     add_bounds("volume at most", &VolumeBounds::upper);
   }
   table.row("status", "status", "");
-  for (const auto& named : designs) table.add(words(named.second.status));
+  for (const auto& entry : designs) table.add(words(entry.second.status));
   return table;
 }
 
 CsvTable front(const StudyContents& contents) {
   const ProblemRecord& problem = contents.problem;
   Names columns = {"stage", "point", "evaluation", "knee", "compromise"};
-  add_names(columns, "objective ", problem.objectives);
-  add_names(columns, "", problem.variables);
+  add_headers(columns, "objective ", problem.objectives);
+  add_headers(columns, "", problem.variables);
   CsvTable table(columns);
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const StageRecord& stage = contents.stages[s];
@@ -131,10 +131,10 @@ CsvTable front(const StudyContents& contents) {
     const Scores scores = scores_of(problem.objectives, stage.table, rows);
     std::vector<bool> knee(rows.size());
     for (const std::size_t k : knees(scores)) knee[k] = true;
-    const std::size_t middle = compromise(scores);
+    const std::size_t compromise_point = compromise(scores);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const auto row = static_cast<std::size_t>(rows[k]);
-      table.row(s + 1, k + 1, rows[k], bool{knee[k]}, k == middle, stage.table.objective_row(row),
+      table.row(s + 1, k + 1, rows[k], bool{knee[k]}, k == compromise_point, stage.table.objective_row(row),
                 stage.table.design(row));
     }
   }

@@ -1,10 +1,10 @@
-// The tables of a study file for other programs.
+// Exports a study file as CSV tables.
 //
-//   evaluations.csv  every evaluation: what varied, objectives, margins (>= 0 holds), reports
-//   generations.csv  what was known after each generation
-//   populations.csv  which evaluations made up each generation's population
-//   best.csv         the best design, and beside it, as far as the study has them, the rounded one and the baseline
-//   front.csv        the trade-offs, where there are several objectives
+//   evaluations.csv  every evaluation: variables, objectives, margins (>= 0: constraint satisfied), outputs
+//   generations.csv  per generation: evaluations and best design so far, feasible share, diversity, front indicators
+//   populations.csv  the evaluations that form the population of each generation
+//   best.csv         the best design, and the rounded design and the baseline if the study has them
+//   front.csv        the Pareto fronts, for several objectives
 //
 // Numbers are SI in full precision; a column's unit is in its header, "a [m]". `evaluation` counts each stage's rows
 // from 0, as the study file does, `stage` and `individual` from 1, `generation` from 0.
@@ -23,7 +23,7 @@ struct NamedTable {
   CsvTable table;
 };
 
-/// best.csv is left out while nothing is evaluated, front.csv where there is none.
+/// best.csv is omitted while nothing has been evaluated, front.csv if no stage has a front.
 std::vector<NamedTable> study_tables(const StudyContents& contents);
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// Which of many entries are shown.
+// Regular subsampling (thinning) of a sequence that is too long to show.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,16 @@
 
 namespace pkm {
 
-/// Every k-th of `count` indices, k the least with which there are at most `most` (>= 2), and always the first and the
-/// last.
+/// Every stride-th index of [0, count), and always the first and the last one. The stride is the smallest one that
+/// leaves at most `max_count` (>= 2) indices.
 struct Thinning {
-  std::size_t every = 1;
+  std::size_t stride = 1;
   std::vector<std::size_t> indices;
 
-  Thinning(std::size_t count, std::size_t most) {
+  Thinning(std::size_t count, std::size_t max_count) {
     if (count == 0) return;
-    if (count > most) every = (count - 1 + most - 2) / (most - 1);
-    for (std::size_t i = 0; i + 1 < count; i += every) indices.push_back(i);
+    if (count > max_count) stride = (count - 1 + max_count - 2) / (max_count - 1);
+    for (std::size_t i = 0; i + 1 < count; i += stride) indices.push_back(i);
     indices.push_back(count - 1);
   }
 };

@@ -9,25 +9,25 @@
 namespace pkm {
 namespace {
 
-/// VTK runs along the first axis fastest.
+/// Reorders a field for VTK, where the first axis varies fastest.
 std::vector<double> first_axis_fastest(const WorkspaceField& field, const std::array<std::int64_t, 3>& cells) {
   const Extent n(cells.begin(), cells.end());
-  std::vector<double> turned(n[0] * n[1] * n[2]);
-  if (field.values.size() != turned.size())
+  std::vector<double> reordered(n[0] * n[1] * n[2]);
+  if (field.values.size() != reordered.size())
     throw ImageError(field.name + ": has " + std::to_string(field.values.size()) + " values for " +
-                     std::to_string(turned.size()) + " cells");
+                     std::to_string(reordered.size()) + " cells");
   std::size_t cell = 0;
   for (std::size_t i = 0; i < n[0]; ++i)
     for (std::size_t j = 0; j < n[1]; ++j)
-      for (std::size_t k = 0; k < n[2]; ++k) turned[(k * n[1] + j) * n[0] + i] = field.values[cell++];
-  return turned;
+      for (std::size_t k = 0; k < n[2]; ++k) reordered[(k * n[1] + j) * n[0] + i] = field.values[cell++];
+  return reordered;
 }
 
 /// The bytes of a file of the VTKHDF format; its layout is described in engine/storage/README.md.
 std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, std::span<const double> parameters,
                       const std::string& title) {
   const std::string root = "/VTKHDF", points = root + "/PointData";
-  const std::string notes = "/pkmopt";  // VTK 9.1 takes FieldData of an image for arrays of points
+  const std::string notes = "/pkmopt";  // not FieldData, which VTK 9.1 reads as point arrays
   const VoxelGrid grid = workspace.grid();
   std::vector<std::int64_t> extent;
   std::vector<double> origin;
@@ -50,13 +50,13 @@ std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& inf
   for (const WorkspaceField& field : workspace.fields)
     file.array(Leaf{points + "/" + field.name, field.meaning, {field.unit}}, first_axis_fastest(field, grid.cells),
                Extent(grid.cells.rbegin(), grid.cells.rend()));
-  file.group(notes, "what goes with all cells; not read by VTK");
+  file.group(notes, "data on the whole image; not read by VTK");
   file.array(Leaf{notes + "/axes", "coordinates along x, y and z of the image"}, axes, {3});
   const auto number = [&](const std::string& name, const std::string& unit, const std::string& meaning, double value) {
     file.array(Leaf{notes + "/" + name, meaning, {unit}}, std::vector{value}, {1});
   };
   for (std::size_t i = 0; i < workspace.held.size(); ++i)
-    number("held_" + workspace.held[i].name, workspace.held[i].unit, workspace.held_note[i], workspace.held[i].lower);
+    number("held_" + workspace.held[i].name, workspace.held[i].unit, workspace.fixed_note[i], workspace.held[i].lower);
   number("volume", workspace.volume_unit, "volume of the feasible cells", workspace.volume);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
@@ -65,7 +65,7 @@ std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& inf
   return file.finish();
 }
 
-/// Little-endian, whatever the machine.
+/// Little-endian on any machine.
 void append(std::string& bytes, std::uint32_t word) {
   for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(word >> shift & 0xff);
 }
@@ -89,8 +89,8 @@ void write_vtk_image(const std::string& path, const WorkspaceFields& workspace, 
 CsvTable workspace_table(const WorkspaceFields& workspace) {
   std::vector<std::string> columns;
   for (const auto* const axes : {&workspace.axes, &workspace.held})
-    for (const WorkspaceAxis& axis : *axes) columns.push_back(header(axis.name, axis.unit));
-  for (const WorkspaceField& field : workspace.fields) columns.push_back(header(field.name, field.unit));
+    for (const WorkspaceAxis& axis : *axes) columns.push_back(column_header(axis.name, axis.unit));
+  for (const WorkspaceField& field : workspace.fields) columns.push_back(column_header(field.name, field.unit));
   CsvTable table(columns);
   for (std::size_t cell = 0; cell < workspace.cells(); ++cell) {
     const Pose<double> pose = workspace.pose(cell);
@@ -110,13 +110,13 @@ std::string stl_file(const Isosurface& surface, const std::string& title) {
                &r = surface.vertices[triangle[2]];
     const Point3<double> normal = cross(difference(q, p), difference(r, p));
     const double area = std::sqrt(dot(normal, normal));
-    if (!(area > 0)) continue;  // along the box's rim, where corners coincide
+    if (!(area > 0)) continue;  // degenerate triangles on edges of the box, where vertices coincide
     append(facets, {normal[0] / area, normal[1] / area, normal[2] / area});
-    for (const auto& corner : {p, q, r}) append(facets, corner);
-    facets.append(2, '\0');  // no attributes
+    for (const auto& vertex : {p, q, r}) append(facets, vertex);
+    facets.append(2, '\0');  // attribute byte count
     ++count;
   }
-  std::string bytes = ("pkmopt " + title).substr(0, 80);  // does not begin with "solid", which would mean text
+  std::string bytes = ("pkmopt " + title).substr(0, 80);  // must not begin with "solid", which would mark an ASCII file
   bytes.resize(80, ' ');
   append(bytes, count);
   return bytes + facets;

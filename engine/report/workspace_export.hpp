@@ -1,4 +1,4 @@
-// A workspace in the formats of other programs.
+// Exports a workspace as VTKHDF image, CSV table or STL surface.
 #pragma once
 
 #include <string>
@@ -9,17 +9,18 @@
 
 namespace pkm {
 
-/// For ParaView, as ImageData of the VTKHDF format: every field, the values of the held coordinates, the volume and the
-/// design's parameters. The cells' centres become the image's points: that is where the fields were evaluated, what
-/// contours are drawn from, and all that VTK 9.1 reads, which takes arrays of cells for arrays of points.
-/// Written as write_file does. Throws StorageError.
+/// Writes ImageData in the VTKHDF format, for ParaView: all fields, the values of the fixed coordinates, the volume and
+/// the parameters of the design. The centres of the cells become the points of the image, because the fields were
+/// evaluated there, contour filters need point data, and VTK 9.1 reads cell arrays as point arrays.
+/// The file is written as by write_file(). Throws StorageError.
 void write_vtk_image(const std::string& path, const WorkspaceFields& workspace, const MechanismInfo& info,
                      std::span<const double> parameters, const std::string& title, Existing existing);
 
-/// A row per cell, its centre's coordinates and all fields.
+/// One row per cell: the coordinates of its centre and all fields.
 CsvTable workspace_table(const WorkspaceFields& workspace);
 
-/// The surface as a binary STL file, whose coordinates are the workspace's axes in SI, rad beside m.
+/// The content of a binary STL file. Its coordinates are those of the workspace's axes in SI units, so rotations are in
+/// rad next to lengths in m.
 std::string stl_file(const Isosurface& surface, const std::string& title);
 
 }  // namespace pkm

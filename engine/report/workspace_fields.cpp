@@ -7,35 +7,39 @@
 #include <stdexcept>
 
 #include "engine/core/team.hpp"
-#include "engine/survey/picture_plan.hpp"
-#include "engine/survey/pose_quantities.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/workspace/picture_plan.hpp"
+#include "engine/workspace/pose_quantities.hpp"
+#include "engine/workspace/survey_set.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 WorkspaceAxis axis_of(const MechanismInfo& info, int coordinate, double lower, double upper, std::int64_t cells) {
   const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
   return {coordinate, axis.name, axis.unit, lower, upper, cells};
 }
 
-std::string note_of(const HeldCoordinate& held) {
-  using Kind = HeldCoordinate::Kind;
+/// Origin of the value of a fixed coordinate, for people.
+std::string note_of(const FixedCoordinate& held) {
+  using Kind = FixedCoordinate::Kind;
   if (held.kind == Kind::value) return "as given";
-  if (held.kind == Kind::middle) return "the middle of the design";
-  return held.kind == Kind::listed ? "the first of those listed" : "the middle of what the plan integrates over";
+  if (held.kind == Kind::middle) return "default value of the design";
+  return held.kind == Kind::listed ? "the first of the listed values" : "default value; the study integrates over it";
 }
 
-/// Fills fields in, one row of poses after the other; the first field says which are feasible.
-class Rows {
+/// Evaluates the fields of a sequence of poses in parallel, in blocks of consecutive poses. The first field must exist;
+/// it marks the feasible poses.
+class Evaluator {
  public:
   using Poses = std::function<Pose<double>(std::size_t)>;
 
-  /// @param size  of a row
-  Rows(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
-       std::vector<WorkspaceField>& fields, const Poses& poses, std::size_t size)
+  /// Appends the other fields to `fields`, filled with NaN.
+  /// @param poses  poses(i) is the i-th pose
+  /// @param block  number of poses per block
+  Evaluator(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
+            const std::string& mode, std::vector<WorkspaceField>& fields, const Poses& poses, std::size_t block)
       : mechanism_(mechanism),
         info_(mechanism.info()),
         parameters_(parameters),
@@ -44,48 +48,48 @@ class Rows {
         mode_(mode.empty() ? info_.modes.front() : mode),
         fields_(fields),
         poses_(poses),
-        size_(size) {
+        block_(block) {
     const PoseMargins* const margins = mechanism.pose_margins();
     const bool mixed = !margins || margins->margin_unit().empty();
     add("margin", mixed ? "mixed" : margins->margin_unit(),
-        std::string("least margin of the pose, > 0 where it is feasible") + (mixed ? ", in m, rad or 1" : ""));
+        std::string("minimum margin of the pose, > 0 where it is feasible") + (mixed ? ", in m, rad or 1" : ""));
     add_quantities(false);
     joints_ = fields_.size();
     for (const AxisInfo& joint : info_.joints) add(joint.name, joint.unit, "position of joint " + joint.name);
     if (!no_joint_forces(mechanism)) add_quantities(true);
   }
 
-  static constexpr std::size_t kFeasible = 0;  ///< the field that is there before
+  static constexpr std::size_t kFeasible = 0;  ///< number of the field that exists before
 
-  /// What each thread overwrites.
-  struct Room {
+  /// Scratch memory of a thread.
+  struct FieldScratch {
     std::vector<double> margins;
     std::vector<MotionState<double>> states;
     std::vector<PoseDynamics<double>> dynamics;
     std::vector<std::size_t> cells;
   };
 
-  std::size_t count() const { return (fields_[kFeasible].values.size() + size_ - 1) / size_; }
+  std::size_t block_count() const { return (fields_[kFeasible].values.size() + block_ - 1) / block_; }
 
-  void fill(std::size_t row, Room& room) const {
-    const std::size_t first = row * size_, end = std::min(first + size_, fields_[kFeasible].values.size());
-    for (std::size_t cell = first; cell < end; ++cell) fill_pose(cell, room);
-    if (!no_joint_forces(mechanism_)) fill_inertia(first, end, room);
+  void evaluate_block(std::size_t number, FieldScratch& scratch) const {
+    const std::size_t first = number * block_, end = std::min(first + block_, fields_[kFeasible].values.size());
+    for (std::size_t cell = first; cell < end; ++cell) evaluate_pose(cell, scratch);
+    if (!no_joint_forces(mechanism_)) evaluate_inertia_fields(first, end, scratch);
   }
 
-  void fill_all() const {
-    std::vector<Room> rooms(workers());
-    share_pieces(count(), [&](std::size_t row, std::size_t end, std::size_t worker) {
-      for (; row < end; ++row) fill(row, rooms[worker]);
+  void evaluate_all() const {
+    std::vector<FieldScratch> scratch(workers());
+    parallel_for(block_count(), [&](std::size_t number, std::size_t end, std::size_t worker) {
+      for (; number < end; ++number) evaluate_block(number, scratch[worker]);
     });
   }
 
  private:
-  static constexpr std::size_t kMargin = 1, kQuantities = 2;  ///< fields; those of inertia come behind the joints
+  static constexpr std::size_t kMargin = 1, kQuantities = 2;  ///< numbers of fields
 
   void add(std::string name, std::string unit, std::string meaning) {
     fields_.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
-    fields_.back().values.assign(fields_[kFeasible].values.size(), kNone);
+    fields_.back().values.assign(fields_[kFeasible].values.size(), kUndefined);
   }
   void add_quantities(bool of_inertia) {
     const std::string& length = info_.characteristic_length;
@@ -98,16 +102,18 @@ class Rows {
       }
       for (std::size_t limb = 1; limb <= info_.joints.size(); ++limb)
         add(name + "_" + std::to_string(limb), quantity->unit, meaning + " of limb " + std::to_string(limb));
-      add(name + "_worst", quantity->unit, (is_least(*quantity) ? "least " : "largest ") + meaning + " of the limbs");
+      add(name + "_worst", quantity->unit,
+          (min_is_worst(*quantity) ? "minimum " : "maximum ") + meaning + " of the limbs");
     }
   }
-  static bool is_least(const PoseQuantity& quantity) { return quantity.worst == PoseQuantity::Worst::least; }
+  static bool min_is_worst(const PoseQuantity& quantity) { return quantity.worst == PoseQuantity::Worst::least; }
 
-  /// Fills a cell of the fields from `field` on, in the order in which they were added.
-  /// @param evaluate  (quantity, values) computes them
+  /// Stores all quantities with or without inertia at one cell.
+  /// @param field     number of the first of their fields; they are stored in the order of add_quantities()
+  /// @param evaluate  evaluate(quantity, values) computes the values of a quantity
   template <class Evaluate>
-  void put(std::size_t field, std::size_t cell, bool of_inertia, const Evaluate& evaluate) const {
-    std::array<double, kMostJoints> values;
+  void store(std::size_t field, std::size_t cell, bool of_inertia, const Evaluate& evaluate) const {
+    std::array<double, kMaxJoints> values;
     for (const PoseQuantity* const quantity : pose_quantities()) {
       if (quantity->needs_inertia() != of_inertia) continue;
       evaluate(*quantity, values.data());
@@ -116,32 +122,32 @@ class Rows {
       if (!quantity->per_joint) continue;
       const auto end = values.begin() + info_.joints.size();
       at(field++, cell) =
-          *(is_least(*quantity) ? std::min_element(values.begin(), end) : std::max_element(values.begin(), end));
+          *(min_is_worst(*quantity) ? std::min_element(values.begin(), end) : std::max_element(values.begin(), end));
     }
   }
 
   double& at(std::size_t field, std::size_t cell) const { return fields_[field].values[cell]; }
   bool feasible(std::size_t cell) const { return at(kFeasible, cell) > 0; }
 
-  void fill_pose(std::size_t cell, Room& room) const {
+  void evaluate_pose(std::size_t cell, FieldScratch& scratch) const {
     const Pose<double> pose = poses_(cell);
-    at(kMargin, cell) = on_its_side(margin_(pose, room.margins), feasible(cell));
+    at(kMargin, cell) = with_sign(margin_(pose, scratch.margins), feasible(cell));
     if (!feasible(cell)) return;
     const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
-    put(kQuantities, cell, false,
-        [&](const PoseQuantity& quantity, double* values) { quantity.of_report(report, values); });
+    store(kQuantities, cell, false,
+          [&](const PoseQuantity& quantity, double* values) { quantity.of_report(report, values); });
     for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(joints_ + i, cell) = (*report.joints)[i];
   }
 
-  /// Rounding, or a pose without margins, must not put a cell on the other side of the surface.
-  static double on_its_side(double margin, bool feasible) {
-    constexpr double kLeast = 1e-12;
+  /// Makes the sign of the margin agree with the field `feasible`, also after rounding and at poses without margins.
+  static double with_sign(double margin, bool feasible) {
+    constexpr double kMinMagnitude = 1e-12;
     if (!std::isfinite(margin)) return feasible ? 1 : -1;
-    return feasible ? std::fmax(margin, kLeast) : std::fmin(margin, -kLeast);
+    return feasible ? std::fmax(margin, kMinMagnitude) : std::fmin(margin, -kMinMagnitude);
   }
 
-  void fill_inertia(std::size_t first, std::size_t end, Room& room) const {
-    auto& [margins, states, dynamics, cells] = room;
+  void evaluate_inertia_fields(std::size_t first, std::size_t end, FieldScratch& scratch) const {
+    auto& [margins, states, dynamics, cells] = scratch;
     const AxisVector<double> at_rest(info_.coordinates.size());
     states.clear();
     cells.clear();
@@ -155,8 +161,8 @@ class Rows {
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (!dynamics[k].assembles) continue;
       const AxisMatrix<double> inertia = joint_inertia(dynamics[k]);
-      put(joints_ + info_.joints.size(), cells[k], true,
-          [&](const PoseQuantity& quantity, double* values) { quantity.of_inertia(inertia, values); });
+      store(joints_ + info_.joints.size(), cells[k], true,
+            [&](const PoseQuantity& quantity, double* values) { quantity.of_inertia(inertia, values); });
     }
   }
 
@@ -168,8 +174,8 @@ class Rows {
   std::string mode_;
   std::vector<WorkspaceField>& fields_;
   const Poses& poses_;
-  std::size_t size_;
-  std::size_t joints_ = 0;  ///< field of the first
+  std::size_t block_;       ///< number of poses per block
+  std::size_t joints_ = 0;  ///< number of the field of the first joint
 };
 
 }  // namespace
@@ -221,27 +227,27 @@ const WorkspaceField& WorkspaceFields::field(std::string_view name) const {
 PoseMargin::PoseMargin(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits)
     : mechanism_(mechanism),
       parameters_(parameters.begin(), parameters.end()),
-      limits_(survey_limits(mechanism.info(), limits)) {}
+      limits_(workspace_limits(mechanism.info(), limits)) {}
 
 double PoseMargin::operator()(const Pose<double>& pose, std::vector<double>& scratch) const {
-  double least = std::numeric_limits<double>::infinity();
-  const PoseMargins* const ability = mechanism_.pose_margins();
-  if (!ability) {  // what exists of them, also where the pose does not assemble
+  double min_margin = std::numeric_limits<double>::infinity();
+  const PoseMargins* const capability = mechanism_.pose_margins();
+  if (!capability) {  // take the margins from the report; there are some even if the pose does not assemble
     const auto report = mechanism_.inspect(parameters_, pose, mechanism_.info().modes.front(), limits_);
-    for (const auto& named : report.margins) least = std::fmin(least, named.second);
-    return report.feasible || least < 0 ? least : -1;
+    for (const auto& named : report.margins) min_margin = std::fmin(min_margin, named.second);
+    return report.feasible || min_margin < 0 ? min_margin : -1;
   }
   scratch.clear();
-  ability->append(parameters_, mechanism_.info().modes.front(), limits_, {&pose, 1}, scratch);
-  for (const double margin : scratch) least = std::fmin(least, margin);
-  return least;
+  capability->append(parameters_, mechanism_.info().modes.front(), limits_, {&pose, 1}, scratch);
+  for (const double margin : scratch) min_margin = std::fmin(min_margin, margin);
+  return min_margin;
 }
 
-WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
-                                 const std::string& mode) {
+WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters,
+                                 const WorkspacePlan& plan, const std::string& mode) {
   const MechanismInfo& info = mechanism.info();
-  if (const Refusal reason = mechanism.refuse(parameters)) throw std::invalid_argument(*reason);
-  const SurveyPlan picture = picture_plan(info, plan, {kPictureCells, kPictureCells, kPictureCells});
+  if (const Unsupported reason = mechanism.refuse(parameters)) throw std::invalid_argument(*reason);
+  const WorkspacePlan picture = picture_plan(info, plan, {kPictureCells, kPictureCells, kPictureCells});
   const Sweep& sweep = sweep_of(info, picture);
   const VoxelMap map = voxel_map(mechanism, parameters, picture);
 
@@ -250,9 +256,9 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
   for (std::size_t i = 0; i < sweep.swept.size(); ++i)
     found.axes.push_back(axis_of(info, sweep.swept[i], map.lower[i], map.upper[i], map.cells[i]));
   for (const int coordinate : sweep.held) {
-    const double value = held_value(mechanism, parameters, picture, coordinate);
+    const double value = fixed_value(mechanism, parameters, picture, coordinate);
     found.held.push_back(axis_of(info, coordinate, value, value, 0));
-    found.held_note.push_back(note_of(how_held(plan, coordinate)));
+    found.fixed_note.push_back(note_of(how_fixed(plan, coordinate)));
   }
   found.fields.push_back({"feasible",
                           "1",
@@ -265,24 +271,24 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
   found.volume_unit = volume_unit(info, picture);
   found.touches_box = picture.box() && summary.touches_box;
 
-  const Rows::Poses poses = [&](std::size_t cell) { return found.pose(cell); };
-  Rows(mechanism, parameters, picture.limits, mode, found.fields, poses, static_cast<std::size_t>(grid.cells[2]))
-      .fill_all();
+  const Evaluator::Poses poses = [&](std::size_t cell) { return found.pose(cell); };
+  Evaluator(mechanism, parameters, picture.limits, mode, found.fields, poses, static_cast<std::size_t>(grid.cells[2]))
+      .evaluate_all();
   return found;
 }
 
 std::vector<WorkspaceField> fields_at(const Mechanism& mechanism, std::span<const double> parameters,
                                       const LimitSpec& limits, const std::string& mode,
                                       const std::vector<Pose<double>>& poses) {
-  constexpr std::size_t kRow = 64;
+  constexpr std::size_t kBlock = 64;
   std::vector<WorkspaceField> fields = {{"feasible", "1", "", std::vector<double>(poses.size(), 1.0)}};
-  const Rows::Poses of = [&](std::size_t i) { return poses[i]; };
-  Rows(mechanism, parameters, limits, mode, fields, of, kRow).fill_all();
+  const Evaluator::Poses pose = [&](std::size_t i) { return poses[i]; };
+  Evaluator(mechanism, parameters, limits, mode, fields, pose, kBlock).evaluate_all();
   fields.erase(fields.begin());
   return fields;
 }
 
-LimitSpec survey_limits(const MechanismInfo& info, LimitSpec limits) {
+LimitSpec workspace_limits(const MechanismInfo& info, LimitSpec limits) {
   for (std::size_t i = 0; i < info.limits.size(); ++i)
     if (info.limits[i].group == "clearance" && !limits.given[i]) limits.given[i] = info.limits[i].inactive;
   return limits;

@@ -1,16 +1,17 @@
-// What a design's workspace is made of, cell by cell: what pictures and exports are drawn from.
+// Evaluates quantities of poses on a voxel grid over the workspace of a design, for plots and exports.
 //
-// The cells are those of voxel_map() on one value of each held coordinate. Fields have a value per cell; those
-// that describe the mechanism at a pose exist at the centres of feasible cells and are NaN elsewhere. The joints stand
-// between the quantities of poses (engine/survey/pose_quantities.hpp) that need no inertia and those that do.
+// The cells are those of voxel_map(), with one value of each fixed coordinate. A field has one value per cell. Fields
+// that describe the mechanism at a pose are evaluated at the centres of feasible cells and are NaN elsewhere. The order
+// of the fields is: feasible, margin, quantities of poses (engine/workspace/pose_quantities.hpp) without inertia, joint
+// positions, quantities of inertia.
 //
-//   feasible           1 or 0, as every voxel survey counts it
-//   margin             least margin of the pose: > 0 in feasible cells, < 0 in the others; the surface is where it is 0
-//   conditioning       inverse condition number of the Jacobian in [0, 1], by the mechanism's own characteristic length
-//   rho1 ..            joint positions, by the mechanism's names
-//   dci_1 ..           dynamic coupling indices of the limbs in [0, 1], where the mechanism has masses
+//   feasible           1 or 0, as counted by voxel workspace analysis
+//   margin             minimum margin of the pose: > 0 in feasible cells, < 0 in the others; 0 on the boundary surface
+//   conditioning       inverse condition number of the Jacobian in [0, 1], with the mechanism's characteristic length
+//   rho1 ..            joint positions, named as in the mechanism
+//   dci_1 ..           dynamic coupling indices of the limbs in [0, 1], if the mechanism has masses
 //   dci_worst          the largest of them
-//   inertia_condition  inverse condition number of the inertia that the joints feel in [0, 1]
+//   inertia_condition  inverse condition number of the joint-space inertia matrix in [0, 1]
 #pragma once
 
 #include <array>
@@ -22,16 +23,16 @@
 #include <vector>
 
 #include "engine/mechanism/mechanism.hpp"
-#include "engine/survey/voxel_grid.hpp"
+#include "engine/workspace/voxel_grid.hpp"
 
 namespace pkm {
 
-/// Cells per axis of pictures of studies that survey columns.
+/// Default number of cells per axis for studies that analyse the workspace by columns and so have no cells.
 inline constexpr std::int64_t kPictureCells = 48;
 
-/// Equal cells from `lower` to `upper`.
+/// One axis of the grid: `cells` equal cells from `lower` to `upper`.
 struct WorkspaceAxis {
-  int coordinate = 0;  ///< of MechanismInfo::coordinates
+  int coordinate = 0;  ///< index in MechanismInfo::coordinates
   std::string name;    ///< "theta"
   std::string unit;    ///< "m" or "rad"
   double lower = 0, upper = 0;
@@ -40,40 +41,41 @@ struct WorkspaceAxis {
 
 struct WorkspaceField {
   std::string name;
-  std::string unit;  ///< "1", "m", or "mixed" for a least of lengths and angles
+  std::string unit;  ///< "1", "m", .., or "mixed" for the minimum of lengths, angles and numbers
   std::string meaning;
   std::vector<double> values;  ///< one per cell
 };
 
 struct WorkspaceFields {
   std::string mechanism;
-  std::vector<WorkspaceAxis> axes;     ///< one to three, order of Sweep::swept; of cells the last axis runs fastest
-  std::vector<WorkspaceAxis> held;     ///< the other coordinates, each on one value: lower = upper, no cells
-  std::vector<std::string> held_note;  ///< why these values, in words: "the middle of the design"
+  std::vector<WorkspaceAxis> axes;      ///< one to three, in the order of Sweep::swept; the last axis varies fastest
+  std::vector<WorkspaceAxis> held;      ///< the fixed coordinates: lower = upper is the value, no cells
+  std::vector<std::string> fixed_note;  ///< origin of these values: "default value of the design"
   std::vector<WorkspaceField> fields;
   double volume = 0;  ///< of the feasible cells
   std::string volume_unit;
-  bool touches_box = false;  ///< feasible cells lie on the outer layer of a box that the plan gives
+  bool touches_box = false;  ///< the plan has a box, and feasible cells lie in its outermost layer
 
-  /// Rising.
+  /// Numbers of the feasible cells, ascending.
   std::vector<std::size_t> feasible_cells() const;
   std::size_t cells() const { return fields.front().values.size(); }
-  /// Along each axis; behind them as in a VoxelMap.
+  /// The grid with three axes; axes beyond `axes` have the single cell [0, 1], as in a VoxelMap.
   VoxelGrid grid() const;
-  /// Centre of a cell.
+  /// The pose at the centre of a cell.
   Pose<double> pose(std::size_t cell) const;
-  /// The pose with these values along the axes, as many as there are.
+  /// The pose with the values at[i] along axis i.
   Pose<double> pose(const std::array<double, 3>& at) const;
-  /// Null: there is no field of this name.
+  /// The field of this name; null if there is none.
   const WorkspaceField* find(std::string_view name) const;
-  /// Throws std::out_of_range where there is none.
+  /// The field of this name. Throws std::out_of_range if there is none.
   const WorkspaceField& field(std::string_view name) const;
 };
 
-/// Least margin of any pose of a design, in the sense of the field `margin`: >= 0 where surveys find it feasible.
+/// Function that evaluates the field `margin` at any pose of a design: >= 0 where the workspace analysis counts the
+/// pose as feasible.
 class PoseMargin {
  public:
-  /// @param mechanism  must live as long
+  /// @param mechanism  must outlive this object
   PoseMargin(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits);
   /// @param scratch  overwritten; reuse one per thread
   double operator()(const Pose<double>& pose, std::vector<double>& scratch) const;
@@ -84,24 +86,27 @@ class PoseMargin {
   LimitSpec limits_;
 };
 
-/// The fields of one design. Threads: those of the caller's team; the bits do not depend on them.
-/// @param parameters  all of the mechanism's; throws std::invalid_argument where they describe no mechanism
-/// @param plan        as of the study; one of columns is pictured by kPictureCells cells per axis, and one that
-///                    integrates over a held coordinate on the middle of it
-/// @param mode        working mode of what depends on inertia; "": the mechanism's first, which all else is of
-WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
-                                 const std::string& mode);
+/// Evaluates the fields of one design, in parallel on the caller's threads; the result does not depend on their number.
+/// Throws std::invalid_argument if the parameters describe no mechanism.
+/// @param parameters  all parameters of the mechanism, SI
+/// @param plan        as in the study, but a plan of columns is replaced by kPictureCells voxels per axis, and an
+///                    integrated coordinate is fixed at its default value
+/// @param mode        working mode for quantities of inertia; "": the mechanism's first. All other fields are those of
+///                    the first working mode
+WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters,
+                                 const WorkspacePlan& plan, const std::string& mode);
 
-/// The same fields but `feasible` at feasible poses; NaN where one does not exist.
-/// @param limits  as of the plan
+/// Evaluates all fields except `feasible` at given feasible poses; NaN where a quantity is undefined.
+/// @param limits  as in the plan
 std::vector<WorkspaceField> fields_at(const Mechanism& mechanism, std::span<const double> parameters,
                                       const LimitSpec& limits, const std::string& mode,
                                       const std::vector<Pose<double>>& poses);
 
-/// Limits under which the margins of a pose say what surveys say: those leave out a clearance that is not given.
-LimitSpec survey_limits(const MechanismInfo& info, LimitSpec limits);
+/// Limits for which the margins of a pose agree with the workspace analysis: a clearance that is not specified is set
+/// to its inactive value.
+LimitSpec workspace_limits(const MechanismInfo& info, LimitSpec limits);
 
-/// Least and greatest value of a field; absent where it has none.
+/// Minimum and maximum of a field, ignoring NaN; std::nullopt if all values are NaN.
 struct FieldRange {
   double least, greatest;
 };

@@ -1,11 +1,12 @@
-// Decides when a running study writes its next checkpoint.
+// Schedules the checkpoints of a running study.
 //
-// Without a fixed period, checkpoints may cost 2 % of the run time, whatever they cost today: with c the last one's
-// cost and s the sum of all so far, the next is due at
+// Unless a fixed period is given, the interval adapts to the time that writing takes, so that checkpoints cost 2 % of
+// the run time. Let c be the duration of the last checkpoint and s the total duration of all so far. The next one is
+// due at
 //
 //     max(end of the last + c / 0.02, start + (s + c) / 0.02).
 //
-// The second term makes up for checkpoints that came out dearer than foreseen, because the file grows.
+// The second term compensates for checkpoints that took longer than predicted, because the file grows.
 #pragma once
 
 #include <functional>
@@ -13,33 +14,34 @@
 
 namespace pkm {
 
-/// [s] from any origin, by the system's steady clock.
+/// @return time of the system's steady clock [s]; its origin is arbitrary
 double steady_seconds();
 
 class CheckpointClock {
  public:
-  static constexpr double kShare = 0.02;  ///< of the run time
+  static constexpr double kMaxShare = 0.02;  ///< of the run time that checkpoints may take
 
-  /// @param every  fixed period [s] instead, >= 0
-  /// @param now    as steady_seconds(), the default
+  /// @param every  fixed period [s], >= 0; std::nullopt: adaptive
+  /// @param now    clock to use; default: steady_seconds()
   explicit CheckpointClock(std::optional<double> every = {}, std::function<double()> now = {});
 
-  /// The study's first write: its cost is the first estimate, but it does not count.
+  /// Performs the first write of the study. Its duration is the first estimate of c, but is not part of s.
   void first(const std::function<void()>& write);
+  /// @return true if it is time for the next checkpoint
   bool due() const;
-  /// Writes a checkpoint and counts its cost. What `write` throws passes through.
+  /// Writes a checkpoint and measures its duration. Exceptions of `write` are passed on.
   void checkpoint(const std::function<void()>& write);
 
-  /// Counted cost over the time since the first write; 0 before.
+  /// @return share of the time since the first write that was spent on checkpoints; 0 before
   double share() const;
 
  private:
   std::optional<double> every_;
   std::function<double()> now_;
-  double start_ = 0;  ///< end of the first write
-  double last_ = 0;   ///< end of the last write
-  double cost_ = 0;   ///< of the last write
-  double spent_ = 0;  ///< by counted writes
+  double start_ = 0;          ///< end of the first write
+  double last_end_ = 0;       ///< end of the last write
+  double last_duration_ = 0;  ///< c: duration of the last write
+  double total_ = 0;          ///< s: total duration of all checkpoints
 };
 
 }  // namespace pkm

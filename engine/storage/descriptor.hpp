@@ -1,4 +1,4 @@
-// Owns one file descriptor.
+// RAII owner of a file descriptor.
 #pragma once
 
 #include <unistd.h>
@@ -16,7 +16,7 @@ class Descriptor {
   Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   Descriptor& operator=(Descriptor&&) = delete;
   int get() const { return fd_; }
-  /// Network file systems report late write errors here.
+  /// Closes the descriptor early and returns the result of close(2): network file systems report write errors there.
   int close() {
     const int result = ::close(fd_);
     fd_ = -1;

@@ -9,14 +9,16 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
-constexpr std::size_t kGrowth = std::size_t{1} << 16;  // bytes; HDF5 clears them
+constexpr std::size_t kMemoryIncrement = std::size_t{1} << 16;  // bytes; small, because HDF5 zeroes each increment
 
-extern "C" herr_t take_first_error(unsigned, const H5E_error2_t* error, void* text) {
+/// Callback of H5Ewalk2: copies the description of the first error that it is called with and ends the walk.
+extern "C" herr_t copy_description(unsigned, const H5E_error2_t* error, void* text) {
   *static_cast<std::string*>(text) = error->desc ? error->desc : "";
-  return 1;  // stop
+  return 1;  // ends the walk
 }
 
-std::string in_words(const Extent& extent) {
+/// "12 x 2"
+std::string text_of(const Extent& extent) {
   std::string text;
   for (const std::size_t n : extent) text += (text.empty() ? "" : " x ") + std::to_string(n);
   return text.empty() ? "1" : text;
@@ -24,15 +26,15 @@ std::string in_words(const Extent& extent) {
 
 }  // namespace
 
-QuietErrors::QuietErrors() {
-  H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+ErrorPrintingOff::ErrorPrintingOff() {
+  H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
-QuietErrors::~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+ErrorPrintingOff::~ErrorPrintingOff() { H5Eset_auto2(H5E_DEFAULT, handler_, data_); }
 
 void fail(const std::string& what) {
   std::string reason;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first_error, &reason);
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, copy_description, &reason);
   throw ImageError(what + (reason.empty() ? "" : ": " + reason));
 }
 
@@ -66,14 +68,14 @@ Handle attribute_text_type() {
 
 Handle access_in_memory(const std::string& what) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
-  check(H5Pset_fapl_core(access.get(), kGrowth, false), what);
+  check(H5Pset_fapl_core(access.get(), kMemoryIncrement, false), what);
   check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), what);
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110), what);
   return access;
 }
 
-void refuse_size(const Leaf& leaf, const Extent& present, const Extent& expected) {
-  throw ImageError(leaf.path + ": has " + in_words(present) + " values, but " + in_words(expected) + " are expected");
+void throw_size_mismatch(const Leaf& leaf, const Extent& present, const Extent& expected) {
+  throw ImageError(leaf.path + ": has " + text_of(present) + " values, but " + text_of(expected) + " are expected");
 }
 
 }  // namespace pkm::hdf5

@@ -1,5 +1,6 @@
-// What writing and reading of HDF5 files share: ids that are given back, errors as exceptions, types. Without HDF5's
-// own header, which stays in sources: its ids are std::int64_t, its results int, negative for a failure.
+// RAII wrappers of the HDF5 C library, shared by reader and writer: identifiers, errors as exceptions, data types.
+// hdf5.h is included in .cpp files only; here its identifiers (hid_t) are std::int64_t and its results (herr_t) int,
+// negative on failure.
 #pragma once
 
 #include <cstdint>
@@ -10,29 +11,33 @@
 
 namespace pkm::hdf5 {
 
-/// While one lives, HDF5 prints nothing.
-class QuietErrors {
+/// Disables HDF5's automatic printing of errors during its lifetime.
+class ErrorPrintingOff {
  public:
-  QuietErrors();
-  ~QuietErrors();
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
+  ErrorPrintingOff();
+  ~ErrorPrintingOff();
+  ErrorPrintingOff(const ErrorPrintingOff&) = delete;
+  ErrorPrintingOff& operator=(const ErrorPrintingOff&) = delete;
 
  private:
-  int (*print_)(std::int64_t, void*) = nullptr;
+  int (*handler_)(std::int64_t, void*) = nullptr;
   void* data_ = nullptr;
 };
 
-/// Throws ImageError: what could not be done, and why by HDF5.
+/// Throws ImageError with the innermost message of HDF5's error stack.
+/// @param what  the object that was accessed
 [[noreturn]] void fail(const std::string& what);
-/// Fails where HDF5 has.
+/// Throws ImageError if the result of an HDF5 call indicates a failure.
 inline void check(int result, const std::string& what) {
   if (result < 0) fail(what);
 }
 
-/// Owns one HDF5 id: a leaked one would keep the file open.
+/// Owns an HDF5 identifier; a leaked identifier would keep the file open.
 class Handle {
  public:
+  /// Throws ImageError if `id` is negative.
+  /// @param close  the HDF5 function that releases the identifier
+  /// @param what   the object that it stands for, for messages
   Handle(std::int64_t id, int (*close)(std::int64_t), const std::string& what) : id_(id), close_(close) {
     if (id < 0) fail(what);
   }
@@ -48,20 +53,21 @@ class Handle {
   int (*close_)(std::int64_t);
 };
 
-/// A type in the file, and the same in memory.
+/// HDF5 identifiers of a data type as stored in the file and of the same type in memory.
 struct TypePair {
   std::int64_t file, memory;
 };
-/// Little-endian in the file, whatever the machine. T: double, float, std::int64_t, std::uint64_t or std::uint8_t.
+/// Type of a number; little-endian in the file on every machine.
+/// T: double, float, std::int64_t, std::uint64_t or std::uint8_t
 template <class T>
 TypePair number_type();
-/// In attributes, text is UTF-8 of variable length: h5py hands it out as str.
+/// Type of text in attributes: UTF-8 of variable length, which h5py returns as str.
 Handle attribute_text_type();
 
-/// How files are opened that lie in memory.
+/// Access properties of a file in memory (core driver, never written to disk).
 Handle access_in_memory(const std::string& what);
 
-/// Throws ImageError: a dataset has other sizes than its leaf should.
-[[noreturn]] void refuse_size(const Leaf& leaf, const Extent& present, const Extent& expected);
+/// Throws ImageError: the extent of a dataset differs from the expected one.
+[[noreturn]] void throw_size_mismatch(const Leaf& leaf, const Extent& present, const Extent& expected);
 
 }  // namespace pkm::hdf5

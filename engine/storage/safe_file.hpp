@@ -1,5 +1,5 @@
-// Whole files, written so that a crash at any instant leaves the old or the new one, and nothing in between. Every file
-// that the program writes is written here.
+// Atomic file replacement: write to a temporary file, fsync, rename. After a crash at any instant either the old or the
+// new file is complete. All files that the program writes are written by write_file().
 #pragma once
 
 #include <string>
@@ -7,28 +7,32 @@
 
 namespace pkm {
 
-/// What becomes of a file that has the name already.
+/// What to do if the output file already exists: report an error, or replace it.
 enum class Existing { refused, replaced };
 
-/// By the flag --force.
+/// The policy that the command line flag --force selects.
 inline Existing if_forced(bool force) { return force ? Existing::replaced : Existing::refused; }
 
-/// What `path` stands for: the file behind a symbolic link, which need not exist, or `path` itself. Throws StorageError
-/// when links go round in circles, and for a name with a NUL, behind which the system would not look.
+/// Resolves symbolic links.
+/// @return the path that the links lead to, which need not exist; `path` itself if it is not a link
+/// Throws StorageError for circular links, and for a path that contains a NUL character: the system calls would ignore
+/// the rest of it.
 std::string link_target(const std::string& path);
 
-/// To be asked before work is begun. Throws ConfigError when an output is also one of the inputs, by whatever name, or
-/// when two are the same file, and StorageError when one exists and may not be replaced. Empty names are none.
+/// Checks output paths before a long computation. Throws ConfigError if an output is the same file as an input or as
+/// another output, under whatever name, and StorageError if an output exists and may not be replaced. Empty paths are
+/// ignored.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, Existing existing);
 
-/// Writes `bytes` to a new file of a random name in the same folder, reads them back, syncs, gives it the name `path`,
-/// syncs the folder. Throws StorageError with the system's reason; then `path` is as it was and the temporary file is
-/// gone. A symbolic link stays, and what it points to is replaced; what is replaced hands on its permissions; what
-/// exists and is no regular file (a folder, a device) is refused.
+/// Replaces or creates a file atomically: writes `bytes` to a temporary file with a random name in the same folder,
+/// reads them back, syncs the file, renames it to `path` and syncs the folder. Throws StorageError with the operating
+/// system's error; `path` is then unchanged and the temporary file removed. Symbolic links are followed: the link stays
+/// and its target is replaced. The permissions of a replaced file are retained. Anything but a regular file (a folder,
+/// a device) is never replaced.
 void write_file(const std::string& path, const std::string& bytes, Existing existing);
 
-/// Throws StorageError with the system's reason.
-/// @param most  bytes to read from its beginning
-std::string read_file(const std::string& path, std::size_t most = std::string::npos);
+/// Reads a regular file. Throws StorageError with the operating system's error.
+/// @param max_bytes  number of bytes to read from the beginning of the file, if it is longer
+std::string read_file(const std::string& path, std::size_t max_bytes = std::string::npos);
 
 }  // namespace pkm

@@ -1,8 +1,8 @@
-// Where everything of a study lies in its file. Private to engine/storage.
+// Schema of the study file: path, unit and description of every item. Private to engine/storage.
 //
-// One function visits all of StudyContents and names path, unit and description of each item. The archive it is given
-// decides what happens: ImageWriter writes the item, ImageReader fills it. So the two cannot disagree.
-// What only a writer gets is for other programs: nothing reads it back.
+// One function, describe(), visits all members of StudyContents (visitor pattern). Its argument determines the
+// direction: ImageWriter stores each item, ImageReader loads it, so that writer and reader cannot disagree. Items that
+// are visited only if !Archive::kReads are redundant; they are written for other programs and never read back.
 #pragma once
 
 #include <string>
@@ -17,100 +17,101 @@ namespace pkm::schema {
 template <class Archive, class Study>
 void describe_problem(Archive& archive, Study& study) {
   auto& problem = study.problem;
-  archive.group("/problem", "What is optimised");
+  archive.group("/problem", "The optimisation problem");
   archive.attribute("/problem", "mechanism", problem.mechanism);
   records(archive, "/problem/parameters", "All parameters of the mechanism, in its order", problem.parameters,
           Field{"name", &ParameterRecord::name, "1", "Name"}, Field{"unit", &ParameterRecord::unit, "1", "SI unit"},
-          Field{"value", &ParameterRecord::value, "see unit", "Fixed value; the nominal one where it varies"},
-          Field{"variable", &ParameterRecord::variable, "1", "Index among the variables; -1: fixed"});
-  records(archive, "/problem/variables", "What the optimisers change: the columns of every design", problem.variables,
+          Field{"value", &ParameterRecord::value, "see unit", "Fixed value; nominal value of a variable"},
+          Field{"variable", &ParameterRecord::variable, "1", "Index into variables; -1: fixed"});
+  records(archive, "/problem/variables", "Design variables: the columns of every design", problem.variables,
           Field{"name", &Variable::name, "1", "Name of the parameter"}, Field{"unit", &Variable::unit, "1", "SI unit"},
-          Field{"lower", &Variable::lower, "see unit", "Least value"},
-          Field{"upper", &Variable::upper, "see unit", "Greatest value"},
-          Field{"step", &Variable::step, "see unit", "Distance of allowed values; 0: continuous"});
-  records(archive, "/problem/objectives", "What is optimised: the columns of every objective", problem.objectives,
+          Field{"lower", &Variable::lower, "see unit", "Lower bound"},
+          Field{"upper", &Variable::upper, "see unit", "Upper bound"},
+          Field{"step", &Variable::step, "see unit", "Increment between allowed values; 0: continuous"});
+  records(archive, "/problem/objectives", "Objectives: the columns of every objective", problem.objectives,
           Field{"name", &ObjectiveInfo::name, "1", "Name"}, Field{"unit", &ObjectiveInfo::unit, "1", "Unit"},
           Field{"meaning", &ObjectiveInfo::meaning, "1", "Meaning"},
           Field{"direction", &ObjectiveInfo::direction, "1", "minimise or maximise"});
-  records(archive, "/problem/margins", "Constraints: the columns of every margin, which holds when >= 0",
+  records(archive, "/problem/margins", "Constraints: the columns of every margin; satisfied if margin >= 0",
           problem.margins, Field{"name", &MarginInfo::name, "1", "Name"}, Field{"unit", &MarginInfo::unit, "1", "Unit"},
           Field{"meaning", &MarginInfo::meaning, "1", "Meaning"});
-  records(archive, "/problem/reports", "Computed and stored, not optimised: the columns of every report",
-          problem.reports, Field{"name", &ReportInfo::name, "1", "Name"}, Field{"unit", &ReportInfo::unit, "1", "Unit"},
-          Field{"meaning", &ReportInfo::meaning, "1", "Meaning"});
+  records(archive, "/problem/reports", "Outputs, computed but not optimised: the columns of every report",
+          problem.reports, Field{"name", &OutputInfo::name, "1", "Name"}, Field{"unit", &OutputInfo::unit, "1", "Unit"},
+          Field{"meaning", &OutputInfo::meaning, "1", "Meaning"});
 }
 
-/// "workspace-ratio", "d workspace-ratio / d a", ..., and their units.
+/// Names and units of the columns of `slope`: "workspace-ratio", "d workspace-ratio / d a", ...
 template <class Problem>
-std::vector<ReportInfo> slopes_of(const Problem& problem) {
-  std::vector<ReportInfo> slopes;
+std::vector<OutputInfo> slope_columns(const Problem& problem) {
+  std::vector<OutputInfo> columns;
   const auto add = [&](const auto& quantity) {
-    slopes.push_back({quantity.name, quantity.unit, ""});
+    columns.push_back({quantity.name, quantity.unit, ""});
     for (const Variable& v : problem.variables)
-      slopes.push_back({"d " + quantity.name + " / d " + v.name, "(" + quantity.unit + ")/(" + v.unit + ")", ""});
+      columns.push_back({"d " + quantity.name + " / d " + v.name, "(" + quantity.unit + ")/(" + v.unit + ")", ""});
   };
   std::ranges::for_each(problem.objectives, add);
   std::ranges::for_each(problem.margins, add);
-  return slopes;
+  return columns;
 }
 
 template <class Archive, class Starts>
 void describe_starts(Archive& archive, const std::string& group, Starts& starts) {
-  records(archive, group, "Starts of the solver that have ended", starts,
-          Field{"origin", &StartOutcome::origin, "1", "Where the start came from"},
-          Field{"first_row", &StartOutcome::first_row, "1", "First row (0-based) in evaluations: the start itself"},
-          Field{"rows", &StartOutcome::rows, "1", "Evaluations made"},
-          Field{"end_row", &StartOutcome::end_row, "1", "Row of what is kept: the best of the start's evaluations"},
+  records(archive, group, "Finished multistart runs of the solver", starts,
+          Field{"origin", &StartOutcome::origin, "1", "Origin of the starting point"},
+          Field{"first_row", &StartOutcome::first_row, "1", "First row (0-based) in evaluations: the starting point"},
+          Field{"rows", &StartOutcome::rows, "1", "Number of evaluations"},
+          Field{"end_row", &StartOutcome::end_row, "1", "Row of the result: the best evaluation of the run"},
           Field{"stop", &StartOutcome::stop, "1", "converged, evaluation limit, time limit or failed"},
-          Field{"message", &StartOutcome::message, "1", "What the solver said"},
+          Field{"message", &StartOutcome::message, "1", "Message of the solver"},
           Field{"optimality", &StartOutcome::optimality, "1",
-                "First-order optimality at the end, relative to the objective; NaN: no derivatives"});
+                "KKT residual of the result, relative to the objective; NaN: no derivatives"});
 }
 
 template <class Archive, class Record>
 void describe_optimality(Archive& archive, const std::string& group, Record& record) {
-  archive.group(group, "First-order optimality of the stage's best design");
+  archive.group(group, "First-order optimality (KKT conditions) of the stage's best design");
   archive.attribute(group, "optimality", record.optimality);
-  records(archive, group + "/active", "Bounds and constraints that hold it back", record.active,
+  records(archive, group + "/active", "Active bounds and constraints", record.active,
           Field{"name", &ActiveRecord::name, "1", "Variable or constraint"},
           Field{"kind", &ActiveRecord::kind, "1", "lower bound, upper bound or constraint"},
           Field{"multiplier", &ActiveRecord::multiplier, "objective/unit",
-                "Gain of the objective per unit by which it is moved out of the way"},
-          Field{"unit", &ActiveRecord::unit, "1", "Unit of what is moved"});
-  records(archive, group + "/sensitivity", "What a change of each parameter does to the objective",
-          record.sensitivities, Field{"parameter", &SensitivityRecord::parameter, "1", "Name"},
+                "Improvement of the objective per unit by which the bound or constraint is relaxed"},
+          Field{"unit", &ActiveRecord::unit, "1", "Unit of the bound or constraint"});
+  records(archive, group + "/sensitivity", "Derivatives of the objective by each parameter", record.sensitivities,
+          Field{"parameter", &SensitivityRecord::parameter, "1", "Name"},
           Field{"unit", &SensitivityRecord::unit, "1", "Unit of the parameter"},
-          Field{"as_built", &SensitivityRecord::as_built, "objective/unit", "The rest of the design as it is"},
+          Field{"as_built", &SensitivityRecord::as_built, "objective/unit", "All other parameters unchanged"},
           Field{"reoptimised", &SensitivityRecord::reoptimised, "objective/unit",
-                "When the variables follow; NaN for variables"});
+                "Variables re-optimised; NaN for variables"});
 }
 
 template <class Archive, class Problem, class Table>
 void describe_evaluations(Archive& archive, const std::string& group, const Problem& problem, Table& table) {
-  archive.group(group, "Every evaluation of the stage, one row each, in the order in which it was asked for");
-  Detail detail = table.shape().detail;  // schema 1 had one answer only
-  if (since(archive, 2)) choice(archive, group, "detail", detail);
+  archive.group(group, "Every evaluation of the stage, one row each, in the order of the optimiser's requests");
+  Detail detail = table.shape().detail;  // schema 1: always Detail::enough
+  if (has_items_since(archive, 2)) enum_attribute(archive, group, "detail", detail);
   if constexpr (Archive::kReads) table = EvaluationTable(problem.shape(detail));
-  const Leaf status{group + "/status", "0 feasible, 1 infeasible, 2 rejected before the survey, 3 failed"};
+  const Leaf status{group + "/status", "0 feasible, 1 infeasible, 2 rejected before the workspace analysis, 3 failed"};
   std::vector<std::uint8_t> codes;
   for (const Status s : table.status) codes.push_back(static_cast<std::uint8_t>(s));
   archive.array(status, codes, {kAnyRows});
   if constexpr (Archive::kReads) {
     for (const std::uint8_t code : codes) {
-      if (code >= words_of(Status{}).size())
-        throw ImageError(status.path + ": the unknown code " + std::to_string(code));
+      if (code >= enum_names(Status{}).size())
+        throw ImageError(status.path + ": unknown status code " + std::to_string(code));
       table.status.push_back(static_cast<Status>(code));
     }
   }
   const Extent rows = {codes.size()};
-  columns(archive, group + "/design", "Values of the variables", problem.variables, table.designs, rows);
-  columns(archive, group + "/objective", "Objectives, in their own direction; NaN: not computed", problem.objectives,
-          table.objectives, rows);
-  columns(archive, group + "/margin", "Margins, >= 0 holds; NaN: not computed", problem.margins, table.margins, rows);
-  columns(archive, group + "/report", "Reports; NaN: not computed", problem.reports, table.reports, rows);
+  matrix(archive, group + "/design", "Values of the variables", problem.variables, table.designs, rows);
+  matrix(archive, group + "/objective", "Objectives, not negated; NaN: not computed", problem.objectives,
+         table.objectives, rows);
+  matrix(archive, group + "/margin", "Margins, satisfied if >= 0; NaN: not computed", problem.margins, table.margins,
+         rows);
+  matrix(archive, group + "/report", "Outputs; NaN: not computed", problem.reports, table.reports, rows);
   if (detail == Detail::derivatives)
-    columns(archive, group + "/slope", "Per objective, then per margin: smooth value, derivatives by each variable",
-            slopes_of(problem), table.slopes, rows);
+    matrix(archive, group + "/slope", "Per objective, then per margin: smooth value, derivatives by the variables",
+           slope_columns(problem), table.slopes, rows);
   archive.array(Leaf{group + "/seconds", "Evaluation time", {"s"}}, table.seconds, rows);
 }
 
@@ -124,31 +125,30 @@ void describe_generations(Archive& archive, const std::string& stage, Generation
   };
   array("first_row", "First row (0-based) in evaluations", generations.first_row, kAnyRows);
   const std::size_t count = generations.first_row.size();
-  array("best_row", "Row of the best evaluation so far; -1: none", generations.best_row, count);
+  array("best_row", "Row (0-based) of the best evaluation so far; -1: none", generations.best_row, count);
   array("feasible_share", "Feasible share of the population", generations.feasible_share, count);
   array("diversity", "Diversity of the population", generations.diversity, count);
-  array("seconds", "Wall time of the study at the generation's end", generations.seconds, count, "s");
-  array("population_first", "First element (0-based) of the generation in population", generations.population_first,
-        count);
-  array("population", "Rows that form the population, generation after generation", generations.population, kAnyRows);
+  array("seconds", "Wall time of the study at the end of the generation", generations.seconds, count, "s");
+  array("population_first", "Index (0-based) in population of the first member", generations.population_first, count);
+  array("population", "Rows of the members, one generation after the other", generations.population, kAnyRows);
   if constexpr (!Archive::kReads)
-    archive.array(Leaf{stage + "/evaluations/generation", "Generation, 0 is the start population"},
+    archive.array(Leaf{stage + "/evaluations/generation", "Generation of the row; 0 is the initial population"},
                   generations.generation_of_rows(rows), {rows});
 }
 
 template <class Archive, class Problem, class Stage, class Record>
 void describe_front(Archive& archive, const std::string& group, const Problem& problem, const Stage& stage,
                     Record& front) {
-  archive.group(group, "The trade-off: feasible designs that no other one dominates, of solvers the ends of starts");
+  archive.group(group, "Pareto front: non-dominated feasible designs; in solver stages the results of multistart runs");
   const auto series = [&](const char* name, const char* description, auto& values, const char* unit = "1") {
     archive.array(Leaf{group + "/" + name, description, {unit}}, values, {kAnyRows});
   };
-  series("row", "Rows (0-based) in evaluations, the best by the first objective first", front.rows);
-  series("reference", "Corner of the hypervolume, per objective; empty: none", front.reference, "as objectives");
-  series("hypervolume", "After each generation: what reference and front enclose", front.hypervolume,
+  series("row", "Rows (0-based) in evaluations, from best to worst in the first objective", front.rows);
+  series("reference", "Reference point of the hypervolume; empty: none", front.reference, "as objectives");
+  series("hypervolume", "After each generation: hypervolume between front and reference", front.hypervolume,
          "product of the objectives' units");
-  series("spread", "After each generation: unevenness of the population's part of the front, 0 is even", front.spread);
-  series("igd_plus", "After each generation: distance (IGD+) to the reference front; NaN: none given", front.igd_plus);
+  series("spread", "After each generation: unevenness of the population's front; 0 is even", front.spread);
+  series("igd_plus", "After each generation: IGD+ distance to the reference front; NaN: none", front.igd_plus);
   if constexpr (!Archive::kReads) {
     std::vector<double> designs, objectives;
     for (const std::int64_t row : front.rows) {
@@ -156,34 +156,35 @@ void describe_front(Archive& archive, const std::string& group, const Problem& p
       std::ranges::copy(stage.table.objective_row(static_cast<std::size_t>(row)), std::back_inserter(objectives));
     }
     const Extent rows = {front.rows.size()};
-    columns(archive, group + "/design", "Values of the variables", problem.variables, designs, rows);
-    columns(archive, group + "/objective", "Objectives, in their own direction", problem.objectives, objectives, rows);
+    matrix(archive, group + "/design", "Values of the variables", problem.variables, designs, rows);
+    matrix(archive, group + "/objective", "Objectives, not negated", problem.objectives, objectives, rows);
     const Scores scores = scores_of(problem.objectives, stage.table, front.rows);
     std::vector<std::uint8_t> knee(front.rows.size(), 0);
     for (const std::size_t point : knees(scores)) knee[point] = 1;
-    series("knee", "1 where the front bends, see engine/problem/front.hpp", knee);
+    series("knee", "1 for knees of the front, see engine/problem/front.hpp", knee);
     archive.attribute(group, "compromise",
                       knee.empty() ? std::int64_t{-1} : static_cast<std::int64_t>(compromise(scores)));
   }
 }
 
+/// Multistart runs of an interrupted solver that are ahead of an unfinished earlier run (see UnmergedStart).
 template <class Archive, class Problem, class Starts>
-void describe_ahead(Archive& archive, const std::string& group, const Problem& problem, Starts& ahead) {
-  bool there = !ahead.empty();
-  if constexpr (Archive::kReads) there = since(archive, 4) && archive.has(group);
-  if (!there) return;
-  archive.group(group, "What is known of starts whose evaluations cannot follow those of the starts before them yet");
+void describe_runs_ahead(Archive& archive, const std::string& group, const Problem& problem, Starts& ahead) {
+  bool exists = !ahead.empty();
+  if constexpr (Archive::kReads) exists = has_items_since(archive, 4) && archive.has(group);
+  if (!exists) return;
+  archive.group(group, "Concurrent multistart runs whose evaluations have to wait for those of earlier runs");
   if constexpr (Archive::kReads) ahead.resize(archive.members(group));
   for (std::size_t i = 0; i < ahead.size(); ++i) {
     const std::string start = group + "/" + std::to_string(i + 1);
-    archive.group(start, "One start");
+    archive.group(start, "One multistart run");
     archive.attribute(start, "number", ahead[i].number);
     describe_evaluations(archive, start + "/evaluations", problem, ahead[i].table);
     std::vector<StartOutcome> ends;
     if (ahead[i].outcome) ends.push_back(*ahead[i].outcome);
     describe_starts(archive, start + "/end", ends);
     if constexpr (Archive::kReads) {
-      if (ends.size() > 1) throw ImageError(start + "/end: one start has " + std::to_string(ends.size()) + " ends");
+      if (ends.size() > 1) throw ImageError(start + "/end: one run has " + std::to_string(ends.size()) + " results");
       if (!ends.empty()) ahead[i].outcome = ends.front();
     }
   }
@@ -191,19 +192,19 @@ void describe_ahead(Archive& archive, const std::string& group, const Problem& p
 
 template <class Archive, class Study>
 void describe_stages(Archive& archive, Study& study) {
-  archive.group("/stages", "The optimisers, run one after the other");
+  archive.group("/stages", "The stages: optimisers, run one after the other");
   auto count = static_cast<std::int64_t>(study.stages.size());
   archive.attribute("/stages", "count", count);
   if constexpr (Archive::kReads) {
     if (count < 0 || static_cast<std::size_t>(count) != archive.members("/stages"))
-      throw ImageError("/stages@count: is " + std::to_string(count) + ", but it has " +
+      throw ImageError("/stages@count: is " + std::to_string(count) + ", but the group has " +
                        std::to_string(archive.members("/stages")) + " stages");
     study.stages.resize(static_cast<std::size_t>(count));
   }
   for (std::size_t i = 0; i < study.stages.size(); ++i) {
     const std::string group = "/stages/" + std::to_string(i + 1);
     auto& stage = study.stages[i];
-    archive.group(group, "One optimiser");
+    archive.group(group, "One stage");
     archive.attribute(group, "optimiser", stage.optimiser);
     archive.attribute(group, "finished", stage.finished);
     archive.attribute(group, "stop", stage.stop);
@@ -214,10 +215,10 @@ void describe_stages(Archive& archive, Study& study) {
     bool has_starts = !stage.starts.empty();
     if constexpr (Archive::kReads) has_starts = archive.has(group + "/starts");
     if (has_starts) describe_starts(archive, group + "/starts", stage.starts);
-    describe_ahead(archive, group + "/ahead", study.problem, stage.ahead);
-    if (present(archive, group + "/optimality", stage.optimality))
+    describe_runs_ahead(archive, group + "/ahead", study.problem, stage.ahead);
+    if (optional_item(archive, group + "/optimality", stage.optimality))
       describe_optimality(archive, group + "/optimality", *stage.optimality);
-    if (present(archive, group + "/front", stage.front))
+    if (optional_item(archive, group + "/front", stage.front))
       describe_front(archive, group + "/front", study.problem, stage, *stage.front);
   }
 }
@@ -232,12 +233,12 @@ void describe_best(Archive& archive, Study& study) {
     const auto& table = study.best_stage().table;
     const auto row = static_cast<std::size_t>(study.best.row);
     const auto copy = [&](const char* name, const char* description, const auto& items, std::span<const double> span) {
-      columns(archive, "/best/" + std::string(name), description, items, std::vector(span.begin(), span.end()));
+      matrix(archive, "/best/" + std::string(name), description, items, std::vector(span.begin(), span.end()));
     };
     copy("design", "Values of the variables", study.problem.variables, table.design(row));
     copy("objective", "Objectives", study.problem.objectives, table.objective_row(row));
-    copy("margin", "Margins, >= 0 holds", study.problem.margins, table.margin_row(row));
-    copy("report", "Reports", study.problem.reports, table.report_row(row));
+    copy("margin", "Margins, satisfied if >= 0", study.problem.margins, table.margin_row(row));
+    copy("report", "Outputs", study.problem.reports, table.output_row(row));
   }
 }
 
@@ -245,73 +246,76 @@ template <class Archive, class Problem, class Record>
 void describe_design(Archive& archive, const std::string& group, const char* description, const Problem& problem,
                      Record& design) {
   archive.group(group, description);
-  choice(archive, group, "status", design.status);
+  enum_attribute(archive, group, "status", design.status);
   archive.attribute(group, "reason", design.reason);
   archive.attribute(group, "volume", design.volume);
   archive.attribute(group, "cells", design.cells);
   archive.attribute(group, "feasible_cells", design.feasible_cells);
   archive.attribute(group, "cell_volume", design.cell_volume);
   archive.attribute(group, "touches_box", design.touches_box);
-  if (const std::string bounds = group + "/certain"; present(archive, bounds, design.certain)) {
-    archive.group(bounds, "Certain bounds of the volume");
+  if (const std::string bounds = group + "/certain"; optional_item(archive, bounds, design.certain)) {
+    archive.group(bounds, "Certified bounds of the volume");
     archive.attribute(bounds, "lower", design.certain->lower);
     archive.attribute(bounds, "upper", design.certain->upper);
   }
-  columns(archive, group + "/parameter", "All parameters of the mechanism", problem.parameters, design.parameters);
-  columns(archive, group + "/objective", "Objectives; NaN: not computed", problem.objectives, design.objectives);
-  columns(archive, group + "/margin", "Margins, >= 0 holds; NaN: not computed", problem.margins, design.margins);
-  columns(archive, group + "/report", "Reports; NaN: not computed", problem.reports, design.reports);
+  matrix(archive, group + "/parameter", "All parameters of the mechanism", problem.parameters, design.parameters);
+  matrix(archive, group + "/objective", "Objectives; NaN: not computed", problem.objectives, design.objectives);
+  matrix(archive, group + "/margin", "Margins, satisfied if >= 0; NaN: not computed", problem.margins, design.margins);
+  matrix(archive, group + "/report", "Outputs; NaN: not computed", problem.reports, design.reports);
 }
 
 template <class Archive, class Map>
 void describe_map(Archive& archive, Map& map) {
   const std::string group = "/final/map";
-  archive.group(group, "Voxels of the best design's workspace");
+  archive.group(group, "Voxel map of the best design's workspace");
   archive.array(Leaf{group + "/axis", "Names of the axes, outermost first"}, map.axes, {3});
   archive.array(Leaf{group + "/unit", "Their units"}, map.units, {3});
-  triple(archive, Leaf{group + "/lower", "Least corner of the box", map.units, map.axes}, map.voxels.lower);
-  triple(archive, Leaf{group + "/upper", "Greatest corner of the box", map.units, map.axes}, map.voxels.upper);
-  triple(archive, Leaf{group + "/cells", "Cells along the axes"}, map.voxels.cells);
-  archive.array(Leaf{group + "/feasible", "1 where the cell's centre is feasible; axes as in axis"},
+  array_of_three(archive, Leaf{group + "/lower", "Lower corner of the box", map.units, map.axes}, map.voxels.lower);
+  array_of_three(archive, Leaf{group + "/upper", "Upper corner of the box", map.units, map.axes}, map.voxels.upper);
+  array_of_three(archive, Leaf{group + "/cells", "Number of cells along each axis"}, map.voxels.cells);
+  archive.array(Leaf{group + "/feasible", "1 if the centre of the cell is feasible; axes as in axis"},
                 map.voxels.feasible, Extent(std::begin(map.voxels.cells), std::end(map.voxels.cells)));
 }
 
 template <class Archive, class Problem, class Final>
 void describe_final(Archive& archive, const Problem& problem, Final& final) {
-  archive.group("/final", "Worked out after the last stage");
+  archive.group("/final", "Results computed after the last stage");
   archive.attribute("/final", "volume_unit", final.volume_unit);
   archive.array(Leaf{"/final/active", "Active bounds and constraints of the best design"}, final.active, {kAnyRows});
   const auto design = [&](const std::string& name, const char* description, auto& record) {
     const std::string group = "/final/" + name;
-    if (present(archive, group, record)) describe_design(archive, group, description, problem, *record);
+    if (optional_item(archive, group, record)) describe_design(archive, group, description, problem, *record);
   };
   design("best", "The best design", final.best);
-  design("rounded", "The best design, rounded and evaluated again", final.rounded);
-  design("baseline", "The design to compare with", final.baseline);
-  design("best_exact", "The best design on exact columns", final.best_exact);
-  design("baseline_exact", "The baseline on exact columns", final.baseline_exact);
-  if (present(archive, "/final/map", final.map)) describe_map(archive, *final.map);
+  design("rounded", "The best design, rounded and re-evaluated", final.rounded);
+  design("baseline", "The baseline design", final.baseline);
+  design("best_exact", "The best design, evaluated by the exact method (columns)", final.best_exact);
+  design("baseline_exact", "The baseline, evaluated by the exact method (columns)", final.baseline_exact);
+  if (optional_item(archive, "/final/map", final.map)) describe_map(archive, *final.map);
 }
 
 template <class Archive, class Text>
-void describe_description(Archive& archive, Text& description) {
-  archive.group("/mechanism", "The mechanism's file, which the study's text names");
+void describe_mechanism_file(Archive& archive, Text& description) {
+  archive.group("/mechanism", "The mechanism file that the study names");
   archive.attribute("/mechanism", "file", description.file_name);
   std::vector<std::string> text = {description.text};
-  archive.array(Leaf{"/mechanism/toml", "Its text"}, text, {});
+  archive.array(Leaf{"/mechanism/toml", "Text of the mechanism file"}, text, {});
   if constexpr (Archive::kReads) description.text = text[0];
 }
 
+/// Visits all items of a study file.
+/// @param archive  ImageWriter or ImageReader
+/// @param study    const StudyContents or StudyContents, respectively
 template <class Archive, class Study>
 void describe(Archive& archive, Study& study) {
-  archive.group("/", "Study of pkmopt: its schema is documented in engine/storage/README.md");
-  if constexpr (!Archive::kReads) {  // for other programs; ours reads both in the seal
+  archive.group("/", "pkmopt study; engine/storage/README.md documents its schema");
+  if constexpr (!Archive::kReads) {  // for other programs; pkmopt reads both from the header
     archive.attribute("/", "format", std::string("pkmopt-study"));
     archive.attribute("/", "schema", std::int64_t{kStudySchema});
   }
   archive.attribute("/", "name", study.name);
   archive.attribute("/", "toml_file", study.toml_file);
-  if (since(archive, 5)) archive.attribute("/", "text_digest", study.text_digest);
+  if (has_items_since(archive, 5)) archive.attribute("/", "text_digest", study.text_digest);
   archive.attribute("/", "seed", study.seed);
   archive.attribute("/", "program_version", study.program_version);
   archive.attribute("/", "program_revision", study.program_revision);
@@ -319,24 +323,24 @@ void describe(Archive& archive, Study& study) {
   archive.attribute("/", "machine", study.machine);
   archive.attribute("/", "created", study.created);
   archive.attribute("/", "updated", study.updated);
-  choice(archive, "/", "state", study.state);
+  enum_attribute(archive, "/", "state", study.state);
   archive.attribute("/", "seconds", study.seconds);
   if constexpr (!Archive::kReads) archive.attribute("/", "reproducible", study.reproducible());
 
   std::vector<std::string> text = {study.toml};
-  archive.array(Leaf{"/toml", "The study file's text"}, text, {});
+  archive.array(Leaf{"/toml", "Text of the study"}, text, {});
   if constexpr (Archive::kReads) study.toml = text[0];
-  if (present(archive, "/mechanism", study.description)) describe_description(archive, *study.description);
-  records(archive, "/extensions", "Limits changed by `pkmopt resume`, in the order of the changes", study.extensions,
-          Field{"stage", &Extension::stage, "1", "Stage, 0 is the first"},
+  if (optional_item(archive, "/mechanism", study.description)) describe_mechanism_file(archive, *study.description);
+  records(archive, "/extensions", "Limits changed by `pkmopt resume`, in chronological order", study.extensions,
+          Field{"stage", &Extension::stage, "1", "Stage (0-based)"},
           Field{"limit", &Extension::limit, "1", "generations, evaluations or time"},
           Field{"value", &Extension::value, "1 or s", "New limit"});
-  if (since(archive, 2))
-    archive.array(Leaf{"/notes", "What happened to the study, in sentences"}, study.notes, {kAnyRows});
+  if (has_items_since(archive, 2))
+    archive.array(Leaf{"/notes", "Remarks on the course of the study, one sentence each"}, study.notes, {kAnyRows});
   describe_problem(archive, study);
   describe_stages(archive, study);
   describe_best(archive, study);
-  if (present(archive, "/final", study.final)) describe_final(archive, study.problem, *study.final);
+  if (optional_item(archive, "/final", study.final)) describe_final(archive, study.problem, *study.final);
 }
 
 }  // namespace pkm::schema

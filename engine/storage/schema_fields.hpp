@@ -1,5 +1,7 @@
-// The kinds of items that a study file consists of beyond plain arrays: words for enumerations, optional groups, lists
-// of records. Private to engine/storage; schema.hpp says which item lies where.
+// Building blocks of the schema: enumerations stored as text, optional groups, lists of records (one dataset per
+// member) and matrices with named columns. Private to engine/storage; schema.hpp uses them to define the layout.
+//
+// The template parameter Archive is ImageWriter or ImageReader; every function works in both directions.
 #pragma once
 
 #include <algorithm>
@@ -13,54 +15,55 @@
 
 namespace pkm::schema {
 
-// The words of enumerations.
-constexpr std::array<const char*, 2> words_of(Direction) { return {"minimise", "maximise"}; }
-constexpr std::array<const char*, 3> words_of(StudyState) { return {"running", "interrupted", "finished"}; }
-constexpr std::array<const char*, 3> words_of(Detail) { return {"enough", "complete", "derivatives"}; }
-constexpr std::array<const char*, 4> words_of(Status) { return {"feasible", "infeasible", "rejected", "failed"}; }
+// Stored names of the enumerators, in their order.
+constexpr std::array<const char*, 2> enum_names(Direction) { return {"minimise", "maximise"}; }
+constexpr std::array<const char*, 3> enum_names(StudyState) { return {"running", "interrupted", "finished"}; }
+constexpr std::array<const char*, 3> enum_names(Detail) { return {"enough", "complete", "derivatives"}; }
+constexpr std::array<const char*, 4> enum_names(Status) { return {"feasible", "infeasible", "rejected", "failed"}; }
 
-/// What is kept of a value: itself, or an enumeration's word.
+/// @return the stored form of a value: the name of an enumerator, or the value itself
 template <class T>
-auto kept(const T& value) {
+auto to_stored(const T& value) {
   if constexpr (std::is_enum_v<T>)
-    return std::string(words_of(value)[static_cast<std::size_t>(value)]);
+    return std::string(enum_names(value)[static_cast<std::size_t>(value)]);
   else
     return value;
 }
 
-/// The value of which this was kept.
-template <class T, class Kept>
-void take(T& value, const Kept& from, const std::string& where) {
+/// Inverse of to_stored(). Throws ImageError for an unknown name.
+template <class T, class Stored>
+void from_stored(T& value, const Stored& stored, const std::string& where) {
   if constexpr (std::is_enum_v<T>) {
-    const auto words = words_of(value);
-    const auto at = std::find(words.begin(), words.end(), from);
-    if (at == words.end()) throw ImageError(where + ": the unknown word '" + from + "'");
-    value = static_cast<T>(at - words.begin());
+    const auto names = enum_names(value);
+    const auto at = std::find(names.begin(), names.end(), stored);
+    if (at == names.end()) throw ImageError(where + ": unknown value '" + stored + "'");
+    value = static_cast<T>(at - names.begin());
   } else {
-    value = from;
+    value = stored;
   }
 }
 
-/// An enumeration, kept as a word.
+/// An enumeration, stored as a text attribute.
 template <class Archive, class Enum>
-void choice(Archive& archive, const std::string& group, const std::string& name, Enum& value) {
-  std::string word = kept(value);
-  archive.attribute(group, name, word);
-  if constexpr (Archive::kReads) take(value, word, group + "@" + name);
+void enum_attribute(Archive& archive, const std::string& group, const std::string& name, Enum& value) {
+  std::string text = to_stored(value);
+  archive.attribute(group, name, text);
+  if constexpr (Archive::kReads) from_stored(value, text, group + "@" + name);
 }
 
-/// The file has what came with a version of the schema.
+/// @return true if the archive contains the items that were introduced with the given schema version
 template <class Archive>
-bool since(const Archive& archive, int schema) {
+bool has_items_since(const Archive& archive, int schema) {
   if constexpr (Archive::kReads)
     return archive.schema() >= schema;
   else
     return true;
 }
 
-/// Something that a study may not have: its group is there, or it is not.
+/// An optional item, which is present if its group exists. A reader creates it with default values.
+/// @return true if the item is present and its members are to be visited
 template <class Archive, class Optional>
-bool present(Archive& archive, const std::string& group, Optional& item) {
+bool optional_item(Archive& archive, const std::string& group, Optional& item) {
   if constexpr (Archive::kReads) {
     if (!archive.has(group)) return false;
     item.emplace();
@@ -68,7 +71,7 @@ bool present(Archive& archive, const std::string& group, Optional& item) {
   return item.has_value();
 }
 
-/// One member of a list of records, kept as one dataset.
+/// A member of a record type: name of its dataset, pointer to member, unit and description.
 template <class Record, class Member>
 struct Field {
   const char* name;
@@ -76,36 +79,40 @@ struct Field {
   const char* unit;
   const char* description;
 };
-// Clang 14 does not deduce the arguments of an aggregate by itself.
+// Clang 14 cannot deduce the template arguments of an aggregate without this guide.
 template <class Record, class Member>
 Field(const char*, Member Record::*, const char*, const char*) -> Field<Record, Member>;
 
+/// One member of all records, stored as one dataset.
+/// @param first  true for the first member; its dataset determines the number of records to be read
 template <class Archive, class Items, class Record, class Member>
-void column(Archive& archive, const std::string& group, Items& items, bool first, const Field<Record, Member>& field) {
-  std::vector<decltype(kept(Member{}))> values;
-  for (const Record& item : items) values.push_back(kept(item.*field.member));
+void member(Archive& archive, const std::string& group, Items& items, bool first, const Field<Record, Member>& field) {
+  std::vector<decltype(to_stored(Member{}))> values;
+  for (const Record& item : items) values.push_back(to_stored(item.*field.member));
   const Leaf leaf{group + "/" + field.name, field.description, {field.unit}};
   archive.array(leaf, values, {Archive::kReads && first ? kAnyRows : items.size()});
   if constexpr (Archive::kReads) {
     items.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) take(items[i].*field.member, values[i], leaf.path);
+    for (std::size_t i = 0; i < values.size(); ++i) from_stored(items[i].*field.member, values[i], leaf.path);
   }
 }
 
-/// A list of records, one dataset per member: what MATLAB and numpy read without effort.
+/// A list of records, stored as a group with one dataset per member, which MATLAB and NumPy can read directly.
 template <class Archive, class Items, class... Fields>
 void records(Archive& archive, const std::string& group, const std::string& description, Items& items,
              const Fields&... fields) {
   archive.group(group, description);
   bool first = true;
-  ((column(archive, group, items, first, fields), first = false), ...);
+  ((member(archive, group, items, first, fields), first = false), ...);
 }
 
-/// Values of things that have names and units: a column each.
-/// @param extent  of what lies before the columns: a number of rows, or nothing
+/// A dataset with one named column per item (variable, objective, margin ..).
+/// @param items   their names and units label the columns
+/// @param values  row by row
+/// @param extent  {number of rows}; {}: a single row, stored as a one-dimensional dataset
 template <class Archive, class Items, class Values>
-void columns(Archive& archive, const std::string& path, const char* description, const Items& items, Values&& values,
-             Extent extent = {}) {
+void matrix(Archive& archive, const std::string& path, const char* description, const Items& items, Values&& values,
+            Extent extent = {}) {
   Leaf leaf{path, description, {}};
   for (const auto& item : items) {
     leaf.units.push_back(item.unit);
@@ -115,9 +122,9 @@ void columns(Archive& archive, const std::string& path, const char* description,
   archive.array(leaf, values, extent);
 }
 
-/// VoxelMap keeps plain arrays of three; the archives know vectors.
-template <class Archive, class Plain>
-void triple(Archive& archive, const Leaf& leaf, Plain& values) {
+/// A C array of three values, as in VoxelMap; the archives handle vectors only.
+template <class Archive, class Array>
+void array_of_three(Archive& archive, const Leaf& leaf, Array& values) {
   std::vector copy(std::begin(values), std::end(values));
   archive.array(leaf, copy, {3});
   if constexpr (Archive::kReads) std::copy(copy.begin(), copy.end(), values);

@@ -13,11 +13,11 @@ std::span<const std::int64_t> GenerationRecords::population_of(std::size_t g) co
 }
 
 std::vector<std::int64_t> GenerationRecords::generation_of_rows(std::size_t rows) const {
-  std::vector<std::int64_t> number(rows, 0);
+  std::vector<std::int64_t> generation(rows, 0);
   for (std::size_t g = 0; g < size(); ++g)
     for (auto row = static_cast<std::size_t>(first_row[g]); row < end_of(g, rows); ++row)
-      number[row] = static_cast<std::int64_t>(g);
-  return number;
+      generation[row] = static_cast<std::int64_t>(g);
+  return generation;
 }
 
 std::int64_t StudyContents::evaluations() const {
@@ -33,7 +33,7 @@ bool StudyContents::reproducible() const {
   return true;
 }
 
-std::string words(Status status) { return schema::kept(status); }
-std::string words(StudyState state) { return schema::kept(state); }
+std::string words(Status status) { return schema::to_stored(status); }
+std::string words(StudyState state) { return schema::to_stored(state); }
 
 }  // namespace pkm

@@ -1,12 +1,10 @@
-// Writing and reading study files.
+// Writes and reads study files (HDF5 with a checksummed header).
 //
-// What carries the study's name is always a complete file: write_study builds the new contents in memory, and
-// write_file gives them the name. So a killed process, a full disk or a read-only folder leaves the previous file as it
-// was.
+// Writing is atomic: write_study() builds the new file in memory, and write_file() replaces the previous one by a
+// rename. A killed process, a full disk or a read-only folder therefore leaves the previous file intact.
 //
-// The HDF5 data follow a block of 512 bytes (an HDF5 user block, which every HDF5 reader skips) that holds format mark,
-// schema, size and checksum as text. A file is verified against it before HDF5 sees a byte: HDF5 1.10 can crash on
-// damaged input.
+// A header of 512 bytes precedes the HDF5 data (see file_header.hpp). It is verified before the HDF5 library reads any
+// data, because HDF5 1.10 can crash on damaged input.
 #pragma once
 
 #include <string>
@@ -16,20 +14,23 @@
 
 namespace pkm {
 
-/// Writes the study file at `path`, as write_file does. One writer at a time (see StudyLock). Throws StorageError with
-/// the file's name and the system's reason; the previous file is then intact and the temporary one removed. A size
-/// limit (RLIMIT_FSIZE) is reported like a full disk provided that the process ignores SIGXFSZ.
+/// Writes the study file at `path` by write_file(). There may be only one writer at a time (see StudyLock). Throws
+/// StorageError with the file name and the operating system's error; the previous file is then intact and the temporary
+/// file removed. A file size limit (RLIMIT_FSIZE) is reported like a full disk, provided that the process ignores
+/// SIGXFSZ.
 void write_study(const std::string& path, const StudyContents& contents, Existing existing = Existing::replaced);
 
-/// The bytes that write_study() writes. Throws ImageError where the contents contradict themselves.
-std::string pack_study(const StudyContents& contents);
+/// @return the bytes of the study file, header included. Throws ImageError if the contents are inconsistent.
+std::string serialise_study(const StudyContents& contents);
 
-/// Reads and verifies a study file, without changing it. Throws StorageError with one sentence for a file that is
-/// missing, empty, truncated, damaged, no HDF5 file, another program's, or of a newer schema.
-/// Where use_file_checker() named a helper, it parses the file first.
+/// Reads and verifies a study file. Throws StorageError with one sentence if the file is missing, empty, truncated,
+/// damaged, not an HDF5 file, not a study, or of a newer schema. If set_check_command() has set a command, that process
+/// parses the file first.
 StudyContents read_study(const std::string& path);
 
-/// The contents of a file's bytes, whose seal says `schema`. Throws ImageError where they are not laid out so.
+/// Parses the bytes of a study file whose header has been verified. Throws ImageError if they do not follow the schema.
+/// @param bytes   the whole file, header included
+/// @param schema  as returned by verify_header()
 StudyContents parse_study(const std::string& bytes, int schema);
 
 }  // namespace pkm

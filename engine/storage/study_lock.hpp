@@ -1,8 +1,9 @@
-// Keeps a second process off a running study.
+// Exclusive lock of a running study: a lock file with an advisory kernel lock (flock).
 //
-// The lock is a file of its own, "<study>.lock", because the study file itself is replaced by rename. The kernel holds
-// the lock (flock), so it ends with the process, however that dies; a lock file left behind blocks nobody. Only a file
-// that pkmopt has made is taken for one: it begins with our mark, or is empty.
+// The lock file "<study>.lock" is separate because the study file itself is replaced by a rename at every checkpoint.
+// The kernel releases the lock when the process ends, even if it is killed, so that a remaining lock file does not
+// block other processes. Only a file created by pkmopt is accepted as a lock file: it is empty or begins with
+// "pkmopt-lock ".
 #pragma once
 
 #include <optional>
@@ -12,20 +13,21 @@ namespace pkm {
 
 class StudyLock {
  public:
-  /// A symbolic link locks what it points to, so all names of a study share a lock.
-  /// Throws StorageError naming the process that holds the lock, or a file of another program that has the lock's name,
-  /// or the system's reason. With
-  /// PKMOPT_LOCK=off in the environment nothing is locked (for file systems without locks).
+  /// Locks the study. Symbolic links are resolved, so that all paths to a study share one lock. With PKMOPT_LOCK=off in
+  /// the environment nothing is locked (for file systems without locks). Throws StorageError if another process holds
+  /// the lock (the message names it), if the lock file belongs to another program, or with the operating system's
+  /// error.
   explicit StudyLock(const std::string& study_path);
   ~StudyLock();
   StudyLock(const StudyLock&) = delete;
   StudyLock& operator=(const StudyLock&) = delete;
 
-  /// Which process works on a study: "process 12 on host"; none where no process holds its lock, as after a kill.
+  /// @return the process that holds the lock of a study: "process 12 on host"; empty if no process holds it
   static std::optional<std::string> holder(const std::string& study_path);
 
-  /// False once the lock file was removed or replaced: another process may have locked the study.
-  bool held() const;
+  /// @return false if the lock file has been removed or replaced since, so that another process may have locked the
+  /// study
+  bool owns_lock() const;
 
  private:
   std::string lock_path_;

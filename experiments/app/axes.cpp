@@ -20,10 +20,10 @@ std::string axes_text(const Axes& axes, std::span<const double> values) {
   return join(texts);
 }
 
-std::string turns_note(const Axes& axes, std::span<const double> values) {
+std::string large_angle_note(const Axes& axes, std::span<const double> values) {
   for (std::size_t i = 0; i < axes.size(); ++i)
     if (axes[i].unit == "rad" && std::fabs(values[i]) > 2 * std::numbers::pi)
-      return axes[i].name + " is more than a turn; degrees are typed " + axes[i].name + "=" +
+      return axes[i].name + " exceeds one revolution; for degrees, write " + axes[i].name + "=" +
              formatted("%.6g", values[i]) + "deg";
   return "";
 }
@@ -50,16 +50,17 @@ std::string matrix_text(const std::string& title, const AxisMatrix<double>& matr
   return text;
 }
 
-void say_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out) {
-  out.say("pose", axes_json(info.coordinates, at), axes_text(info.coordinates, at));
-  if (const std::string note = turns_note(info.coordinates, at); !note.empty()) out.head.push_back({"note", note});
+void report_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out) {
+  out.add("pose", axes_json(info.coordinates, at), axes_text(info.coordinates, at));
+  if (const std::string note = large_angle_note(info.coordinates, at); !note.empty())
+    out.head.push_back({"note", note});
   out.json["feasible"] = report.feasible;
-  out.say("assembles", report.assembles, report.assembles ? "yes" : "no: " + report.reason);
+  out.add("assembles", report.assembles, report.assembles ? "yes" : "no: " + report.reason);
   out.json["reason"] = text_or_null(report.reason);
   out.head.push_back({"feasible", report.feasible ? "yes" : "no"});
 }
 
-std::string no_assembly(const std::string& mode, const PoseReport& report) {
+std::string assembly_error(const std::string& mode, const PoseReport& report) {
   return report.assembles ? "" : "the pose does not assemble in mode " + mode + ": " + report.reason;
 }
 

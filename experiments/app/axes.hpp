@@ -1,11 +1,12 @@
-// Values of coordinates and joints, from the command line, as text and as JSON; matrices between them.
+// Values of the pose coordinates and of the joints, and matrices between them, as text and as JSON; output that the
+// commands which evaluate a single pose share.
 #pragma once
 
 #include <algorithm>
 
+#include "engine/config/sweep_section.hpp"
 #include "engine/core/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
-#include "engine/setup/sweep_section.hpp"
 #include "experiments/app/print.hpp"
 
 namespace pkm {
@@ -14,30 +15,32 @@ using Axes = std::vector<AxisInfo>;
 
 AxisVector<double> axis_vector(std::span<const double> values);
 
-/// Each unit of a list once, in its order, with `behind` after it: "m/s, rad/s".
+/// The distinct units of a list in order of first appearance, each followed by `suffix`: "m/s, rad/s".
 template <class List>
-std::string units_of(const List& list, const std::string& behind = "") {
+std::string units_of(const List& list, const std::string& suffix = "") {
   std::vector<std::string> units;
   for (const auto& item : list)
-    if (std::ranges::find(units, item.unit + behind) == units.end()) units.push_back(item.unit + behind);
+    if (std::ranges::find(units, item.unit + suffix) == units.end()) units.push_back(item.unit + suffix);
   return join(units);
 }
 
 /// "x = 0.25 m, theta = 0.5 rad"
 std::string axes_text(const Axes& axes, std::span<const double> values);
-/// What an angle of more than a turn was perhaps meant to be: a number without a unit is in rad. "": there is none.
-std::string turns_note(const Axes& axes, std::span<const double> values);
-/// By name; null where they do not exist.
+/// A hint if an angle exceeds one revolution, which suggests degrees entered without a unit (plain numbers are in rad);
+/// otherwise "".
+std::string large_angle_note(const Axes& axes, std::span<const double> values);
+/// {name: value, ...}; null if there are no values.
 Json axes_json(const Axes& axes, const std::optional<AxisVector<double>>& values);
-/// A list.
+/// A JSON array.
 inline Json vector_json(std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); }
-/// A list of rows; null where there is none.
+/// A JSON array of rows; null if there is no matrix.
 Json matrix_json(const std::optional<AxisMatrix<double>>& matrix);
+/// The rows of a matrix in aligned columns, below a title.
 std::string matrix_text(const std::string& title, const AxisMatrix<double>& matrix);
 
-/// A pose, whether it assembles and whether it is feasible.
-void say_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out);
-/// Why a pose does not assemble; "" where it does.
-std::string no_assembly(const std::string& mode, const PoseReport& report);
+/// Adds the pose to the output, whether it assembles, and whether it is feasible.
+void report_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out);
+/// Error message for a pose that does not assemble in `mode`; "" if it assembles.
+std::string assembly_error(const std::string& mode, const PoseReport& report);
 
 }  // namespace pkm

@@ -1,33 +1,34 @@
-// Everything that the catalogues know of an entry: what `pkmopt list` shows, as JSON, as text or as Markdown.
+// The catalogues of mechanisms, objectives, constraints and optimisers as JSON, as text and as Markdown, for
+// `pkmopt list`.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "engine/setup/study.hpp"
+#include "engine/config/study.hpp"
 #include "experiments/app/print.hpp"
 
 namespace pkm {
 
-/// True when at least one option must be given: then the entry cannot be made from its defaults.
+/// @return true if at least one option is required, so that the entry cannot be created from its defaults
 bool needs_options(const std::vector<OptionSpec>& specs);
 
-/// The mass model in force; null: no masses.
+/// Name of the mass model in use; null if the mechanism has no masses.
 Json mass_model_json(const Mechanism& mechanism);
 
-/// Everything known of one mechanism, which need not be in the catalogues.
+/// The full description of one mechanism, which need not be in the catalogues.
 Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues);
 
-/// The four catalogues by their names ("mechanisms", "objectives", "constraints", "optimisers"), each a list of
-/// objects with `name`, `meaning` and all the rest.
+/// The four catalogues by their names ("mechanisms", "objectives", "constraints", "optimisers"). Each is a list with
+/// one object per entry, which contains `name`, `meaning`, the options and further data of the entry.
 Json catalogues_json(const Catalogues& catalogues);
 
-// As people read the JSON:
-/// Everything known of one entry: a value per line, a table per list.
+// Readable forms of this JSON:
+/// The full description of one entry: one line per value, one table per list.
 std::string entry_text(const Json& entry);
-/// Every entry of every catalogue, for experiments/catalogue.md, which a test compares with it.
+/// All entries of all catalogues in Markdown: the content of experiments/catalogue.md.
 std::string catalogues_markdown(const Json& catalogues);
-/// A value in a word or a list of words; "-" for none.
+/// A value as text for a table cell, lists separated by semicolons; "-" for null.
 std::string cell_text(const Json& value);
 
 }  // namespace pkm

@@ -11,9 +11,10 @@
 namespace pkm {
 namespace {
 
+/// Null for an infinite bound.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-/// By OptionKind.
+/// Names of the values of OptionKind, in its order.
 constexpr std::array kKindWords = {"number",        "integer", "flag", "word", "named numbers", "list of named numbers",
                                    "named settings"};
 
@@ -32,15 +33,15 @@ Json options_json(const std::vector<OptionSpec>& specs) {
   });
 }
 
-/// Whether an objective or a design-level constraint serves a mechanism: with its unit, or the reason why not.
+/// Whether an objective or a design-level constraint supports a mechanism: its unit, or the reason why it does not.
 template <class Entry>
-Json service_json(const Entry& entry, const std::vector<OptionSpec>& specs, const Mechanism& mechanism) {
-  const Refusal refusal = entry.refusal(mechanism);
+Json support_json(const Entry& entry, const std::vector<OptionSpec>& specs, const Mechanism& mechanism) {
+  const Unsupported refusal = entry.refusal(mechanism);
   Json json = {{"name", mechanism.info().name}, {"serves", !refusal}, {"unit", nullptr}, {"reason", nullptr}};
   if (refusal) {
     json["reason"] = *refusal;
-  } else if (entry.unit && !needs_options(specs)) {  // otherwise the unit depends on what the study gives
-    SurveyPlan plan;
+  } else if (entry.unit && !needs_options(specs)) {  // otherwise the unit depends on the study's options
+    WorkspacePlan plan;
     plan.limits = no_limits(mechanism.info());
     const Options options = default_options(specs);
     json["unit"] = entry.unit({mechanism, plan, options});
@@ -63,20 +64,21 @@ Json limits_json(const MechanismInfo& info, const std::string& group) {
   return list;
 }
 
-/// What expressions may name, with the units of a survey on one plane.
+/// The names that expressions may use, with the units of a workspace analysis over the first sweep's coordinates.
 Json expression_names_json(const Mechanism& mechanism) {
   using Origin = ExpressionName::Origin;
   return list_json(expression_names(mechanism, {}), [](const ExpressionName& known) -> Json {
-    return {{"name", known.name},
-            {"unit", known.unit},
-            {"known", known.origin == Origin::survey ? "after the survey" : "before the survey"},
-            {"meaning", known.meaning}};
+    return {
+        {"name", known.name},
+        {"unit", known.unit},
+        {"known", known.origin == Origin::survey ? "after the workspace analysis" : "before the workspace analysis"},
+        {"meaning", known.meaning}};
   });
 }
 
-/// Names of the entries that serve a mechanism.
+/// Names of the entries that support a mechanism.
 template <class List>
-Json serving(const List& entries, const Mechanism& mechanism) {
+Json names_supporting(const List& entries, const Mechanism& mechanism) {
   Json names = Json::array();
   for (const auto& entry : entries)
     if (!entry.refusal(mechanism)) names.push_back(entry.name);
@@ -90,7 +92,7 @@ Json parameters_json(const std::vector<Parameter>& parameters) {
   });
 }
 
-/// What the mechanism has with other mass models than the one in force, and only with them.
+/// The parameters that the mechanism has only with mass models other than the one in use.
 Json other_parameters_json(const Mechanism& mechanism) {
   Json models = Json::object();
   const Dynamics* const dynamics = mechanism.dynamics();
@@ -113,28 +115,28 @@ Json sweep_json(const MechanismInfo& info, const Sweep& sweep, bool has_columns)
           {"volume_unit", unit_of_product(info, sweep.swept)}};
 }
 
-/// Null where the mechanism lacks an ability that has something to say.
-template <class Ability, class Say>
-Json said_by(const Ability* ability, const Say& say) {
-  return ability ? Json(say(*ability)) : Json();
+/// The result of `read` on a capability of a mechanism; null if the mechanism lacks this capability.
+template <class Capability, class Read>
+Json optional_json(const Capability* capability, const Read& read) {
+  return capability ? Json(read(*capability)) : Json();
 }
 
 Json objective_json(const ObjectiveEntry& entry, const Catalogues& catalogues) {
-  const auto service = [&entry](const auto& mechanism) { return service_json(entry, entry.options, *mechanism); };
+  const auto support = [&entry](const auto& mechanism) { return support_json(entry, entry.options, *mechanism); };
   return {{"name", entry.name},
           {"meaning", entry.meaning},
           {"direction", entry.direction == Direction::maximise ? "maximise" : "minimise"},
-          {"mechanisms", list_json(catalogues.mechanisms, service)},
+          {"mechanisms", list_json(catalogues.mechanisms, support)},
           {"options", options_json(entry.options)}};
 }
 
 Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues) {
-  const char* level = entry.pose_level() ? "pose" : entry.needs_survey ? "design or survey" : "design";
+  const char* level = entry.pose_level() ? "pose" : entry.needs_workspace ? "design or workspace" : "design";
   Json services = Json::array(), options = Json::object(), limits = Json::object();
   for (const auto& mechanism : catalogues.mechanisms) {
     const MechanismInfo& info = mechanism->info();
     const auto specs = entry.options(info);
-    services.push_back(service_json(entry, specs, *mechanism));
+    services.push_back(support_json(entry, specs, *mechanism));
     if (entry.refusal(*mechanism)) continue;
     options[info.name] = options_json(specs);
     if (entry.pose_level()) limits[info.name] = limits_json(info, entry.name);
@@ -143,14 +145,17 @@ Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues)
           {"mechanisms", services}, {"options", options},       {"limits", limits}};
 }
 
-Json capabilities_json(const Capabilities& can) {
-  const bool many = can.max_objectives == kManyObjectives;
-  return {{"min_objectives", can.min_objectives}, {"max_objectives", many ? Json() : Json(can.max_objectives)},
-          {"constraints", can.constraints},       {"discrete", can.discrete},
-          {"needs_gradient", can.needs_gradient}, {"starts", can.starts}};
+Json capabilities_json(const Capabilities& capabilities) {
+  const bool many = capabilities.max_objectives == kUnlimitedObjectives;
+  return {{"min_objectives", capabilities.min_objectives},
+          {"max_objectives", many ? Json() : Json(capabilities.max_objectives)},
+          {"constraints", capabilities.constraints},
+          {"discrete", capabilities.discrete},
+          {"needs_gradient", capabilities.needs_gradient},
+          {"starts", capabilities.starts}};
 }
 
-/// What an optimiser can do by default, and with each of its algorithms where it has several.
+/// Capabilities of an optimiser with its default options and, if it has several algorithms, with each of them.
 Json optimiser_json(const OptimiserEntry& entry) {
   Options options = default_options(entry.options);
   Json json = {{"name", entry.name},
@@ -186,10 +191,8 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   json["default_mode"] = info.modes.front();
   json["branches"] = info.branches.empty() ? Json() : Json(info.branches);
   json["influence_coefficients"] = mechanism.velocities() != nullptr;
-  json["chain_input"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.input(); });
-  json["chain_output"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.output(); });
-  const Sweep& usual = info.sweeps.front();
-  json.update(sweep_json(info, usual, has_columns));
+  const Sweep& default_sweep = info.sweeps.front();
+  json.update(sweep_json(info, default_sweep, has_columns));
   json["other_sweeps"] = Json::array();
   for (std::size_t k = 1; k < info.sweeps.size(); ++k) {
     const Json sweep = sweep_json(info, info.sweeps[k], has_columns);
@@ -197,17 +200,29 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
     other.update(sweep);
     json["other_sweeps"].push_back(other);
   }
-  std::vector<int> integrated = usual.swept;
-  integrated.insert(integrated.end(), usual.held.begin(), usual.held.end());
-  json["integrated_unit"] = usual.integrates ? Json(unit_of_product(info, integrated)) : Json();
-  json["size"] = said_by(mechanism.size(), [](const Size& size) { return size.meaning(); });
-  json["size_unit"] = said_by(mechanism.size(), [](const Size& size) { return size.unit(); });
+  std::vector<int> integrated = default_sweep.swept;
+  integrated.insert(integrated.end(), default_sweep.held.begin(), default_sweep.held.end());
+  json["integrated_unit"] = default_sweep.integrates ? Json(unit_of_product(info, integrated)) : Json();
+  json["size"] = optional_json(mechanism.size(), [](const Size& size) { return size.meaning(); });
+  json["size_unit"] = optional_json(mechanism.size(), [](const Size& size) { return size.unit(); });
   json["characteristic_length"] = text_or_null(info.characteristic_length);
-  json["objectives"] = serving(catalogues.objectives, mechanism);
-  json["constraints"] = serving(catalogues.constraints, mechanism);
+  json["objectives"] = names_supporting(catalogues.objectives, mechanism);
+  json["constraints"] = names_supporting(catalogues.constraints, mechanism);
   json["parameters"] = parameters_json(info.parameters);
   if (Json others = other_parameters_json(mechanism); !others.empty()) json["parameters_besides"] = std::move(others);
   json["limits"] = limits_json(info, "");
+  json["inputs"] = Json::array();
+  for (const InputInfo& input : info.inputs)
+    json["inputs"].push_back(
+        {{"name", input.name}, {"unit", input.unit}, {"default", input.value}, {"meaning", input.meaning}});
+  json["quantities"] = Json::array();
+  for (const QuantityInfo& quantity : info.quantities)
+    json["quantities"].push_back({{"name", quantity.name},
+                                  {"unit", quantity.unit},
+                                  {"depends_on", quantity.of_design   ? "design"
+                                                 : quantity.of_motion ? "pose and motion"
+                                                                      : "pose"},
+                                  {"meaning", quantity.meaning}});
   json["design_tests"] = Json::array();
   if (const DesignTests* tests = mechanism.design_tests())
     for (const auto& test : tests->list())

@@ -9,9 +9,9 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMostSweeps = 8;  // that a table lists
+constexpr std::size_t kMaxListedSweeps = 8;  // mechanisms with more other sweeps get a summary instead of a table
 
-/// One row per object, one column per key; columns in which nothing stands are left out.
+/// A table of a list of objects: one row per object, one column per key; empty columns are omitted.
 std::vector<Row> table(const Json& list) {
   std::vector<Row> rows(list.size() + 1);
   for (const auto& [key, unused] : list.front().items()) {
@@ -25,7 +25,7 @@ std::vector<Row> table(const Json& list) {
 }
 
 /// "20 over 3 coordinates, 14 over 2 coordinates, 6 over 1 coordinate; --json lists them"
-std::string in_short(const Json& sweeps) {
+std::string sweep_summary(const Json& sweeps) {
   std::map<std::size_t, int, std::greater<>> count;
   for (const Json& sweep : sweeps) ++count[sweep["swept"].size()];
   std::vector<std::string> words;
@@ -35,6 +35,7 @@ std::string in_short(const Json& sweeps) {
   return join(words) + "; --json lists them";
 }
 
+/// An entry of a catalogue, prepared for text: its single values, and its lists as tables with their titles.
 struct Details {
   std::vector<Row> head;  ///< name and value
   std::vector<std::pair<std::string, std::vector<Row>>> tables;
@@ -44,8 +45,8 @@ Details details(const Json& entry) {
   Details found;
   const auto is_list = [](const Json& value) { return value.is_array() && !value.empty() && value[0].is_object(); };
   for (const auto& [key, value] : entry.items()) {
-    if (key == "other_sweeps" && value.size() > kMostSweeps) {
-      found.head.push_back({key, in_short(value)});
+    if (key == "other_sweeps" && value.size() > kMaxListedSweeps) {
+      found.head.push_back({key, sweep_summary(value)});
     } else if (is_list(value)) {
       found.tables.emplace_back(key, table(value));
     } else if (value.is_object()) {
@@ -64,7 +65,7 @@ Details details(const Json& entry) {
   return found;
 }
 
-/// A row of a Markdown table; bars within cells are escaped.
+/// A row of a Markdown table; vertical bars within cells are escaped.
 std::string markdown_row(const Row& row) {
   std::string line = "|";
   for (const std::string& cell : row) {
@@ -105,9 +106,9 @@ std::string entry_text(const Json& entry) {
 
 std::string catalogues_markdown(const Json& catalogues) {
   std::string text =
-      "# What a study may name\n\n"
-      "Every mechanism, objective, constraint and optimiser with its options, which are keys of its table in a study. "
-      "Written by\n`pkmopt list --markdown > experiments/catalogue.md`.\n\n";
+      "# Names that a study can use\n\n"
+      "All mechanisms, objectives, constraints and optimisers with their options, which are keys of their tables in a "
+      "study.\nCreated by `pkmopt list --markdown > experiments/catalogue.md`.\n\n";
   for (const auto& [kind, entries] : catalogues.items())
     for (const auto& entry : entries) {
       const Details found = details(entry);
@@ -118,7 +119,7 @@ std::string catalogues_markdown(const Json& catalogues) {
       text += markdown_table(head) + '\n';
       for (const auto& [title, rows] : found.tables) text += title + ":\n\n" + markdown_table(rows) + '\n';
     }
-  text.pop_back();  // the last blank line
+  text.pop_back();  // remove the last blank line
   return text;
 }
 

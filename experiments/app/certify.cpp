@@ -1,13 +1,14 @@
-// `pkmopt certify`: what is certain of one design's workspace, whatever numbers are rounded to.
+// `pkmopt certify`: rigorous bounds on the workspace volume of one design by interval arithmetic, or a proof that all
+// poses of a box or of a motion are feasible and non-singular.
 
 #include <chrono>
 #include <map>
 #include <stdexcept>
 
+#include "engine/config/assignments.hpp"
 #include "engine/core/team.hpp"
-#include "engine/setup/assignments.hpp"
+#include "engine/runner/stop_request.hpp"
 #include "engine/storage/safe_file.hpp"
-#include "engine/study/stop_request.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/target.hpp"
@@ -23,31 +24,31 @@ struct CertifyArguments : DesignArguments, ModeArguments {
   bool force = false;
 };
 
-void tell_volume(const Target& target, const SurveyPlan& plan, const VolumeBounds& bounds, double wanted,
-                 double seconds, Printout& out) {
+void report_volume(const Target& target, const WorkspacePlan& plan, const VolumeBounds& bounds, double requested_gap,
+                   double seconds, Printout& out) {
   const MechanismInfo& info = target.info();
   const std::string unit = volume_unit(info, plan);
   out.json["volume"] = {{"lower", bounds.lower}, {"upper", bounds.upper}, {"unit", unit}};
   out.head.push_back({"volume", "at least", number(bounds.lower, unit)});
   out.head.push_back({"", "at most", number(bounds.upper, unit)});
-  out.say("gap", bounds.gap(), number(bounds.gap()) + ", asked for " + number(wanted));
-  out.say("columns", coordinate_names(info, {bounds.innermost})[0]);
-  out.say("boxes", bounds.boxes,
-          std::to_string(bounds.boxes) + " of " + std::to_string(bounds.examined) + " looked at");
-  out.say("seconds", seconds, formatted("%.2f", seconds));
+  out.add("gap", bounds.gap(), number(bounds.gap()) + ", requested " + number(requested_gap));
+  out.add("columns", coordinate_names(info, {bounds.innermost})[0]);
+  out.add("boxes", bounds.boxes,
+          std::to_string(bounds.boxes) + " in the final partition, " + std::to_string(bounds.examined) + " examined");
+  out.add("seconds", seconds, formatted("%.2f", seconds));
 }
 
-/// Why the volume is not bounded as asked for; "": it is.
-std::string shortfall(const VolumeBounds& bounds, double wanted, std::int64_t most_boxes) {
-  if (bounds.gap() <= wanted) return "";
-  if (bounds.stopped) return "stopped before the gap asked for was reached";
-  if (bounds.boxes >= static_cast<std::size_t>(most_boxes))
-    return "the gap asked for needs more than " + std::to_string(most_boxes) + " boxes (--boxes)";
-  return "the gap asked for cannot be reached: what is left is undecided at the last digit";
+/// Why the requested gap was not reached; "" if it was.
+std::string shortfall(const VolumeBounds& bounds, double requested_gap, std::int64_t max_boxes) {
+  if (bounds.gap() <= requested_gap) return "";
+  if (bounds.stopped) return "stopped before the requested gap was reached";
+  if (bounds.boxes >= static_cast<std::size_t>(max_boxes))
+    return "the requested gap needs more than " + std::to_string(max_boxes) + " boxes (--boxes)";
+  return "the requested gap cannot be reached: the remaining boxes cannot be decided in double precision";
 }
 
-/// Ranges by coordinate: those that --box gives of the swept ones, and what the others are held at.
-std::vector<std::array<double, 2>> ranges_of(const Target& target, const SurveyPlan& plan,
+/// The range of each coordinate: that of --box for swept coordinates, the fixed value for the others.
+std::vector<std::array<double, 2>> ranges_of(const Target& target, const WorkspacePlan& plan,
                                              const std::vector<std::string>& box) {
   const MechanismInfo& info = target.info();
   const Sweep& sweep = sweep_of(info, plan);
@@ -61,76 +62,80 @@ std::vector<std::array<double, 2>> ranges_of(const Target& target, const SurveyP
   for (std::size_t i = 0; i < swept.size(); ++i) ranges[static_cast<std::size_t>(sweep.swept[i])] = given[i];
   for (const int coordinate : sweep.held)
     ranges[static_cast<std::size_t>(coordinate)].fill(
-        held_value(*target.mechanism, target.parameters, plan, coordinate));
+        fixed_value(*target.mechanism, target.parameters, plan, coordinate));
   return ranges;
 }
 
-/// What is shown of all poses of a box or a motion: its key, its words where it holds and where it does not.
+/// A property to be proven for all poses of a box or a motion.
 struct PosesClaim {
-  std::string key, holds, not_shown;
+  std::string key;       ///< in JSON and in the text
+  std::string if_holds;  ///< printed if it is proven
+  std::string property;  ///< the adjective for the error message
 };
 
-/// @param what  "box" or "motion"
-/// @return what is wrong; "": nothing
-std::string tell_verdict(const MechanismInfo& info, const PosesClaim& claim, const PosesVerdict& verdict,
-                         const std::string& what, Printout& out) {
-  using Kind = PosesVerdict::Kind;
+/// Adds the result of one proof to the output.
+/// @param region  "box" or "motion"
+/// @return the error message; "" if the property is proven
+std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, const PosesFinding& verdict,
+                         const std::string& region, Printout& out) {
+  using Kind = PosesFinding::Kind;
   static const std::map<Kind, std::string> kinds = {
       {Kind::holds, "yes"}, {Kind::fails, "no"}, {Kind::undecided, "undecided"}, {Kind::not_examined, "not examined"}};
   out.json[claim.key] = {{"verdict", kinds.at(verdict.kind)},
                          {"what", text_or_null(verdict.what)},
                          {"pose", axes_json(info.coordinates, verdict.where)}};
-  if (what == "motion") out.json[claim.key]["time"] = json_or_null(verdict.time);
+  if (region == "motion") out.json[claim.key]["time"] = json_or_null(verdict.time);
   const std::string where = !verdict.where ? ""
                                            : (verdict.time ? "t = " + number(*verdict.time, "s") + ", " : "") +
                                                  axes_text(info.coordinates, *verdict.where);
   const bool singular = claim.key == "regular";
   switch (verdict.kind) {
     case Kind::holds:
-      out.head.push_back({claim.key, claim.holds});
+      out.head.push_back({claim.key, claim.if_holds});
       return "";
     case Kind::fails:
       out.head.push_back({claim.key, singular ? "no, singular at " + where + ": " + verdict.what
-                                              : "not everywhere: " + verdict.what + " does not hold at " + where});
-      return "the " + what + " is not " + claim.not_shown + " everywhere";
+                                              : "not everywhere: " + verdict.what + " is violated at " + where});
+      return "the " + region + " is not " + claim.property + " everywhere";
     case Kind::undecided:
       out.head.push_back({claim.key, "undecided: " + verdict.what + ", near " + where});
-      return "the " + what + " is not decided everywhere";
+      return "the " + region + " has poses that could not be decided";
     default:
       out.head.push_back({claim.key, "not examined, because " + verdict.what});
-      return "singularities are not examined";
+      return "singularities were not examined";
   }
 }
 
-std::string tell_poses(const MechanismInfo& info, const PosesCertificate& found, const std::string& what,
-                       Printout& out) {
-  const std::string in = (what == "box" ? "in the " : "along the ") + what;
-  const std::string wrong = tell_verdict(info, {"feasible", "everywhere " + in, "feasible"}, found.feasible, what, out);
+/// Adds both results, on feasibility and on singularities, to the output. @return as of report_claim
+std::string report_poses(const MechanismInfo& info, const PosesCertificate& found, const std::string& region,
+                         Printout& out) {
+  const std::string in = (region == "box" ? "in the " : "along the ") + region;
+  const std::string infeasible =
+      report_claim(info, {"feasible", "everywhere " + in, "feasible"}, found.feasible, region, out);
   const std::string singular =
-      tell_verdict(info, {"regular", "no singularity " + in, "regular"}, found.regular, what, out);
-  out.say("boxes", found.boxes, std::to_string(found.boxes) + " looked at");
-  return wrong.empty() ? singular : wrong;
+      report_claim(info, {"regular", "no singularity " + in, "regular"}, found.regular, region, out);
+  out.add("boxes", found.boxes, std::to_string(found.boxes) + " examined");
+  return infeasible.empty() ? singular : infeasible;
 }
 
 std::string certify(const Target& target, const CertifyArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
-  const CertainBounds& bounds =
-      needed(target.mechanism->bounds(), "certify", "formulas that can be computed over intervals", info);
+  const RigorousBounds& bounds =
+      require_capability(target.mechanism->bounds(), "certify", "formulas for interval arithmetic", info);
   const double gap = parse_gap(arguments.gap, "--gap");
-  const bool of_poses = !arguments.box.empty() || !arguments.motion.empty();
-  if (of_poses && !arguments.proof.empty())
-    throw ConfigError({"", 0, "--proof"}, arguments.box.empty() ? "--motion" : "--box",
-                      "a volume: proofs are of volumes");
+  const bool certifies_poses = !arguments.box.empty() || !arguments.motion.empty();
+  if (certifies_poses && !arguments.proof.empty())
+    throw ConfigError({"", 0, "--proof"}, "proofs are written for volumes only, not for --box or --motion");
   if (!arguments.box.empty() && !arguments.motion.empty())
-    throw ConfigError({"", 0, "--motion"}, "--box beside it", "one of them");
+    throw ConfigError({"", 0, "--motion"}, "cannot be combined with --box");
   const Existing existing = if_forced(arguments.force);
   const auto motion = arguments.motion.empty() ? nullptr : find_motion(target, arguments.motion);
-  const SurveyPlan plan = target.plan();
-  const std::string mode = known_mode(info, arguments);
+  const WorkspacePlan plan = target.plan();
+  const std::string mode = parse_mode(info, arguments);
   check_outputs({arguments.proof}, target.files, existing);
-  out.say("mechanism", info.name);
+  out.add("mechanism", info.name);
   if (target.study) out.head.push_back({"study", target.study->name});
-  out.say("design", target.words);
+  out.add("design", target.words);
   out.json["parameters"] = values_by_name(info.parameters, target.parameters);
 
   const StopRequest stop;
@@ -139,61 +144,61 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
                               .most_boxes = static_cast<std::size_t>(arguments.boxes),
                               .proof = arguments.proof.empty() ? nullptr : &proof,
                               .stop = [] { return StopRequest::signal() != 0; }};
-  std::string wrong;
+  std::string error;
   try {
     with_team(arguments.threads, [&] {
       if (!arguments.box.empty()) {
         const auto ranges = ranges_of(target, plan, arguments.box);
-        wrong = tell_poses(info, bounds.box(target.parameters, plan, mode, ranges, options), "box", out);
+        error = report_poses(info, bounds.box(target.parameters, plan, mode, ranges, options), "box", out);
         return;
       }
       if (motion) {
-        out.say("motion", arguments.motion);
-        out.say("duration", motion->duration(), number(motion->duration(), "s"));
-        wrong = tell_poses(info, bounds.motion(target.parameters, plan.limits, mode, *motion, options), "motion", out);
+        out.add("motion", arguments.motion);
+        out.add("duration", motion->duration(), number(motion->duration(), "s"));
+        error =
+            report_poses(info, bounds.motion(target.parameters, plan.limits, mode, *motion, options), "motion", out);
         return;
       }
       const auto start = std::chrono::steady_clock::now();
       const VolumeBounds found = bounds.volume(target.parameters, plan, mode, options);
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-      tell_volume(target, plan, found, gap, seconds.count(), out);
-      wrong = shortfall(found, gap, arguments.boxes);
+      report_volume(target, plan, found, gap, seconds.count(), out);
+      error = shortfall(found, gap, arguments.boxes);
     });
   } catch (const std::invalid_argument& reason) {
     throw ConfigError({"", 0, info.name}, reason.what());
   }
-  if (arguments.proof.empty()) return wrong;
+  if (arguments.proof.empty()) return error;
   write_file(arguments.proof, proof, existing);
   out.json["proof"] = arguments.proof;
   out.text += "wrote " + arguments.proof + '\n';
-  return wrong;
+  return error;
 }
 
 }  // namespace
 
 void add_certify(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<CertifyArguments>(
-      app, session, "certify", "Bounds of one design's workspace that rounding cannot make wrong.",
-      "The formulas of a mechanism's file are computed over intervals, rounded outward: the volume is certainly "
-      "within\n"
-      "the bounds. Ctrl-C ends with what is known so far. Numbers are taken as the doubles that they are. With --box,\n"
-      "instead: whether every pose of the box is feasible and none is singular, else a pose that is not; with\n"
-      "--motion, the same at every instant of a motion, else the first instant that is not.\n"
+      app, session, "certify", "Compute guaranteed bounds on a design's workspace volume (interval arithmetic).",
+      "Evaluates the formulas of a mechanism file in interval arithmetic with outward rounding, so that the volume is\n"
+      "guaranteed to lie within the bounds. Parameters are taken as exact double-precision numbers. Ctrl-C stops with\n"
+      "the bounds reached so far. With --box, proves instead that every pose of the box is feasible and not singular,\n"
+      "or prints a counterexample; with --motion, does the same for every instant of a motion, or prints the first\n"
+      "infeasible instant.\n"
       "Example: pkmopt certify experiments/mechanisms/orthoglide.toml --gap 1e-3 --proof orthoglide.proof",
       certify);
   add_option(command, "--gap GAP", arguments.gap,
-             "Greatest less least volume, relative to their mean, at which to end; default 0.01");
+             "Relative gap (upper - lower) / mean at which to stop (default 0.01)");
   add_option(command, "--box NAME=FROM:TO", arguments.box,
-             "Ranges of the swept coordinates, whose poses are to be certified")
+             "Certify all poses within these ranges of the swept coordinates")
       ->allow_extra_args(false);
   add_option(command, "--motion MOTION.toml", arguments.motion,
-             "A motion in TOML, or the name of a [[motion]] of the study, whose poses are to be certified");
-  add_option(command, "-o,--proof FILE", arguments.proof, "Write the proof, which pkmopt-check-proof checks");
+             "Certify all poses of a motion: a TOML file, or the name of a [[motion]] of the study");
+  add_option(command, "-o,--proof FILE", arguments.proof, "Write a proof of the bounds, for pkmopt-check-proof");
   command.add_flag("--force", arguments.force, "Overwrite an existing proof");
-  add_integer(command, "--boxes N", arguments.boxes, 1, 100000000,
-              "Boxes at which to end in any case; default 4000000");
+  add_integer(command, "--boxes N", arguments.boxes, 1, 100000000, "Maximum number of boxes (default 4000000)");
   add_option(command, "--mode MODE", arguments.mode,
-             "Working mode (see 'pkmopt list mechanisms NAME'); default: the first");
+             "Working mode (see 'pkmopt list mechanisms NAME'; default: the first)");
   add_threads(command, arguments.threads);
 }
 

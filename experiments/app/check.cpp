@@ -1,14 +1,14 @@
-// `pkmopt check`: a study as it was understood, every default spelled out, what contradicts itself in it, and whether a
-// few designs are feasible; or a mechanism as it was understood from its description. Nothing is run.
+// `pkmopt check`: prints a study as it was interpreted, with all defaults, its contradictory requirements and the
+// feasibility of a few sample designs; or a mechanism file as it was interpreted. Nothing is optimised.
 
 #include <algorithm>
 #include <iostream>
 
-#include "engine/problem/verdict.hpp"
+#include "engine/config/mechanism_file.hpp"
+#include "engine/problem/diagnosis.hpp"
 #include "engine/report/json_text.hpp"
-#include "engine/setup/mechanism_file.hpp"
-#include "engine/study/final_record.hpp"
-#include "engine/study/probe.hpp"
+#include "engine/runner/final_record.hpp"
+#include "engine/runner/probe.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/next_step.hpp"
@@ -36,15 +36,15 @@ Json entries_json(const std::vector<StudyEntry>& entries) {
   });
 }
 
-Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
+Json workspace_json(const MechanismInfo& info, const WorkspacePlan& plan) {
   const Sweep& sweep = sweep_of(info, plan);
   const std::vector<std::string> swept = coordinate_names(info, sweep.swept);
   Json json = {{"method", plan.voxels() ? "voxels" : "columns"}, {"sweep", swept}};
   if (const VoxelOptions* voxels = plan.voxels()) {
     for (std::size_t k = 0; k < swept.size(); ++k) json["cells"][swept[k]] = voxels->cells[k];
-    for (const HeldCoordinate& held : plan.held)
+    for (const FixedCoordinate& held : plan.held)
       if (held.cells > 0) json["cells"][coordinate_names(info, {held.coordinate})[0]] = held.cells;
-    json["box"] = nullptr;  // derived from each design
+    json["box"] = nullptr;  // computed for each design
   }
   for (std::size_t k = 0; plan.box() && k < swept.size(); ++k) json["box"][swept[k]] = (*plan.box())[k];
   if (const ColumnOptions* columns = plan.columns()) {
@@ -57,8 +57,8 @@ Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
       if (fixed && sweep.swept[k] != sweep.column) json["nodes"][swept[k]] = columns->nodes[node++];
   }
   for (const int i : sweep.held) {
-    using Kind = HeldCoordinate::Kind;
-    const HeldCoordinate held = how_held(plan, i);
+    using Kind = FixedCoordinate::Kind;
+    const FixedCoordinate held = how_fixed(plan, i);
     json[coordinate_names(info, {i})[0]] = held.kind == Kind::middle       ? Json("middle")
                                            : held.kind == Kind::integrated ? Json("integrated")
                                            : held.kind == Kind::listed     ? Json(held.values)
@@ -128,45 +128,47 @@ Json study_json(const Study& study) {
 }
 
 Json probe_json(const Probe& probe) {
-  return {{"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"verdict", verdict_json(probe.verdict)}};
+  return {{"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"verdict", diagnosis_json(probe.verdict)}};
 }
 
-/// The contradictions, which a verdict repeats, are told before.
+/// Contradictions are omitted: they are printed before.
 std::string probe_text(const Probe& probe) {
   std::string text = "\nprobe: " + words(probe) + '\n';
   if (!probe.verdict) return text;
   std::vector<Reason> reasons = probe.verdict->reasons;
   std::erase_if(reasons, [](const Reason& reason) { return reason.kind == "contradiction"; });
-  return text + "note: " + probe.verdict->sentence + "; a run may still find others\n" + reasons_text(reasons);
+  return text + "note: " + probe.verdict->sentence + "; a run may still find feasible designs\n" +
+         reasons_text(reasons);
 }
 
 void check_study(const Study& study, const CheckArguments& arguments, Session& session) {
-  const std::vector<Reason> against = contradictions(study.problem->parts());
-  const Probe tried = probe(study);
-  if (!against.empty()) session.exit_code = kNothingFeasible;
+  const std::vector<Reason> conflicts = contradictions(study.problem->parts());
+  const Probe sampled = probe(study);
+  if (!conflicts.empty()) session.exit_code = kNothingFeasible;
   if (arguments.json) {
     Json json = study_json(study);
-    json["contradictions"] = reasons_json(against);
-    json["probe"] = probe_json(tried);
+    json["contradictions"] = reasons_json(conflicts);
+    json["probe"] = probe_json(sampled);
     print_json(json);
     return;
   }
   std::cout << describe(study);
-  for (const Reason& reason : against) std::cout << "\ncontradiction: " << reason.sentence << '\n';
-  std::cout << probe_text(tried);
+  for (const Reason& reason : conflicts) std::cout << "\ncontradiction: " << reason.sentence << '\n';
+  std::cout << probe_text(sampled);
   std::vector<std::string> words = {"run", arguments.file};
   for (const std::string& word : arguments.changes.arguments()) words.push_back(word);
-  if (against.empty()) std::cout << '\n' << next_step(session, words);
+  if (conflicts.empty()) std::cout << '\n' << next_step(session, words);
 }
 
 void check(const CheckArguments& arguments, Session& session) {
   expect_toml(arguments.file, "show", session);
   expect_file(arguments.file, "a study or a mechanism in TOML", "list mechanisms", session);
-  const SlowStep slow = announced(session, "check is computing, Ctrl-C ends it");
+  const SlowStepNotice slow = announce_slow_step(session, "check is computing, Ctrl-C ends it");
   const MechanismOrStudy found = load_mechanism_or_study(arguments.file, session.catalogues, arguments.changes);
   if (const Study* const study = std::get_if<Study>(&found)) return check_study(*study, arguments, session);
   if (!arguments.changes.empty())
-    throw ConfigError({}, join(arguments.changes.arguments(), " ") + " for a mechanism", "a study, which they change");
+    throw ConfigError({"", 0, join(arguments.changes.arguments(), " ")},
+                      "changes a study, and this is a mechanism file");
   const Mechanism& mechanism = *std::get<std::shared_ptr<const Mechanism>>(found);
   if (arguments.json)
     print_json(mechanism_json(mechanism, session.catalogues));
@@ -179,13 +181,13 @@ void check(const CheckArguments& arguments, Session& session) {
 
 void add_check(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<CheckArguments>(
-      app, "check", "The resolved problem, every default spelled out, and a few designs tried.",
-      "Of a mechanism's description: what was understood of it, and what the mechanism can.\n"
-      "Exit code 2 and one sentence with file, line and key when the file is wrong; 4 when\n"
-      "what a study asks for contradicts itself, so that nothing can be feasible.\n"
+      app, "check", "Show a study with all defaults, and evaluate a few sample designs.",
+      "For a mechanism file: how it was interpreted, and which analyses it supports.\n"
+      "Exit code 2 and one sentence with file, line and key if the file is invalid; 4 if the\n"
+      "requirements of a study contradict each other, so that no design can be feasible.\n"
       "Example: pkmopt check experiments/4ppa-2par/paper-problem.toml",
       [&session](const CheckArguments& given) { check(given, session); });
-  add_option(command, "FILE.toml", arguments.file, "The path of a study or of a mechanism's description")->required();
+  add_option(command, "FILE.toml", arguments.file, "A study or a mechanism file")->required();
   add_change_options(command, arguments.changes);
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }

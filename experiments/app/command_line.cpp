@@ -11,26 +11,26 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kLongestComplaint = 1000;  // bytes, of CLI11's own messages
+constexpr std::size_t kMaxMessageLength = 1000;  // bytes; messages of CLI11 are truncated to this length
 
-/// Options that take a list of name=value.
-const std::vector<std::string> kLists = {
-    "--set",    "--limit",         "--at",   "--joints", "--velocity",    "--acceleration",
-    "--speeds", "--accelerations", "--near", "--forces", "--wrench",      "--held",
-    "--cut",    "--cells",         "--box",  "--least",  "--joint-error", "--tolerance"};
+/// Options whose value is a list of name=value.
+const std::vector<std::string> kLists = {"--set",          "--limit",  "--at",          "--joints",        "--velocity",
+                                         "--acceleration", "--input",  "--speeds",      "--accelerations", "--near",
+                                         "--forces",       "--wrench", "--held",        "--cut",           "--cells",
+                                         "--box",          "--least",  "--joint-error", "--tolerance"};
 
-/// "--set a=1 b=2" becomes "--set a=1 --set b=2", for every option that takes a list of name=value.
-std::vector<std::string> spread_lists(const std::vector<std::string>& arguments) {
-  std::vector<std::string> spread;
-  std::string option;  // whose list we are in; "" outside of one
+/// Repeats the option before each element of a list: "--set a=1 b=2" becomes "--set a=1 --set b=2".
+std::vector<std::string> expand_lists(const std::vector<std::string>& arguments) {
+  std::vector<std::string> expanded;
+  std::string option;  // whose list is being read; "" outside of a list
   for (const auto& argument : arguments) {
     const bool assignment = !argument.starts_with('-') && argument.find('=') != std::string::npos;
-    const bool goes_on = assignment && !option.empty() && spread.back() != option;
-    if (goes_on) spread.push_back(option);
+    const bool continues_list = assignment && !option.empty() && expanded.back() != option;
+    if (continues_list) expanded.push_back(option);
     if (!assignment) option = std::ranges::find(kLists, argument) != kLists.end() ? argument : "";
-    spread.push_back(argument);
+    expanded.push_back(argument);
   }
-  return spread;
+  return expanded;
 }
 
 std::vector<std::string> subcommand_names(const CLI::App& app) {
@@ -47,7 +47,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// A subcommand has to come first, unless the program's own --help or --version is asked for.
+/// Throws ConfigError unless the first argument is a subcommand or an option of the program, such as --help.
 void check_subcommand(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto known = subcommand_names(app);
   const std::string expected = "one of " + join(known) + " (see '" + app.get_name() + " --help')";
@@ -56,8 +56,8 @@ void check_subcommand(const CLI::App& app, const std::vector<std::string>& argum
   throw ConfigError({}, "the unknown command '" + first + "'", expected, nearest_name(first, known));
 }
 
-/// What is left over after parsing: an unknown option or one argument too many.
-ConfigError left_over(const CLI::App& app, const std::string& command) {
+/// The error for the first argument that CLI11 could not assign: an unknown option or a superfluous argument.
+ConfigError unexpected_argument(const CLI::App& app, const std::string& command) {
   const std::string program = app.get_parent() ? app.get_parent()->get_name() : app.get_name();
   const std::string word = app.remaining().front();
   if (!word.starts_with('-') || word == "-")
@@ -71,7 +71,7 @@ ConfigError left_over(const CLI::App& app, const std::string& command) {
 
 }  // namespace
 
-std::string with_name(std::string help, const std::string& name) {
+std::string with_program_name(std::string help, const std::string& name) {
   const std::string own = "pkmopt ";
   for (auto at = help.find(own); at != std::string::npos; at = help.find(own, at + name.size()))
     help.replace(at, own.size() - 1, name);
@@ -88,20 +88,20 @@ std::int64_t parse_option(const std::string& text, const std::string& option, st
 
 void parse_command_line(CLI::App& app, const std::vector<std::string>& arguments) {
   check_subcommand(app, arguments);
-  auto spread = spread_lists(arguments);
-  std::ranges::reverse(spread);  // the order that CLI11 takes them in
+  auto expanded = expand_lists(arguments);
+  std::ranges::reverse(expanded);  // CLI11 expects them in reverse order
   try {
-    app.parse(spread);
+    app.parse(expanded);
   } catch (const CLI::CallForHelp&) {
-    std::cout << with_name(app.help(), app.get_name()) << '\n';
+    std::cout << with_program_name(app.help(), app.get_name()) << '\n';
   } catch (const CLI::CallForVersion& version) {
     std::cout << version.what() << '\n';
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
     const CLI::App& where = chosen.empty() ? app : *chosen.front();
     const std::string command = chosen.empty() ? "" : where.get_name();
-    if (!where.remaining().empty()) throw left_over(where, command);
-    throw ConfigError({"", 0, command}, excerpt(error.what(), kLongestComplaint) + " (see '" + app.get_name() + " " +
+    if (!where.remaining().empty()) throw unexpected_argument(where, command);
+    throw ConfigError({"", 0, command}, excerpt(error.what(), kMaxMessageLength) + " (see '" + app.get_name() + " " +
                                             command + (command.empty() ? "" : " ") + "--help')");
   }
 }

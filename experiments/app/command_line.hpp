@@ -1,4 +1,4 @@
-// Parsing of the command line, with messages in the words of all our other errors.
+// Parses the command line with CLI11; errors are reported in the common form of ConfigError.
 #pragma once
 
 #include <string>
@@ -8,12 +8,11 @@
 
 namespace pkm {
 
-/// Parses `arguments` (without the program's name; at least one) and runs the chosen subcommand, or prints help or the
-/// version where these are asked for. Throws ConfigError for a command line that is wrong, naming the nearest known
-/// word.
+/// Parses `arguments` (without the program's name; at least one) and runs the chosen subcommand, or prints the help or
+/// the version if requested. Throws ConfigError for an invalid command line, with the closest valid word.
 void parse_command_line(CLI::App& app, const std::vector<std::string>& arguments);
 
-/// Our help under the name of a user's own program.
-std::string with_name(std::string help, const std::string& name);
+/// Replaces "pkmopt" in a help text by the name of a user's own program.
+std::string with_program_name(std::string help, const std::string& name);
 
 }  // namespace pkm

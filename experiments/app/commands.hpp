@@ -1,8 +1,8 @@
-// The program's subcommands: one function each, which declares the command line and says what runs when it is chosen.
+// The program's subcommands: one function each, which declares the command's options and the function that runs it.
 //
-// To add one: a file of its own, its name here and in program.cpp. A command reports bad input by
-// ConfigError and everything else by another exception; program_main turns both into one sentence on stderr and an exit
-// code.
+// To add a command, write a file of its own and add its name here and in program.cpp. A command throws ConfigError for
+// invalid input and any other exception for other failures; program_main turns both into one sentence on stderr and an
+// exit code.
 #pragma once
 
 #include <algorithm>
@@ -15,31 +15,31 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/config/study.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
-#include "engine/setup/study.hpp"
 
 namespace pkm {
 
-// What the program's exit code says.
+// Exit codes of the program.
 inline constexpr int kDone = 0;
 inline constexpr int kFailure = 1;
 inline constexpr int kBadInput = 2;
-inline constexpr int kStoppedEarly = 3;     ///< with a checkpoint to go on from
-inline constexpr int kNothingFeasible = 4;  ///< the study has ended, or cannot end otherwise; its file is complete
+inline constexpr int kStoppedEarly = 3;     ///< a checkpoint was written; 'pkmopt resume' continues
+inline constexpr int kNothingFeasible = 4;  ///< the study is complete, or provably has no feasible design
 
-/// What every command is given, and gives back.
+/// Context that every command receives, and its exit code.
 struct Session {
   const Catalogues& catalogues;
-  std::string program;         ///< as it was called: "pkmopt", or the name of a user's own
-  std::string arguments = {};  ///< the command line's, on one line
+  std::string program;         ///< name under which it was called: "pkmopt", or that of a user's own program
+  std::string arguments = {};  ///< the command line without the program name, quoted for a shell
   int exit_code = kDone;
 };
 
-/// While it lives: a line on stderr says that a step takes long, after a second on a terminal, elsewhere after ten.
-SlowStep announced(const Session& session, const std::string& step);
+/// Prints `step` to stderr if the returned object still exists after 1 s on a terminal, elsewhere after 10 s.
+SlowStepNotice announce_slow_step(const Session& session, const std::string& step);
 
-/// Declares an option with a word for its value, "--csv FILE", or an argument by what stands for it: "STUDY.toml".
+/// Declares an option with a placeholder for its value, "--csv FILE", or a positional argument, "STUDY.toml".
 template <class Value>
 CLI::Option* add_option(CLI::App& command, const std::string& words, Value& value, const std::string& meaning) {
   const auto name_end = std::min(words.find(' '), words.size());
@@ -47,20 +47,19 @@ CLI::Option* add_option(CLI::App& command, const std::string& words, Value& valu
   CLI::Option* const option = command.add_option(words.substr(0, name_end), value, meaning)->type_name(type);
   if constexpr (std::is_same_v<Value, std::string>)
     option->each([option, type](const std::string& given) {
-      if (given.empty())
-        throw ConfigError({"", 0, option->get_name()}, "an empty text where there has to be something");
+      if (given.empty()) throw ConfigError({"", 0, option->get_name()}, "the value is empty");
       const bool names_file = type.starts_with("F.") || type.ends_with("FILE") || type == "DIR";
       if (names_file && given.starts_with('-'))
         throw ConfigError({"", 0, option->get_name()}, "'" + given + "'",
-                          "a name; './" + given + "' is a file so called");
+                          "a file name (write './" + given + "' for this file)");
     });
   return option;
 }
 
-/// The whole number of an option, in decimal, within [lower, upper]. Throws ConfigError.
+/// Parses the value of an option as a decimal integer in [lower, upper]. Throws ConfigError.
 std::int64_t parse_option(const std::string& text, const std::string& option, std::int64_t lower, std::int64_t upper);
 
-/// Declares an option that takes a whole number within [lower, upper], into an integer or an optional one.
+/// Declares an option whose value is an integer in [lower, upper]. @param value  an integer or an optional integer
 template <class Integer>
 CLI::Option* add_integer(CLI::App& command, const std::string& words, Integer& value, std::int64_t lower,
                          std::int64_t upper, const std::string& meaning) {
@@ -74,7 +73,7 @@ CLI::Option* add_integer(CLI::App& command, const std::string& words, Integer& v
   return command.add_option_function<std::string>(name, read, meaning)->type_name(words.substr(name_end + 1) + range);
 }
 
-/// Adds a subcommand that does `run` with its arguments; the caller declares these.
+/// Adds a subcommand that calls `run` with its arguments; the caller declares the arguments.
 template <class Arguments, class Run>
 std::pair<CLI::App&, Arguments&> add_command(CLI::App& app, const std::string& name, const std::string& meaning,
                                              const std::string& footer, Run run) {
@@ -93,9 +92,8 @@ void add_all_commands(CLI::App& app, Session& session);
 
 inline constexpr const char* kProgramMeaning = "Design-space optimisation of parallel kinematic machines.";
 inline constexpr const char* kProgramNotes =
-    "'pkmopt COMMAND --help' tells more of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
-    "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint to go on from, 4 nothing "
-    "feasible.\n"
+    "See 'pkmopt COMMAND --help' for the options of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
+    "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint, 4 nothing feasible.\n"
     "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml";
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// `pkmopt completion`: what a shell needs to complete our command line, from the same declarations as --help.
+// `pkmopt completion`: prints a completion script for bash, zsh or fish, generated from the declared options.
 
 #include <algorithm>
 #include <functional>
@@ -6,15 +6,15 @@
 #include <map>
 
 #include "engine/core/instruction_set.hpp"
-#include "experiments/app/declared.hpp"
+#include "experiments/app/declared_commands.hpp"
 
 namespace pkm {
 namespace {
 
-/// What can stand for the value of an option or for an argument.
+/// Possible values of an option or of an argument: words, files, or both.
 struct Values {
   std::vector<std::string> words;
-  std::string extension;  ///< of files, "h5"; "*": of any
+  std::string extension;  ///< of files, for example "h5"; "*": any file; "": no files
 };
 
 Values values_of(const std::string& command, const std::string& type, const Session& session) {
@@ -27,21 +27,22 @@ Values values_of(const std::string& command, const std::string& type, const Sess
   if (type.starts_with("F.h5")) return {{}, "h5"};
   if (type.starts_with("MECHANISM|")) {
     Values values{{}, "toml"};
-    for (const auto& mechanism : session.catalogues.mechanisms) values.words.push_back(mechanism->info().name);
+    for (const auto& mechanism : session.catalogues.mechanisms) values.words.push_back(mechanism.name());
     return values;
   }
   if (type.ends_with(".toml")) return {{}, "toml"};
   return {};
 }
 
-/// In single quotes, for every shell of ours.
+/// The text in single quotes, valid in all three shells.
 std::string in_quotes(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
   return result + "'";
 }
 
-std::string in_brackets(std::string text) {  // zsh: brackets and colons mean something
+/// Escapes brackets and colons, which have a meaning in the descriptions of zsh's _arguments.
+std::string zsh_escaped(std::string text) {
   for (const char* const special : {"[", "]", ":"})
     for (auto at = text.find(special); at != std::string::npos; at = text.find(special, at + 2)) text.insert(at, "\\");
   return text;
@@ -80,12 +81,12 @@ _)" << name << R"(() {
   case "${COMP_WORDS[1]} $before" in
 )";
   for (const DeclaredCommand& command : commands) {
-    std::map<std::string, std::string> options;  // that take a value, by what is offered for it
+    std::map<std::string, std::string> options;  // command that offers values -> options with these values
     for (const DeclaredOption& option : command.options)
       if (!option.type.empty()) {
         std::string& all = options[offer(values_of(command.name, option.type, session))];
-        for (const std::string& name : {option.name, option.letter})
-          if (!name.empty()) all += (all.empty() ? "" : "|") + in_quotes(command.name + " " + name);
+        for (const std::string& spelling : {option.name, option.short_name})
+          if (!spelling.empty()) all += (all.empty() ? "" : "|") + in_quotes(command.name + " " + spelling);
       }
     for (const auto& [values, names_of_options] : options)
       std::cout << "  " << names_of_options << ") " << values << "; return ;;\n";
@@ -122,16 +123,16 @@ void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& sess
   for (const DeclaredCommand& command : commands) {
     std::cout << "  " << command.name << ") _arguments";
     for (const DeclaredOption& option : command.options)
-      for (const std::string& name : {option.name, option.letter})
+      for (const std::string& name : {option.name, option.short_name})
         if (!name.empty())
           std::cout << " \\\n    "
-                    << in_quotes("*" + name + "[" + in_brackets(option.meaning) + "]" +
+                    << in_quotes("*" + name + "[" + zsh_escaped(option.meaning) + "]" +
                                  (option.type.empty()
                                       ? ""
-                                      : ":" + in_brackets(option.type) + ":" + action(command.name, option.type)));
+                                      : ":" + zsh_escaped(option.type) + ":" + action(command.name, option.type)));
     for (const DeclaredOption& argument : command.arguments)
       std::cout << " \\\n    "
-                << in_quotes("*:" + in_brackets(argument.type) + ":" + action(command.name, argument.type));
+                << in_quotes("*:" + zsh_escaped(argument.type) + ":" + action(command.name, argument.type));
     std::cout << " ;;\n";
   }
   std::cout << "esac\n";
@@ -156,7 +157,7 @@ void print_fish(const std::vector<DeclaredCommand>& commands, const Session& ses
     for (const DeclaredOption& option : command.options) {
       const bool any_file = values_of(command.name, option.type, session).extension == "*";
       std::cout << here << " -l " << option.name.substr(2)
-                << (option.letter.empty() ? "" : " -s " + option.letter.substr(1))
+                << (option.short_name.empty() ? "" : " -s " + option.short_name.substr(1))
                 << (option.type.empty() ? ""
                     : any_file          ? " -r -F"
                                         : " -r -f")
@@ -185,8 +186,8 @@ void add_completion(CLI::App& app, Session& session) {
     std::string shell;
   };
   auto [command, a] = add_command<CompletionArguments>(
-      app, "completion", "What a shell needs to complete this command line.",
-      "Example: source <(pkmopt completion bash)\nPackages install it for all three shells.",
+      app, "completion", "Print a script for command-line completion in bash, zsh or fish.",
+      "Example: source <(pkmopt completion bash)\nThe Debian package installs it for all three shells.",
       [&session](const CompletionArguments& arguments) {
         const auto found = std::ranges::find(kShells, arguments.shell, &std::pair<std::string, Print>::first);
         if (found == kShells.end())

@@ -1,10 +1,10 @@
-// `pkmopt evaluate`: everything that is known of one design.
+// `pkmopt evaluate`: all objectives, constraint margins and outputs of one design, and the measure of its workspace.
 
+#include "engine/config/assignments.hpp"
 #include "engine/core/team.hpp"
-#include "engine/problem/certain_volume.hpp"
-#include "engine/setup/assignments.hpp"
-#include "engine/study/stop_request.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/problem/volume_check.hpp"
+#include "engine/runner/stop_request.hpp"
+#include "engine/workspace/survey_set.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/grid.hpp"
@@ -15,15 +15,15 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kBareCells = 40;
+constexpr std::int64_t kDefaultCells = 40;  // along each axis, for mechanisms without a study
 
 struct EvaluateArguments : DesignArguments, SensitivityArguments {
   int threads = 0;
   std::string certain;
 };
 
-/// The problem of a bare mechanism: exact columns where it has them, unless cells are given, else voxels, and every
-/// objective that serves it, and these, by its defaults.
+/// The problem of a mechanism without a study: all objectives that support the mechanism and the workspace method, with
+/// their default options. The method is exact columns if the mechanism has them and no cells are given, else voxels.
 std::shared_ptr<const DesignProblem> default_problem(const Target& target, const Catalogues& catalogues,
                                                      const std::vector<std::string>& cells) {
   ProblemParts parts;
@@ -31,7 +31,7 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
   parts.parameters = target.parameters;
   parts.plan.limits = target.limits;
   const Sweep& sweep = target.info().sweeps.front();
-  if (!target.mechanism->columns() || !cells.empty()) parts.plan.method = equal_cells(sweep, kBareCells);
+  if (!target.mechanism->columns() || !cells.empty()) parts.plan.method = equal_cells(sweep, kDefaultCells);
   if (!cells.empty())
     std::ranges::copy(parse_cells(cells, coordinate_names(target.info(), sweep.swept)),
                       std::get<VoxelOptions>(parts.plan.method).cells.begin());
@@ -48,7 +48,7 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
                                 .meaning = entry.meaning,
                                 .direction = entry.direction,
                                 .quantity = entry.make(context),
-                                .reads_survey = entry.reads(context)});
+                                .uses_workspace = entry.reads(context)});
   }
   try {
     return std::make_shared<const DesignProblem>(std::move(parts));
@@ -57,8 +57,9 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
   }
 }
 
-void tell_workspace(const DesignProblem& problem, const Survey<double>& survey, Printout& out) {
-  const SurveyPlan& plan = problem.parts().plan;
+/// Adds the measure of the workspace to the output.
+void report_workspace(const DesignProblem& problem, const Survey<double>& survey, Printout& out) {
+  const WorkspacePlan& plan = problem.parts().plan;
   const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
   const std::string method = plan.voxels() ? "voxels" : "columns";
   Json json = {{"method", method}, {"volume", survey.volume}, {"unit", unit}};
@@ -67,50 +68,53 @@ void tell_workspace(const DesignProblem& problem, const Survey<double>& survey, 
     json["cells"] = survey.cells;
     json["feasible_cells"] = survey.feasible_cells;
     json["cell_volume"] = survey.cell_volume;
-    // The default box ends where the mechanism does, so touching it says nothing.
+    // The default box encloses all reachable poses, so that touching it has no meaning.
     json["touches_box"] = plan.box() ? Json(survey.touches_box) : Json();
     rows.push_back({"feasible cells", std::to_string(survey.feasible_cells) + " of " + std::to_string(survey.cells)});
     rows.push_back({"cell volume", number(survey.cell_volume, unit)});
-    if (plan.box() && survey.touches_box) rows.push_back({"warning", "the feasible set touches the box: it may go on"});
+    if (plan.box() && survey.touches_box)
+      rows.push_back({"warning", "the feasible set touches the box: it may extend beyond"});
   } else {
-    const bool estimated = plan.columns()->nodes[0] == 0;  // fixed nodes come without
+    const bool estimated = plan.columns()->nodes[0] == 0;  // fixed nodes give no error estimate
     json["columns"] = survey.columns;
     json["relative_error"] = estimated ? Json(survey.error) : Json();
     rows.push_back({"columns", std::to_string(survey.columns)});
     if (estimated) rows.push_back({"relative error", number(survey.error)});
   }
   out.json["workspace"] = json;
-  out.section("workspace", rows);
+  out.add_table("workspace", rows);
 }
 
-/// Bounds of the exact volume that neither rounding nor sampling can make wrong.
-/// @param holds  the volume lies within
-void tell_bounds(const VolumeBounds& bounds, double wanted, bool holds, const std::string& unit, Printout& out) {
+/// Adds certified bounds on the exact volume to the output.
+/// @param holds  the computed volume lies within the bounds
+void report_bounds(const VolumeBounds& bounds, double requested_gap, bool holds, const std::string& unit,
+                   Printout& out) {
   out.json["certain"] = {
       {"lower", bounds.lower}, {"upper", bounds.upper}, {"unit", unit}, {"gap", bounds.gap()}, {"holds_volume", holds}};
-  out.section("certain bounds of the volume", {{"at least", number(bounds.lower, unit)},
-                                               {"at most", number(bounds.upper, unit)},
-                                               {"gap", number(bounds.gap()) + ", asked for " + number(wanted)}});
+  out.add_table("certified bounds on the volume",
+                {{"at least", number(bounds.lower, unit)},
+                 {"at most", number(bounds.upper, unit)},
+                 {"gap", number(bounds.gap()) + ", requested " + number(requested_gap)}});
 }
 
-/// The report fails where its exact volume lies outside.
-VolumeBounds bounds_of(const DesignProblem& problem, DesignReport& report, double gap) {
+/// Computes certified bounds on the volume; sets the status of `report` to failed if its volume lies outside of them.
+VolumeBounds certified_bounds(const DesignProblem& problem, DesignReport& report, double gap) {
   const StopRequest stop;
   try {
-    return check_volume(problem, report, gap, [] { return StopRequest::signal() != 0; });
+    return verify_volume(problem, report, gap, [] { return StopRequest::signal() != 0; });
   } catch (const std::invalid_argument& reason) {
     throw ConfigError({"", 0, "--certain"}, reason.what());
   }
 }
 
-/// The constraints that do not hold, as "no: ...".
-std::string verdict(const DesignProblem& problem, const DesignReport& report) {
+/// "yes", or "no: " with the violated constraints or the reason of the failure.
+std::string feasibility_text(const DesignProblem& problem, const DesignReport& report) {
   if (report.status == Status::feasible) return "yes";
-  std::vector<std::string> broken;
+  std::vector<std::string> violated;
   for (std::size_t i = 0; i < report.margins.size(); ++i)
-    if (report.margins[i] < 0) broken.push_back(problem.margins()[i].name);
+    if (report.margins[i] < 0) violated.push_back(problem.margins()[i].name);
   const std::string reason = report.reason.empty() ? "" : "; " + report.reason;
-  return "no: " + (report.status == Status::failed ? report.reason : join(broken) + " violated" + reason);
+  return "no: " + (report.status == Status::failed ? report.reason : join(violated) + " violated" + reason);
 }
 
 std::string evaluate(const Catalogues& catalogues, const Target& target, const EvaluateArguments& arguments,
@@ -121,21 +125,21 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   std::optional<double> gap = columns ? columns->certain : std::nullopt;
   if (!arguments.certain.empty()) {
     gap = parse_gap(arguments.certain, "--certain");
-    needed(target.mechanism->bounds(), "--certain", "formulas that can be computed over intervals", target.info());
+    require_capability(target.mechanism->bounds(), "--certain", "formulas for interval arithmetic", target.info());
     if (!columns)
-      throw ConfigError({"", 0, "--certain"}, "voxels", "workspace.method = \"columns\", whose exact volume it checks");
+      throw ConfigError({"", 0, "--certain"}, "voxels", "workspace.method = \"columns\", whose volume it checks");
   }
   DesignReport report;
   std::optional<VolumeBounds> bounds;
   with_team(arguments.threads, [&] {
     report = problem->report(target.parameters);
-    if (gap && report.status != Status::failed) bounds = bounds_of(*problem, report, *gap);
+    if (gap && report.status != Status::failed) bounds = certified_bounds(*problem, report, *gap);
   });
   const bool failed = report.status == Status::failed, surveyed = !failed || bounds;
 
-  /// Values with their units and what else is to be said of them.
-  const auto tell = [&out](const std::string& key, const std::string& title, const auto& named,
-                           const std::vector<double>& values, const auto& remark) {
+  /// Adds named values with their units, a remark on each, and their meanings.
+  const auto report_values = [&out](const std::string& key, const std::string& title, const auto& named,
+                                    const std::vector<double>& values, const auto& remark) {
     std::vector<Row> rows;
     for (std::size_t i = 0; i < values.size(); ++i) {
       Row& row = rows.emplace_back(Row{named[i].name, number(values[i], named[i].unit)});
@@ -143,27 +147,28 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
       row.push_back(named[i].meaning);
     }
     out.json[key] = values_by_name(named, values);
-    out.section(title, rows);
+    out.add_table(title, rows);
   };
-  const auto nothing = [](const auto&, double) { return ""; };
-  out.say("mechanism", target.info().name);
+  const auto no_remark = [](const auto&, double) { return ""; };
+  out.add("mechanism", target.info().name);
   if (target.study) out.head.push_back({"study", target.study->name});
-  out.head.push_back({"feasible", verdict(*problem, report)});
-  tell("parameters", "parameters", target.info().parameters, report.parameters, nothing);
+  out.head.push_back({"feasible", feasibility_text(*problem, report)});
+  report_values("parameters", "parameters", target.info().parameters, report.parameters, no_remark);
   out.json["workspace"] = nullptr;
-  if (surveyed) tell_workspace(*problem, report.survey, out);
-  if (bounds) tell_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
-  tell("objectives", "objectives", problem->objectives(), report.objectives,
-       [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; });
-  tell("constraints", "constraints (margins: >= 0 holds)", problem->margins(), report.margins,
-       [](const MarginInfo&, double margin) { return margin >= 0 ? "holds" : "violated"; });
-  tell("reports", "reports", problem->reports(), report.reports, nothing);
+  if (surveyed) report_workspace(*problem, report.survey, out);
+  if (bounds) report_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
+  report_values(
+      "objectives", "objectives", problem->objectives(), report.objectives,
+      [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; });
+  report_values("constraints", "constraints (margins, satisfied if >= 0)", problem->margins(), report.margins,
+                [](const MarginInfo&, double margin) { return margin >= 0 ? "satisfied" : "violated"; });
+  report_values("reports", "reports", problem->reports(), report.reports, no_remark);
   if (report.reason.empty())
-    with_team(arguments.threads, [&] { tell_sensitivities(*problem, report, arguments, out); });
+    with_team(arguments.threads, [&] { report_sensitivities(*problem, report, arguments, out); });
   out.json["feasible"] = report.status == Status::feasible;
-  const NamedValues facts = target.mechanism->facts(report.parameters, problem->parts().plan.limits);
+  const NamedValues facts = quantities_of_design(*target.mechanism, report.parameters, problem->parts().plan.limits);
   out.json["facts"] = values_by_name(facts);
-  out.section("facts", rows_of(facts));
+  out.add_table("facts", value_rows(facts));
   return failed ? "the evaluation failed: " + report.reason : "";
 }
 
@@ -171,16 +176,17 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
 
 void add_evaluate(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<EvaluateArguments>(
-      app, session, "evaluate", "One design: all objectives, margins and the workspace.",
-      "A study is evaluated as it says, at its baseline, else at its parameters. A bare mechanism is surveyed by\n"
-      "exact columns without limits, for every objective that serves it. An infeasible design is no error.\n"
+      app, session, "evaluate", "Evaluate one design: objectives, constraint margins and workspace.",
+      "A study is evaluated at its baseline, otherwise at its parameters. For a mechanism without a study, computes\n"
+      "the workspace without limits (by exact columns if possible) and all objectives that support the mechanism.\n"
+      "An infeasible design is not an error.\n"
       "Example: pkmopt evaluate experiments/4ppa-2par/paper-problem.toml --set a=0.3,b=1 --json",
       [&session](const Target& target, const EvaluateArguments& given, Printout& out) {
         return evaluate(session.catalogues, target, given, out);
       });
-  add_cells_option(command, arguments.changes.cells, "Cells of the study's voxels, or of a bare mechanism's");
+  add_cells_option(command, arguments.changes.cells, "Voxels along each swept coordinate, instead of the study's");
   add_option(command, "--certain GAP", arguments.certain,
-             "Check the exact volume of columns against certain bounds of this gap, as 'pkmopt certify' has them");
+             "Check the exact volume against guaranteed bounds with this relative gap (see certify)");
   add_sensitivity_options(command, arguments);
   add_threads(command, arguments.threads);
 }

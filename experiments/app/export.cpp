@@ -1,4 +1,4 @@
-// `pkmopt export`: what a study found, for other programs.
+// `pkmopt export`: writes the results of a study for other programs, as CSV tables and as workspace files (VTK, STL).
 
 #include <filesystem>
 #include <iostream>
@@ -22,6 +22,7 @@ struct ExportArguments : DesignArguments, WorkspaceOutputs {
   int threads = 0;
 };
 
+/// The path of a table's file within the folder.
 std::string path_of(const std::string& folder, const NamedTable& table) {
   return (std::filesystem::path(folder) / table.file_name).string();
 }
@@ -29,9 +30,9 @@ std::string path_of(const std::string& folder, const NamedTable& table) {
 void export_study(const Session& session, const ExportArguments& arguments) {
   expect_study_file(arguments.from, "workspace", session);
   if (!arguments.any() && arguments.csv.empty())
-    throw ConfigError({"", 0, "export"}, "nothing to write", "at least one of --vtk, --csv, --stl");
-  if (const char* const option = given_option(arguments.choice); option && !arguments.any())
-    throw ConfigError({"", 0, option}, "tables only, which are of all designs", "--vtk or --stl beside it");
+    throw ConfigError({"", 0, "export"}, "no output", "at least one of --vtk, --csv, --stl");
+  if (const char* const option = first_given_option(arguments.choice); option && !arguments.any())
+    throw ConfigError({"", 0, option}, "selects a design for --vtk or --stl; the tables of --csv contain all designs");
 
   const StudyContents contents = read_study(arguments.from);
   std::vector<std::string> files;
@@ -41,28 +42,28 @@ void export_study(const Session& session, const ExportArguments& arguments) {
   std::optional<Target> target;
   if (arguments.any()) {
     target = find_target(session, arguments);
-    expect_few_cells(target->plan());
+    check_cell_count(target->plan());
     expect_surface(arguments, names_of(swept_axes(target->plan(), target->info(), {})));
-    const auto more = files_of(arguments, *target);
+    const auto more = output_files(arguments, *target);
     files.insert(files.end(), more.begin(), more.end());
   }
-  std::string why;
-  if (!target && !find_recorded_study(contents, arguments.from, session, why)) {
-    const StorageError note(arguments.from + ": this program cannot read the study's text (" + why + ")");
+  std::string reason;
+  if (!target && !find_recorded_study(contents, arguments.from, session, reason)) {
+    const StorageError note(arguments.from + ": this program cannot read the study's text (" + reason + ")");
     std::cerr << session.program << ": note: " << note.what() << '\n';
   }
   const Existing existing = if_forced(arguments.force);
   check_outputs(files, {arguments.from}, existing);
 
-  if (!tables.empty()) make_folder(arguments.csv);
+  if (!tables.empty()) create_folder(arguments.csv);
   for (const NamedTable& table : tables) write_file(path_of(arguments.csv, table), table.table.text(), existing);
   if (target)
     with_team(arguments.threads, [&] {
-      const std::string& mode = target->study->problem->parts().demand.mode;  // of the indices that it asks for
-      write_workspace(arguments, *target, fields_of(*target, target->plan(), mode));
+      const std::string& mode = target->study->problem->parts().demand.mode;  // the working mode of its objectives
+      write_workspace(arguments, *target, compute_fields(*target, target->plan(), mode));
     });
   if (contents.state != StudyState::finished)
-    std::cout << "the study is " << words(contents.state) << ": what it has recorded is exported\n";
+    std::cout << "the study is " << words(contents.state) << ": only the results recorded so far are exported\n";
   if (target) std::cout << "workspace of " << target->words << '\n';
   for (const std::string& file : files) std::cout << "wrote " << file << '\n';
 }
@@ -71,15 +72,15 @@ void export_study(const Session& session, const ExportArguments& arguments) {
 
 void add_export(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ExportArguments>(
-      app, "export", "What a study found, as tables and as files for ParaView and CAD.",
-      "The workspace is evaluated anew, as the study in the file says, for the best design (of a trade-off the\n"
-      "compromise) unless another is named. 'pkmopt workspace --from F.h5' does so on other cells.\n"
+      app, "export", "Write the results of a study as tables and as files for ParaView and CAD.",
+      "The workspace is computed again with the settings of the study, for the best design (of a Pareto front, the\n"
+      "compromise solution) unless another design is selected. 'pkmopt workspace --from F.h5' uses other cells.\n"
       "Example: pkmopt export paper-problem.h5 --vtk best.vtkhdf --csv tables --stl .",
       [&session](const ExportArguments& given) { export_study(session, given); });
-  add_option(command, "file F.h5", arguments.from, "The study file")->required();
+  add_option(command, "file F.h5", arguments.from, "Study file")->required();
   add_workspace_outputs(command, arguments);
-  add_option(command, "--csv DIR", arguments.csv, "Write the study's tables into this folder");
-  add_output_by_ending(command, {{".stl", &arguments.stl}, {".vtkhdf", &arguments.vtk}});
+  add_option(command, "--csv DIR", arguments.csv, "Write all tables of the study into this folder");
+  add_output_by_extension(command, {{".stl", &arguments.stl}, {".vtkhdf", &arguments.vtk}});
   add_choice_options(command, arguments.choice);
   add_threads(command, arguments.threads);
 }

@@ -1,10 +1,11 @@
-// `pkmopt forward`: every pose that given joint values allow, and its motion for that of the joints.
+// `pkmopt forward`: forward kinematics. Finds the poses for given joint values and, for given joint rates, the velocity
+// and acceleration of the platform.
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/model/singular.hpp"
-#include "engine/setup/assignments.hpp"
+#include "engine/config/assignments.hpp"
+#include "engine/geometry/singular.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/target.hpp"
 
@@ -18,28 +19,31 @@ struct ForwardArguments : DesignArguments {
   bool moves() const { return !(speeds.empty() && accelerations.empty()); }
 };
 
-/// Velocity and acceleration of the joints or of the platform.
+/// Velocity and acceleration of the joints, or of the platform coordinates.
 using Rates = std::array<AxisVector<double>, 2>;
 
+/// Parses --speeds and --accelerations. Throws ConfigError if the mechanism cannot convert them to platform rates.
 Rates joint_rates(const Mechanism& mechanism, const ForwardArguments& arguments) {
   const MechanismInfo& info = mechanism.info();
   if (arguments.moves() && !mechanism.velocities())
-    throw ConfigError({}, "mechanism " + info.name + " has no influence coefficients, so no speeds of the platform");
+    throw ConfigError(
+        {}, "mechanism " + info.name + " has no influence coefficients, so platform speeds cannot be computed");
   if (arguments.moves() && info.joints.size() != info.coordinates.size())
     throw ConfigError({}, "mechanism " + info.name +
-                              " has not as many joints as coordinates: their speeds do not give "
-                              "those of the platform");
+                              " has different numbers of joints and coordinates, so joint speeds do "
+                              "not determine platform speeds");
   const auto rates = [&](const std::vector<std::string>& lists, const char* option, const char* per) {
     return axis_vector(parse_some_assignments(lists, option, assignable_axes(info.joints, per)));
   };
   return {rates(arguments.speeds, "--speeds", "s"), rates(arguments.accelerations, "--accelerations", "s^2")};
 }
 
-/// Absent where the assembly mode is singular.
+/// @return std::nullopt if the assembly mode is singular
 std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& assembly, const Rates& joints) {
   const auto& modes = target.info().modes;
   const std::string mode = assembly.working_mode.empty() ? modes.front() : assembly.working_mode;
-  if (std::ranges::find(modes, mode) == modes.end()) return std::nullopt;  // between two, a limb singular
+  if (std::ranges::find(modes, mode) == modes.end())
+    return std::nullopt;  // between two working modes: a limb is singular
   const auto influence = target.mechanism->velocities()->influence(target.parameters, assembly.pose, mode);
   if (!influence || is_singular(influence->G)) return std::nullopt;
   const Influence<double> back = reversed(*influence);
@@ -50,56 +54,58 @@ std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& as
   return rates;
 }
 
-/// The one assembly next to a pose, metres counted like radians; none where there is none.
-std::vector<AssemblyMode> nearest(const ForwardKinematics& kinematics, const Target& target,
-                                  const AxisVector<double>& joints, const std::vector<std::string>& near) {
+/// The assembly mode closest to the pose of --near (Euclidean distance, 1 m counts as 1 rad); empty if there is none.
+std::vector<AssemblyMode> nearest_mode(const ForwardKinematics& kinematics, const Target& target,
+                                       const AxisVector<double>& joints, const std::vector<std::string>& near) {
   const Axes& coordinates = target.info().coordinates;
   const auto from = axis_vector(parse_all_assignments(near, "--near", assignable_axes(coordinates)));
   const auto distance = [&](const AssemblyMode& mode) {
     double square = 0;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
-      const double way = mode.pose[i] - from[i];
-      square += std::pow(coordinates[i].turns() ? wrapped(way) : way, 2);
+      const double difference = mode.pose[i] - from[i];
+      square += std::pow(coordinates[i].turns() ? wrapped(difference) : difference, 2);
     }
     return square;
   };
   const std::vector<AssemblyMode> modes = kinematics.assemblies_near(target.parameters, joints, from);
   if (modes.empty()) return {};
   AssemblyMode next = *std::ranges::min_element(modes, {}, distance);
-  next.usual = true;  // it is asked for
+  next.usual = true;  // requested, therefore listed
   return {next};
 }
 
-/// What the list of poses guarantees. @param left_out  unusual poses that are not listed
+/// Whether the list of poses is complete, and by which method it was found.
+/// @param hidden  number of poses that are listed only with --all
 ForwardGuarantee guarantee_of(const ForwardKinematics& kinematics, const ForwardArguments& arguments,
-                              std::size_t left_out) {
+                              std::size_t hidden) {
   ForwardGuarantee list = kinematics.guarantee();
   if (!arguments.near.empty())
     return {false, list.is_complete ? "the nearest of all isolated poses"
                                     : "found by Newton's method from the pose of --near alone; there may be others"};
-  if (left_out == 0) return list;
-  return {false, list.method + ", of which --all lists " + std::to_string(left_out) + " unusual ones more"};
+  if (hidden == 0) return list;
+  return {false, list.method + "; --all lists " + std::to_string(hidden) + " more"};
 }
 
 std::string forward(const Target& target, const ForwardArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
   const Axes& coordinates = info.coordinates;
-  const ForwardKinematics& kinematics = needed(target.mechanism->forward(), "forward", "forward kinematics", info);
+  const ForwardKinematics& kinematics =
+      require_capability(target.mechanism->forward(), "forward", "forward kinematics", info);
   const auto joints = axis_vector(parse_all_assignments(arguments.joints, "--joints", assignable_axes(info.joints)));
   const Rates rates = joint_rates(*target.mechanism, arguments);
   std::vector<AssemblyMode> modes;
   if (arguments.near.empty())
     modes = kinematics.assemblies(target.parameters, joints);
   else
-    modes = nearest(kinematics, target, joints, arguments.near);
+    modes = nearest_mode(kinematics, target, joints, arguments.near);
   const ForwardStatus status = kinematics.status(target.parameters, joints, modes);
 
   Json poses = Json::array();
   std::vector<Row> rows = {{}}, motions = {{"mode"}};
   for (const AxisInfo& axis : coordinates) rows[0].push_back(axis.name + " [" + axis.unit + "]");
   rows[0].push_back("mode");
-  for (const char* of : {" speed", " acceleration"})
-    for (const AxisInfo& axis : coordinates) motions[0].push_back(axis.name + of);
+  for (const char* rate : {" speed", " acceleration"})
+    for (const AxisInfo& axis : coordinates) motions[0].push_back(axis.name + rate);
   for (const AssemblyMode& assembly : modes) {
     if (!arguments.all && !assembly.usual) continue;
     Json pose = values_by_name(coordinates, assembly.pose);
@@ -123,39 +129,39 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
     }
     poses.push_back(pose);
   }
-  out.say("mechanism", info.name);
-  out.say("joints", values_by_name(info.joints, joints), axes_text(info.joints, joints));
+  out.add("mechanism", info.name);
+  out.add("joints", values_by_name(info.joints, joints), axes_text(info.joints, joints));
   out.json["status"] = status.word;
   out.json["reason"] = text_or_null(status.reason);
-  out.say("poses", poses, std::to_string(poses.size()));
+  out.add("poses", poses, std::to_string(poses.size()));
   const ForwardGuarantee guarantee = guarantee_of(kinematics, arguments, modes.size() - poses.size());
-  out.say("complete", guarantee.is_complete, (guarantee.is_complete ? "yes, " : "no, ") + guarantee.method);
+  out.add("complete", guarantee.is_complete, (guarantee.is_complete ? "yes, " : "no, ") + guarantee.method);
   out.json["guarantee"] = guarantee.method;
   if (!poses.empty()) out.text += '\n' + aligned(rows);
   if (!poses.empty() && arguments.moves())
-    out.section("motion of the platform (" + units_of(coordinates, "/s") + ", " + units_of(coordinates, "/s^2") + ")",
-                motions);
-  return modes.empty()   ? status.reason
-         : poses.empty() ? "no usual pose assembles with these joint values; --all lists " +
-                               std::to_string(modes.size()) + " others"
-                         : "";
+    out.add_table("motion of the platform (" + units_of(coordinates, "/s") + ", " + units_of(coordinates, "/s^2") + ")",
+                  motions);
+  return modes.empty() ? status.reason
+         : poses.empty()
+             ? "these joint values have only unusual poses; --all lists " + std::to_string(modes.size()) + " of them"
+             : "";
 }
 
 }  // namespace
 
 void add_forward(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<ForwardArguments>(
-      app, session, "forward", "Given joint values: the pose of every assembly mode.",
-      "Limits are not looked at. Exit code 1 when no pose assembles. Poses are distinct as rigid-body poses; the line\n"
-      "'complete' says whether they are all that there are.\n"
+      app, session, "forward", "Solve the forward kinematics: find all poses for given joint values.",
+      "Limits are ignored. Exit code 1 if no assembly mode exists. Each rigid-body pose is listed once; the line\n"
+      "'complete' shows whether the list contains every pose.\n"
       "Example: pkmopt forward 4ppa-2par --joints q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846",
       forward);
-  add_list_option(command, "--joints", arguments.joints, "Every joint's value")->required();
-  add_list_option(command, "--near", arguments.near, "A pose: only the assembly next to it");
-  add_list_option(command, "--speeds", arguments.speeds, "Speeds of the joints: gives the platform's");
+  add_list_option(command, "--joints", arguments.joints, "Values of all joints")->required();
+  add_list_option(command, "--near", arguments.near, "Find only the assembly mode closest to this pose");
+  add_list_option(command, "--speeds", arguments.speeds, "Joint speeds, to compute the platform's");
   add_list_option(command, "--accelerations", arguments.accelerations,
-                  "Accelerations of the joints: gives the platform's");
-  command.add_flag("--all", arguments.all, "The unusual assembly modes too")->excludes("--near");
+                  "Joint accelerations, to compute the platform's");
+  command.add_flag("--all", arguments.all, "Also list assembly modes that are unusual in practice")->excludes("--near");
 }
 
 }  // namespace pkm

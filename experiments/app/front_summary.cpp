@@ -1,3 +1,4 @@
+// The Pareto front of a stage as a text table and as JSON.
 #include "experiments/app/stage_summary.hpp"
 
 #include <algorithm>
@@ -10,12 +11,14 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kAll = 20, kShown = 10;  // short lists are shown whole, longer fronts by a choice and their knees
+// Fronts of up to kMaxFullFront points are shown completely; of larger ones kExcerptSize well-spread points, and all
+// points that have a label.
+constexpr std::size_t kMaxFullFront = 20, kExcerptSize = 10;
 
-std::string six(double value) { return formatted("%.6g", value); }
+std::string six_digits(double value) { return formatted("%.6g", value); }
 
-/// What is special about each point: "best conditioning", "knee", "compromise".
-std::vector<std::vector<std::string>> marks(const ProblemRecord& problem, const Scores& front) {
+/// Labels of each point that stands out: "best conditioning", "knee", "compromise".
+std::vector<std::vector<std::string>> point_labels(const ProblemRecord& problem, const Scores& front) {
   std::vector<std::vector<std::string>> list(front.size());
   const std::vector<std::size_t> ends = ends_of(front);
   for (std::size_t k = 0; k < ends.size(); ++k) list[ends[k]].push_back("best " + problem.objectives[k].name);
@@ -24,25 +27,28 @@ std::vector<std::vector<std::string>> marks(const ProblemRecord& problem, const 
   return list;
 }
 
+/// Hypervolume of the front with respect to the stage's reference point; NaN if there is none.
 double hypervolume_of(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
   const std::vector<double>& reference = stage.front->reference;
   if (reference.empty()) return std::nan("");
-  std::vector<double> corner;
+  std::vector<double> reference_point;  // all objectives minimised
   for (std::size_t k = 0; k < reference.size(); ++k)
-    corner.push_back(problem.objectives[k].direction == Direction::maximise ? -reference[k] : reference[k]);
-  return hypervolume(front.values, front.objectives, corner);
+    reference_point.push_back(problem.objectives[k].direction == Direction::maximise ? -reference[k] : reference[k]);
+  return hypervolume(front.values, front.objectives, reference_point);
 }
 
 std::string headline(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
   const FrontRecord& record = *stage.front;
   std::string text = "  front: " + std::to_string(front.size()) + (front.size() == 1 ? " design" : " designs");
   if (!record.reference.empty()) {
-    text += ", hypervolume " + six(hypervolume_of(problem, stage, front)) + " from";
+    text += ", hypervolume " + six_digits(hypervolume_of(problem, stage, front)) + " with reference point";
     for (std::size_t k = 0; k < record.reference.size(); ++k)
-      text += (k ? ", " : " ") + problem.objectives[k].name + " " + six(record.reference[k]);
+      text += (k ? ", " : " ") + problem.objectives[k].name + " " + six_digits(record.reference[k]);
   }
-  if (!record.spread.empty() && !std::isnan(record.spread.back())) text += "; spread " + six(record.spread.back());
-  if (!record.igd_plus.empty() && !std::isnan(record.igd_plus.back())) text += "; IGD+ " + six(record.igd_plus.back());
+  if (!record.spread.empty() && !std::isnan(record.spread.back()))
+    text += "; spread " + six_digits(record.spread.back());
+  if (!record.igd_plus.empty() && !std::isnan(record.igd_plus.back()))
+    text += "; IGD+ " + six_digits(record.igd_plus.back());
   return text + '\n';
 }
 
@@ -51,18 +57,19 @@ std::string headline(const ProblemRecord& problem, const StageRecord& stage, con
 std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
   if (!stage.front || stage.front->rows.empty()) return "";
   const Scores front = scores_of(problem.objectives, stage.table, stage.front->rows);
-  const auto mark = marks(problem, front);
-  const std::vector<std::size_t> spread = spread_choice(front, front.size() <= kAll ? kAll : kShown);
+  const auto labels = point_labels(problem, front);
+  const std::vector<std::size_t> spread =
+      select_representatives(front, front.size() <= kMaxFullFront ? kMaxFullFront : kExcerptSize);
   std::vector<Row> rows = {{"  point"}};
   for (const auto& v : problem.variables) rows[0].push_back(v.name);
   for (const auto& o : problem.objectives) rows[0].push_back(o.name);
   for (std::size_t i = 0; i < front.size(); ++i) {
-    if (mark[i].empty() && std::ranges::find(spread, i) == spread.end()) continue;
+    if (labels[i].empty() && std::ranges::find(spread, i) == spread.end()) continue;
     const auto row = static_cast<std::size_t>(stage.front->rows[i]);
     Row& cells = rows.emplace_back(Row{"  " + std::to_string(i + 1)});
-    for (const double x : stage.table.design(row)) cells.push_back(six(x));
-    for (const double f : stage.table.objective_row(row)) cells.push_back(six(f));
-    cells.push_back(join(mark[i]));
+    for (const double x : stage.table.design(row)) cells.push_back(six_digits(x));
+    for (const double f : stage.table.objective_row(row)) cells.push_back(six_digits(f));
+    cells.push_back(join(labels[i]));
   }
   return headline(problem, stage, front) + aligned(rows);
 }
@@ -71,7 +78,7 @@ Json row_json(const ProblemRecord& problem, const EvaluationTable& table, std::s
   return {{"design", values_by_name(problem.variables, table.design(row))},
           {"objectives", values_by_name(problem.objectives, table.objective_row(row))},
           {"constraints", values_by_name(problem.margins, table.margin_row(row))},
-          {"reports", values_by_name(problem.reports, table.report_row(row))}};
+          {"reports", values_by_name(problem.reports, table.output_row(row))}};
 }
 
 Json front_json(const ProblemRecord& problem, const StageRecord& stage) {
@@ -85,11 +92,11 @@ Json front_json(const ProblemRecord& problem, const StageRecord& stage) {
   if (front.size() == 0) return json;
   const double volume = hypervolume_of(problem, stage, front);
   if (std::isfinite(volume)) json["hypervolume"] = volume;
-  const auto mark = marks(problem, front);
+  const auto labels = point_labels(problem, front);
   for (std::size_t i = 0; i < front.size(); ++i) {
     Json point = {{"point", i + 1}, {"evaluation", record.rows[i]}};
     point.update(row_json(problem, stage.table, static_cast<std::size_t>(record.rows[i])));
-    point["marks"] = mark[i];
+    point["marks"] = labels[i];
     json["points"].push_back(point);
   }
   return json;

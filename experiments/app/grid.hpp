@@ -1,4 +1,4 @@
-// Which voxels a command looks at: --box and --cells.
+// The options --box and --cells, which define the voxel grid of a command.
 #pragma once
 
 #include <array>
@@ -10,24 +10,26 @@
 
 namespace pkm {
 
+/// Values of the options --box and --cells.
 struct GridArguments {
   std::vector<std::string> box, cells;
 };
 
 /// Declares --box and --cells.
-/// @param usual  cells along each axis where neither the command line nor a study says
-void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t usual);
+/// @param default_cells  cells along each axis if neither the command line nor a study specifies them
+void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t default_cells);
 
-/// As many cells along each swept coordinate.
+/// A grid with the same number of cells along each swept coordinate.
 VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells);
 
-/// The box of all swept coordinates that a target reaches under a plan. Throws ConfigError where it does not say.
-Box reached_box(const SurveyPlan& plan, const Target& target);
+/// The box of the swept coordinates that encloses all poses the design can reach. Throws ConfigError if it is unknown.
+Box reachable_box(const WorkspacePlan& plan, const Target& target);
 
-/// Sets cells and box of a plan, which is one of voxels then, what it holds being chosen. Throws ConfigError.
-/// @param most  cells in all
-/// @return by swept coordinate, whether the command or the study gives its range, so that more may lie beyond
-std::array<bool, 3> set_grid(SurveyPlan& plan, const Target& target, const GridArguments& arguments, std::int64_t usual,
-                             double most);
+/// Changes the method of a plan to voxels, with the cells and the box of the command line, else of the study, else the
+/// defaults. The fixed coordinates of the plan must be set before. Throws ConfigError.
+/// @param max_cells  limit of the total number of cells
+/// @return by swept coordinate: whether its range was specified, so that feasible poses may exist beyond it
+std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,
+                             std::int64_t default_cells, double max_cells);
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// What the joints of a mechanism carry, at one state or along a motion, as --reactions and --joint ask for it.
+// The options --reactions and --joint: forces and couples in the joints of a mechanism, at one state or along a motion.
 #pragma once
 
 #include <string>
@@ -9,26 +9,28 @@
 
 namespace pkm {
 
+/// Values of the options --reactions and --joint.
 struct ReactionArguments {
   bool reactions = false;
-  std::vector<std::string> joint;  ///< of these alone; empty: of all
+  std::vector<std::string> joint;  ///< names of the selected joints; empty: all joints
 
   bool any() const { return reactions || !joint.empty(); }
 };
 /// Declares --reactions and --joint.
 void add_reaction_options(CLI::App& command, ReactionArguments& arguments);
 
-/// Throws ConfigError where they are asked for and the mechanism does not have them, saying why.
+/// Throws ConfigError with the reason if joint forces are requested and the mechanism has no model of them.
 void expect_reactions(const Mechanism& mechanism, const ReactionArguments& arguments);
 
-/// Leaves the joints that are asked for. Throws ConfigError for names that no joint has.
-void keep_joints(const ReactionArguments& arguments, Reactions& reactions);
+/// Removes the joints that --joint does not select. Throws ConfigError for an unknown joint.
+void select_joints(const ReactionArguments& arguments, Reactions& reactions);
 
 /// {NAME: {on, force, couple}}
 Json reactions_json(const Reactions& reactions);
 
-void tell_reactions(const Reactions& reactions, Printout& out);
-/// Of a trajectory with reactions the largest and the root mean square of each joint; into out.json["summary"], too.
-void tell_reactions(const Trajectory& trajectory, Printout& out);
+/// Adds the forces and couples at one state to the output.
+void report_reactions(const Reactions& reactions, Printout& out);
+/// Adds the peak and root-mean-square magnitudes along a trajectory to the output and to out.json["summary"].
+void report_reactions(const Trajectory& trajectory, Printout& out);
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// The files of a mechanism's links at a pose that a command writes.
+// The options --stl, --dxf, --urdf and --vtk: files of a mechanism's links at one pose.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 namespace pkm {
 
+/// Names of the requested files; "": not requested.
 struct LinkFiles {
   std::string stl, dxf, urdf, vtk;
   bool force = false;
@@ -14,7 +15,7 @@ struct LinkFiles {
 /// Declares --stl, --dxf, --urdf, --vtk, -o and --force.
 void add_link_files(CLI::App& command, LinkFiles& files);
 
-/// Writes those that are asked for; none where the pose does not assemble. Throws ConfigError.
+/// Writes the requested files; none if the pose does not assemble. Throws ConfigError.
 void write_links(const Target& target, const std::string& mode, const Pose<double>& pose, const LinkFiles& files,
                  Printout& out);
 

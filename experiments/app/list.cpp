@@ -1,9 +1,13 @@
-// `pkmopt list`: the catalogues, and mechanisms that a file describes. The text shows what the JSON holds: a value per
-// line, a table per list.
+// `pkmopt list`: shows the entries of the catalogues, and mechanism files in the same form. The text is generated from
+// the JSON: one line per value, one table per list.
 
 #include <algorithm>
 #include <iostream>
+#include <iterator>
+#include <stdexcept>
 
+#include "engine/config/built_in_mechanisms.hpp"
+#include "engine/core/catalogue.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/target.hpp"
 
@@ -12,10 +16,10 @@ namespace {
 
 struct ListArguments {
   std::string kind, name;
-  bool json = false, markdown = false;
+  bool json = false, markdown = false, file = false;
 };
 
-/// A word that several catalogues know is told once per catalogue.
+/// Prints the entries found, under the name of their catalogue if there are several.
 void print_found(const Json& found) {
   bool first = true;
   for (const auto& [kind, entry] : found.items()) {
@@ -35,7 +39,7 @@ void print_overview(const Json& catalogues, const std::string& program) {
     if (kind == "constraints") std::cout << "  or any objective, with min = .. or max = ..\n";
     first = false;
   }
-  std::cout << "\n'" << program << " list KIND NAME' tells everything of one entry.\n";
+  std::cout << "\n'" << program << " list KIND NAME' shows the details of one entry.\n";
 }
 
 std::vector<std::string> entry_names(const Json& entries) {
@@ -44,24 +48,24 @@ std::vector<std::string> entry_names(const Json& entries) {
   return names;
 }
 
-/// The entry of one catalogue called `name`.
+/// The entry `name` of one catalogue. Throws ConfigError if there is none.
 const Json& find_entry(const Json& entries, const std::string& kind, const std::string& name) {
   for (const auto& entry : entries)
     if (entry["name"] == name) return entry;
   const auto known = entry_names(entries);
   throw ConfigError({"", 0, "list " + kind}, "the unknown name '" + name + "'",
-                    "one of " + join(known) + (kind == "mechanisms" ? ", or a mechanism's file" : ""),
+                    "one of " + join(known) + (kind == "mechanisms" ? ", or a mechanism file" : ""),
                     nearest_name(name, known));
 }
 
-/// Some catalogue has an entry of that name.
-bool known(const Json& catalogues, const std::string& name) {
+/// @return true if a catalogue has an entry of that name
+bool is_known(const Json& catalogues, const std::string& name) {
   return std::ranges::any_of(catalogues, [&name](const Json& entries) {
     return std::ranges::any_of(entries, [&name](const Json& entry) { return entry["name"] == name; });
   });
 }
 
-/// The entries called `word` by their catalogue, where a catalogue's name was expected.
+/// All entries named `word`, by their catalogue. Throws ConfigError if there is none.
 Json find_anywhere(const Json& catalogues, const std::string& word) {
   std::vector<std::string> known;
   Json found = Json::object();
@@ -71,14 +75,30 @@ Json find_anywhere(const Json& catalogues, const std::string& word) {
       if (entry["name"] == word) found[kind] = entry;
   }
   if (!found.empty()) return found;
-  const std::string expected = "one of " + join(known) + ", the name of an entry, or a mechanism's file";
+  const std::string expected = "one of " + join(known) + ", the name of an entry, or a mechanism file";
   for (const auto& [kind, entries] : catalogues.items())
     for (const auto& name : entry_names(entries)) known.push_back(name);
   throw ConfigError({"", 0, "list"}, "the unknown word '" + word + "'", expected, nearest_name(word, known));
 }
 
+/// Prints the file of a mechanism of the catalogue.
+void print_mechanism_file(const std::string& name, const Session& session) {
+  const auto known = [](const auto& entry) { return entry.name(); };
+  std::vector<std::string> names;
+  std::ranges::transform(session.catalogues.mechanisms, std::back_inserter(names), known);
+  if (!contains(names, name))
+    throw ConfigError({"", 0, "--file"}, "'" + name + "', which is no mechanism of the catalogue",
+                      "one of " + join(names), nearest_name(name, names));
+  try {
+    std::cout << mechanism_file_text(name);
+  } catch (const std::invalid_argument&) {
+    throw ConfigError({"", 0, "--file"}, "mechanism " + name + " is a class of this program and has no file");
+  }
+}
+
 void list(const Session& session, const ListArguments& arguments) {
-  const auto& [kind, name, json, markdown] = arguments;
+  const auto& [kind, name, json, markdown, file] = arguments;
+  if (file) return print_mechanism_file(name.empty() ? kind : name, session);
   const Json all = catalogues_json(session.catalogues);
   if (markdown) {
     std::cout << catalogues_markdown(all);
@@ -87,15 +107,15 @@ void list(const Session& session, const ListArguments& arguments) {
     json ? print_json(listed) : print_overview(listed, session.program);
   } else {
     Json found = Json::object();
-    const auto described = [&session](const std::string& file) {
+    const auto json_of_file = [&session](const std::string& file) {
       return mechanism_json(*find_mechanism(session.catalogues, file), session.catalogues);
     };
-    if (kind == "mechanisms" && !known(all, name) && may_be_file(name))
-      found[kind] = described(name);
+    if (kind == "mechanisms" && !is_known(all, name) && looks_like_file(name))
+      found[kind] = json_of_file(name);
     else if (all.contains(kind))
       found[kind] = find_entry(all[kind], kind, name);
-    else if (name.empty() && !known(all, kind) && may_be_file(kind))
-      found["mechanisms"] = described(kind);
+    else if (name.empty() && !is_known(all, kind) && looks_like_file(kind))
+      found["mechanisms"] = json_of_file(kind);
     else
       found = find_anywhere(all, kind);
     json ? print_json(found.size() == 1 ? found.front() : found) : print_found(found);
@@ -106,18 +126,21 @@ void list(const Session& session, const ListArguments& arguments) {
 
 void add_list(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ListArguments>(
-      app, "list", "What a study may name: mechanisms, objectives, constraints, optimisers.",
+      app, "list", "List the mechanisms, objectives, constraints and optimisers that a study can use.",
       "Example: pkmopt list mechanisms 4ppa-2par", [&session](const ListArguments& given) { list(session, given); });
   add_option(command, "KIND", arguments.kind,
-             "mechanisms, objectives, constraints or optimisers (default: all); or a name or a mechanism's file");
-  add_option(command, "NAME", arguments.name,
-             "One entry, with everything known of it: parameters, limits, options, ...");
-  command.add_flag("--json", arguments.json, "Print one JSON object, with everything known of each entry");
+             "mechanisms, objectives, constraints or optimisers (default: all), a name, or a mechanism file");
+  add_option(command, "NAME", arguments.name, "Show the details of one entry: parameters, limits, options, ..");
+  command.add_flag("--json", arguments.json, "Print one JSON object with the details of all entries");
   command
       .add_flag("--markdown", arguments.markdown,
-                "Print everything known of all entries, as it stands in experiments/catalogue.md")
+                "Print the details of all entries in Markdown, as in experiments/catalogue.md")
       ->excludes("KIND")
       ->excludes("--json");
+  command.add_flag("--file", arguments.file, "Print the file of a mechanism of the catalogue, a start for your own")
+      ->needs("KIND")
+      ->excludes("--json")
+      ->excludes("--markdown");
 }
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// pkmopt: the command-line program.
+// Entry point of the command-line program pkmopt.
 
 #include "experiments/app/program.hpp"
 

@@ -1,4 +1,5 @@
-// `pkmopt manual`: manual pages in man's own language, from the same declarations as --help.
+// `pkmopt manual`: generates manual pages in roff, the format of man(1), from the command declarations that also give
+// --help.
 
 #include <algorithm>
 #include <filesystem>
@@ -6,19 +7,20 @@
 #include <iostream>
 #include <sstream>
 
-#include "experiments/app/declared.hpp"
+#include "experiments/app/declared_commands.hpp"
 #include "experiments/app/version.hpp"
 
 namespace pkm {
 namespace {
 
-/// Text for man: what it would take for a command, and hyphens that are to be minus signs.
+/// Escapes text for roff: dots and apostrophes at the beginning of a line, which would start a request, backslashes,
+/// and hyphens, which are printed as minus signs so that options can be copied.
 std::string escaped(const std::string& text) {
   std::string result;
-  bool starts = true;  // a line
+  bool at_line_start = true;
   for (const char c : text) {
-    if (starts && (c == '.' || c == '\'')) result += "\\&";
-    starts = c == '\n';
+    if (at_line_start && (c == '.' || c == '\'')) result += "\\&";
+    at_line_start = c == '\n';
     result += c == '\\' ? "\\e" : c == '-' ? "\\-" : std::string(1, c);
   }
   return result;
@@ -36,14 +38,14 @@ void print_heading(std::ostream& out, const std::string& page, const std::string
 
 void print_options(std::ostream& out, const std::vector<DeclaredOption>& options) {
   for (const DeclaredOption& option : options) {
-    out << ".TP\n.B " << escaped((option.letter.empty() ? "" : option.letter + ", ") + option.name)
+    out << ".TP\n.B " << escaped((option.short_name.empty() ? "" : option.short_name + ", ") + option.name)
         << (option.type.empty() || option.type == option.name ? "" : " ")
         << (option.type == option.name ? "" : escaped(option.type)) << '\n'
         << escaped(option.meaning) << (option.required ? " (required)" : "") << '\n';
   }
 }
 
-/// Lines of a footer; what follows "Example:" as it is typed.
+/// Prints the lines of a footer; a line that begins with "Example:" becomes a section with a verbatim block.
 void print_footer(std::ostream& out, const std::string& footer) {
   std::istringstream lines(footer);
   for (std::string line; std::getline(lines, line);) {
@@ -113,8 +115,8 @@ void add_manual(CLI::App& app, Session& session) {
     std::string command, into;
   };
   auto [command, a] = add_command<ManualArguments>(
-      app, "manual", "A manual page, as man reads it.",
-      "Example: pkmopt manual run | man -l -\nPackages install them: 'man pkmopt', 'man pkmopt-run'.",
+      app, "manual", "Print a manual page in the format of man(1).",
+      "Example: pkmopt manual run | man -l -\nInstalled packages contain these pages: 'man pkmopt', 'man pkmopt-run'.",
       [&session](const ManualArguments& arguments) {
         const std::vector<DeclaredCommand> commands = declared_commands(session);
         if (arguments.into.empty())
@@ -122,7 +124,8 @@ void add_manual(CLI::App& app, Session& session) {
         else
           write_pages(arguments.into, commands, session.program);
       });
-  auto* const one = add_option(command, "COMMAND", a.command, "Of which command (default: of the program)");
+  auto* const one =
+      add_option(command, "COMMAND", a.command, "Command whose page to print (default: the page of the program)");
   add_option(command, "-o,--into DIR", a.into, "Write all pages into this folder")->excludes(one);
 }
 

@@ -7,30 +7,21 @@
 #include "engine/core/unit.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/joint_forces.hpp"
+#include "experiments/app/motion_inputs.hpp"
 
 namespace pkm {
 namespace {
 
-/// The auxiliary chain at a sample, NaN for what does not exist; empty where there is no chain.
-NamedValues chain_values(const AuxiliaryChain* chain, const TrajectoryPoint& p) {
-  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+/// The inputs with their rates and accelerations, then the quantities; undefined values are NaN.
+NamedValues input_and_quantity_values(const MechanismInfo& info, const TrajectoryPoint& p) {
   NamedValues values;
-  if (!p.chain) return values;
-  const Turning &in = p.motion.input, out = p.chain->turns ? p.chain->output : Turning{kAbsent, kAbsent, kAbsent};
-  const auto add = [&values](const std::string& name, const Turning& turning) {
-    values.emplace_back(name, turning.angle);
-    values.emplace_back(name + "_speed", turning.speed);
-    values.emplace_back(name + "_acceleration", turning.acceleration);
-  };
-  add(chain->input(), in);
-  add(chain->output(), out);
-  values.insert(values.end(), p.chain->angles.begin(), p.chain->angles.end());
-  const auto add_axes = [&](const std::string& name, const Vector<double, 3>& vector) {
-    for (std::size_t k = 0; k < 3; ++k)
-      values.emplace_back(name + "_" + "xyz"[k], p.chain->turns ? vector[k] : kAbsent);
-  };
-  add_axes("omega", p.chain->spin.velocity);
-  add_axes("alpha", p.chain->spin.acceleration);
+  for (std::size_t i = 0; i < p.motion.inputs.size(); ++i) {
+    const auto& [value, rate, acceleration] = p.motion.inputs[i];
+    const std::string& name = info.inputs[i].name;
+    values.insert(values.end(), {{name, value}, {name + "_speed", rate}, {name + "_acceleration", acceleration}});
+  }
+  const NamedValues quantities = pose_quantities_of(info, p.quantities);
+  values.insert(values.end(), quantities.begin(), quantities.end());
   return values;
 }
 
@@ -38,7 +29,7 @@ bool has_joint_forces(const TrajectoryPoint& p) { return p.reactions && p.reacti
 
 }  // namespace
 
-CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
+CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajectory) {
   const MechanismInfo& info = mechanism.info();
   std::vector<std::string> columns = {"time"};
   const auto add_names = [&](const Axes& axes, const std::string& suffix) {
@@ -53,14 +44,14 @@ CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
   }
   if (mechanism.drive_trains())
     for (const char* suffix : {"_motor_torque", "_motor_speed"}) add_names(info.joints, suffix);
-  const auto with_chain = std::ranges::find_if(trajectory.points, [](const auto& p) { return p.chain.has_value(); });
-  NamedValues chain;
-  if (with_chain != trajectory.points.end()) chain = chain_values(mechanism.chain(), *with_chain);
-  for (const auto& [name, value] : chain) columns.push_back(name);
+  const auto with_values = std::ranges::find_if(trajectory.points, [](const auto& p) { return !p.quantities.empty(); });
+  NamedValues named;
+  if (with_values != trajectory.points.end()) named = input_and_quantity_values(info, *with_values);
+  for (const auto& [name, value] : named) columns.push_back(name);
   const auto with_joints = std::ranges::find_if(trajectory.points, has_joint_forces);
-  const auto carrying =
+  const auto reactions =
       with_joints == trajectory.points.end() ? std::vector<JointReaction>() : with_joints->reactions->joints;
-  for (const JointReaction& joint : carrying)
+  for (const JointReaction& joint : reactions)
     for (const char* component : {"_Fx", "_Fy", "_Fz", "_Mx", "_My", "_Mz"}) columns.push_back(joint.name + component);
   CsvTable table(columns);
   const auto add = [&](const std::optional<AxisVector<double>>& values) {
@@ -83,10 +74,12 @@ CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
       add(p.torques);
       add(p.motor_speeds);
     }
-    for (const auto& [name, value] : chain_values(mechanism.chain(), p)) table.add(value);
-    if (!p.chain) table.add_empty(chain.size());
+    if (p.quantities.empty())
+      table.add_empty(named.size());
+    else
+      for (const auto& [name, value] : input_and_quantity_values(info, p)) table.add(value);
     if (!has_joint_forces(p)) {
-      table.add_empty(6 * carrying.size());
+      table.add_empty(6 * reactions.size());
       continue;
     }
     for (const JointReaction& joint : p.reactions->joints)
@@ -117,11 +110,11 @@ Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
     json["motor_speed"] = axes_json(info.joints, p.motor_speeds);
   }
   if (p.reactions) json["reactions"] = has_joint_forces(p) ? reactions_json(*p.reactions) : Json();
-  if (p.chain) json["chain"] = values_by_name(chain_values(mechanism.chain(), p));
+  if (!info.quantities.empty()) json["quantities"] = values_by_name(input_and_quantity_values(info, p));
   return json;
 }
 
-std::string place_of(const Trajectory& trajectory, const TrajectoryPoint& point) {
+std::string sample_location(const Trajectory& trajectory, const TrajectoryPoint& point) {
   return " at t = " + with_unit(point.motion.time, "s") + " (sample " +
          std::to_string(&point - trajectory.points.data() + 1) + ")";
 }

@@ -1,4 +1,4 @@
-// The samples of a motion: as a table, as JSON, and by their places in messages.
+// The samples of a trajectory as a CSV table and as JSON objects, and the text that locates a sample in a message.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace pkm {
 
-/// A row for each; what does not exist is an empty cell.
-CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory);
+/// One row per sample, in SI units; undefined values are empty cells.
+CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajectory);
 
 Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& point);
 
-/// " at t = 0.5 s (sample 51)", counted from 1.
-/// @param point  one of the trajectory's
-std::string place_of(const Trajectory& trajectory, const TrajectoryPoint& point);
+/// " at t = 0.5 s (sample 51)"; samples are counted from 1.
+/// @param point  an element of trajectory.points
+std::string sample_location(const Trajectory& trajectory, const TrajectoryPoint& point);
 
 }  // namespace pkm

@@ -8,15 +8,14 @@
 namespace pkm {
 namespace {
 
-/// A file that is not there is told by the attempt to read it.
-bool is_file(const std::string& file, const std::string& ending) {
-  std::error_code unseen;
-  return file.ends_with(ending) && std::filesystem::is_regular_file(file, unseen);
+/// A missing file is reported later, by the attempt to read it.
+bool is_file(const std::string& file, const std::string& extension) {
+  std::error_code ignored;
+  return file.ends_with(extension) && std::filesystem::is_regular_file(file, ignored);
 }
 
-bool is_mechanism(const std::string& word, const Session& session) {
-  return std::ranges::any_of(session.catalogues.mechanisms,
-                             [&](const auto& known) { return known->info().name == word; });
+bool is_built_in_mechanism(const std::string& word, const Session& session) {
+  return std::ranges::any_of(session.catalogues.mechanisms, [&](const auto& known) { return known.name() == word; });
 }
 
 }  // namespace
@@ -41,25 +40,25 @@ std::string next_step(const Session& session, const std::vector<std::string>& wo
   return "next: " + command_text(session, words) + '\n';
 }
 
-void expect_file(const std::string& word, const std::string& wanted, const std::string& instead,
+void expect_file(const std::string& word, const std::string& expected, const std::string& alternative,
                  const Session& session) {
-  std::error_code unseen;
-  if (is_mechanism(word, session) && !std::filesystem::exists(word, unseen))
-    throw ConfigError({}, "the mechanism '" + word + "'", wanted,
-                      session.program + ' ' + instead + ' ' + quoted(file_argument(word)));
+  std::error_code ignored;
+  if (is_built_in_mechanism(word, session) && !std::filesystem::exists(word, ignored))
+    throw ConfigError({}, "the mechanism '" + word + "'", expected,
+                      session.program + ' ' + alternative + ' ' + quoted(file_argument(word)));
 }
 
-void expect_study_file(const std::string& file, const std::string& instead, const Session& session) {
+void expect_study_file(const std::string& file, const std::string& alternative, const Session& session) {
   expect_file(file, "a study file, F.h5", "list mechanisms", session);
   if (is_file(file, ".toml"))
     throw ConfigError({file, 0, ""}, "a file in TOML", "a study file, F.h5, as '" + session.program + " run' writes it",
-                      session.program + ' ' + instead + ' ' + quoted(file_argument(file)));
+                      session.program + ' ' + alternative + ' ' + quoted(file_argument(file)));
 }
 
-void expect_toml(const std::string& file, const std::string& instead, const Session& session) {
+void expect_toml(const std::string& file, const std::string& alternative, const Session& session) {
   if (is_file(file, ".h5"))
     throw ConfigError({file, 0, ""}, "a study file", "a study or a mechanism in TOML",
-                      session.program + ' ' + instead + ' ' + quoted(file_argument(file)));
+                      session.program + ' ' + alternative + ' ' + quoted(file_argument(file)));
 }
 
 }  // namespace pkm

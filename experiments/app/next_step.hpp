@@ -1,4 +1,4 @@
-// What a user types next, or meant to type.
+// Suggests the next command to type, and the command that was probably meant where a file of the wrong kind is given.
 #pragma once
 
 #include <string>
@@ -8,27 +8,28 @@
 
 namespace pkm {
 
-/// A word as a shell takes it, in quotes where it needs them.
+/// Quotes a word for a POSIX shell, if it needs quotes.
 std::string quoted(const std::string& word);
 
-/// The name of a file as an argument: "./-x.h5" for one that would be taken for an option.
+/// A file name as a command-line argument: "./-x.h5" for a name that would be parsed as an option.
 std::string file_argument(const std::string& file);
 
-/// "pkmopt run a.toml": the program with words that are quoted where they need it.
+/// "pkmopt run a.toml": a command line of this program, quoted for the shell.
 std::string command_text(const Session& session, const std::vector<std::string>& words);
 
 /// "next: pkmopt report a.h5\n"
 std::string next_step(const Session& session, const std::vector<std::string>& words);
 
-/// Throws ConfigError for the name of a built-in mechanism where there has to be a file or a kind of file.
-/// @param wanted   what is expected
-/// @param instead  the command that takes the name, without the program's name
-void expect_file(const std::string& word, const std::string& wanted, const std::string& instead,
+/// Throws ConfigError if `word` is the name of a built-in mechanism and not of a file.
+/// @param expected     what the command expects, for the message
+/// @param alternative  the command that accepts the name, without the program's name
+void expect_file(const std::string& word, const std::string& expected, const std::string& alternative,
                  const Session& session);
-/// Throws ConfigError for a file in TOML where a study file is read.
-/// @param instead  the command that takes it, without the program's name and the file's
-void expect_study_file(const std::string& file, const std::string& instead, const Session& session);
-/// Throws ConfigError for a study file where one in TOML is read.
-void expect_toml(const std::string& file, const std::string& instead, const Session& session);
+/// Throws ConfigError if `file` is a TOML file or the name of a mechanism, for a command that reads a study file.
+/// @param alternative  the command that accepts the TOML file, without the names of program and file
+void expect_study_file(const std::string& file, const std::string& alternative, const Session& session);
+/// Throws ConfigError if `file` is a study file, for a command that reads a TOML file.
+/// @param alternative  the command that accepts the study file
+void expect_toml(const std::string& file, const std::string& alternative, const Session& session);
 
 }  // namespace pkm

@@ -1,22 +1,22 @@
-// The picture of a section, once as data: what SVG and PNG draw.
+// Vector drawing of a planar workspace slice, from which the SVG and the PNG file are rendered.
 #pragma once
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "experiments/app/section.hpp"
+#include "experiments/app/slice_outline.hpp"
 
 namespace pkm {
 
-/// Places are in pixels from the upper left corner. What is filled is drawn over the lines, the frame over both.
+/// Coordinates are pixels from the upper left corner. Drawing order: grid and texts, outline, frame.
 struct Picture {
   enum class Anchor { begin, middle, end };
   struct Text {
-    double x, y;  ///< of the anchor, on the line that letters stand on
-    std::string words;
+    double x, y;  ///< position of the anchor, on the baseline
+    std::string content;
     Anchor anchor = Anchor::begin;
-    bool bold = false, upwards = false;
+    bool bold = false, vertical = false;  ///< vertical: reads from bottom to top
   };
   struct Line {
     double x1, y1, x2, y2;
@@ -25,17 +25,18 @@ struct Picture {
   double width = 0, height = 0;
   std::vector<Text> texts;
   std::vector<Line> grid;
-  std::vector<Section::Loop> section;  ///< closed; what lies within an odd number of them is filled
-  std::array<double, 4> frame{};       ///< left, top, width, height
+  std::vector<SliceOutline::Loop> outline;  ///< closed, filled by the even-odd rule
+  std::array<double, 4> frame{};            ///< left, top, width, height
 };
 
-/// Lengths in mm and angles in degrees.
-/// @param lines  that stand above it, the title first
-Picture picture_of(const Section& section, const std::vector<std::string>& lines);
+/// Draws a slice with axes labelled in mm or degrees.
+/// @param lines  text above the drawing, the title first
+Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& lines);
 
+/// Contents of an SVG file.
 std::string svg_file(const Picture& picture);
 
-/// Two dots a pixel each way, so that it may be printed.
+/// Contents of a PNG file, with two dots per pixel in both directions for printing.
 std::string png_file(const Picture& picture);
 
 }  // namespace pkm

@@ -12,8 +12,8 @@ std::string text_element(const Picture::Text& text) {
   if (text.anchor == Picture::Anchor::middle) style += " text-anchor=\"middle\"";
   if (text.anchor == Picture::Anchor::end) style += " text-anchor=\"end\"";
   if (text.bold) style += " font-weight=\"bold\"";
-  if (text.upwards) style += " transform=\"rotate(-90 " + x + " " + y + ")\"";
-  return "<text x=\"" + x + "\" y=\"" + y + "\"" + style + ">" + xml_text(text.words) + "</text>\n";
+  if (text.vertical) style += " transform=\"rotate(-90 " + x + " " + y + ")\"";
+  return "<text x=\"" + x + "\" y=\"" + y + "\"" + style + ">" + xml_text(text.content) + "</text>\n";
 }
 
 }  // namespace
@@ -27,8 +27,8 @@ std::string svg_file(const Picture& picture) {
     svg += "<path class=\"grid\" d=\"M" + pixels(line.x1) + " " + pixels(line.y1) + "L" + pixels(line.x2) + " " +
            pixels(line.y2) + "\"/>\n";
   for (const Picture::Text& text : picture.texts) svg += text_element(text);
-  svg += "<path class=\"section\" fill=\"#4a7fb5\" fill-opacity=\"0.45\" fill-rule=\"evenodd\" stroke=\"#1f4e79\" d=\"";
-  for (const Section::Loop& loop : picture.section) {
+  svg += "<path class=\"outline\" fill=\"#4a7fb5\" fill-opacity=\"0.45\" fill-rule=\"evenodd\" stroke=\"#1f4e79\" d=\"";
+  for (const SliceOutline::Loop& loop : picture.outline) {
     for (std::size_t k = 0; k < loop.size(); ++k)
       svg += (k == 0 ? "M" : "L") + pixels(loop[k][0]) + " " + pixels(loop[k][1]);
     svg += "Z";

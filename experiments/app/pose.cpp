@@ -1,4 +1,5 @@
-// `pkmopt pose`: inverse kinematics, Jacobians and limits at one pose, joints' speeds and accelerations of a motion.
+// `pkmopt pose`: inverse kinematics, Jacobians and limits at one pose, and the speeds and accelerations of the joints
+// for given rates of the coordinates.
 
 #include <algorithm>
 #include <cmath>
@@ -7,20 +8,21 @@
 #include "engine/math/satisfied.hpp"
 #include "engine/problem/no_conditioning.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/chain_at.hpp"
 #include "experiments/app/link_files.hpp"
+#include "experiments/app/motion_inputs.hpp"
 #include "experiments/app/tool_error.hpp"
 
 namespace pkm {
 namespace {
 
-struct PoseArguments : DesignArguments, MotionArguments, ChainArguments, LinkFiles {
+struct PoseArguments : DesignArguments, MotionArguments, InputArguments, LinkFiles {
   std::vector<std::string> joint_error;
 };
 
-/// The joints with their speeds and accelerations, and the influence coefficients that these come from.
-void tell_joints(const Target& target, const std::string& mode, const MotionSample& at, const PoseReport& report,
-                 Printout& out) {
+/// Reports the joint positions and, if rates are given, the speeds and accelerations of the joints; also the
+/// second-order influence coefficients H, in JSON only.
+void report_joints(const Target& target, const std::string& mode, const MotionSample& at, const PoseReport& report,
+                   Printout& out) {
   const MechanismInfo& info = target.info();
   std::vector<Row> rows;
   for (std::size_t i = 0; report.joints && i < info.joints.size(); ++i)
@@ -34,19 +36,19 @@ void tell_joints(const Target& target, const std::string& mode, const MotionSamp
       out.json["joint_speeds"] = vector_json(speed);
       out.json["joint_accelerations"] = vector_json(acceleration);
       const auto moves = [](double rate) { return rate != 0; };
-      const bool told = std::ranges::any_of(at.velocity, moves) || std::ranges::any_of(at.acceleration, moves);
-      for (std::size_t i = 0; told && i < rows.size(); ++i) {
+      const bool rates_given = std::ranges::any_of(at.velocity, moves) || std::ranges::any_of(at.acceleration, moves);
+      for (std::size_t i = 0; rates_given && i < rows.size(); ++i) {
         const std::string& unit = info.joints[i].unit;
         rows[i].insert(rows[i].end(), {number(speed[i], unit + "/s"), number(acceleration[i], unit + "/s^2")});
       }
     }
   }
-  out.section("joints", rows);
+  out.add_table("joints", rows);
 }
 
-const std::vector<std::string> kTwist = {"vx", "vy", "vz", "wx", "wy", "wz"};
+const std::vector<std::string> kTwistComponents = {"vx", "vy", "vz", "wx", "wy", "wz"};
 
-/// Matrices with the names of their rows and columns.
+/// Adds the matrices to the JSON output, with the names of their rows and columns.
 void add_jacobians(const MechanismInfo& info, const PoseReport& report,
                    const std::optional<AxisMatrix<double>>& J_twist, Json& json) {
   json.update({{"J", matrix_json(report.J)},
@@ -55,10 +57,10 @@ void add_jacobians(const MechanismInfo& info, const PoseReport& report,
                {"J_columns_are", "coordinate rates"},
                {"J_twist", matrix_json(J_twist)},
                {"J_twist_rows", names_of(info.joints)},
-               {"J_twist_columns", kTwist},
+               {"J_twist_columns", kTwistComponents},
                {"J_twist_columns_are", "twist"},
                {"T", matrix_json(report.T)},
-               {"T_rows", kTwist},
+               {"T_rows", kTwistComponents},
                {"T_columns", names_of(info.coordinates)},
                {"Jq", matrix_json(report.Jq)},
                {"G", matrix_json(report.G)},
@@ -66,7 +68,7 @@ void add_jacobians(const MechanismInfo& info, const PoseReport& report,
                {"det_G", json_or_null(report.det_G)}});
 }
 
-/// Whether each rate of a coordinate is one component of the twist.
+/// Whether each coordinate rate is a component of the twist, so that T contains only zeros and ones.
 bool is_twist_of_rates(const AxisMatrix<double>& T) {
   for (std::size_t j = 0; j < T.cols(); ++j) {
     std::size_t ones = 0, zeros = 0;
@@ -79,10 +81,10 @@ bool is_twist_of_rates(const AxisMatrix<double>& T) {
   return true;
 }
 
-/// Matrices that the pose has, where it has them.
+/// Prints the matrices that are defined for the mechanism.
 void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<double>>& J_twist, Printout& out) {
   const auto print = [&out](const std::string& title, const std::optional<AxisMatrix<double>>& matrix) {
-    out.text += matrix ? matrix_text(title, *matrix) : '\n' + title + ": does not exist\n";
+    out.text += matrix ? matrix_text(title, *matrix) : '\n' + title + ": undefined at this pose\n";
   };
   if (report.G) {
     print("Jq, where Jq qdot = G V", report.Jq);
@@ -99,24 +101,24 @@ void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<do
 std::string pose(const Target& target, const PoseArguments& arguments, Printout& out) {
   const Mechanism& mechanism = *target.mechanism;
   const MechanismInfo& info = mechanism.info();
-  const std::string mode = known_mode(info, arguments);
-  const MotionSample at = parse_motion(mechanism, arguments);
+  const std::string mode = parse_mode(info, arguments);
+  MotionSample at = parse_motion(mechanism, arguments);
+  set_inputs(mechanism, arguments, at);
   if (!mechanism.velocities() && !(arguments.velocity.empty() && arguments.acceleration.empty()))
-    throw ConfigError({}, "mechanism " + info.name + " has no influence coefficients, so no speeds of joints");
-  const auto chain = chain_at(target, arguments, at);
+    throw ConfigError({}, "mechanism " + info.name + " has no influence coefficients, so joint speeds are unknown");
   const PoseReport report = mechanism.inspect(target.parameters, at.pose, mode, target.limits);
 
-  out.say("mechanism", info.name);
-  out.say("mode", mode);
-  say_pose(info, at.pose, report, out);
+  out.add("mechanism", info.name);
+  out.add("mode", mode);
+  report_pose(info, at.pose, report, out);
   if (report.assembles && !report.feasible && !report.reason.empty()) out.head.back()[1] += ": " + report.reason;
   Json& json = out.json;
   json["joints"] = axes_json(info.joints, report.joints);
   const auto J_twist =
       report.J && report.T ? twist_jacobian(*report.J, *report.T) : std::optional<AxisMatrix<double>>();
   add_jacobians(info, report, J_twist, json);
-  tell_joints(target, mode, at, report, out);
-  if (!arguments.joint_error.empty()) tell_tool_error(target, mode, at, report.T, arguments.joint_error, out);
+  report_joints(target, mode, at, report, out);
+  if (!arguments.joint_error.empty()) report_tool_error(target, mode, at, report.T, arguments.joint_error, out);
   if (report.assembles) print_jacobians(report, J_twist, out);
 
   std::vector<Row> indices, margins;
@@ -131,43 +133,42 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
   if (undefined.empty() && report.J && !report.conditioning)
     undefined = "the Jacobian is infinite, or a characteristic length of this design is not positive";
   if (!undefined.empty()) indices.push_back({"conditioning", "none: " + undefined});
-  out.section("indices", indices);
+  out.add_table("indices", indices);
   json["conditioning"] = json_or_null(report.conditioning);
   if (!undefined.empty()) json["why_no_conditioning"] = undefined;
   json["indices"] = values_by_name(report.indices);
 
-  NamedValues angles = report.angles;
-  if (chain) angles.insert(angles.end(), chain->report.angles.begin(), chain->report.angles.end());
-  json["angles"] = values_by_name(angles);
-  out.section("angles and lengths (rad, m)", rows_of(angles));
-  if (chain) tell_chain(*mechanism.chain(), *chain, out);
+  json["angles"] = values_by_name(report.angles);
+  out.add_table("angles and lengths (rad, m)", value_rows(report.angles));
+  report_quantities(info, at, mechanism.quantities(target.parameters, mode, target.limits, at), out);
   for (const auto& [name, value] : report.margins)
-    margins.push_back({name, number(value), std::isnan(value) ? "" : is_satisfied(value) ? "holds" : "broken"});
+    margins.push_back({name, number(value), std::isnan(value) ? "" : is_satisfied(value) ? "satisfied" : "violated"});
   json["margins"] = values_by_name(report.margins);
-  out.section("margins (>= 0 holds)", margins);
+  out.add_table("margins (satisfied if >= 0)", margins);
   write_links(target, mode, at.pose, arguments, out);
-  return no_assembly(mode, report);
+  return assembly_error(mode, report);
 }
 
 }  // namespace
 
 void add_pose(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<PoseArguments>(
-      app, session, "pose", "One pose: joints, Jacobians, singularity indices, limits.",
-      "The limits are those of the study; a bare mechanism has none but its design's. A pose that breaks a limit is\n"
-      "computed all the same (exit code 0); one that does not assemble gives its reason and exit code 1.\n"
+      app, session, "pose", "Compute joints, Jacobians, singularity indices and limits at one pose.",
+      "Limits are those of the study; without a study, only those that follow from the design, such as joint ranges.\n"
+      "A pose that violates a limit is still evaluated (exit code 0). If the pose cannot be assembled, the reason is\n"
+      "printed and the exit code is 1.\n"
       "Example: pkmopt pose 4ppa-2par --at x=0.25,y=0.85,z=-0.8,theta=30deg",
       pose);
   add_list_option(command, "--at", arguments.at, "The pose: every coordinate")->required();
   add_mode_options(command, arguments);
-  add_list_option(command, "--velocity", arguments.velocity,
-                  "Rates of the coordinates, and of an auxiliary chain's input; 0 where not given");
-  add_list_option(command, "--acceleration", arguments.acceleration, "Accelerations of the same");
+  add_list_option(command, "--velocity", arguments.velocity, "Rates of the coordinates and of the inputs; default: 0");
+  add_list_option(command, "--acceleration", arguments.acceleration,
+                  "Accelerations of the same coordinates; default: 0");
   add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
-             "Errors of the joints, as 10um of all, or by name: gives the tool's, to first order")
+             "Errors of the joints, 10um for all or by name: print the first-order error of the tool")
       ->allow_extra_args(false);
   add_link_files(command, arguments);
-  add_chain_options(command, arguments);
+  add_input_option(command, arguments);
 }
 
 }  // namespace pkm

@@ -27,10 +27,10 @@ std::string number(double value, std::string_view unit) {
 
 std::string position(double value, std::string_view unit) { return number(value, unit) + in_degrees(value, unit); }
 
-Step handy(const std::string& unit) {
-  if (unit == "m") return {1e-3, "mm"};
-  if (unit == "rad") return {std::numbers::pi / 180, "deg"};
-  return {1, unit};
+DisplayUnit display_unit(const std::string& si_unit) {
+  if (si_unit == "m") return {1e-3, "mm"};
+  if (si_unit == "rad") return {std::numbers::pi / 180, "deg"};
+  return {1, si_unit};
 }
 
 std::string xml_text(const std::string& text) {
@@ -41,24 +41,24 @@ std::string xml_text(const std::string& text) {
 }
 
 void print_json(const Json& json) {
-  // Names and file names may hold bytes that are no UTF-8; JSON may not. What would steer a terminal is within strings,
-  // where JSON has escapes of its own.
+  // Names and file names may contain bytes that are not UTF-8, which JSON forbids: they are replaced. If strings
+  // contain control characters that JSON permits, all characters outside ASCII are escaped.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
   const bool plain = printable(text, "\n") == text;
   std::cout << (plain ? text : json.dump(2, ' ', true, Json::error_handler_t::replace)) << '\n';
 }
 
-void Printout::say(const std::string& name, const Json& value, const std::string& words) {
+void Printout::add(const std::string& name, const Json& value, const std::string& words) {
   json[name] = value;
   head.push_back({name, words});
 }
 
-void Printout::section(const std::string& title, const std::vector<Row>& rows) {
+void Printout::add_table(const std::string& title, const std::vector<Row>& rows) {
   if (!rows.empty()) text += '\n' + title + '\n' + aligned(rows);
 }
 
 void Printout::print() const {
-  if (for_programs)
+  if (as_json)
     print_json(json);
   else
     std::cout << aligned(head) << text;
@@ -70,20 +70,20 @@ Json values_by_name(const std::vector<std::pair<std::string, double>>& values) {
   return object;
 }
 
-std::vector<Row> rows_of(const std::vector<std::pair<std::string, double>>& values) {
+std::vector<Row> value_rows(const std::vector<std::pair<std::string, double>>& values) {
   std::vector<Row> rows;
   for (const auto& [name, value] : values) rows.push_back({name, number(value)});
   return rows;
 }
 
 Json to_json(const OptionValue& value) {
-  const auto convert = [](const auto& held) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(held)>, NamedSettings>) {
+  const auto convert = [](const auto& item) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(item)>, NamedSettings>) {
       Json json = Json::object();
-      for (const auto& [name, setting] : held) json[name] = std::visit([](const auto& v) { return Json(v); }, setting);
+      for (const auto& [name, setting] : item) json[name] = std::visit([](const auto& v) { return Json(v); }, setting);
       return json;
     } else {
-      return Json(held);
+      return Json(item);
     }
   };
   return std::visit(convert, value);

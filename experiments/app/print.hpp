@@ -1,4 +1,4 @@
-// Printing of results: numbers with a useful number of digits, aligned columns, JSON.
+// Output of results as text and as JSON: formatted numbers, aligned tables.
 #pragma once
 
 #include <optional>
@@ -15,47 +15,49 @@
 
 namespace pkm {
 
-/// Keeps the order in which keys are added. Numbers that are not finite are printed as null.
+/// JSON with keys in the order of insertion; numbers that are not finite are printed as null.
 using Json = nlohmann::ordered_json;
 using Row = std::vector<std::string>;
 
 /// A number with its unit, 12 significant digits; "not computed" for NaN.
 std::string number(double value, std::string_view unit = "1");
-/// The same of a coordinate or a joint, which in degrees is easier to read: "0.349065850399 rad (20 deg)".
+/// A value of a coordinate or a joint; an angle also in degrees: "0.349065850399 rad (20 deg)".
 std::string position(double value, std::string_view unit);
 
-/// "3.47 rad/m" -> per mm for lengths, per degree for angles: what an engineer thinks in.
-struct Step {
-  double size;
-  std::string unit;
+/// Unit in which people read derivatives with respect to a quantity: mm for m, deg for rad, otherwise the SI unit
+/// itself.
+struct DisplayUnit {
+  double size;  ///< in SI
+  std::string name;
 };
-Step handy(const std::string& unit);
+DisplayUnit display_unit(const std::string& si_unit);
 
-/// As std::printf has it; "-" for NaN.
+/// A number formatted by std::printf; "-" for NaN.
 std::string formatted(const char* format, double value);
 /// Ten significant digits; "-" for NaN.
 inline std::string digits(double value) { return formatted("%.10g", value); }
 
-/// Text for an element or an attribute of XML.
+/// Escapes text for an element or an attribute of XML.
 std::string xml_text(const std::string& text);
 
 void print_json(const Json& json);
 
-/// What a command tells, each thing said once: as text for people, or as one JSON object for programs.
+/// Collects the output of a command, which is printed as text for people or as one JSON object for programs.
 struct Printout {
-  bool for_programs = false;
-  std::vector<Row> head = {};  ///< what the text begins with
-  std::string text = {};       ///< what follows
+  bool as_json = false;
+  std::vector<Row> head = {};  ///< first lines of the text: names and values
+  std::string text = {};       ///< the rest of the text
   Json json = Json::object();
 
-  void say(const std::string& name, const std::string& word) { say(name, word, word); }
-  void say(const std::string& name, const Json& value, const std::string& words);
-  /// Aligned rows under a title on a line of its own; nothing when there are none.
-  void section(const std::string& title, const std::vector<Row>& rows);
+  /// Adds a value to the JSON object and its text to the head.
+  void add(const std::string& name, const std::string& word) { add(name, word, word); }
+  void add(const std::string& name, const Json& value, const std::string& words);
+  /// Adds a table to the text: a title and aligned rows; nothing if there are no rows.
+  void add_table(const std::string& title, const std::vector<Row>& rows);
   void print() const;
 };
 
-/// Null for no text, or for no value.
+/// Null if the text is empty, or if there is no value.
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 template <class T>
 Json json_or_null(const std::optional<T>& value) {
@@ -63,15 +65,15 @@ Json json_or_null(const std::optional<T>& value) {
 }
 Json to_json(const OptionValue& value);
 
-/// A list of what `say` makes of each thing.
-template <class List, class Say>
-Json list_json(const List& things, const Say& say) {
+/// The JSON array [convert(item), ...].
+template <class List, class Convert>
+Json list_json(const List& items, const Convert& convert) {
   Json list = Json::array();
-  for (const auto& thing : things) list.push_back(say(thing));
+  for (const auto& item : items) list.push_back(convert(item));
   return list;
 }
 
-/// {name: value, ...} of things with a name and their values, in one order.
+/// {name: value, ...}: the member `name` of each item, with the value of the same index.
 template <class Named>
 Json values_by_name(const Named& named, std::span<const double> values) {
   Json object = Json::object();
@@ -79,7 +81,7 @@ Json values_by_name(const Named& named, std::span<const double> values) {
   return object;
 }
 Json values_by_name(const std::vector<std::pair<std::string, double>>& values);
-/// The same as rows of text.
-std::vector<Row> rows_of(const std::vector<std::pair<std::string, double>>& values);
+/// A table with a row for each value.
+std::vector<Row> value_rows(const std::vector<std::pair<std::string, double>>& values);
 
 }  // namespace pkm

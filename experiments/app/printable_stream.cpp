@@ -6,44 +6,44 @@
 
 namespace pkm {
 
-PrintableStream::PrintableStream(std::ostream& stream, Paint paint)
-    : stream_(stream), sink_(stream.rdbuf()), paint_(std::move(paint)) {
+PrintableStream::PrintableStream(std::ostream& stream, Style style)
+    : stream_(stream), sink_(stream.rdbuf()), style_(std::move(style)) {
   stream.rdbuf(this);
 }
 
 PrintableStream::~PrintableStream() {
   const auto state = stream_.rdstate();
-  pass(begun_.size());
-  pass_painted(unpainted_.size());
+  escape_received(received_.size());
+  write_escaped(escaped_.size());
   stream_.rdbuf(sink_);  // clears the state
   stream_.setstate(state);
 }
 
-bool PrintableStream::hand_on(const std::string& text) {
+bool PrintableStream::write(const std::string& text) {
   const auto length = static_cast<std::streamsize>(text.size());
   return sink_->sputn(text.data(), length) == length;
 }
 
-/// Hands on the first bytes of what has come.
-bool PrintableStream::pass(std::size_t size) {
-  const std::string shown = printable(std::string_view(begun_).substr(0, size), "\n\t");
-  begun_.erase(0, size);
-  if (!paint_) return hand_on(shown);
-  unpainted_ += shown;
+/// Escapes the first bytes received, and writes them unless they are buffered for `style_`.
+bool PrintableStream::escape_received(std::size_t size) {
+  const std::string shown = printable(std::string_view(received_).substr(0, size), "\n\t");
+  received_.erase(0, size);
+  if (!style_) return write(shown);
+  escaped_ += shown;
   return true;
 }
 
-/// Hands on the first bytes of what is held back.
-bool PrintableStream::pass_painted(std::size_t size) {
+/// Writes the first bytes of the buffered text, with its style.
+bool PrintableStream::write_escaped(std::size_t size) {
   if (size == 0) return true;
-  const std::string shown = paint_(std::string_view(unpainted_).substr(0, size));
-  unpainted_.erase(0, size);
-  return hand_on(shown);
+  const std::string shown = style_(std::string_view(escaped_).substr(0, size));
+  escaped_.erase(0, size);
+  return write(shown);
 }
 
 std::streamsize PrintableStream::xsputn(const char* text, std::streamsize size) {
-  begun_.append(text, static_cast<std::size_t>(size));
-  return pass(begun_.size() - begun_character(begun_)) ? size : 0;
+  received_.append(text, static_cast<std::size_t>(size));
+  return escape_received(received_.size() - incomplete_character_size(received_)) ? size : 0;
 }
 
 PrintableStream::int_type PrintableStream::overflow(int_type c) {
@@ -53,8 +53,8 @@ PrintableStream::int_type PrintableStream::overflow(int_type c) {
 }
 
 int PrintableStream::sync() {
-  const bool handed_on = pass_painted(unpainted_.rfind('\n') + 1);  // of a line without its end: 0
-  return sink_->pubsync() == 0 && handed_on ? 0 : -1;
+  const bool written = write_escaped(escaped_.rfind('\n') + 1);  // whole lines only
+  return sink_->pubsync() == 0 && written ? 0 : -1;
 }
 
 }  // namespace pkm

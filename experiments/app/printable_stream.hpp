@@ -1,4 +1,5 @@
-// What a program prints, printable: names of files and of studies, which may be another's, do not steer a terminal.
+// Output filter that escapes control characters, so that names of files and studies from untrusted sources cannot
+// inject escape sequences into a terminal.
 #pragma once
 
 #include <functional>
@@ -9,14 +10,15 @@
 
 namespace pkm {
 
-/// While it lives, what goes to a stream arrives there with its control characters escaped, all but line feeds and
-/// tabs. Text that must stay on its line is escaped where it is printed.
+/// During its lifetime, control characters written to a stream are escaped, except for line feeds and tabs. (Text that
+/// must not contain line feeds is escaped where it is printed.)
 class PrintableStream : private std::streambuf {
  public:
-  using Paint = std::function<std::string(std::string_view lines)>;
+  using Style = std::function<std::string(std::string_view lines)>;
 
-  /// @param paint  what whole lines that are printable look like; they are then held back until the stream is flushed
-  explicit PrintableStream(std::ostream& stream, Paint paint = {});
+  /// @param style  adds colours and line breaks to whole lines, after escaping; if given, output is buffered until the
+  ///               stream is flushed
+  explicit PrintableStream(std::ostream& stream, Style style = {});
   ~PrintableStream() override;
   PrintableStream(const PrintableStream&) = delete;
   PrintableStream& operator=(const PrintableStream&) = delete;
@@ -25,15 +27,15 @@ class PrintableStream : private std::streambuf {
   std::streamsize xsputn(const char* text, std::streamsize size) override;
   int_type overflow(int_type c) override;
   int sync() override;
-  bool pass(std::size_t size);
-  bool pass_painted(std::size_t size);
-  bool hand_on(const std::string& text);
+  bool escape_received(std::size_t size);
+  bool write_escaped(std::size_t size);
+  bool write(const std::string& text);
 
   std::ostream& stream_;
   std::streambuf* sink_;
-  Paint paint_;
-  std::string begun_;      ///< what has come and is not handed on: bytes of a character whose end is still to come
-  std::string unpainted_;  ///< printable text that is held back
+  Style style_;
+  std::string received_;  ///< bytes not yet escaped: the beginning of a UTF-8 character that is still incomplete
+  std::string escaped_;   ///< escaped text, buffered until the next flush
 };
 
 }  // namespace pkm

@@ -15,33 +15,33 @@
 #include <vector>
 
 #include "constraints/all.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/printable.hpp"
 #include "engine/core/ranks.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/storage/contained_reading.hpp"
-#include "engine/study/stop_request.hpp"
-#include "engine/study/take_part.hpp"
-#include "experiments/app/colours.hpp"
+#include "engine/runner/stop_request.hpp"
+#include "engine/runner/worker_ranks.hpp"
+#include "engine/storage/subprocess_check.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/fitted.hpp"
+#include "experiments/app/line_wrapping.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/printable_stream.hpp"
+#include "experiments/app/terminal_colours.hpp"
 #include "experiments/app/version.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm {
 namespace {
 
-/// How the program calls itself to parse a study file that may crash the parser.
+/// Argument with which the program starts itself as a separate process to parse a study file that may crash the parser.
 constexpr const char* kCheckFile = "--check-study-on-standard-input";
-constexpr std::size_t kLongestProgram = 40;  // bytes of its name in messages
+constexpr std::size_t kMaxProgramName = 40;  // bytes of the program's name in messages
 
 struct Command {
   std::string_view name;
   AddCommand* add;
-  bool evaluates = false;  ///< many designs, so that the instruction set counts
+  bool evaluates = false;  ///< evaluates many designs, so that the instruction set matters
 };
 
 constexpr Command kCommands[] = {{"run", add_run, true},
@@ -64,7 +64,7 @@ constexpr Command kCommands[] = {{"run", add_run, true},
                                  {"completion", add_completion},
                                  {"manual", add_manual}};
 
-/// For comparisons: results are the same on all.
+/// Declares --instruction-set, for comparisons of speed; the results do not depend on it.
 void add_instruction_set(CLI::App& command) {
   const auto choose = [](const std::string& name) {
     const std::vector<std::string> known{kInstructionSets.begin(), kInstructionSets.end()};
@@ -80,8 +80,8 @@ void add_instruction_set(CLI::App& command) {
   };
   command
       .add_option_function<std::string>("--instruction-set", choose,
-                                        "Vector instructions to use (default: the widest that the processor has); "
-                                        "changes the speed, never a result")
+                                        "Vector instructions to use (default: the widest of the processor); "
+                                        "affects the speed, but no result")
       ->type_name("SET");
 }
 
@@ -90,21 +90,21 @@ void add(const Command& command, CLI::App& app, Session& session) {
   if (command.evaluates) add_instruction_set(*app.get_subcommand(std::string(command.name)));
 }
 
-/// What is said where no command is named.
+/// Printed if no command is given.
 constexpr const char* kFirstSteps =
-    "Commands to begin with:\n"
-    "  pkmopt list mechanisms                        the robots that are built in\n"
-    "  pkmopt new mechanism my-robot -o robot.toml   one of your own, as a text to change\n"
-    "  pkmopt new study robot.toml -o study.toml     what may vary, and what is wanted\n"
-    "  pkmopt check study.toml                       what is understood of it\n"
-    "  pkmopt run study.toml                         the best design, into study.h5\n"
-    "  pkmopt report study.h5                        what was found, as a page with plots\n"
-    "  pkmopt workspace robot.toml                   the workspace of one design\n"
-    "'pkmopt --help' lists all commands, 'pkmopt COMMAND --help' tells more of one.\n";
+    "First commands:\n"
+    "  pkmopt list mechanisms                        list the built-in robots\n"
+    "  pkmopt new mechanism my-robot -o robot.toml   create a mechanism file to edit\n"
+    "  pkmopt new study robot.toml -o study.toml     create a study: variables and objectives\n"
+    "  pkmopt check study.toml                       check the study and show how it is interpreted\n"
+    "  pkmopt run study.toml                         find the best design and write study.h5\n"
+    "  pkmopt report study.h5                        write the results as a web page with plots\n"
+    "  pkmopt workspace robot.toml                   compute the workspace of one design\n"
+    "'pkmopt --help' lists all commands; 'pkmopt COMMAND --help' describes one of them.\n";
 
 void run(const std::vector<std::string>& arguments, Session& session) {
   if (arguments.empty()) {
-    std::cerr << kProgramMeaning << '\n' << with_name(kFirstSteps, session.program);
+    std::cerr << kProgramMeaning << '\n' << with_program_name(kFirstSteps, session.program);
     session.exit_code = kBadInput;
     return;
   }
@@ -115,7 +115,7 @@ void run(const std::vector<std::string>& arguments, Session& session) {
   app.get_formatter()->label("REQUIRED", "(required)");
   app.require_subcommand(1);
   app.footer(kProgramNotes);
-  // To declare all commands takes longer than to carry out most of them: where one is named, the others are left out.
+  // Declaring all commands takes longer than executing most of them, so only the command that is named is declared.
   const auto named = std::ranges::find(kCommands, arguments[0], &Command::name);
   if (named != std::end(kCommands))
     add(*named, app, session);
@@ -135,25 +135,25 @@ void add_all_commands(CLI::App& app, Session& session) {
 Catalogues all_catalogues() { return {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()}; }
 
 int program_main(int argc, char** argv, const Catalogues& catalogues) {
-  if (argc == 2 && std::string_view(argv[1]) == kCheckFile) return check_standard_input();
-  // Within another program (a test, a fuzzer) this file is not one that could be called so: it would run that one
-  // again.
-  if (argc > 0 && argv[0] == program_invocation_name) use_file_checker({"/proc/self/exe", kCheckFile});
+  if (argc == 2 && std::string_view(argv[1]) == kCheckFile) return check_study_on_standard_input();
+  // Not within another program, such as a test or a fuzzer: its executable does not understand kCheckFile and would
+  // just run again.
+  if (argc > 0 && argv[0] == program_invocation_name) set_check_command({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   std::string words;
   for (int i = 1; i < argc; ++i) words += (i > 1 ? " " : "") + quoted(printable(argv[i]));
   Session session{catalogues, name.empty() ? "pkmopt" : name, words};
-  const auto paint_on = [&session](int descriptor) -> PrintableStream::Paint {
-    const std::size_t columns = columns_of_terminal(descriptor);
-    const bool colours = shows_colours(descriptor);
+  const auto style_for = [&session](int descriptor) -> PrintableStream::Style {
+    const std::size_t columns = terminal_width(descriptor);
+    const bool colours = supports_colours(descriptor);
     if (!colours && columns == 0) return {};
     return [&session, columns, colours](std::string_view lines) {
-      return fitted(colours ? painted(lines, session.program) : std::string(lines), columns);
+      return wrap_table_rows(colours ? coloured(lines, session.program) : std::string(lines), columns);
     };
   };
-  const PrintableStream out(std::cout, paint_on(STDOUT_FILENO)), err(std::cerr, paint_on(STDERR_FILENO));
-  const auto complain = [&session](const std::string& sentence, int exit_code) {
-    std::cerr << excerpt(session.program, kLongestProgram) << ": " << sentence << '\n';
+  const PrintableStream out(std::cout, style_for(STDOUT_FILENO)), err(std::cerr, style_for(STDERR_FILENO));
+  const auto report_error = [&session](const std::string& sentence, int exit_code) {
+    std::cerr << excerpt(session.program, kMaxProgramName) << ": " << sentence << '\n';
     return exit_code;
   };
   const auto work = [&] {
@@ -161,22 +161,22 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
       run({argv + std::min(argc, 1), argv + argc}, session);
       return session.exit_code;
     } catch (const ConfigError& error) {
-      return complain(error.what(), kBadInput);
+      return report_error(error.what(), kBadInput);
     } catch (const std::exception& error) {
-      return complain(message_of(error), kFailure);
+      return report_error(message_of(error), kFailure);
     } catch (const Stopped&) {
-      return complain(std::string("stopped by ") + StopRequest::name(StopRequest::signal()), kStoppedEarly);
+      return report_error(std::string("stopped by ") + StopRequest::name(StopRequest::signal()), kStoppedEarly);
     }
   };
-  std::signal(SIGXFSZ, SIG_IGN);  // so that a limit of file sizes is an error that can be told
+  std::signal(SIGXFSZ, SIG_IGN);  // so that exceeding the file size limit is an error that can be reported
   try {
     const ranks::Group group;
-    if (ranks::rank() > 0) return take_part(catalogues, {program_version(), program_revision(), words});
+    if (ranks::rank() > 0) return run_worker_rank(catalogues, {program_version(), program_revision(), words});
     const int exit_code = work();
-    if (ranks::size() > 1) dismiss_ranks(exit_code);
+    if (ranks::size() > 1) stop_worker_ranks(exit_code);
     return exit_code;
-  } catch (const std::exception& error) {  // the processes that were started do not find one another
-    return ranks::launched_first() ? complain(message_of(error), kFailure) : kFailure;
+  } catch (const std::exception& error) {  // the processes of an MPI run cannot connect
+    return ranks::is_first_launched() ? report_error(message_of(error), kFailure) : kFailure;
   }
 }
 

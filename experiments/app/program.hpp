@@ -1,4 +1,4 @@
-// The command line as a library: a program with mechanisms, objectives, constraints or optimisers of its own.
+// The command line as a library, for programs that add mechanisms, objectives, constraints or optimisers of their own.
 //
 //   int main(int argc, char** argv) {
 //     pkm::Catalogues all = pkm::all_catalogues();
@@ -7,16 +7,17 @@
 //   }
 #pragma once
 
-#include "engine/setup/study.hpp"
+#include "engine/config/study.hpp"
 
 namespace pkm {
 
-/// Everything that is built in.
+/// Catalogues of all built-in mechanisms, objectives, constraints and optimisers.
 Catalogues all_catalogues();
 
-/// What `pkmopt` does with these arguments, under the name by which the program was called. Returns the exit code. They
-/// are those that main() was given where study files of others are to be read by a process of their own first: see
-/// use_file_checker().
+/// Runs the commands of `pkmopt` with these arguments, under the name by which the program was called. Pass the
+/// arguments of main() unchanged, so that the program can start itself as a separate process that checks untrusted
+/// study files first: see set_check_command().
+/// @return the exit code
 int program_main(int argc, char** argv, const Catalogues& catalogues);
 
 }  // namespace pkm

@@ -4,15 +4,16 @@
 #include <new>
 
 #include "engine/core/error.hpp"
-#include "engine/study/records.hpp"
+#include "engine/runner/records.hpp"
 
 namespace pkm {
 namespace {
 
-Study with_warning(Study study, const std::string& file, const Session& session) {
+/// Prints a warning if recorded values differ from those of the text, and returns the study.
+Study warn_of_differences(Study study, const std::string& file, const Session& session) {
   if (!study.differences.empty()) {
-    const StorageError sentence(file + ": " + join(study.differences, "; ") + "; the recorded values are used");
-    std::cerr << session.program << ": warning: " << sentence.what() << '\n';
+    const StorageError message(file + ": " + join(study.differences, "; ") + "; the recorded values are used");
+    std::cerr << session.program << ": warning: " << message.what() << '\n';
   }
   return study;
 }
@@ -22,7 +23,7 @@ Study with_warning(Study study, const std::string& file, const Session& session)
 Study recorded_study(const StudyContents& contents, const std::string& file, const Session& session,
                      const StudyChanges& changes) {
   try {
-    return with_warning(study_of(contents, session.catalogues, changes), file, session);
+    return warn_of_differences(study_of(contents, session.catalogues, changes), file, session);
   } catch (const StorageError& error) {
     throw StorageError(file + ": " + error.what());
   }
@@ -31,7 +32,7 @@ Study recorded_study(const StudyContents& contents, const std::string& file, con
 std::optional<Study> find_recorded_study(const StudyContents& contents, const std::string& file, const Session& session,
                                          std::string& why) {
   try {
-    return with_warning(study_of(contents, session.catalogues), file, session);
+    return warn_of_differences(study_of(contents, session.catalogues), file, session);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -1,22 +1,25 @@
-// The study that a study file holds, for commands that read it. All of them treat a file alike whose text and records
-// differ (engine/storage/README.md).
+// Rebuilds the study from the contents of a study file. All commands that read study files use these functions, so that
+// a file whose text and records differ is treated in the same way everywhere (engine/storage/README.md).
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "engine/setup/study.hpp"
+#include "engine/config/study.hpp"
 #include "engine/storage/study_contents.hpp"
 #include "experiments/app/commands.hpp"
 
 namespace pkm {
 
-/// The study of `file`, which holds `contents`. Prints one warning where the file records other values than its text
-/// gives. Throws StorageError where they cannot be of one study, ConfigError where this program cannot read the text.
+/// Rebuilds the study from `contents`, the contents of `file`. Prints a warning if recorded values differ from those
+/// that the study's text gives; the recorded values are used. Throws StorageError if text and records cannot belong to
+/// one study, ConfigError if this program cannot read the text.
 Study recorded_study(const StudyContents& contents, const std::string& file, const Session& session,
                      const StudyChanges& changes = {});
 
-/// The same; none where that throws, and then `why`.
+/// Does the same without throwing.
+/// @param why  receives the reason if there is no study
+/// @return std::nullopt if recorded_study() would throw
 std::optional<Study> find_recorded_study(const StudyContents& contents, const std::string& file, const Session& session,
                                          std::string& why);
 

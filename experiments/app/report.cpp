@@ -1,4 +1,4 @@
-// pkmopt report: what studies found, as one HTML page.
+// `pkmopt report`: writes the results of studies as one HTML page.
 
 #include <filesystem>
 #include <iostream>
@@ -27,8 +27,8 @@ PageStudy page_study(const std::string& file, const Session& session) {
   PageStudy page{std::filesystem::path(file).filename().string(), read_study(file), {}};
   page.study = find_recorded_study(page.contents, file, session, page.unreadable);
   if (!page.study) {
-    const StorageError note(file + ": this program cannot read the study's text, so what would have to be evaluated " +
-                            "again is left out (" + page.unreadable + ")");
+    const StorageError note(file + ": this program cannot read the study's text; panels that require new evaluations " +
+                            "are omitted (" + page.unreadable + ")");
     std::cerr << session.program << ": note: " << note.what() << '\n';
   }
   return page;
@@ -38,11 +38,11 @@ void report(const ReportArguments& arguments, const Session& session) {
   for (const std::string& file : arguments.files) expect_study_file(file, "run", session);
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
-  page_parts();  // or say at once that there are none
+  page_assets();  // throws now, before any evaluation, if this build has no page
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
   check_outputs({output}, arguments.files, if_forced(arguments.force));
-  const SlowStep slow = announced(session, "evaluating what the page shows");
+  const SlowStepNotice slow = announce_slow_step(session, "evaluating the data of the page");
   std::string page;
   with_team(arguments.threads, [&] { page = html_page(page_data(studies, program_words())); });
   write_file(output, page, if_forced(arguments.force));
@@ -53,12 +53,12 @@ void report(const ReportArguments& arguments, const Session& session) {
 
 void add_report(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ReportArguments>(
-      app, "report", "Writes what studies found as one HTML page with plots.",
-      "The page opens from disk and needs no network. What a study file does not hold is evaluated again.\n"
+      app, "report", "Write the results of studies as one HTML page with plots.",
+      "The page opens from disk and needs no network. Data that a study file does not contain are evaluated again.\n"
       "Example: pkmopt report paper-problem.h5",
       [&session](const ReportArguments& given) { report(given, session); });
   add_option(command, "files F.h5", arguments.files, "Study files; several are also compared")->required();
-  add_option(command, "-o,--output R.html", arguments.output, "The page (default: the first file's stem + .html)");
+  add_option(command, "-o,--output R.html", arguments.output, "Page to write (default: first file's stem + .html)");
   command.add_flag("--force", arguments.force, "Overwrite the page if it exists");
   add_threads(command, arguments.threads);
 }

@@ -1,10 +1,10 @@
-// pkmopt resume: goes on with a study file, or extends a finished study.
+// `pkmopt resume`: continues a stopped study from its file, or extends a finished study.
 
 #include <iostream>
 
 #include "engine/core/stop.hpp"
-#include "engine/report/standing.hpp"
-#include "engine/study/records.hpp"
+#include "engine/report/comparison.hpp"
+#include "engine/runner/records.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
@@ -22,14 +22,14 @@ void resume(const ResumeArguments& arguments, Session& session) {
   expect_study_file(arguments.file, "run", session);
   RunOptions options = run_options(arguments.common, session);
   const auto& extension = arguments.extension;
-  HeldStudy held(arguments.file);
+  LockedStudy held(arguments.file);
   if (!extension.generations && !extension.evaluations && held.contents.state == StudyState::finished) {
     const Study study = study_to_continue(held.contents, arguments.file, session.catalogues);
-    const auto verdict = verdict_on(held.contents, study.problem.get());
+    const auto diagnosis = diagnose(held.contents, study.problem.get());
     if (!arguments.common.quiet)
-      std::cout << summary_text(held.contents, study, verdict)
-                << "nothing is left to do; --generations or --evaluations extend the last stage\n";
-    conclude(verdict, arguments.common, session);
+      std::cout << summary_text(held.contents, study, diagnosis)
+                << "the study is finished; --generations or --evaluations extend its last stage\n";
+    report_diagnosis(diagnosis, arguments.common, session);
     return;
   }
   if (!arguments.common.quiet) {
@@ -37,24 +37,24 @@ void resume(const ResumeArguments& arguments, Session& session) {
     options.cost = measured_cost(study_to_continue(held.contents, arguments.file, session.catalogues), session);
   }
   const auto progress = make_progress(arguments.common);
-  const RunEnd end = end_of_run([&] { return resume_study(held, session.catalogues, extension, options, *progress); });
+  const RunEnd end = execute_run([&] { return resume_study(held, session.catalogues, extension, options, *progress); });
   progress->finish();
-  print_end(end, study_of(end.outcome.contents, session.catalogues), arguments.file, arguments.common, session);
+  print_run_end(end, study_of(end.outcome.contents, session.catalogues), arguments.file, arguments.common, session);
 }
 
 }  // namespace
 
 void add_resume(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ResumeArguments>(
-      app, "resume", "Goes on with a stopped study, or extends a finished one.",
-      "What may change on resume: --threads, --quiet, and more --generations, --evaluations or --time.\n"
+      app, "resume", "Resume a stopped study, or extend a finished one.",
+      "These options may change on resume: --threads, --quiet, --time, and larger --generations or --evaluations.\n"
       "Example: pkmopt resume paper-problem.h5 --generations 200",
       [&session](const ResumeArguments& given) { resume(given, session); });
   add_option(command, "file F.h5", arguments.file, "The study file")->required();
-  constexpr std::int64_t kMost = 1'000'000'000'000;
-  const std::string meaning = "New limit of the last stage, in all";
-  add_integer(command, "--generations N", arguments.extension.generations, 1, kMost, meaning);
-  add_integer(command, "--evaluations N", arguments.extension.evaluations, 1, kMost, meaning);
+  constexpr std::int64_t kMax = 1'000'000'000'000;
+  const std::string meaning = "New limit of the last stage, counted from its beginning";
+  add_integer(command, "--generations N", arguments.extension.generations, 1, kMax, meaning);
+  add_integer(command, "--evaluations N", arguments.extension.evaluations, 1, kMax, meaning);
   add_running_options(command, arguments.common);
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "engine/core/stop.hpp"
-#include "engine/report/standing.hpp"
-#include "engine/study/records.hpp"
+#include "engine/report/comparison.hpp"
+#include "engine/runner/records.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/summary.hpp"
@@ -15,19 +15,20 @@
 namespace pkm {
 namespace {
 
-/// A given voxel box that cuts the workspace makes it look smaller than it is.
-void warn_of_box(const Study& study, const Session& session) {
+/// Warns if the voxel box of the study cuts off the workspace of the baseline (or of the nominal design), so that the
+/// computed volume is too small.
+void warn_if_box_cuts(const Study& study, const Session& session) {
   const auto& parts = study.problem->parts();
   if (!parts.plan.voxels() || !parts.plan.box()) return;
   const std::string name = study.baseline ? "baseline" : "nominal design";
   const std::string& program = session.program;
-  const SlowStep slow = announced(session, "evaluating the " + name);
+  const SlowStepNotice slow = announce_slow_step(session, "evaluating the " + name);
   const StopScope limit(RunCost::kLongest);
   try {
     const auto report = study.problem->report(study.baseline ? *study.baseline : parts.parameters);
     if (report.survey.touches_box)
       std::cerr << program << ": warning: feasible cells of the " << name
-                << " touch the box of [workspace]; the workspace may be larger than what is counted\n";
+                << " touch the box of [workspace]; the workspace may extend beyond it\n";
   } catch (const Stopped&) {
     std::cerr << program << ": warning: whether the workspace of the " << name
               << " touches the box of [workspace] is unknown: its evaluation takes more than "
@@ -35,16 +36,16 @@ void warn_of_box(const Study& study, const Session& session) {
   }
 }
 
-/// What the command line changed in a study.
+/// The changes of the command line to a study, as options.
 std::string changes_of(const Study& study) { return study.changes.empty() ? "no changes" : join(study.changes, " "); }
 
-/// Why a file's study is not the one that is to be run.
-Refusal refuse_other(const StudyContents& contents, const Study& study, const Catalogues& catalogues) {
+/// Why a study file does not contain the study to be run; empty if it does.
+Unsupported refuse_different_study(const StudyContents& contents, const Study& study, const Catalogues& catalogues) {
   if (contents.toml != study.text && without_changes(contents.toml) == without_changes(study.text))
     return "the study with " + changes_of(study_of(contents, catalogues)) + ", not with " + changes_of(study);
-  if (contents.toml != study.text) return "another text of the study than " + study.file_name;
+  if (contents.toml != study.text) return "a study whose text differs from " + study.file_name;
   if (study.description && contents.description && contents.description->text != study.description->text)
-    return "another text of the mechanism than " + study.description->file_name;
+    return "a study whose mechanism file differs from " + study.description->file_name;
   if (contents.seed != study.seed)
     return "the study with seed " + std::to_string(contents.seed) + ", not " + std::to_string(study.seed);
   return {};
@@ -56,11 +57,11 @@ void run(const RunArguments& arguments, Session& session) {
   Study study = load_study_toml(arguments.study, session.catalogues, arguments.changes);
   if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;
-  check_outputs({output}, inputs_of(study), Existing::replaced);
+  check_outputs({output}, input_files(study), Existing::replaced);
   for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
   for (const Reason& reason : contradictions(study.problem->parts()))
     std::cerr << session.program << ": warning: " << reason.sentence << '\n';
-  warn_of_box(study, session);
+  warn_if_box_cuts(study, session);
   RunOptions options = run_options(arguments.common, session);
   if (!arguments.common.quiet) {
     options.cost = measured_cost(study, session);
@@ -71,29 +72,29 @@ void run(const RunArguments& arguments, Session& session) {
     return;
   }
   const auto progress = make_progress(arguments.common);
-  const RunEnd end = end_of_run([&] { return run_one(study, output, arguments, options, session, *progress); });
+  const RunEnd end = execute_run([&] { return run_one(study, output, arguments, options, session, *progress); });
   progress->finish();
-  print_end(end, study, output, arguments.common, session);
+  print_run_end(end, study, output, arguments.common, session);
 }
 
 }  // namespace
 
-std::vector<std::string> inputs_of(const Study& study) {
+std::vector<std::string> input_files(const Study& study) {
   if (!study.description) return {study.file_name};
   return {study.file_name, study.description->file_name};
 }
 
 bool exists(const std::string& file) {
-  std::error_code unseen;  // the attempt to open it tells
-  return std::filesystem::exists(file, unseen);
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored);
 }
 
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
                    const RunOptions& options, Session& session, Progress& progress) {
   if (!arguments.resume || !exists(output)) return run_study(study, output, arguments.force, options, progress);
-  HeldStudy held(output);
-  if (const Refusal reason = refuse_other(held.contents, study, session.catalogues))
-    throw StorageError(output + " holds " + *reason + "; go on with it by '" + session.program + " resume " +
+  LockedStudy held(output);
+  if (const Unsupported reason = refuse_different_study(held.contents, study, session.catalogues))
+    throw StorageError(output + " holds " + *reason + "; continue it with '" + session.program + " resume " +
                        quoted(file_argument(output)) + "', or overwrite it with --force");
   if (held.contents.state == StudyState::finished) {
     study_to_continue(held.contents, output, session.catalogues);
@@ -104,18 +105,18 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
 
 void add_run(CLI::App& app, Session& session) {
   const auto [command, arguments] =
-      add_command<RunArguments>(app, "run", "Runs a study and writes its study file.",
+      add_command<RunArguments>(app, "run", "Run a study and write its study file.",
                                 "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml --threads 2",
                                 [&session](const RunArguments& given) { run(given, session); });
   add_option(command, "study STUDY.toml", arguments.study, "The study, a TOML file")->required();
   add_option(command, "-o,--output F.h5", arguments.output,
-             "The study file (default: as the study says, else its stem + .h5)");
-  command.add_flag("--resume", arguments.resume, "Go on with the study file if it exists");
+             "Study file to write (default: output of [study], else the study's stem + .h5)");
+  command.add_flag("--resume", arguments.resume, "Resume the study file if it exists");
   command.add_flag("--force", arguments.force, "Overwrite the study file if it exists")->excludes("--resume");
   add_integer(command, "--seed N", arguments.seed, 0, std::numeric_limits<std::int64_t>::max(),
-              "Seed, instead of the study's own");
+              "Seed to use instead of the study's");
   add_integer(command, "--seeds N", arguments.seeds, 1, 100'000,
-              "Repeat the study over N seeds, a file each, and print the spread");
+              "Repeat the study with N seeds, one file each, and print the spread");
   add_change_options(command, arguments.changes);
   add_running_options(command, arguments.common);
 }

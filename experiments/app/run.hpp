@@ -1,4 +1,4 @@
-// pkmopt run: what it is told, and one run of one study.
+// `pkmopt run`: its arguments, and the functions that run a study once or with several seeds.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,22 @@ struct RunArguments {
   RunningArguments common;
 };
 
-/// The files that a study was read from: no output may be one of them.
-std::vector<std::string> inputs_of(const Study& study);
+/// The files that a study was read from, which no output may overwrite.
+std::vector<std::string> input_files(const Study& study);
 
+/// Whether the file exists; an error counts as no, and is reported later by the attempt to open the file.
 bool exists(const std::string& file);
 
-/// Runs the study into a file, or goes on with the one that is there, as the arguments ask for. Throws StorageError.
+/// Runs a study and writes its file, or with --resume continues the file if it exists. Throws StorageError.
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
                    const RunOptions& options, Session& session, Progress& progress);
 
-/// The same study over several seeds: a file and a line each, then the spread.
+/// Repeats a study with arguments.seeds consecutive seeds, one file each, and prints a table of the results and their
+/// spread.
 void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
                Session& session);
 
-/// Says what the evaluations and the final steps will cost at most.
+/// Prints an upper estimate of the time for the evaluations and the final steps.
 void print_estimate(const Study& study, const RunCost& cost, int seeds, int threads_of_rank);
 
 }  // namespace pkm

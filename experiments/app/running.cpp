@@ -8,7 +8,7 @@
 #include "engine/core/team.hpp"
 #include "engine/core/thread_limit.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/report/standing.hpp"
+#include "engine/report/comparison.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/summary.hpp"
@@ -16,13 +16,13 @@
 
 namespace pkm {
 
-SlowStep announced(const Session& session, const std::string& step) {
+SlowStepNotice announce_slow_step(const Session& session, const std::string& step) {
   const double after = isatty(STDERR_FILENO) == 1 ? 1 : 10;  // s
-  return SlowStep([&session, step] { std::cerr << session.program << ": " << step << std::endl; }, after);
+  return SlowStepNotice([&session, step] { std::cerr << session.program << ": " << step << std::endl; }, after);
 }
 
 void add_threads(CLI::App& command, int& threads) {
-  add_integer(command, "--threads N", threads, 1, kMostThreads,
+  add_integer(command, "--threads N", threads, 1, kMaxThreads,
               "Number of threads (default: OMP_NUM_THREADS, else one per core)");
 }
 
@@ -38,8 +38,8 @@ double time_limit(const std::string& text) {
 
 void add_running_options(CLI::App& command, RunningArguments& arguments) {
   add_threads(command, arguments.threads);
-  add_option(command, "--time T", arguments.time, "Stop with a checkpoint after this time: 90, \"10 min\"");
-  command.add_flag("--quiet", arguments.quiet, "Print nothing but errors and warnings");
+  add_option(command, "--time T", arguments.time, "Stop with a checkpoint after this time, such as 90 or \"10 min\"");
+  command.add_flag("--quiet", arguments.quiet, "Print errors and warnings only");
 }
 
 int threads_of(const RunningArguments& arguments) {
@@ -60,7 +60,7 @@ std::unique_ptr<Progress> make_progress(const RunningArguments& arguments) {
   return std::make_unique<ScreenProgress>(stderr);
 }
 
-RunEnd end_of_run(const std::function<RunOutcome()>& run) {
+RunEnd execute_run(const std::function<RunOutcome()>& run) {
   try {
     return {run()};
   } catch (const UnwrittenOutcome& failure) {
@@ -68,21 +68,21 @@ RunEnd end_of_run(const std::function<RunOutcome()>& run) {
   }
 }
 
-void conclude(const std::optional<Verdict>& verdict, const RunningArguments& arguments, Session& session) {
-  if (!verdict) return;
+void report_diagnosis(const std::optional<Diagnosis>& diagnosis, const RunningArguments& arguments, Session& session) {
+  if (!diagnosis) return;
   session.exit_code = kNothingFeasible;
-  if (arguments.quiet) std::cerr << session.program << ": " << one_line(*verdict) << '\n';
+  if (arguments.quiet) std::cerr << session.program << ": " << one_line_summary(*diagnosis) << '\n';
 }
 
-void print_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
-               Session& session) {
+void print_run_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
+                   Session& session) {
   const RunOutcome& outcome = end.outcome;
-  const auto verdict = verdict_on(outcome.contents, study.problem.get());
-  if (!arguments.quiet || end.unwritten) std::cout << summary_text(outcome.contents, study, verdict);
+  const auto diagnosis = diagnose(outcome.contents, study.problem.get());
+  if (!arguments.quiet || end.write_error) std::cout << summary_text(outcome.contents, study, diagnosis);
   if (!outcome.stopped.empty()) {
-    // Also when quiet: it must not be missed.
+    // Printed even when quiet, because the results are not final.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
-    if (!end.unwritten) std::cout << "; go on with: " << command_text(session, {"resume", file_argument(file)});
+    if (!end.write_error) std::cout << "; resume with: " << command_text(session, {"resume", file_argument(file)});
     std::cout << '\n';
     session.exit_code = kStoppedEarly;
   } else if (!arguments.quiet) {
@@ -95,18 +95,18 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
                   static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
                   100 * outcome.parallel_efficiency, outcome.team.c_str(), exchange.c_str(),
                   100 * outcome.checkpoint_share);
-    std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
-    if (!end.unwritten)
+    std::cout << (outcome.evaluations > 0 ? line : "the study was already finished: no new evaluations\n");
+    if (!end.write_error)
       std::cout << "written to " << file << '\n' << next_step(session, {"report", file_argument(file)});
   }
-  if (end.unwritten) {
+  if (end.write_error) {
     std::cout << std::flush;
-    throw StorageError(*end.unwritten);
+    throw StorageError(*end.write_error);
   }
-  if (outcome.stopped.empty()) conclude(verdict, arguments, session);
-  if (const auto wrong = contradicted(outcome.contents); !wrong.empty()) {
+  if (outcome.stopped.empty()) report_diagnosis(diagnosis, arguments, session);
+  if (const auto errors = contradicted(outcome.contents); !errors.empty()) {
     std::cout << std::flush;
-    throw std::runtime_error(join(wrong, "; "));
+    throw std::runtime_error(join(errors, "; "));
   }
 }
 

@@ -1,4 +1,4 @@
-// What `run` and `resume` have in common.
+// Options and final output shared by the commands `run` and `resume`.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "engine/problem/verdict.hpp"
-#include "engine/study/run_study.hpp"
+#include "engine/problem/diagnosis.hpp"
+#include "engine/runner/run_study.hpp"
 #include "experiments/app/commands.hpp"
 
 namespace pkm {
@@ -23,29 +23,31 @@ void add_threads(CLI::App& command, int& threads);
 /// Declares --threads, --time and --quiet.
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 
-/// Threads of this rank.
+/// Number of threads of this MPI rank.
 int threads_of(const RunningArguments& arguments);
-/// For the estimate before a run, and for what progress says of the time left.
+/// Measures the time of an evaluation, for the estimate before a run and the remaining time in progress reports.
 RunCost measured_cost(const Study& study, const Session& session);
 
-/// Warns of more threads than cores.
+/// Converts the arguments; prints a warning if there are more threads than cores.
 RunOptions run_options(const RunningArguments& arguments, const Session& session);
-/// A bar or lines on stderr; nothing when quiet.
+/// Shows progress on stderr, as a bar or as lines; nothing when quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
-/// How a run ended, also where what it found could not be written.
+/// Outcome of a run, also if its study file could not be written at the end.
 struct RunEnd {
   RunOutcome outcome;
-  std::optional<std::string> unwritten = {};  ///< why
+  std::optional<std::string> write_error = {};  ///< message, if the file could not be written
 };
-RunEnd end_of_run(const std::function<RunOutcome()>& run);
+/// Calls `run`, and catches UnwrittenOutcome.
+RunEnd execute_run(const std::function<RunOutcome()>& run);
 
-/// Sets the exit code where the study found nothing, and says so in a line on stderr when quiet.
-void conclude(const std::optional<Verdict>& verdict, const RunningArguments& arguments, Session& session);
+/// If the study found nothing, sets the exit code, and when quiet prints the diagnosis in one line on stderr.
+/// @param diagnosis  std::nullopt: the study found something
+void report_diagnosis(const std::optional<Diagnosis>& diagnosis, const RunningArguments& arguments, Session& session);
 
-/// The end of a run, and what the program's exit code is for it. Throws StorageError after what it has to tell where
-/// that is not in the file.
-void print_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
-               Session& session);
+/// Prints the results of a run and sets the exit code. Afterwards throws StorageError if the results are not in the
+/// file, std::runtime_error if an exact volume contradicts its certified bounds.
+void print_run_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
+                   Session& session);
 
 }  // namespace pkm

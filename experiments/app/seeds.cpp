@@ -1,4 +1,4 @@
-// pkmopt run --seeds: the same study over several seeds.
+// `pkmopt run --seeds`: repeats a study with several seeds and prints the spread of the results.
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "engine/core/printable.hpp"
-#include "engine/report/standing.hpp"
-#include "engine/study/stop_request.hpp"
+#include "engine/report/comparison.hpp"
+#include "engine/runner/stop_request.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/run.hpp"
@@ -18,7 +18,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMostCompared = 4;  // studies in the report that is proposed
+constexpr std::size_t kMaxCompared = 4;  // studies in the suggested report
 
 std::string seed_file(const std::string& output, std::uint64_t seed) {
   const std::filesystem::path path(output);
@@ -26,7 +26,7 @@ std::string seed_file(const std::string& output, std::uint64_t seed) {
       .string();
 }
 
-/// Says which of the seeds is under way.
+/// Adds the number of the current seed to progress reports.
 class SeedProgress final : public Progress {
  public:
   SeedProgress(Progress& screen, int seeds) : screen_(screen), seeds_(seeds) {}
@@ -43,8 +43,8 @@ class SeedProgress final : public Progress {
   int seeds_, seed_ = 0;
 };
 
-/// The last hypervolume of the study's evolved front; none where its corner is not the study's to say: hypervolumes
-/// from different corners cannot be compared.
+/// Final hypervolume of the front that the last evolutionary stage found. std::nullopt if the study does not specify
+/// its reference point: hypervolumes with different reference points cannot be compared.
 std::optional<double> evolved_hypervolume(const Study& study, const StudyContents& contents) {
   for (std::size_t i = contents.stages.size(); i-- > 0;) {
     const std::optional<FrontRecord>& front = contents.stages[i].front;
@@ -54,15 +54,15 @@ std::optional<double> evolved_hypervolume(const Study& study, const StudyContent
   return {};
 }
 
-/// What came of the seeds: a row each, and the numbers of the spread.
+/// Results of the seeds: one row each, and the values for the spread.
 struct SeedTable {
-  bool trade_off;
+  bool pareto;  ///< several objectives: the seeds are compared by their hypervolumes
   int feasible_seeds = 0;
-  std::vector<Row> rows = {{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
+  std::vector<Row> rows = {{"seed", pareto ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
-  std::string note = {};                ///< the first
-  std::optional<Verdict> verdict = {};  ///< of the first seed that found nothing
-  std::vector<std::string> wrong = {};  ///< volumes outside of their certain bounds
+  std::string note = {};                    ///< of the first seed that has one
+  std::optional<Diagnosis> diagnosis = {};  ///< of the first seed that found nothing
+  std::vector<std::string> errors = {};     ///< exact volumes that contradict their certified bounds
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
     const FinalRecord final = contents.final.value_or(FinalRecord());
@@ -70,8 +70,8 @@ struct SeedTable {
       if (!record || record->objectives.empty() || std::isnan(record->objectives[0])) return {};
       return record->objectives[0];
     };
-    const auto nothing = verdict_on(contents, study.problem.get());
-    if (!verdict) verdict = nothing;
+    const auto nothing = diagnose(contents, study.problem.get());
+    if (!diagnosis) diagnosis = nothing;
     const bool feasible = !nothing && objective(final.best) && final.best->status == Status::feasible;
     feasible_seeds += feasible;
     const auto keep = [feasible](std::optional<double> value, std::vector<double>& all) -> std::string {
@@ -79,15 +79,17 @@ struct SeedTable {
       all.push_back(*value);
       return digits(*value);
     };
-    const auto value = trade_off ? evolved_hypervolume(study, contents) : objective(final.best);
+    const auto value = pareto ? evolved_hypervolume(study, contents) : objective(final.best);
     for (const std::string& sentence : contradicted(contents))
-      wrong.push_back("seed " + std::to_string(contents.seed) + ": " + sentence);
+      errors.push_back("seed " + std::to_string(contents.seed) + ": " + sentence);
     const bool fails = final.best && final.best->certain && final.best->status == Status::failed;
-    const std::string best_text = feasible ? keep(value, best) : fails ? "outside of its bounds" : "nothing feasible";
+    const std::string best_text = feasible ? keep(value, best)
+                                  : fails  ? "outside certified bounds"
+                                           : "nothing feasible";
     seconds.push_back(contents.seconds);
     if (note.empty() && !contents.notes.empty())
       note = "note of seed " + std::to_string(contents.seed) + ": " + printable(join(contents.notes, "; ")) + '\n';
-    rows.push_back({std::to_string(contents.seed), best_text, trade_off ? "" : keep(objective(final.best_exact), exact),
+    rows.push_back({std::to_string(contents.seed), best_text, pareto ? "" : keep(objective(final.best_exact), exact),
                     std::to_string(contents.evaluations()), duration_text(contents.seconds), file});
   }
 
@@ -99,39 +101,39 @@ struct SeedTable {
       };
       rows.push_back({name, of(best, digits), of(exact, digits), "", of(seconds, duration_text), ""});
     };
-    row("least", [](const std::vector<double>& v) { return v.front(); });
+    row("minimum", [](const std::vector<double>& v) { return v.front(); });
     row("median", [](const std::vector<double>& v) { return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]); });
-    row("greatest", [](const std::vector<double>& v) { return v.back(); });
+    row("maximum", [](const std::vector<double>& v) { return v.back(); });
   }
 };
 
-/// Refuses files of seeds that may not be written.
+/// Throws if a file of a seed would overwrite a file that it must not overwrite.
 void check_files(const std::vector<std::string>& files, const Study& study, const RunArguments& arguments) {
   for (const std::string& file : files) {
-    check_outputs({file}, inputs_of(study), Existing::replaced);
+    check_outputs({file}, input_files(study), Existing::replaced);
     if (!arguments.force && !arguments.resume && exists(file))
       throw StorageError(file + " exists already; resume it with --resume, or overwrite it with --force");
   }
 }
 
-void print_verdict(const SeedTable& table, const RunArguments& arguments, Session& session) {
+void print_diagnosis(const SeedTable& table, const RunArguments& arguments, Session& session) {
   if (!arguments.common.quiet)
-    std::cout << "verdict: " << table.verdict->finding << ": " << table.verdict->sentence << '\n'
-              << reasons_text(table.verdict->reasons);
-  conclude(table.verdict, arguments.common, session);
+    std::cout << "diagnosis: " << table.diagnosis->finding << ": " << table.diagnosis->sentence << '\n'
+              << reasons_text(table.diagnosis->reasons);
+  report_diagnosis(table.diagnosis, arguments.common, session);
 }
 
-/// How the user goes on: to a report, or with the seeds that are left.
+/// Prints the next command: a report, or after a stop the command that continues with the remaining seeds.
 void print_next_step(const std::string& output, std::uint64_t first, const std::vector<std::string>& files,
                      const RunArguments& arguments, const Session& session) {
   if (session.exit_code == kStoppedEarly) {
-    std::cout << "stopped; go on with: " << session.program << " run " << quoted(file_argument(arguments.study));
+    std::cout << "stopped; resume with: " << session.program << " run " << quoted(file_argument(arguments.study));
     for (const std::string& word : arguments.changes.arguments()) std::cout << ' ' << quoted(word);
     std::cout << " --seeds " << arguments.seeds << " --seed " << first << " --resume --output "
               << quoted(file_argument(output)) << '\n';
   } else if (!arguments.common.quiet) {
     std::vector<std::string> words = {"report"};
-    for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), kMostCompared); ++i)
+    for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), kMaxCompared); ++i)
       words.push_back(file_argument(files[i]));
     std::cout << next_step(session, words);
   }
@@ -141,12 +143,12 @@ void print_next_step(const std::string& output, std::uint64_t first, const std::
 
 void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
                Session& session) {
-  const StopRequest listen;  // one for all, so that a signal between two seeds counts
-  const std::optional<double> time_limit = options.time_limit;  // of all
+  const StopRequest listen;  // for all seeds together, so that a signal between two of them is not lost
+  const std::optional<double> time_limit = options.time_limit;  // of all seeds together
   double seconds = 0;
   const std::uint64_t first = study.seed;
   if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(arguments.seeds))
-    throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "one that leaves room for them");
+    throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "a last seed below 2^64");
   std::vector<std::string> files;
   for (int i = 0; i < arguments.seeds; ++i) files.push_back(seed_file(output, first + static_cast<std::uint64_t>(i)));
   check_files(files, study, arguments);
@@ -154,38 +156,38 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   SeedTable table{study.problem->objectives().size() > 1};
   const auto screen = make_progress(arguments.common);
   SeedProgress progress(*screen, arguments.seeds);
-  std::optional<std::string> unwritten;  // why what was found is not in its file
+  std::optional<std::string> write_error;  // why the results of a seed are not in its file
   for (std::size_t i = 0; i < files.size() && session.exit_code == kDone; ++i) {
     study.seed = first + i;
     progress.next();
     if (time_limit) options.time_limit = *time_limit - seconds;
     RunEnd end;
     try {
-      end = end_of_run([&] { return run_one(study, files[i], arguments, options, session, progress); });
+      end = execute_run([&] { return run_one(study, files[i], arguments, options, session, progress); });
     } catch (const StorageError& failure) {
       if (table.seconds.empty()) throw;
-      unwritten = failure.what();
+      write_error = failure.what();
       break;
     }
     const RunOutcome& outcome = end.outcome;
     seconds += outcome.seconds;
-    if (outcome.stopped.empty()) table.add(study, outcome.contents, end.unwritten ? "not written" : files[i]);
-    unwritten = end.unwritten;
-    if (unwritten) break;
+    if (outcome.stopped.empty()) table.add(study, outcome.contents, end.write_error ? "not written" : files[i]);
+    write_error = end.write_error;
+    if (write_error) break;
     const bool last = i + 1 == files.size();
     if (!outcome.stopped.empty() || (StopRequest::signal() != 0 && !last)) session.exit_code = kStoppedEarly;
   }
   screen->finish();
   table.add_spread();
-  if (!arguments.common.quiet || unwritten)
+  if (!arguments.common.quiet || write_error)
     std::cout << printable(study.name) << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
               << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
               << " seeds ended feasible\n"
               << table.note << std::flush;
-  if (unwritten) throw StorageError(*unwritten);
-  if (!table.wrong.empty()) throw std::runtime_error(join(table.wrong, "; "));
-  if (session.exit_code == kDone && table.feasible_seeds == 0 && table.verdict)
-    print_verdict(table, arguments, session);
+  if (write_error) throw StorageError(*write_error);
+  if (!table.errors.empty()) throw std::runtime_error(join(table.errors, "; "));
+  if (session.exit_code == kDone && table.feasible_seeds == 0 && table.diagnosis)
+    print_diagnosis(table, arguments, session);
   print_next_step(output, first, files, arguments, session);
 }
 

@@ -1,4 +1,5 @@
-// How a design's objectives and margins change with its parameters, and how bad tolerances of these may be.
+// Sensitivity analysis of one design: derivatives of objectives and margins with respect to the parameters, and the
+// first-order worst case for parameters within tolerances.
 #pragma once
 
 #include <string>
@@ -15,8 +16,9 @@ struct SensitivityArguments {
 /// Declares --sensitivity and --tolerance.
 void add_sensitivity_options(CLI::App& command, SensitivityArguments& arguments);
 
-/// Tells what is asked for, of a design that was evaluated. Throws ConfigError where the problem has no derivatives.
-void tell_sensitivities(const DesignProblem& problem, const DesignReport& report, const SensitivityArguments& arguments,
-                        Printout& out);
+/// Reports what the arguments request. Throws ConfigError if the problem has no derivatives.
+/// @param report  evaluation of the design
+void report_sensitivities(const DesignProblem& problem, const DesignReport& report,
+                          const SensitivityArguments& arguments, Printout& out);
 
 }  // namespace pkm

@@ -1,11 +1,11 @@
-// pkmopt show: what a study found, from its file.
+// `pkmopt show`: prints the results of a study from its file.
 
 #include <iostream>
 
-#include "engine/report/standing.hpp"
+#include "engine/report/comparison.hpp"
+#include "engine/runner/progress.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/storage/study_lock.hpp"
-#include "engine/study/progress.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/recorded_study.hpp"
 #include "experiments/app/summary.hpp"
@@ -13,14 +13,14 @@
 namespace pkm {
 namespace {
 
-/// The history in brief: about ten generations of each stage.
+/// Table of about ten generations of each stage, equally spaced.
 std::string history(const StudyContents& contents) {
   std::string text;
   for (const StageRecord& stage : contents.stages) {
     const auto& list = stage.generations;
     if (list.size() == 0 || contents.problem.objectives.empty()) continue;
     const bool front = stage.front && stage.front->hypervolume.size() == list.size();
-    if (contents.problem.objectives.size() > 1 && !front) continue;  // starts on a front have a table of their own
+    if (contents.problem.objectives.size() > 1 && !front) continue;  // multistart runs on a front have their own table
     std::vector<std::vector<std::string>> rows = {{"generation", "evaluations",
                                                    front ? "hypervolume" : contents.problem.objectives[0].name,
                                                    "feasible", "diversity", "time"}};
@@ -50,41 +50,41 @@ struct ShowArguments {
   bool json = false;
 };
 
-/// A study that was killed left the word that it is running: it is, while a process holds its lock.
-std::string standing(StudyContents& contents, const ShowArguments& arguments, const Session& session) {
+/// Describes the state of a study that is not finished. A study whose process was killed is still recorded as running;
+/// it is running only while a process holds its lock, otherwise its state is changed to interrupted.
+std::string describe_state(StudyContents& contents, const ShowArguments& arguments, const Session& session) {
   if (contents.state == StudyState::finished) return "";
   const auto holder = StudyLock::holder(arguments.file);
-  if (contents.state == StudyState::running && holder) return *holder + " works on it\n";
+  if (contents.state == StudyState::running && holder) return "the study is being run by " + *holder + '\n';
   contents.state = StudyState::interrupted;
-  return "it was interrupted; go on with: " + command_text(session, {"resume", file_argument(arguments.file)}) + '\n';
+  return "study interrupted; resume with: " + command_text(session, {"resume", file_argument(arguments.file)}) + '\n';
 }
 
-/// References are in the study's text only, and a verdict's reasons partly; a file whose text this program no longer
-/// reads is shown without them.
+/// If this program cannot read the study's text, published references and some reasons of a diagnosis are omitted.
 void show(const ShowArguments& arguments, const Session& session) {
   expect_study_file(arguments.file, "check", session);
   StudyContents contents = read_study(arguments.file);
-  const std::string state = standing(contents, arguments, session);
+  const std::string state = describe_state(contents, arguments, session);
   std::string why;
   const auto found = find_recorded_study(contents, arguments.file, session, why);
   const std::string note =
-      found ? "" : "note: this program cannot read the study's text, so references are left out (" + why + ")\n";
+      found ? "" : "note: this program cannot read the study's text, so references are omitted (" + why + ")\n";
   const Study study = found.value_or(Study());
-  const auto verdict = verdict_on(contents, study.problem.get());
+  const auto diagnosis = diagnose(contents, study.problem.get());
   if (arguments.json)
-    print_json(summary_json(contents, verdict, failures_in(contents, study.problem.get())));
+    print_json(summary_json(contents, diagnosis, collect_failures(contents, study.problem.get())));
   else
-    std::cout << summary_text(contents, study, verdict) << history(contents) << note << state;
+    std::cout << summary_text(contents, study, diagnosis) << history(contents) << note << state;
 }
 
 }  // namespace
 
 void add_show(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ShowArguments>(
-      app, "show", "Shows what a study found: best design, margins, history in brief.",
+      app, "show", "Show the results of a study: best design, margins and a short history.",
       "Example: pkmopt show paper-problem.h5", [&session](const ShowArguments& given) { show(given, session); });
   add_option(command, "file F.h5", arguments.file, "The study file")->required();
-  command.add_flag("--json", arguments.json, "One JSON object, numbers in full precision");
+  command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }
 
 }  // namespace pkm

@@ -1,9 +1,9 @@
-// `pkmopt simulate`: how a mechanism moves under given forces.
+// `pkmopt simulate`: forward dynamics, i.e. the motion of a mechanism under given actuator forces and a given wrench.
 
+#include "engine/config/assignments.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/dynamics/simulation.hpp"
 #include "engine/report/csv_table.hpp"
-#include "engine/setup/assignments.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/target.hpp"
@@ -16,15 +16,15 @@ struct SimulateArguments : DesignArguments, MotionArguments, TableOutput {
   std::string duration, step;
 };
 
-double time_of(const std::string& text, const std::string& option) {
+double parse_time(const std::string& text, const std::string& option) {
   const double value = parse_number(text, option, "s");
   if (!(value > 0)) throw ConfigError({"", 0, option}, text, "a number > 0 s");
   return value;
 }
 
-SimulationSetup setup_of(const Target& target, const Dynamics& dynamics, const std::string& mode,
-                         const SimulateArguments& arguments) {
-  constexpr double kMostSteps = 1e7;
+SimulationSetup simulation_setup(const Target& target, const Dynamics& dynamics, const std::string& mode,
+                                 const SimulateArguments& arguments) {
+  constexpr double kMaxSteps = 1e7;
   const MechanismInfo& info = target.info();
   SimulationSetup setup;
   setup.dynamics = [&target, &dynamics, mode](const MotionState<double>& state) {
@@ -45,15 +45,15 @@ SimulationSetup setup_of(const Target& target, const Dynamics& dynamics, const s
     const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
     return report.feasible ? std::string() : "the pose is no longer feasible: " + report.reason;
   };
-  setup.duration = time_of(arguments.duration, "--duration");
-  setup.step = time_of(arguments.step, "--step");
-  if (setup.duration / setup.step > kMostSteps)
+  setup.duration = parse_time(arguments.duration, "--duration");
+  setup.step = parse_time(arguments.step, "--step");
+  if (setup.duration / setup.step > kMaxSteps)
     throw ConfigError({"", 0, "--step"}, arguments.step, "at most 1e7 steps in the duration");
   return setup;
 }
 
-/// @param friction  whether there is any
-CsvTable table_of(const MechanismInfo& info, const Simulation& run, bool friction) {
+/// @param friction  whether the drives have friction
+CsvTable simulation_table(const MechanismInfo& info, const Simulation& run, bool friction) {
   std::vector<std::string> columns = {"time"};
   for (const char* suffix : {"", "_speed", "_acceleration"})
     for (const AxisInfo& axis : info.coordinates) columns.push_back(axis.name + suffix);
@@ -85,66 +85,66 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
 
 std::string simulate_target(const Target& target, const SimulateArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
-  const Dynamics& dynamics = needed(target.mechanism->dynamics(), "simulate", "dynamics", info);
-  if (const Refusal reason = no_joint_forces(*target.mechanism))
+  const Dynamics& dynamics = require_capability(target.mechanism->dynamics(), "simulate", "dynamics", info);
+  if (const Unsupported reason = no_joint_forces(*target.mechanism))
     throw ConfigError({"", 0, "simulate"}, *reason + ", so no dynamics");
-  const std::string mode = known_mode(info, arguments);
+  const std::string mode = parse_mode(info, arguments);
   const MotionSample at = parse_motion(*target.mechanism, arguments);
-  const auto setup = setup_of(target, dynamics, mode, arguments);
+  const auto setup = simulation_setup(target, dynamics, mode, arguments);
   check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
   const Simulation run = simulate(setup, at.pose, at.velocity);
   if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
-  if (!arguments.csv.empty()) write_table(arguments, table_of(info, run, target.mechanism->drive_trains()));
+  if (!arguments.csv.empty()) write_table(arguments, simulation_table(info, run, target.mechanism->drive_trains()));
 
   const SimulationState &first = run.states.front(), &last = run.states.back();
-  out.say("mechanism", info.name);
-  out.say("mode", mode);
+  out.add("mechanism", info.name);
+  out.add("mode", mode);
   out.json["imbalance"] = run.imbalance;
   out.json["turned_over"] = run.turned_over;
   out.json["states"] = Json::array();
   for (const auto& state : run.states)
-    if (out.for_programs) out.json["states"].push_back(state_json(info, state));
+    if (out.as_json) out.json["states"].push_back(state_json(info, state));
   out.json["stopped"] = text_or_null(run.stopped);
   out.head.push_back({"steps", std::to_string(run.states.size() - 1)});
   out.head.push_back({"end", number(last.time, "s")});
-  std::vector<Row> rows = {{"", "begin", "end", "speed at end"}};
+  std::vector<Row> rows = {{"", "start", "end", "speed at end"}};
   for (std::size_t i = 0; i < info.coordinates.size(); ++i) {
     const auto& [name, unit] = info.coordinates[i];
     rows.push_back(
         {name, position(first.pose[i], unit), position(last.pose[i], unit), number(last.velocity[i], unit + "/s")});
   }
-  out.section("pose", rows);
+  out.add_table("pose", rows);
   std::vector<Row> energy = {
-      {"kinetic energy, begin", number(first.kinetic_energy, "J")},
+      {"kinetic energy, start", number(first.kinetic_energy, "J")},
       {"work of the actuators", number(last.work_of_drives, "J")},
       {"work of the weight", number(last.work_of_weight, "J")},
       {"work of the wrench", number(last.work_of_wrench, "J")},
       {"kinetic energy, end", number(last.kinetic_energy, "J")},
-      {"greatest imbalance", number(run.imbalance, "J"), "of " + number(run.turned_over, "J") + " turned over"}};
+      {"maximum imbalance", number(run.imbalance, "J"), "of " + number(run.turned_over, "J") + " exchanged"}};
   if (target.mechanism->drive_trains())
     energy.insert(energy.begin() + 2, {"work of friction", number(last.work_of_friction, "J")});
-  out.section("energy", energy);
-  return run.stopped.empty() ? "" : "the simulation ends early: " + run.stopped;
+  out.add_table("energy", energy);
+  return run.stopped.empty() ? "" : "the simulation ended early: " + run.stopped;
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<SimulateArguments>(
-      app, session, "simulate", "How a mechanism moves under given forces, from a pose on.",
-      "Ends early, with exit code 1 and a sentence, where the mechanism leaves its reach, its slides' ranges or the\n"
-      "study's limits, nears a singularity, or energy is not conserved to 1e-9 of what was turned over.\n"
+      app, session, "simulate", "Simulate the motion of a mechanism under given forces, starting at a pose.",
+      "Ends early, with a message and exit code 1, if the mechanism leaves its reach, its joint ranges or the study's\n"
+      "limits, approaches a singularity, or violates the energy balance by more than 1e-9 of the energy exchanged.\n"
       "Example: pkmopt simulate 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --forces rho3=8 --duration 0.1s --step "
       "1ms",
       simulate_target);
-  add_list_option(command, "--at", arguments.at, "The pose at the beginning: every coordinate")->required();
-  add_list_option(command, "--velocity", arguments.velocity, "Its rates at the beginning; default: at rest");
-  add_list_option(command, "--forces", arguments.forces, "Forces of the actuators, the same all the time; default: 0");
-  add_list_option(command, "--wrench", arguments.wrench, "Force and moment on the platform, the same all the time");
+  add_list_option(command, "--at", arguments.at, "Initial pose: all coordinates")->required();
+  add_list_option(command, "--velocity", arguments.velocity, "Initial rates of the coordinates; default: at rest");
+  add_list_option(command, "--forces", arguments.forces, "Constant forces of the actuators; default: 0");
+  add_list_option(command, "--wrench", arguments.wrench, "Constant force and moment on the platform; default: 0");
   add_option(command, "--duration TIME", arguments.duration, "Time to simulate")->required();
-  add_option(command, "--step TIME", arguments.step, "Time between two states")->required();
+  add_option(command, "--step TIME", arguments.step, "Time step between two states")->required();
   add_mode_options(command, arguments);
-  add_table_output(command, arguments, "Write all states to this file, numbers in SI");
+  add_table_output(command, arguments, "Write all states to this file, in SI units");
 }
 
 }  // namespace pkm

@@ -1,5 +1,5 @@
-// Slices through a workspace: swept coordinates that are left at a value. A survey looks at one cell there, thin and
-// around the value, and what is found counts for a plane or a line.
+// Slices of a workspace: swept coordinates that are fixed at a value. The workspace analysis uses a single, thin layer
+// of cells around the value; the volume is then divided by the thickness of the layer, which gives an area or a length.
 #pragma once
 
 #include <array>
@@ -13,25 +13,30 @@
 
 namespace pkm {
 
-/// Values [m or rad] by coordinate.
+/// Values [m or rad] of the sliced coordinates, by index of the coordinate.
 using Slices = std::map<int, double>;
 
-/// Holds the coordinates that --held names at their values; those that no survey of the mechanism holds are slices.
-/// Others that the study holds stay as they are where its sweep serves; where another does, the study's box and cells
-/// are of other axes. Throws ConfigError.
-Slices set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists);
+/// Fixes the coordinates named by --held at their values. Those that no sweep of the mechanism keeps fixed become
+/// slices. If the sweep of the plan can fix the others, the coordinates that the plan has fixed stay fixed. Otherwise
+/// another sweep is selected, and fixed coordinates and method are reset, because box and cells belong to other axes.
+/// Throws ConfigError.
+/// @param lists  of --held: name=value
+/// @return the slices
+Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists);
 
-/// Slices of --cut, through what the plan sweeps. Throws ConfigError.
-void add_cuts(Slices& slices, const SurveyPlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists);
+/// Adds the slices that --cut names, of coordinates that the plan sweeps. Throws ConfigError.
+void add_cuts(Slices& slices, const WorkspacePlan& plan, const MechanismInfo& info,
+              const std::vector<std::string>& lists);
 
-/// The coordinates that are swept, but for slices.
-Axes swept_axes(const SurveyPlan& plan, const MechanismInfo& info, const Slices& slices);
+/// The swept coordinates that are not sliced.
+Axes swept_axes(const WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
 
-/// Makes a plan of voxels one of slices.
-/// @param ranges_given  by swept coordinate; that of a slice is not
-void cut(SurveyPlan& plan, const Target& target, const Slices& slices, std::array<bool, 3>& ranges_given);
+/// Replaces the range of each sliced coordinate by one thin cell.
+/// @param plan          of voxels
+/// @param ranges_given  by swept coordinate, see set_grid(); reset for slices
+void apply_slices(WorkspacePlan& plan, const Target& target, const Slices& slices, std::array<bool, 3>& ranges_given);
 
-/// Makes axes that are slices held coordinates, and the volume that of what is left.
-void flatten(WorkspaceFields& workspace, const MechanismInfo& info, const Slices& slices);
+/// Turns the sliced axes into fixed coordinates, and the volume into that over the remaining axes.
+void remove_sliced_axes(WorkspaceFields& workspace, const MechanismInfo& info, const Slices& slices);
 
 }  // namespace pkm

@@ -7,17 +7,17 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/problem/order.hpp"
+#include "engine/problem/ranking.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMostStarts = 12, kMostStartsOnFront = 20;  // that a table shows
-/// Share of the greatest sensitivity below which one is what an optimum leaves of 0.
-constexpr double kLeftByOptimum = 1e-6;
+constexpr std::size_t kMaxStarts = 12, kMaxStartsOnFront = 20;  // rows of a table
+/// Relative to the largest sensitivity of the same unit: a smaller one is 0 up to the convergence of the solver.
+constexpr double kZeroSensitivity = 1e-6;
 
-/// The starts, best end first; as they come where there are several objectives.
-std::vector<std::size_t> by_end(const ProblemRecord& problem, const StageRecord& stage) {
+/// Indices of the starts, best final design first; in their own order if there are several objectives.
+std::vector<std::size_t> order_by_result(const ProblemRecord& problem, const StageRecord& stage) {
   std::vector<std::size_t> order(stage.starts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto rank = [&](std::size_t start) {
@@ -27,7 +27,7 @@ std::vector<std::size_t> by_end(const ProblemRecord& problem, const StageRecord&
   return order;
 }
 
-/// Whether two ends are the same optimum: alike in every variable to a thousandth of its range.
+/// Whether the final designs of two starts are the same optimum: equal in every variable to 1/1000 of its range.
 bool same_optimum(const ProblemRecord& problem, const StageRecord& stage, std::size_t a, std::size_t b) {
   const auto p = stage.table.design(static_cast<std::size_t>(stage.starts[a].end_row));
   const auto q = stage.table.design(static_cast<std::size_t>(stage.starts[b].end_row));
@@ -36,25 +36,25 @@ bool same_optimum(const ProblemRecord& problem, const StageRecord& stage, std::s
   return true;
 }
 
-/// Number of the optimum in which each start ended, 1 for the best; 0 where it has not converged or nothing says that
-/// this is an optimum: of several objectives there is no one optimum.
-std::vector<std::size_t> optima(const ProblemRecord& problem, const StageRecord& stage) {
-  std::vector<std::size_t> number_of(stage.starts.size(), 0), first;
-  if (problem.objectives.size() > 1) return number_of;
-  for (const std::size_t s : by_end(problem, stage)) {
+/// Number of the local optimum that each start reached, 1 for the best; 0 if the start did not converge to a feasible
+/// first-order optimum, or if there are several objectives.
+std::vector<std::size_t> number_optima(const ProblemRecord& problem, const StageRecord& stage) {
+  std::vector<std::size_t> number(stage.starts.size(), 0), first;
+  if (problem.objectives.size() > 1) return number;
+  for (const std::size_t s : order_by_result(problem, stage)) {
     const StartOutcome& start = stage.starts[s];
     const bool feasible = stage.table.status[static_cast<std::size_t>(start.end_row)] == Status::feasible;
     const bool optimal = start.optimality < 1e-4;
     if (start.stop != words(StopReason::tolerance) || !feasible || !optimal) continue;
     const auto known = std::ranges::find_if(first, [&](std::size_t k) { return same_optimum(problem, stage, k, s); });
-    number_of[s] = static_cast<std::size_t>(known - first.begin()) + 1;
+    number[s] = static_cast<std::size_t>(known - first.begin()) + 1;
     if (known == first.end()) first.push_back(s);
   }
-  return number_of;
+  return number;
 }
 
-/// A start's objective, or each of several, at its beginning and at its end.
-Row objectives_text(const StageRecord& stage, const StartOutcome& start) {
+/// Cells with the objective of a start at its first and last design; if there are several objectives, a cell for each.
+Row objective_cells(const StageRecord& stage, const StartOutcome& start) {
   const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);
   const auto from = stage.table.objective_row(first), to = stage.table.objective_row(end);
   const auto& status = stage.table.status;
@@ -71,27 +71,27 @@ Row objectives_text(const StageRecord& stage, const StartOutcome& start) {
   return texts;
 }
 
-/// The records, unit by unit as they come; of a unit those first of which `size` makes most.
-template <class Record, class Size>
-std::vector<Record> greatest_first(std::vector<Record> records, const Size& size) {
-  std::map<std::string, std::size_t> place;  // of a unit among the units
-  for (const Record& r : records) place.try_emplace(r.unit, place.size());
-  const auto key = [&](const Record& r) { return std::pair(place[r.unit], -std::fabs(size(r))); };
+/// Groups records by unit, in the order in which the units appear, and sorts each group by decreasing |value(record)|.
+template <class Record, class Value>
+std::vector<Record> sorted_within_units(std::vector<Record> records, const Value& value) {
+  std::map<std::string, std::size_t> group;  // of a unit
+  for (const Record& r : records) group.try_emplace(r.unit, group.size());
+  const auto key = [&](const Record& r) { return std::pair(group[r.unit], -std::fabs(value(r))); };
   std::ranges::stable_sort(records, std::less(), key);
   return records;
 }
 
 double influence(const SensitivityRecord& s) { return std::fmax(std::fabs(s.as_built), std::fabs(s.reoptimised)); }
 
-/// Those that have an influence, with 0 where an optimum has left next to nothing of it, beside the greatest of the
-/// unit.
-std::vector<SensitivityRecord> without_remains(std::vector<SensitivityRecord> all) {
+/// Removes parameters without influence, and sets derivatives to 0 that are negligible compared with the largest of the
+/// same unit: at an optimum they vanish only up to the convergence of the solver.
+std::vector<SensitivityRecord> without_residuals(std::vector<SensitivityRecord> all) {
   std::erase_if(all, [](const SensitivityRecord& s) { return influence(s) == 0; });
-  std::map<std::string, double> greatest;
-  for (const SensitivityRecord& s : all) greatest[s.unit] = std::fmax(greatest[s.unit], influence(s));
+  std::map<std::string, double> largest;
+  for (const SensitivityRecord& s : all) largest[s.unit] = std::fmax(largest[s.unit], influence(s));
   for (SensitivityRecord& s : all)
-    for (double* const rate : {&s.as_built, &s.reoptimised})
-      if (std::fabs(*rate) < kLeftByOptimum * greatest[s.unit]) *rate = 0;
+    for (double* const value : {&s.as_built, &s.reoptimised})
+      if (std::fabs(*value) < kZeroSensitivity * largest[s.unit]) *value = 0;
   return all;
 }
 
@@ -100,24 +100,24 @@ std::vector<SensitivityRecord> without_remains(std::vector<SensitivityRecord> al
 std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) {
   if (stage.starts.empty()) return "";
   const bool one = problem.objectives.size() == 1;
-  const auto order = by_end(problem, stage), optimum = optima(problem, stage);
-  const std::size_t most = one ? kMostStarts : kMostStartsOnFront;
+  const auto order = order_by_result(problem, stage), optimum = number_optima(problem, stage);
+  const std::size_t max_rows = one ? kMaxStarts : kMaxStartsOnFront;
   std::vector<Row> rows = {{"  start", "evaluations"}};
   for (const ObjectiveInfo& o : problem.objectives) rows[0].push_back(o.name);
   if (one) rows[0].insert(rows[0].end(), {"to", "optimum"});
   rows[0].insert(rows[0].end(), {"optimality", "ended"});
-  for (std::size_t k = 0; k < std::min(order.size(), most); ++k) {
+  for (std::size_t k = 0; k < std::min(order.size(), max_rows); ++k) {
     const StartOutcome& start = stage.starts[order[k]];
     const bool feasible = stage.table.status[static_cast<std::size_t>(start.end_row)] == Status::feasible;
     Row& row = rows.emplace_back(Row{"  " + start.origin, std::to_string(start.rows)});
-    std::ranges::copy(objectives_text(stage, start), std::back_inserter(row));
+    std::ranges::copy(objective_cells(stage, start), std::back_inserter(row));
     if (one) row.push_back(optimum[order[k]] ? std::to_string(optimum[order[k]]) : "-");
     row.push_back(formatted("%.1e", start.optimality));
     row.push_back(start.stop + (start.message.empty() ? "" : " (" + start.message + ")") +
                   (one || feasible ? "" : ", infeasible"));
   }
   const std::string more = "  and " + std::to_string(order.size() - rows.size() + 1) + " more";
-  return aligned(rows) + (order.size() <= most ? "" : more + (one ? ", none better\n" : "\n"));
+  return aligned(rows) + (order.size() <= max_rows ? "" : more + (one ? ", none better\n" : "\n"));
 }
 
 std::string optimality_text(const ProblemRecord& problem, const StageRecord& stage) {
@@ -128,25 +128,26 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
   std::string text = "first-order optimality " + formatted("%.1e", record.optimality) + '\n';
   if (!record.active.empty()) {
     std::vector<Row> rows = {{"", "", "per", "multiplier"}};
-    for (const ActiveRecord& a : greatest_first(record.active, [](const ActiveRecord& a) { return a.multiplier; }))
-      rows.push_back({a.name, a.kind, handy(a.unit).unit, formatted("%.4g", a.multiplier * handy(a.unit).size)});
-    text += titled("active, and the gain of " + of + " where it gives way", rows);
+    for (const ActiveRecord& a : sorted_within_units(record.active, [](const ActiveRecord& a) { return a.multiplier; }))
+      rows.push_back(
+          {a.name, a.kind, display_unit(a.unit).name, formatted("%.4g", a.multiplier * display_unit(a.unit).size)});
+    text += format_titled_table("active constraints, and the gain of " + of + " if they are relaxed", rows);
   }
   std::vector<Row> rows = {{"", "", "per", "as built", "reoptimised"}};
-  for (const SensitivityRecord& s : greatest_first(without_remains(record.sensitivities), influence)) {
+  for (const SensitivityRecord& s : sorted_within_units(without_residuals(record.sensitivities), influence)) {
     const bool varies = std::isnan(s.reoptimised);
-    const auto rate = [step = handy(s.unit).size](double value) {
-      return value == 0 ? "0" : formatted("%+.4g", value * step);
+    const auto text_of = [size = display_unit(s.unit).size](double value) {
+      return value == 0 ? "0" : formatted("%+.4g", value * size);
     };
-    rows.push_back({s.parameter, varies ? "varies" : "fixed", handy(s.unit).unit, rate(s.as_built),
-                    varies ? "" : rate(s.reoptimised)});
+    rows.push_back({s.parameter, varies ? "varies" : "fixed", display_unit(s.unit).name, text_of(s.as_built),
+                    varies ? "" : text_of(s.reoptimised)});
   }
-  return text + titled("sensitivity of " + of + ", of each unit the greatest first", rows) + '\n';
+  return text + format_titled_table("sensitivity of " + of + ", largest first within each unit", rows) + '\n';
 }
 
 Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
   Json list = Json::array();
-  const auto optimum = optima(problem, stage);
+  const auto optimum = number_optima(problem, stage);
   const auto point = [&](std::int64_t row) {
     const auto r = static_cast<std::size_t>(row);
     Json json = row_json(problem, stage.table, r);

@@ -1,5 +1,6 @@
-// What a stage found, as text and as JSON: of solvers their starts, the optima these ended in, first-order optimality
-// and sensitivities; of a trade-off its ends, its knees, a choice of its points, its indicators.
+// Summary of a stage as text and as JSON. For solvers: the multistart runs, the local optima that they reached,
+// first-order optimality and sensitivities. For a Pareto front: its extreme points, knees and quality indicators, and a
+// selection of its points.
 #pragma once
 
 #include <string>
@@ -9,19 +10,21 @@
 
 namespace pkm {
 
-/// A table of a stage's starts, best end first, distinct optima numbered; "" for a stage without starts.
+/// Table of the multistart runs of a stage, best final design first, with a number for each distinct local optimum; ""
+/// if the stage has none.
 std::string starts_text(const ProblemRecord& problem, const StageRecord& stage);
-/// Optimality, multipliers and sensitivities of a stage's best design; "" where it has none.
+/// First-order optimality, multipliers and sensitivities of a stage's best design; "" if the stage has not computed
+/// them.
 std::string optimality_text(const ProblemRecord& problem, const StageRecord& stage);
-/// Points count from 1, as in `pkmopt evaluate --front`. "" where the stage has no front.
+/// Pareto front of a stage; "" if it has none. Points are numbered from 1, as in `pkmopt evaluate --front`.
 std::string front_text(const ProblemRecord& problem, const StageRecord& stage);
 
 Json starts_json(const ProblemRecord& problem, const StageRecord& stage);
 Json optimality_json(const OptimalityRecord& record);
-/// Every point, and the indicators after each generation.
+/// All points of the front, and the quality indicators after each generation.
 Json front_json(const ProblemRecord& problem, const StageRecord& stage);
 
-/// An evaluation: its values by their names.
+/// The design, objectives, constraints and other values of an evaluation, by name.
 Json row_json(const ProblemRecord& problem, const EvaluationTable& table, std::size_t row);
 
 }  // namespace pkm

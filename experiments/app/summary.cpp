@@ -3,16 +3,16 @@
 #include <sstream>
 
 #include "engine/core/printable.hpp"
+#include "engine/report/comparison.hpp"
 #include "engine/report/design_table.hpp"
 #include "engine/report/json_text.hpp"
-#include "engine/report/standing.hpp"
-#include "engine/study/progress.hpp"
+#include "engine/runner/progress.hpp"
 #include "experiments/app/stage_summary.hpp"
 
 namespace pkm {
 namespace {
 
-/// Names down, and across: best, rounded, baseline, gain ("+1.52 %"), references.
+/// A row for each variable, objective and constraint; columns: best, rounded, baseline, gain ("+1.52 %"), references.
 std::vector<Row> table(const StudyContents& contents, const Study& study) {
   const DesignTable designs = design_table(contents, study.references);
   const auto append = [](Row& row, const std::vector<std::optional<double>>& values) {
@@ -32,18 +32,18 @@ std::vector<Row> table(const StudyContents& contents, const Study& study) {
   return rows;
 }
 
-/// Which constraint keeps a design from being feasible.
-std::string blocking(const StudyContents& contents, const DesignRecord& best) {
-  const auto worst = most_broken(best.margins);
+/// The most violated constraint of a design; "" if all are satisfied.
+std::string violation(const StudyContents& contents, const DesignRecord& best) {
+  const auto worst = most_violated(best.margins);
   if (!worst) return "";
-  return contents.problem.margins[*worst].name + " blocks, margin " + digits(best.margins[*worst]) + " " +
+  return contents.problem.margins[*worst].name + " is violated, margin " + digits(best.margins[*worst]) + " " +
          contents.problem.margins[*worst].unit;
 }
 
-/// What is wrong with the rounded design, as far as it is known.
+/// Why the rounded design should not be used, for the end of a sentence; "" if nothing is wrong with it.
 std::string rounded_remarks(const StudyContents& contents, const DesignRecord& rounded) {
   std::vector<std::string> remarks;
-  for (const std::string& remark : {rounded.reason, blocking(contents, rounded)})
+  for (const std::string& remark : {rounded.reason, violation(contents, rounded)})
     if (!remark.empty()) remarks.push_back(remark);
   if (remarks.empty()) return "";
   return (rounded.status == Status::feasible ? ", but " : ": ") + join(remarks, "; ");
@@ -83,7 +83,7 @@ std::string reasons_text(const std::vector<Reason>& reasons) {
   return text;
 }
 
-std::string summary_text(const StudyContents& contents, const Study& study, const std::optional<Verdict>& verdict) {
+std::string summary_text(const StudyContents& contents, const Study& study, const std::optional<Diagnosis>& diagnosis) {
   std::ostringstream out;
   out << printable(contents.name) << ": " << words(contents.state) << ", " << contents.evaluations()
       << " evaluations in " << duration_text(contents.seconds) << ", seed " << contents.seed << '\n';
@@ -91,7 +91,7 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
     out << "stage " << i + 1 << ": " << stage.optimiser << ", ";
-    const bool has_starts =  // also where it was interrupted before the first of them ended
+    const bool has_starts =  // also if the stage was interrupted before the first start ended
         !stage.starts.empty() ||
         (i < study.stages.size() && study.stages[i].entry->capabilities(study.stages[i].options).starts);
     if (!has_starts)
@@ -101,11 +101,11 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
     out << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", ended: " + stage.stop) << '\n'
         << starts_text(contents.problem, stage) << front_text(contents.problem, stage);
   }
-  if (const std::string text = failures_text(failures_in(contents, study.problem.get())); !text.empty())
+  if (const std::string text = failures_text(collect_failures(contents, study.problem.get())); !text.empty())
     out << printable(text) << '\n';
   for (const std::string& note : contents.notes) out << "note: " << printable(note) << '\n';
   if (!contents.reproducible())
-    out << "note: the clock ended a start, so another run with this seed may end elsewhere\n";
+    out << "note: a time limit ended a start, so another run with this seed may give another result\n";
   if (!contents.final) {
     if (contents.best.row >= 0 && !contents.problem.objectives.empty()) {
       const StageRecord& stage = contents.best_stage();
@@ -126,14 +126,14 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
     out << "no best design: the study has no objective\n";
     return out.str();
   }
-  const std::vector<std::string> wrong = contradicted(contents);
-  for (const std::string& sentence : wrong) out << sentence << '\n';
+  const std::vector<std::string> errors = contradicted(contents);
+  for (const std::string& sentence : errors) out << sentence << '\n';
   if (final.best->status == Status::failed && final.best->certain)
-    out << "its values are not to be used\n";
+    out << "do not use the values of the best design\n";
   else if (final.best->status == Status::failed)
     out << "no design could be evaluated: " << final.best->reason << '\n';
   else if (final.best->status != Status::feasible)
-    out << "nothing feasible was found; this is the least infeasible design: " << blocking(contents, *final.best)
+    out << "nothing feasible was found; this is the least infeasible design: " << violation(contents, *final.best)
         << '\n';
   out << '\n' << aligned(table(contents, study)) << '\n';
   if (final.rounded && (final.rounded->status != Status::feasible || !final.rounded->reason.empty()))
@@ -143,15 +143,16 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   out << optimality_text(contents.problem, of_best.optimality ? of_best : contents.stages.back());
   if (!final.active.empty()) out << "active: " << join(final.active, "; ") << '\n';
   if (final.best->touches_box)
-    out << "warning: feasible cells of the best design touch the box; a larger box may hold more workspace\n";
+    out << "warning: feasible cells of the best design touch the box; a larger box may contain more workspace\n";
   for (const auto& r : study.references)
     if (r.seconds) out << printable(r.name) << " took " << duration_text(*r.seconds) << '\n';
-  if (verdict)
-    out << "verdict: " << verdict->finding << ": " << verdict->sentence << '\n' << reasons_text(verdict->reasons);
+  if (diagnosis)
+    out << "diagnosis: " << diagnosis->finding << ": " << diagnosis->sentence << '\n'
+        << reasons_text(diagnosis->reasons);
   return out.str();
 }
 
-Json summary_json(const StudyContents& contents, const std::optional<Verdict>& verdict, const Failures& failures) {
+Json summary_json(const StudyContents& contents, const std::optional<Diagnosis>& diagnosis, const Failures& failures) {
   Json object = {{"name", contents.name},
                  {"mechanism", contents.problem.mechanism},
                  {"state", words(contents.state)},
@@ -174,7 +175,7 @@ Json summary_json(const StudyContents& contents, const std::optional<Verdict>& v
   object["reproducible"] = contents.reproducible();
   object["notes"] = contents.notes;
   object["stop"] = contents.stages.empty() ? "" : contents.stages.back().stop;
-  object["verdict"] = verdict_json(verdict);
+  object["verdict"] = diagnosis_json(diagnosis);
   object["failures"] = failures_json(failures);
   object["best"] = nullptr;
   if (contents.best.row >= 0) {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "engine/config/assignments.hpp"
+#include "engine/config/motion_section.hpp"
 #include "engine/core/catalogue.hpp"
-#include "engine/setup/assignments.hpp"
-#include "engine/setup/motion_section.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/axes.hpp"
@@ -15,7 +15,7 @@
 namespace pkm {
 namespace {
 
-Target bare_mechanism(std::shared_ptr<const Mechanism> mechanism) {
+Target mechanism_target(std::shared_ptr<const Mechanism> mechanism) {
   Target target;
   target.limits = no_limits(mechanism->info());
   for (const auto& parameter : mechanism->info().parameters) target.parameters.push_back(parameter.nominal);
@@ -25,7 +25,7 @@ Target bare_mechanism(std::shared_ptr<const Mechanism> mechanism) {
   return target;
 }
 
-Target of_study(Study study) {
+Target study_target(Study study) {
   const ProblemParts& parts = study.problem->parts();
   Target target;
   target.mechanism = parts.mechanism;
@@ -37,47 +37,48 @@ Target of_study(Study study) {
   return target;
 }
 
-/// A built-in mechanism, or what is in a file.
-MechanismOrStudy named(const Catalogues& catalogues, const std::string& name, const std::string& files,
-                       const StudyChanges& changes = {}) {
+/// Finds a built-in mechanism by name, or reads a mechanism or a study from a file.
+/// @param files  kinds of files that are expected, for the message
+MechanismOrStudy find_by_name(const Catalogues& catalogues, const std::string& name, const std::string& files,
+                              const StudyChanges& changes = {}) {
   std::vector<std::string> known;
   for (const auto& mechanism : catalogues.mechanisms) {
-    known.push_back(mechanism->info().name);
-    if (known.back() == name) return mechanism;
+    known.push_back(mechanism.name());
+    if (known.back() == name) return mechanism.get();
   }
-  if (may_be_file(name)) return load_mechanism_or_study(name, catalogues, changes);
+  if (looks_like_file(name)) return load_mechanism_or_study(name, catalogues, changes);
   throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",
                     "one of the mechanisms " + join(known) + ", or " + files, nearest_name(name, known));
 }
 
 Target named_target(const Catalogues& catalogues, const std::string& name, const StudyChanges& changes) {
-  MechanismOrStudy found = named(catalogues, name, "a file in TOML of a study or a mechanism", changes);
+  MechanismOrStudy found = find_by_name(catalogues, name, "a file in TOML of a study or a mechanism", changes);
   if (const auto* const mechanism = std::get_if<std::shared_ptr<const Mechanism>>(&found)) {
-    Target target = bare_mechanism(*mechanism);
+    Target target = mechanism_target(*mechanism);
     target.files = {name};
     return target;
   }
-  Target target = of_study(std::get<Study>(std::move(found)));
+  Target target = study_target(std::get<Study>(std::move(found)));
   target.files = {name};
   if (target.study->description) target.files.push_back(target.study->description->file_name);
   return target;
 }
 
-Target of_file(const Session& session, const DesignArguments& arguments) {
+Target study_file_target(const Session& session, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
-  Target target = of_study(recorded_study(contents, arguments.from, session, arguments.changes));
+  Target target = study_target(recorded_study(contents, arguments.from, session, arguments.changes));
   static_cast<ChosenDesign&>(target) = chosen_design(contents, *target.study, arguments.choice);
   target.files = {arguments.from};
   return target;
 }
 
-Target chosen_target(const Session& session, const DesignArguments& arguments) {
+Target select_target(const Session& session, const DesignArguments& arguments) {
   if (arguments.from.empty() == arguments.target.empty())
     throw ConfigError({}, arguments.from.empty() ? "no design" : "'" + arguments.target + "' together with --from",
                       "a mechanism, a file in TOML or --from F.h5");
-  if (!arguments.from.empty()) return of_file(session, arguments);
-  if (const char* const option = given_option(arguments.choice))
-    throw ConfigError({"", 0, option}, "no --from", "--from F.h5 beside it");
+  if (!arguments.from.empty()) return study_file_target(session, arguments);
+  if (const char* const option = first_given_option(arguments.choice))
+    throw ConfigError({"", 0, option}, "no --from", "--from F.h5 together with it");
   return named_target(session.catalogues, arguments.target, arguments.changes);
 }
 
@@ -85,7 +86,7 @@ void set_masses(Target& target, const std::string& model) {
   const MechanismInfo& info = target.info();
   if (target.study)
     throw ConfigError({"", 0, "--masses"}, "'" + model + "' together with a study",
-                      "a bare mechanism; a study says masses = \"..\" in its [mechanism]");
+                      "a mechanism; in a study, set masses = \"..\" in its table [mechanism]");
   const Dynamics* const dynamics = target.mechanism->dynamics();
   if (!dynamics) throw ConfigError({"", 0, "--masses"}, "the mechanism " + info.name + " has no masses");
   const auto other = dynamics->with_masses(model);
@@ -93,32 +94,31 @@ void set_masses(Target& target, const std::string& model) {
     throw ConfigError({"", 0, "--masses"}, "'" + model + "'", "one of " + join(dynamics->mass_models()),
                       nearest_name(model, dynamics->mass_models()));
   const auto files = std::move(target.files);
-  target = bare_mechanism(other);
+  target = mechanism_target(other);
   target.files = files;
 }
 
 }  // namespace
 
-SurveyPlan Target::plan() const {
-  SurveyPlan plan;
+WorkspacePlan Target::plan() const {
+  WorkspacePlan plan;
   if (study) plan = study->problem->parts().plan;
   plan.limits = limits;
   return plan;
 }
 
 void add_choice_options(CLI::App& command, DesignChoice& choice) {
-  command.add_flag("--baseline", choice.baseline, "Instead of the best design: the study's baseline");
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-  add_integer(command, "--generation G", choice.generation, 0, kMost,
-              "Instead: of generation G of a stage (the first is 0) the design that --individual names");
-  add_integer(command, "--individual I", choice.individual, 0, kMost, "Its place in the population, from 1");
-  add_integer(command, "--front N", choice.front, 0, kMost,
-              "Instead: point N of its trade-off (see 'pkmopt show F.h5')");
-  add_integer(command, "--stage N", choice.stage, 0, kMost,
-              "The stage of generation or front (default: the last that has one)");
+  command.add_flag("--baseline", choice.baseline, "Use the study's baseline instead of its best design");
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+  add_integer(command, "--generation G", choice.generation, 0, kMax,
+              "Use a design of generation G of a stage (the first is 0), selected by --individual");
+  add_integer(command, "--individual I", choice.individual, 0, kMax, "Number of the design in the population, from 1");
+  add_integer(command, "--front N", choice.front, 0, kMax, "Use point N of the Pareto front (see 'pkmopt show F.h5')");
+  add_integer(command, "--stage N", choice.stage, 0, kMax,
+              "Stage of --generation or --front (default: the last stage that has one)");
 }
 
-const char* given_option(const DesignChoice& choice) {
+const char* first_given_option(const DesignChoice& choice) {
   return choice.baseline     ? "--baseline"
          : choice.generation ? "--generation"
          : choice.individual ? "--individual"
@@ -134,25 +134,25 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& option, std::
 }
 
 void add_cells_option(CLI::App& command, std::vector<std::string>& lists, const std::string& meaning) {
-  add_option(command, "--cells N|NAME=N", lists, meaning + "; a number along each, or by name, separated by commas")
+  add_option(command, "--cells N|NAME=N", lists, meaning + "; one number for all axes, or by name, separated by commas")
       ->allow_extra_args(false);
 }
 
 void add_limit_option(CLI::App& command, std::vector<std::string>& lists) {
-  add_list_option(command, "--limit", lists, "Thresholds of the limits of a pose, instead of the study's");
+  add_list_option(command, "--limit", lists, "Thresholds of pose limits, overriding those of the study");
 }
 
 void add_change_options(CLI::App& command, StudyChanges& changes) {
-  add_list_option(command, "--set", changes.set, "Parameters that do not vary, instead of the study's");
+  add_list_option(command, "--set", changes.set, "Values of fixed parameters, overriding those of the study");
   add_limit_option(command, changes.limit);
-  add_cells_option(command, changes.cells, "Cells of the study's voxels");
+  add_cells_option(command, changes.cells, "Cells of the study's voxel grid");
 }
 
 void add_mode_options(CLI::App& command, ModeArguments& arguments) {
   add_option(command, "--mode MODE", arguments.mode,
              "Working mode (see 'pkmopt list mechanisms NAME'); default: the first");
   add_option(command, "--branch SIGN", arguments.branch,
-             "Branch of the assembly that a pose must be on, for mechanisms that have several; default: the first");
+             "Required assembly branch, for mechanisms that have several; default: the first");
 }
 
 double parse_gap(const std::string& text, const std::string& option) {
@@ -165,7 +165,7 @@ std::shared_ptr<const Motion> find_motion(const Target& target, const std::strin
   if (target.study) {
     const auto& motions = target.study->motions;
     if (const NamedMotion* known = find_named(motions, name)) return known->motion;
-    if (!motions.empty() && !may_be_file(name))
+    if (!motions.empty() && !looks_like_file(name))
       throw ConfigError({"", 0, "--motion"}, "'" + name + "', which is neither a [[motion]] of the study nor a file",
                         "one of " + join(names_of(motions)) + ", or a motion in TOML",
                         nearest_name(name, names_of(motions)));
@@ -173,17 +173,17 @@ std::shared_ptr<const Motion> find_motion(const Target& target, const std::strin
   return load_motion_toml(name, motion_names(*target.mechanism));
 }
 
-std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments) {
+std::string parse_mode(const MechanismInfo& info, const ModeArguments& arguments) {
   const auto& [mode, branch] = arguments;
-  const SourcePlace place{"", 0, "--branch"};
+  const SourceLocation place{"", 0, "--branch"};
   if (!branch.empty() && info.branches.empty())
     throw ConfigError(place, "mechanism " + info.name + " has one branch only");
   if (!branch.empty() && std::ranges::find(info.branches, branch) == info.branches.end())
     throw ConfigError(place, "'" + branch + "'", "one of " + join(info.branches));
   if (!branch.empty() && mode.find('/') != std::string::npos)
-    throw ConfigError(place, "the mode " + mode + " says its branch itself");
+    throw ConfigError(place, "the mode " + mode + " already specifies its branch");
   if (!branch.empty() && branch != info.branches.front())
-    return known_mode(info, {(mode.empty() ? info.modes.front() : mode) + "/" + branch, ""});
+    return parse_mode(info, {(mode.empty() ? info.modes.front() : mode) + "/" + branch, ""});
   if (mode.empty()) return info.modes.front();
   if (std::ranges::find(info.modes, mode) != info.modes.end()) return mode;
   throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),
@@ -199,20 +199,23 @@ MotionSample parse_motion(const Mechanism& mechanism, const MotionArguments& arg
   MotionSample sample{.pose = axis_vector(pose),
                       .velocity = axis_vector(std::span(rates).first(n)),
                       .acceleration = axis_vector(std::span(changes).first(n))};
-  if (mechanism.chain()) sample.input = {0, rates[n], changes[n]};
+  const auto& inputs = mechanism.info().inputs;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    sample.inputs.push_back({inputs[i].value, rates[n + i], changes[n + i]});
   return sample;
 }
 
 void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
   add_option(command, "MECHANISM|FILE.toml", arguments.target,
-             "A mechanism's name, or the path of its description or of a study; else --from");
+             "Name of a mechanism, or path of a mechanism file or a study; or use --from");
   add_option(command, "--from F.h5", arguments.from,
-             "The best design of a study file (of a trade-off the compromise), and its problem");
+             "Use the best design of a study file (of a Pareto front the compromise), and its problem");
   add_choice_options(command, arguments.choice);
-  add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults");
+  add_list_option(command, "--set", arguments.set,
+                  "Parameter values, overriding those of the baseline, else the default values");
   add_limit_option(command, arguments.changes.limit);
   add_option(command, "--masses MODEL", arguments.masses,
-             "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself");
+             "Mass model of a mechanism (see 'pkmopt list'); a study specifies its own");
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }
 
@@ -226,21 +229,21 @@ void write_table(const TableOutput& output, const CsvTable& table) {
 }
 
 std::shared_ptr<const Mechanism> find_mechanism(const Catalogues& catalogues, const std::string& name) {
-  const MechanismOrStudy found = named(catalogues, name, "the file of one");
+  const MechanismOrStudy found = find_by_name(catalogues, name, "a mechanism file");
   if (const auto* const mechanism = std::get_if<std::shared_ptr<const Mechanism>>(&found)) return *mechanism;
-  throw ConfigError({name, 0, ""}, "a study", "the description of a mechanism");
+  throw ConfigError({name, 0, ""}, "a study", "a mechanism file");
 }
 
-bool may_be_file(const std::string& name) {
-  std::error_code unreadable;  // is told by the attempt to read
-  return name.ends_with(".toml") || std::filesystem::exists(name, unreadable);
+bool looks_like_file(const std::string& name) {
+  std::error_code ignored;  // errors are reported by the attempt to read the file
+  return name.ends_with(".toml") || std::filesystem::exists(name, ignored);
 }
 
 Target find_target(const Session& session, const DesignArguments& given_arguments) {
   DesignArguments arguments = given_arguments;
   for (const std::string& name : assigned_names(arguments.set))
     if (name.find('.') != std::string::npos) arguments.changes.limb_parameters.push_back(name);
-  Target target = chosen_target(session, arguments);
+  Target target = select_target(session, arguments);
   if (!arguments.masses.empty()) set_masses(target, arguments.masses);
   if (!target.study) {
     const auto limits = parse_assignments(arguments.changes.limit, "--limit", assignable_limits(target.info()));
@@ -254,7 +257,8 @@ Target find_target(const Session& session, const DesignArguments& given_argument
     target.words += " with " + join(arguments.set);
     target.file_name += "-changed";
   }
-  if (const Refusal reason = target.mechanism->refuse(target.parameters)) throw ConfigError({"", 0, "--set"}, *reason);
+  if (const Unsupported reason = target.mechanism->refuse(target.parameters))
+    throw ConfigError({"", 0, "--set"}, *reason);
   return target;
 }
 

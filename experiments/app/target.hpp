@@ -1,4 +1,5 @@
-// What the commands that look at one design have in common: MECHANISM|FILE.toml or --from F.h5, --set and --json.
+// Selection of the design that a command works on, from MECHANISM|FILE.toml or --from F.h5, --set and further options;
+// and other options that several commands share.
 #pragma once
 
 #include <memory>
@@ -14,73 +15,75 @@
 namespace pkm {
 
 struct DesignArguments {
-  std::string target;            ///< a mechanism's name, or the path of its description or of a study
+  std::string target;            ///< name of a mechanism, or path of a mechanism file or a study
   std::vector<std::string> set;  ///< lists of name=value
-  StudyChanges changes;          ///< limits, and of some commands cells
-  std::string masses;            ///< a mass model; "": the study's, else the mechanism's default
-  std::string from;              ///< instead of `target`: a study file
-  DesignChoice choice;           ///< which of the file's designs
+  StudyChanges changes;          ///< limits, and for some commands cells
+  std::string masses;            ///< mass model; "": that of the study, else the mechanism's default
+  std::string from;              ///< a study file, instead of `target`
+  DesignChoice choice;           ///< which design of the study file
   bool json = false;
 };
 
 /// Declares --baseline, --generation, --individual, --front and --stage.
 void add_choice_options(CLI::App& command, DesignChoice& choice);
-/// The first of them that is given; null: none.
-const char* given_option(const DesignChoice& choice);
+/// The first of these options that is given; nullptr if none is.
+const char* first_given_option(const DesignChoice& choice);
 
 /// Declares a list option such as --at: name=value, separated by commas, repeatable.
 CLI::Option* add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
                              const std::string& meaning);
 
-/// Declares --cells: one number, or NAME=CELLS.
+/// Declares --cells: one number for all axes, or NAME=CELLS.
 void add_cells_option(CLI::App& command, std::vector<std::string>& lists, const std::string& meaning);
 /// Declares --limit.
 void add_limit_option(CLI::App& command, std::vector<std::string>& lists);
-/// Declares --set, --limit and --cells, which change a study that is run.
+/// Declares --set, --limit and --cells, which override values of a study to be run.
 void add_change_options(CLI::App& command, StudyChanges& changes);
 
 struct ModeArguments {
-  std::string mode;    ///< "": the default
-  std::string branch;  ///< sign required of the mechanism's branch; "": what the mode says
+  std::string mode;    ///< working mode; "": the default
+  std::string branch;  ///< required assembly branch (a sign); "": that of the mode
 };
 
 /// Declares --mode and --branch.
 void add_mode_options(CLI::App& command, ModeArguments& arguments);
-/// The mode asked for, as the mechanism calls it. Refuses one that it does not have.
-std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments);
+/// The name of the selected working mode, including the branch. Throws ConfigError if the mechanism does not have it.
+std::string parse_mode(const MechanismInfo& info, const ModeArguments& arguments);
 
-/// A pose and how the mechanism moves there.
+/// A pose, and the rates of the coordinates there.
 struct MotionArguments : ModeArguments {
   std::vector<std::string> at, velocity, acceleration;
 };
-/// What they say, an auxiliary chain's input included; rates that are not given are 0.
+/// Parses the arguments. Rates that are not given are 0; inputs have their default values.
 MotionSample parse_motion(const Mechanism& mechanism, const MotionArguments& arguments);
 
-/// The ability of a mechanism that a command needs. Throws ConfigError, naming both, where it has it not.
-template <class Ability>
-const Ability& needed(const Ability* ability, const std::string& command, const std::string& what,
-                      const MechanismInfo& info) {
-  if (!ability) throw ConfigError({}, command + " needs " + what + ", and mechanism " + info.name + " has none");
-  return *ability;
+/// A capability that a command needs of the mechanism. Throws ConfigError if the mechanism does not have it (null).
+/// @param what  name of the capability, for the message
+template <class Capability>
+const Capability& require_capability(const Capability* capability, const std::string& command, const std::string& what,
+                                     const MechanismInfo& info) {
+  if (!capability) throw ConfigError({}, command + " needs " + what + ", and mechanism " + info.name + " has none");
+  return *capability;
 }
 
-/// The gap of certain bounds that an option asks for.
+/// Parses a relative gap of certified bounds, between 0 and 2. Throws ConfigError.
 double parse_gap(const std::string& text, const std::string& option);
 
-/// One design of a mechanism, and the study that it comes from, if it does: the study's baseline, else its parameters,
-/// else the mechanism's defaults, unless a study file's design is chosen; then what --set names.
+/// The design that a command works on, with its mechanism and study. Its parameters are those of the selected design of
+/// a study file; for a study in TOML those of its baseline, else of the study; for a mechanism the default values.
+/// --set overrides them.
 struct Target : ChosenDesign {
   std::shared_ptr<const Mechanism> mechanism;
-  std::optional<Study> study;
-  LimitSpec limits;                ///< the study's; none for a bare mechanism
-  std::vector<std::string> files;  ///< that this was read from: no output may be one of them
+  std::optional<Study> study;      ///< std::nullopt: a mechanism without a study
+  LimitSpec limits;                ///< those of the study; none without a study
+  std::vector<std::string> files;  ///< files that were read, which no output may overwrite
 
   const MechanismInfo& info() const { return mechanism->info(); }
-  /// The study's, else columns over all that the design reaches; under the limits.
-  SurveyPlan plan() const;
+  /// Plan of the workspace analysis under these limits: the study's, else columns over the whole reach of the design.
+  WorkspacePlan plan() const;
 };
 
-/// A table that a command writes when it is asked for.
+/// A table that a command writes on request.
 struct TableOutput {
   std::string csv;
   bool force = false;
@@ -89,33 +92,36 @@ struct TableOutput {
 void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning);
 void write_table(const TableOutput& output, const CsvTable& table);
 
-/// A word of the command line is a file's name: it looks so, or there is one.
-bool may_be_file(const std::string& name);
-/// The built-in mechanism of that name, or the one that a file describes. Throws ConfigError.
+/// Whether a word of the command line is meant as a file name: it ends in ".toml", or such a file exists.
+bool looks_like_file(const std::string& name);
+/// The built-in mechanism of this name, or the mechanism of this file. Throws ConfigError.
 std::shared_ptr<const Mechanism> find_mechanism(const Catalogues& catalogues, const std::string& name);
 
-/// A [[motion]] of the study by its name, else a file.
+/// The [[motion]] of the study with this name, otherwise the motion of the file with this name. Throws ConfigError.
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name);
 
-/// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
+/// Finds the design. Throws ConfigError if there is no such mechanism, study or design, or if the parameters do not
+/// give a valid mechanism.
 Target find_target(const Session& session, const DesignArguments& arguments);
 
-/// Declares the arguments of one design; what is parsed goes to `arguments`, which must outlive `command`.
+/// Declares the arguments that select a design.
+/// @param arguments  receives the parsed values; must outlive `command`
 void add_design_arguments(CLI::App& command, DesignArguments& arguments);
 
-/// Adds a subcommand that looks at one design and tells what it finds. What `look` returns is wrong with that all the
-/// same, for exit code 1; "": nothing.
-template <class Arguments, class Look>
+/// Adds a subcommand that analyses one design and prints the results.
+/// @param run  run(Target, Arguments, Printout&): returns "", or an error message, which is printed after the results,
+///             for exit code 1
+template <class Arguments, class Run>
 std::pair<CLI::App&, Arguments&> add_design_command(CLI::App& app, Session& session, const std::string& name,
-                                                    const std::string& meaning, const std::string& footer, Look look) {
+                                                    const std::string& meaning, const std::string& footer, Run run) {
   const auto added =
-      add_command<Arguments>(app, name, meaning, footer, [&session, look, name](const Arguments& arguments) {
+      add_command<Arguments>(app, name, meaning, footer, [&session, run, name](const Arguments& arguments) {
         expect_toml(arguments.target, name + " --from", session);
-        Printout out{.for_programs = arguments.json};
-        const SlowStep slow = announced(session, name + " is computing, Ctrl-C ends it");
-        const std::string wrong = look(find_target(session, arguments), arguments, out);
+        Printout out{.as_json = arguments.json};
+        const SlowStepNotice slow = announce_slow_step(session, name + " is computing, Ctrl-C ends it");
+        const std::string error = run(find_target(session, arguments), arguments, out);
         out.print();
-        if (!wrong.empty()) throw std::runtime_error(wrong);
+        if (!error.empty()) throw std::runtime_error(error);
       });
   add_design_arguments(added.first, added.second);
   return added;

@@ -4,14 +4,15 @@
 #include <array>
 #include <cmath>
 
-#include "engine/model/singular.hpp"
-#include "engine/setup/assignments.hpp"
+#include "engine/config/assignments.hpp"
+#include "engine/geometry/singular.hpp"
 #include "experiments/app/axes.hpp"
 
 namespace pkm {
 namespace {
 
-/// Errors of the joints that --joint-error gives: one for all, or by name.
+/// Parses --joint-error: one bound for all joints, or bounds by name.
+/// @return bounds of all joints [SI], >= 0
 std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<std::string>& lists) {
   const std::string option = "--joint-error";
   std::vector<double> errors;
@@ -24,18 +25,19 @@ std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<st
   return errors;
 }
 
-/// The twist of a mechanism that does not state it: its lengths are the translation, the rotation is unknown.
-AxisMatrix<double> translation_of(const MechanismInfo& info) {
+/// Map from coordinate rates to the twist for a mechanism that does not provide it: the coordinates that are lengths
+/// are taken as the components of the position; the rotation is unknown and set to 0.
+AxisMatrix<double> translation_map(const MechanismInfo& info) {
   auto T = AxisMatrix<double>::zero(6, info.coordinates.size());
   for (std::size_t j = 0, row = 0; j < info.coordinates.size() && row < 3; ++j)
     if (!info.coordinates[j].turns()) T(row++, j) = 1;
   return T;
 }
 
-/// The longest translation and rotation of the twists E e over a box of errors e. Norms are convex, so that their
-/// maxima are at corners of the box.
-std::array<double, 2> longest_of_twist(const AxisMatrix<double>& E, const std::vector<double>& errors) {
-  std::array<double, 2> longest{};
+/// Maximum norms of the translation and of the rotation of the twists E e over the box |e_i| <= errors[i]. A norm is
+/// convex, so its maximum is attained at a vertex of the box.
+std::array<double, 2> max_twist(const AxisMatrix<double>& E, const std::vector<double>& errors) {
+  std::array<double, 2> max{};
   for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
     std::array<double, 2> squares{};
     for (std::size_t i = 0; i < E.rows(); ++i) {
@@ -43,48 +45,50 @@ std::array<double, 2> longest_of_twist(const AxisMatrix<double>& E, const std::v
       for (std::size_t j = 0; j < errors.size(); ++j) component += (corner >> j & 1 ? 1 : -1) * E(i, j) * errors[j];
       squares[i / 3] += component * component;
     }
-    for (std::size_t part = 0; part < 2; ++part) longest[part] = std::max(longest[part], std::sqrt(squares[part]));
+    for (std::size_t part = 0; part < 2; ++part) max[part] = std::max(max[part], std::sqrt(squares[part]));
   }
-  return longest;
+  return max;
 }
 
 }  // namespace
 
-void tell_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
-                     const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists, Printout& out) {
+void report_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
+                       const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists,
+                       Printout& out) {
   const MechanismInfo& info = target.info();
   const Velocities& velocities =
-      needed(target.mechanism->velocities(), "--joint-error", "influence coefficients", info);
+      require_capability(target.mechanism->velocities(), "--joint-error", "influence coefficients", info);
   if (info.joints.size() != info.coordinates.size())
-    throw ConfigError({"", 0, "--joint-error"}, "mechanism " + info.name + " has not as many joints as coordinates");
+    throw ConfigError({"", 0, "--joint-error"},
+                      "mechanism " + info.name + " does not have as many joints as coordinates");
   const std::vector<double> errors = joint_errors(info, lists);
   out.json["joint_error"] = values_by_name(info.joints, errors);
   out.json["tool_error"] = nullptr;
   const auto influence = velocities.influence(target.parameters, at.pose, mode);
   if (!influence || is_singular(influence->G)) {
-    out.text += "\nerror of the tool: does not exist, the pose is singular\n";
+    out.text += "\ntool error: undefined, because the pose is singular\n";
     return;
   }
-  const AxisMatrix<double> of_joints = reversed(*influence).G;
+  const AxisMatrix<double> inverse = reversed(*influence).G;  // maps joint errors to coordinate errors
   const auto with_micrometres = [](double error) {
     return number(error, "m") + " (" + formatted("%.6g", 1e6 * error) + " um)";
   };
   std::vector<Row> rows;
   std::vector<double> worst(errors.size(), 0);
   for (std::size_t i = 0; i < worst.size(); ++i) {
-    for (std::size_t j = 0; j < errors.size(); ++j) worst[i] += std::fabs(of_joints(i, j)) * errors[j];
+    for (std::size_t j = 0; j < errors.size(); ++j) worst[i] += std::fabs(inverse(i, j)) * errors[j];
     const AxisInfo& axis = info.coordinates[i];
     rows.push_back({axis.name, axis.turns() ? position(worst[i], axis.unit) : with_micrometres(worst[i])});
   }
-  const auto [translation, rotation] = longest_of_twist((T ? *T : translation_of(info)) * of_joints, errors);
+  const auto [translation, rotation] = max_twist((T ? *T : translation_map(info)) * inverse, errors);
   rows.push_back({"translation", with_micrometres(translation)});
-  Json told = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", translation}};
+  Json json = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", translation}};
   if (T && std::ranges::any_of(info.coordinates, &AxisInfo::turns)) {
-    told["rotation"] = rotation;
+    json["rotation"] = rotation;
     rows.push_back({"rotation", position(rotation, "rad")});
   }
-  out.json["tool_error"] = told;
-  out.section("greatest error of the tool, for errors of the joints up to " + axes_text(info.joints, errors), rows);
+  out.json["tool_error"] = json;
+  out.add_table("maximum tool error, for joint errors up to " + axes_text(info.joints, errors), rows);
 }
 
 }  // namespace pkm

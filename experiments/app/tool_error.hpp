@@ -1,4 +1,4 @@
-// What errors of the joints do to the tool.
+// First-order pose error of the tool caused by joint errors: x = J^-1 q.
 #pragma once
 
 #include <string>
@@ -8,12 +8,13 @@
 
 namespace pkm {
 
-/// Tells what errors of the joints within +- theirs do to the platform, to first order: the worst that each coordinate
-/// can have, the longest translation of the platform's origin and its largest rotation, which are at corners of the box
-/// of errors.
-/// @param T      of the pose (PoseReport)
-/// @param lists  of --joint-error: one error of all joints, or some by name
-void tell_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
-                     const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists, Printout& out);
+/// Reports the largest first-order pose errors of the platform for joint errors within the given bounds +-q_i: of each
+/// coordinate, of the position of the platform's origin and of the orientation. Throws ConfigError if the mechanism has
+/// no influence coefficients or not as many joints as coordinates.
+/// @param T      maps coordinate rates to the platform's twist (PoseReport::T); std::nullopt: unspecified
+/// @param lists  of --joint-error: one bound for all joints, or bounds by name
+void report_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
+                       const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists,
+                       Printout& out);
 
 }  // namespace pkm

@@ -1,5 +1,5 @@
-# Writes OUTPUT, the definitions of version.hpp, for the git revision of SOURCE: "unknown" where SOURCE is not the root of
-# a git working tree, "+changes" behind it where tracked files differ from the commit.
+# Writes OUTPUT, the definitions of version.hpp, with the git revision of SOURCE: "unknown" if SOURCE is not the root of
+# a git working tree; "+changes" is appended if tracked files differ from the commit.
 set(revision unknown)
 execute_process(COMMAND git -C ${SOURCE} rev-parse --show-cdup --short=12 HEAD
   RESULT_VARIABLE failed OUTPUT_VARIABLE lines ERROR_QUIET)

@@ -1,4 +1,4 @@
-// Which program this is. The definitions are written by version.cmake in every build.
+// Version and git revision of this program. version.cmake writes the definitions in every build.
 #pragma once
 
 #include <string>

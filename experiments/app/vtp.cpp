@@ -2,21 +2,21 @@
 
 #include <algorithm>
 
+#include "experiments/app/body_meshes.hpp"
 #include "experiments/app/print.hpp"
-#include "experiments/app/surfaces.hpp"
 
 namespace pkm {
 namespace {
 
-/// What text_of makes of each thing, between tags.
+/// An XML element with text_of(item) for each item of the list.
 template <class List, class Text>
 std::string element(const std::string& tag, const std::string& attributes, const List& list, const Text& text_of) {
   std::string text = '<' + tag + ' ' + attributes + " format=\"ascii\">\n";
-  for (const auto& thing : list) text += text_of(thing);
+  for (const auto& item : list) text += text_of(item);
   return text + "</" + tag + ">\n";
 }
 
-/// Characters by their codes, with a 0 behind each text.
+/// A VTK array of strings: the codes of their characters, each string terminated by 0.
 std::string texts(const std::string& name, const std::vector<std::string>& list) {
   const std::string attributes =
       "type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"" + std::to_string(list.size()) + '"';
@@ -35,10 +35,10 @@ std::string numbers(const std::string& name, const std::vector<std::size_t>& lis
 }  // namespace
 
 std::string links_vtp(const std::vector<PlacedLink>& links, const Obstacles& obstacles, const std::string& title) {
-  const Surfaces surfaces = surfaces_of(links, obstacles);
+  const BodyMeshes surfaces = triangulate(links, obstacles);
   std::vector<std::string> bodies, parts;
   std::vector<std::size_t> body, part, corners, ends;
-  for (const Surfaces::Body& of : surfaces.bodies) {
+  for (const BodyMeshes::Body& of : surfaces.bodies) {
     if (std::ranges::find(parts, of.part) == parts.end()) parts.push_back(of.part);
     const auto number = static_cast<std::size_t>(std::ranges::find(parts, of.part) - parts.begin());
     part.resize(of.end, number);

@@ -1,15 +1,16 @@
-// The links of a mechanism at a pose, for ParaView and VTK.
+// Writes the links of a mechanism at a pose as VTK PolyData, for ParaView.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "engine/model/placed_link.hpp"
+#include "engine/geometry/placed_link.hpp"
 
 namespace pkm {
 
-/// The surfaces of links and obstacles in m, as PolyData of VTK's XML format. Each triangle has the number of its body
-/// and of its part; the names stand in the field data `bodies` and `parts`, beside the `title`.
+/// Contents of a VTK XML file (.vtp) with the triangle meshes of links and obstacles [m]. The cell data `body` and
+/// `part` are the indices of a triangle's body and part; the field data `bodies` and `parts` contain their names,
+/// `title` the title.
 std::string links_vtp(const std::vector<PlacedLink>& links, const Obstacles& obstacles, const std::string& title);
 
 }  // namespace pkm

@@ -18,15 +18,15 @@ std::string stl_path(const WorkspaceOutputs& outputs, const Target& target) {
 
 }  // namespace
 
-std::string title_of(const Target& target) {
+std::string workspace_title(const Target& target) {
   return "workspace of " + target.info().name + ", " + target.words +
          (target.study ? " of study " + target.study->name : "");
 }
 
-void make_folder(const std::string& folder) {
+void create_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw StorageError(folder + ": the folder cannot be made (" + error.message() + ")");
+  if (error) throw StorageError(folder + ": cannot create the folder (" + error.message() + ")");
 }
 
 void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs) {
@@ -37,43 +37,44 @@ void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs) {
   command.add_flag("--force", outputs.force, "Overwrite files that exist");
 }
 
-void add_output_by_ending(CLI::App& command, const std::vector<std::pair<std::string, std::string*>>& files) {
-  std::vector<std::string> endings;
-  for (const auto& [ending, file] : files) endings.push_back(ending);
-  const auto sort = [files, endings](const std::vector<std::string>& names) {
+void add_output_by_extension(CLI::App& command, const std::vector<std::pair<std::string, std::string*>>& files) {
+  std::vector<std::string> extensions;
+  for (const auto& [extension, file] : files) extensions.push_back(extension);
+  const auto assign = [files, extensions](const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       const auto kind = std::ranges::find_if(files, [&name](const auto& of) { return name.ends_with(of.first); });
       if (kind == files.end())
-        throw ConfigError({"", 0, "-o"}, "'" + name + "'", "a file that ends in one of " + join(endings));
+        throw ConfigError({"", 0, "-o"}, "'" + name + "'", "a file name that ends in one of " + join(extensions));
       if (!kind->second->empty())
-        throw ConfigError({"", 0, "-o"}, "'" + name + "' beside '" + *kind->second + "'", "one file of a kind");
+        throw ConfigError({"", 0, "-o"}, "'" + name + "' in addition to '" + *kind->second + "'",
+                          "one file per extension");
       *kind->second = name;
     }
   };
   command
       .add_option_function<std::vector<std::string>>(
-          "-o,--output", sort, "Write this file, of the kind that its ending says: " + join(endings))
+          "-o,--output", assign, "Write this file; its extension selects the format: " + join(extensions))
       ->type_name("FILE")
       ->allow_extra_args(false);
 }
 
-std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target& target) {
+std::vector<std::string> output_files(const WorkspaceOutputs& outputs, const Target& target) {
   std::vector<std::string> files;
   if (!outputs.vtk.empty()) files.push_back(outputs.vtk);
   if (!outputs.stl.empty()) files.push_back(stl_path(outputs, target));
   return files;
 }
 
-void expect_few_cells(const SurveyPlan& plan) {
+void check_cell_count(const WorkspacePlan& plan) {
   double cells = 1;
   if (const VoxelOptions* const voxels = plan.voxels())
     for (const std::int64_t along : voxels->cells) cells *= static_cast<double>(along);
-  if (cells > kMostCells)
+  if (cells > kMaxFieldCells)
     throw ConfigError({"", 0, "[workspace] cells"}, shortest(cells) + " cells",
-                      "at most " + shortest(kMostCells) + " to write; 'pkmopt workspace --cells' takes others");
+                      "at most " + shortest(kMaxFieldCells) + " to write; 'pkmopt workspace --cells' overrides them");
 }
 
-WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode) {
+WorkspaceFields compute_fields(const Target& target, const WorkspacePlan& plan, const std::string& mode) {
   try {
     return workspace_fields(*target.mechanism, target.parameters, plan, mode);
   } catch (const std::invalid_argument& reason) {
@@ -82,12 +83,12 @@ WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const st
 }
 
 void expect_surface(const WorkspaceOutputs& outputs, const std::vector<std::string>& swept) {
-  if (const Refusal reason = refuse_surface(swept); reason && !outputs.stl.empty())
+  if (const Unsupported reason = surface_unsupported(swept); reason && !outputs.stl.empty())
     throw ConfigError({"", 0, "--stl"}, *reason);
 }
 
 void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace) {
-  const std::string title = title_of(target);
+  const std::string title = workspace_title(target);
   const Existing existing = if_forced(outputs.force);
   if (!outputs.vtk.empty()) write_vtk_image(outputs.vtk, workspace, target.info(), target.parameters, title, existing);
   if (outputs.stl.empty()) return;
@@ -95,7 +96,7 @@ void write_workspace(const WorkspaceOutputs& outputs, const Target& target, cons
   const Isosurface surface = isosurface(workspace, &margin);
   if (surface.triangles.empty()) throw std::runtime_error("the workspace has no surface: no cell is feasible");
   const std::string path = stl_path(outputs, target);
-  if (path != outputs.stl) make_folder(outputs.stl);
+  if (path != outputs.stl) create_folder(outputs.stl);
   write_file(path, stl_file(surface, title), existing);
 }
 

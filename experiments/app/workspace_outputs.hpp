@@ -1,4 +1,4 @@
-// The files that show a workspace to other programs, as `export` and `workspace` write them.
+// Export of a workspace to files for other programs, for the commands `export` and `workspace`.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace pkm {
 
-/// Makes a folder, and those it lies in, if it is not there. Throws StorageError.
-void make_folder(const std::string& folder);
+/// Creates a folder and its parents if it does not exist. Throws StorageError.
+void create_folder(const std::string& folder);
 
-/// "workspace of 4ppa-2par, the best design of study wide"
-std::string title_of(const Target& target);
+/// Title for files: "workspace of 4ppa-2par, the best design of study wide".
+std::string workspace_title(const Target& target);
 
 struct WorkspaceOutputs {
   std::string vtk;  ///< file; "": none
@@ -27,26 +27,27 @@ struct WorkspaceOutputs {
 /// Declares --vtk, --stl and --force.
 void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs);
 
-/// Declares -o: a file, whose ending says which of these it is.
-void add_output_by_ending(CLI::App& command, const std::vector<std::pair<std::string, std::string*>>& files);
+/// Declares -o FILE, which sets the option that belongs to the extension of the file name.
+/// @param files  extensions, such as ".csv", and the values of their options
+void add_output_by_extension(CLI::App& command, const std::vector<std::pair<std::string, std::string*>>& files);
 
-/// What they will be for a design.
-std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target& target);
+/// The files that write_workspace() will write.
+std::vector<std::string> output_files(const WorkspaceOutputs& outputs, const Target& target);
 
-/// Cells whose fields are computed, at most: each takes some 100 bytes.
-inline constexpr double kMostCells = 1e7;
+/// Maximum number of cells whose fields are computed: a cell takes about 100 bytes of memory.
+inline constexpr double kMaxFieldCells = 1e7;
 
-/// Throws ConfigError where the plan has more cells.
-void expect_few_cells(const SurveyPlan& plan);
+/// Throws ConfigError if the plan has more than kMaxFieldCells cells.
+void check_cell_count(const WorkspacePlan& plan);
 
-/// The workspace's fields. Throws ConfigError when the mechanism cannot serve the plan.
-WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode);
+/// Computes the fields of the workspace. Throws ConfigError if the mechanism does not support the plan.
+WorkspaceFields compute_fields(const Target& target, const WorkspacePlan& plan, const std::string& mode);
 
-/// Throws ConfigError where a surface is asked for and what is swept can have none.
-/// @param swept  names of coordinates
+/// Throws ConfigError if the surface is requested but is undefined for these coordinates.
+/// @param swept  names of the swept coordinates
 void expect_surface(const WorkspaceOutputs& outputs, const std::vector<std::string>& swept);
 
-/// Writes files_of(); throws StorageError, and std::runtime_error when there is no surface.
+/// Writes output_files(). Throws StorageError, and std::runtime_error if the surface is empty.
 void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace);
 
 }  // namespace pkm

@@ -1,5 +1,5 @@
-// Values and slopes of formulas over intervals, by rules of the checker's own: of the program it shares the reader of
-// formulas and the intervals.
+// Interval evaluation and interval automatic differentiation (forward mode) of formulas, for the proof checker. The
+// differentiation rules are its own: it shares only the formula parser and the interval type with pkmopt.
 #pragma once
 
 #include <array>
@@ -8,19 +8,21 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/graph.hpp"
+#include "engine/expression/graph.hpp"
 #include "engine/math/interval.hpp"
 
 namespace pkm::checker {
 
-inline constexpr std::size_t kMostAxes = 3;
+inline constexpr std::size_t kMaxAxes = 3;
 
+/// Enclosures of a value and of its partial derivatives by the axes.
 struct Jet {
   Interval value{0.0};
-  std::array<Interval, kMostAxes> by{Interval(0.0), Interval(0.0), Interval(0.0)};
+  std::array<Interval, kMaxAxes> by{Interval(0.0), Interval(0.0), Interval(0.0)};
 };
 
-/// What certainly changes nothing is left out; a slope that may not exist somewhere is no such number.
+/// True if an interval is exactly this number and defined everywhere. times(), plus(), minus() and over() simplify
+/// operations with exact 0 and 1, which keeps enclosures of derivatives tight.
 inline bool is(const Interval& x, double number) { return x.lower == number && x.upper == number && x.is_defined(); }
 inline Interval times(const Interval& x, const Interval& y) {
   if (is(x, 0) || is(y, 0)) return Interval(0.0);
@@ -30,18 +32,19 @@ inline Interval plus(const Interval& x, const Interval& y) { return is(x, 0) ? y
 inline Interval minus(const Interval& x, const Interval& y) { return is(y, 0) ? x : is(x, 0) ? -y : x - y; }
 inline Interval over(const Interval& x, const Interval& y) { return is(x, 0) ? x : x / y; }
 
-/// How a function's value and slope follow from those of its arguments: dx, dy are slopes of x and y, f is the value.
+/// Value of an operation for the arguments x, y, z, and its derivative by the chain rule: dx, dy are the derivatives of
+/// the arguments, f is the value.
 struct Rule {
   std::function<Interval(const Interval& x, const Interval& y, const Interval& z)> value;
   std::function<Interval(const Interval& f, const Interval& x, const Interval& y, const Interval& dx,
                          const Interval& dy)>
-      slope;  ///< empty: it has none
+      derivative;  ///< empty: not supported
 };
 
 inline const std::map<std::string, Rule>& rules() {
   using I = const Interval&;
   const Interval one(1.0);
-  const auto flat = [](I, I, I, I, I) { return Interval(0.0); };
+  const auto zero = [](I, I, I, I, I) { return Interval(0.0); };
   static const std::map<std::string, Rule> all = {
       {"+", {[](I x, I y, I) { return x + y; }, [](I, I, I, I dx, I dy) { return plus(dx, dy); }}},
       {"-", {[](I x, I y, I) { return x - y; }, [](I, I, I, I dx, I dy) { return minus(dx, dy); }}},
@@ -58,7 +61,7 @@ inline const std::map<std::string, Rule>& rules() {
       {"sqrt",
        {[](I x, I, I) { return sqrt(x); }, [](I f, I, I, I dx, I) { return over(dx, times(f, Interval(2.0))); }}},
       {"abs", {[](I x, I, I) { return magnitude(x); }, [](I, I x, I, I dx, I) { return times(sign(x), dx); }}},
-      {"sign", {[](I x, I, I) { return sign(x); }, flat}},
+      {"sign", {[](I x, I, I) { return sign(x); }, zero}},
       {"min",
        {[](I x, I y, I) { return min(x, y); },
         [](I, I x, I y, I dx, I dy) { return choose(less_or_equal(x, y), dx, dy); }}},
@@ -83,52 +86,53 @@ inline const std::map<std::string, Rule>& rules() {
       {"log", {[](I x, I, I) { return log(x); }, [](I, I x, I, I dx, I) { return over(dx, x); }}},
       {"log10", {[](I x, I, I) { return log10(x); }, {}}},
       {"turn", {[](I x, I, I) { return wrapped(x); }, [](I, I, I, I dx, I) { return dx; }}},
-      {"<", {[](I x, I y, I) { return less(x, y); }, flat}},
-      {"<=", {[](I x, I y, I) { return less_or_equal(x, y); }, flat}},
-      {">", {[](I x, I y, I) { return less(y, x); }, flat}},
-      {">=", {[](I x, I y, I) { return less_or_equal(y, x); }, flat}},
-      {"==", {[](I x, I y, I) { return equal(x, y); }, flat}},
-      {"!=", {[](I x, I y, I) { return Interval(1.0) - equal(x, y); }, flat}},
-      {"||", {[](I x, I y, I) { return max(truth(x), truth(y)); }, flat}},
-      {"&&", {[](I x, I y, I) { return min(truth(x), truth(y)); }, flat}},
-      {"?", {[](I x, I y, I z) { return choose(x, y, z); }, flat}},  // its slope is a choice of three
+      {"<", {[](I x, I y, I) { return less(x, y); }, zero}},
+      {"<=", {[](I x, I y, I) { return less_or_equal(x, y); }, zero}},
+      {">", {[](I x, I y, I) { return less(y, x); }, zero}},
+      {">=", {[](I x, I y, I) { return less_or_equal(y, x); }, zero}},
+      {"==", {[](I x, I y, I) { return equal(x, y); }, zero}},
+      {"!=", {[](I x, I y, I) { return Interval(1.0) - equal(x, y); }, zero}},
+      {"||", {[](I x, I y, I) { return max(truth(x), truth(y)); }, zero}},
+      {"&&", {[](I x, I y, I) { return min(truth(x), truth(y)); }, zero}},
+      {"?", {[](I x, I y, I z) { return choose(x, y, z); }, zero}},  // Evaluation differentiates its branches
   };
   return all;
 }
 
-/// One formula, its nodes in the order of computation.
+/// A formula compiled to steps in topological order.
 class Evaluation {
  public:
-  Evaluation(const graph::Graph& graph, graph::Node root) {
-    std::map<graph::Node, std::size_t> places;
-    for (const graph::Node node : graph.reachable({&root, 1})) {
-      const graph::Entry& entry = graph[node];
+  Evaluation(const expression::Graph& graph, expression::Node root) {
+    std::map<expression::Node, std::size_t> indices;
+    for (const expression::Node node : graph.reachable({&root, 1})) {
+      const expression::Entry& entry = graph[node];
       Step step{.input = entry.input, .number = entry.number};
-      for (const graph::Node operand : entry.operands()) step.from[step.count++] = places.at(operand);
+      for (const expression::Node operand : entry.operands()) step.from[step.count++] = indices.at(operand);
       if (entry.operation) {
-        const bool negative = entry.operation == &graph::negation();
+        const bool negative = entry.operation == &expression::negation();
         step.rule = &rules().at(negative ? "negative" : entry.operation->name);
-        step.is_choice = entry.operation == &graph::choice();
+        step.is_choice = entry.operation == &expression::choice();
         step.is_square = entry.operation->name == "*" && step.from[0] == step.from[1];
       }
-      places.emplace(node, steps_.size());
+      indices.emplace(node, steps_.size());
       steps_.push_back(step);
     }
     jets_.resize(steps_.size());
   }
 
-  /// @param inputs  of the graph; the first `axes` of them move
+  /// Enclosure of the value. @param inputs  of the graph, the axes first
   Interval value(const std::vector<Interval>& inputs) {
     for (std::size_t i = 0; i < steps_.size(); ++i) jets_[i].value = value_of(steps_[i], inputs);
     return jets_.back().value;
   }
-  /// How much of the slopes is known for certain; they are in `jet`.
+  /// Which partial derivatives are proven to exist on the whole box: none, only that by the last axis, or all.
   enum class Known { nothing, along_last, all };
-  Known slope(const std::vector<Interval>& inputs, std::size_t axes, Jet& jet) {
+  /// Encloses value and derivatives by the first `axes` inputs. @return which derivatives in `jet` are valid
+  Known differentiate(const std::vector<Interval>& inputs, std::size_t axes, Jet& jet) {
     value(inputs);
     for (std::size_t i = 0; i < steps_.size(); ++i)
       for (std::size_t axis = 0; axis < axes; ++axis)
-        if (!find_slope(i, axis)) return Known::nothing;
+        if (!find_derivative(i, axis)) return Known::nothing;
     jet = jets_.back();
     const auto is_known = [&jet](std::size_t axis) { return jet.by[axis].is_defined() && !jet.by[axis].is_empty(); };
     if (!jet.value.is_continuous() || !is_known(axes - 1)) return Known::nothing;
@@ -152,19 +156,20 @@ class Evaluation {
     const Interval& x = jets_[step.from[0]].value;
     return step.is_square ? square(x) : step.rule->value(x, jets_[step.from[1]].value, jets_[step.from[2]].value);
   }
-  bool find_slope(std::size_t i, std::size_t axis) {
+  /// Derivative of step i by an axis, from those of its arguments. @return false if it is not supported
+  bool find_derivative(std::size_t i, std::size_t axis) {
     const Step& step = steps_[i];
     Interval& d = jets_[i].by[axis];
     d = Interval(step.input == static_cast<std::int32_t>(axis) ? 1.0 : 0.0);
     if (!step.rule) return true;
     const Jet &x = jets_[step.from[0]], &y = jets_[step.from[1]], &z = jets_[step.from[2]];
-    bool constant = true;
-    for (std::size_t k = 0; k < step.count; ++k) constant = constant && is(jets_[step.from[k]].by[axis], 0);
-    if (constant) return true;
-    if (!step.rule->slope) return false;
+    bool is_constant = true;
+    for (std::size_t k = 0; k < step.count; ++k) is_constant = is_constant && is(jets_[step.from[k]].by[axis], 0);
+    if (is_constant) return true;
+    if (!step.rule->derivative) return false;
     const Interval dy = step.count > 1 ? y.by[axis] : Interval(0.0);
     d = step.is_choice ? choose(x.value, y.by[axis], z.by[axis])
-                       : step.rule->slope(jets_[i].value, x.value, y.value, x.by[axis], dy);
+                       : step.rule->derivative(jets_[i].value, x.value, y.value, x.by[axis], dy);
     return true;
   }
 

@@ -1,8 +1,8 @@
-"""mechanisms.py PROGRAM MECHANISM|FILE.toml OUT.svg: a mechanism at its usual pose, with the names of its lengths.
+"""mechanisms.py PROGRAM MECHANISM|FILE.toml OUT.svg: draws a mechanism with the names of its lengths.
 
-The links are those of the program: of the nominal design, read from the page that `pkmopt workspace --html` writes.
-Needs numpy. For the READMEs in engine/mechanisms, and for all of experiments/mechanisms:
-  mechanisms.py build/quickstart/bin/pkmopt 4ppa-2par engine/mechanisms/four_ppa_two_par/mechanism.svg
+The links of the nominal design at its initial pose are read from the page that `pkmopt workspace --html` writes. Needs
+numpy. For the READMEs in engine/accelerators, and for all files in experiments/mechanisms:
+  mechanisms.py build/quickstart/bin/pkmopt 4ppa-2par engine/accelerators/four_ppa_two_par/mechanism.svg
   mechanisms.py build/quickstart/bin/pkmopt experiments/mechanisms
 """
 import base64
@@ -15,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-# What lengths are called: (name, end, end), an end being (link, which of several so called, 0 or 1: its from or to).
-# They are written above, a further -1 puts them below; from a vertical one, left and right.
+# Dimensions to draw: (name, end, end), where an end is (link, index among the links of this name, 0 or 1: its first or
+# second end). Dimensions are drawn above the line between the ends, or left of a vertical line; a fourth element -1
+# puts them on the other side.
 LENGTHS = {
     "4ppa-2par": [
         ("a", ("platform", 0, 0), ("platform", 0, 1), -1),
@@ -45,7 +46,7 @@ LENGTHS = {
         ("d", ("carriage E", 0, 0), ("carriage E", 0, 1)),
     ],
 }
-# Where the eye is, about the vertical and above the horizon [deg].
+# Direction of the viewer: azimuth and elevation [deg].
 ABOVE = (-90, 90)
 EYE = {"4ppa-2par": (-62, 16), "2t1r-p-hybrid": (-70, 24), "3-rpr": ABOVE, "3-rrr": ABOVE, "five-bar": ABOVE,
        "rotary-delta": (-40, 24), "linear-delta": (-40, 24), "gough": (-40, 16), "par4": (-70, 24)}  # fmt: skip
@@ -55,6 +56,7 @@ WIDTH = 900  # of the picture [px]
 
 
 def unpack(text):
+    """An array from the page: a bit field, or values as 16-bit fractions between two bounds."""
     kind, *bounds, data = text.split(":")
     data = base64.b64decode(data)
     if kind == "bits":
@@ -65,7 +67,7 @@ def unpack(text):
 
 
 def links_of(program, mechanism):
-    """[(name, part, radius, ends)] at the usual pose of the nominal design."""
+    """[(name, part, radius, ends)] at the initial pose of the nominal design."""
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder, "page.html")
         command = [program, "workspace", mechanism, "--cells", "8", "--html", str(page)]
@@ -73,8 +75,8 @@ def links_of(program, mechanism):
         text = page.read_text()
     start = text.index('"mechanism":{"mode"') + len('"mechanism":')
     design = json.JSONDecoder().raw_decode(text[start:])[0]["designs"][0]
-    place = int(np.sum(unpack(design["drawn"])[: design["start"]]))
-    at = np.stack([unpack(c).reshape(-1, design["ends"])[place] for c in design["at"]], axis=1)
+    index = int(np.sum(unpack(design["drawn"])[: design["start"]]))
+    at = np.stack([unpack(c).reshape(-1, design["ends"])[index] for c in design["at"]], axis=1)
     return [(k["name"], k["part"], k["radius"], at[[k["from"], k["to"]]]) for k in design["links"]]
 
 
@@ -113,13 +115,13 @@ def picture(mechanism, links, lengths=()):
     drawn.append("</g>")
     drawn.append('<g font-family="sans-serif" font-size="19" font-style="italic">')
     for name, *ends, side in ((*length, 1) if len(length) == 3 else length for length in lengths):
-        held = [([k for k in links if k[0] == link][which], end) for link, which, end in ends]
-        a, b = (px(link[3][end]) for link, end in held)
+        found = [([k for k in links if k[0] == link][which], end) for link, which, end in ends]
+        a, b = (px(link[3][end]) for link, end in found)
         across = np.array([-(b - a)[1], (b - a)[0]]) / max(np.hypot(*(b - a)), 1e-9)
         if across[1] > 0 or (abs(across[1]) < 0.2 and across[0] > 0):
-            across = -across  # beside the link, to its upper side
+            across = -across  # to the upper or, if nearly vertical, the left side
         across *= side
-        shift = (12 + scale * max(link[2] for link, _ in held)) * across
+        shift = (12 + scale * max(link[2] for link, _ in found)) * across
         drawn.append(line(a + shift, b + shift, "#222", 1, ' marker-start="url(#tip)" marker-end="url(#tip)"'))
         drawn.append(text((a + b) / 2 + shift + 13 * across + [0, 6], name))
     origin, arm = px(np.zeros(3)), 0.14 * size.max()

@@ -1,7 +1,8 @@
-"""moving.py PROGRAM OUT.svg: the rotary Delta moving in its workspace, which is cut open and coloured by conditioning.
+"""moving.py PROGRAM OUT.svg: animation of the rotary Delta in a slice of its workspace, coloured by conditioning.
 
-All of it is the program's: the section is a table of `pkmopt workspace`, what lies behind it its STL file, the joints
-are the table of `pkmopt trajectory`. The links follow from the joints, and have to keep their lengths. Needs numpy.
+All data come from the program: the slice is a table of `pkmopt workspace`, the surface behind it the STL file, and the
+joint values are the table of `pkmopt trajectory`. The links are computed from the joint values; the script asserts that
+their lengths stay constant. Needs numpy.
   moving.py build/quickstart/bin/pkmopt experiments/pictures/moving.svg
 """
 import csv
@@ -15,7 +16,7 @@ import numpy as np
 
 FILE = Path(__file__).resolve().parents[1] / "mechanisms" / "rotary-delta.toml"
 R, r, L_A, L_B = 0.2, 0.05, 0.2, 0.5  # its nominal lengths [m]
-PAIR = 0.045  # between the rods of a pair, drawn only [m]
+PAIR = 0.045  # distance between the rods of a pair, for drawing only [m]
 MOTION = """type = "formulas"
 duration = 5
 x = "0.24*sin(2*pi*t/5)"
@@ -23,14 +24,15 @@ y = 0
 z = "-0.45 + 0.085*cos(4*pi*t/5) - 0.02*sin(2*pi*t/5)"
 """
 SECONDS, SAMPLES = 5, 91
-LEVELS = np.arange(0.15, 0.7, 0.05)  # of conditioning
-COLOURS = np.array([[68, 50, 126], [33, 145, 140], [253, 216, 84]])  # of the least, the middle, the greatest
-SHADES = 14  # of what lies behind
-TURN, UP = np.radians([-66, 17])  # where the eye is, about the vertical and above the horizon
+LEVELS = np.arange(0.15, 0.7, 0.05)  # contour levels of the conditioning
+COLOURS = np.array([[68, 50, 126], [33, 145, 140], [253, 216, 84]])  # of the lowest, the middle and the highest level
+SHADES = 14  # number of grey levels of the surface behind the slice
+TURN, UP = np.radians([-66, 17])  # direction of the viewer: azimuth and elevation
 WIDTH = 860  # [px]
 
 
 def table(program, folder, *arguments):
+    """{column: values} of the CSV table that a command writes."""
     file = Path(folder, "table.csv")
     subprocess.run([program, *arguments, "--csv", file, "--force"], check=True, stdout=subprocess.DEVNULL)
     with open(file) as text:
@@ -40,37 +42,37 @@ def table(program, folder, *arguments):
 
 
 def field(cells, name, first, second):
-    """Values of a field on the grid of two coordinates."""
+    """The values of a field on the grid of two coordinates; NaN where there is no cell."""
     u, v = np.unique(cells[first]), np.unique(cells[second])
     grid = np.full((len(u), len(v)), np.nan)
     grid[np.searchsorted(u, cells[first]), np.searchsorted(v, cells[second])] = cells[name]
     return u, v, grid
 
 
-def continued(grid):
-    """Values where there are none, from those beside: a level's line then crosses the edge of the workspace."""
+def extrapolated(grid):
+    """Replaces NaN by means of neighbours, so that contour lines extend beyond the boundary of the workspace."""
     grid = grid.copy()
     while np.isnan(grid).any():
-        around = np.pad(grid, 1, constant_values=np.nan)
-        beside = np.stack([around[:-2, 1:-1], around[2:, 1:-1], around[1:-1, :-2], around[1:-1, 2:]])
-        known = ~np.isnan(beside)
-        mean = np.where(known, beside, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+        padded = np.pad(grid, 1, constant_values=np.nan)
+        neighbours = np.stack([padded[:-2, 1:-1], padded[2:, 1:-1], padded[1:-1, :-2], padded[1:-1, 2:]])
+        known = ~np.isnan(neighbours)
+        mean = np.where(known, neighbours, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
         grid = np.where(np.isnan(grid) & known.any(axis=0), mean, grid)
     return grid
 
 
 def outlines(u, v, grid, level=0.0):
-    """Closed lines around where the grid exceeds the level: marching squares, each crossing named by its grid edge."""
+    """Closed contour lines around the region above the level (marching squares), smoothed by a mean of three points."""
     step = np.array([u[1] - u[0], v[1] - v[0]])
-    above = np.pad(np.clip(grid - level, -0.01, 0.01), 1, constant_values=-1e-9)  # margins may jump at an edge
+    above = np.pad(np.clip(grid - level, -0.01, 0.01), 1, constant_values=-1e-9)  # margins may jump
     crossings, follows = {}, {}
     for i in range(above.shape[0] - 1):
         for j in range(above.shape[1] - 1):
-            corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
-            inside = [above[c] > 0 for c in corners]
+            nodes = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+            inside = [above[c] > 0 for c in nodes]
             entries, exits = [], []
             for k in range(4):
-                a, b = corners[k], corners[(k + 1) % 4]
+                a, b = nodes[k], nodes[(k + 1) % 4]
                 if inside[k] == inside[(k + 1) % 4]:
                     continue
                 edge = (min(a, b), max(a, b))
@@ -88,7 +90,7 @@ def outlines(u, v, grid, level=0.0):
 
 
 def links(joints, at):
-    """{name: corners of a line} at each sample; arms lie in the planes of their cranks, pairs of rods across them."""
+    """{name: polylines, one per sample} of cranks with the pins of their rods, of rods, platform and base."""
     found = {}
     for limb in range(3):
         turn = 2 * np.pi * limb / 3
@@ -97,7 +99,7 @@ def links(joints, at):
         angle = joints[limb][:, None]
         elbow = R * out + L_A * (np.cos(angle) * out + np.sin(angle) * down)
         wrist = at + r * out
-        assert abs(np.linalg.norm(wrist - elbow, axis=1) - L_B).max() < 1e-9, "rods change their length"
+        assert abs(np.linalg.norm(wrist - elbow, axis=1) - L_B).max() < 1e-9, "the length of the rods must be constant"
         half = PAIR / 2 * across
         found[f"arm {limb}"] = np.stack([0 * elbow + R * out, elbow, elbow - half, elbow + half], axis=1)
         for side, shift in enumerate((-half, half)):
@@ -109,8 +111,8 @@ def links(joints, at):
     return found
 
 
-def behind(program, folder):
-    """Triangles of the surface on the far side of the section, those that face the eye, the farthest first."""
+def surface_behind(program, folder):
+    """[(shade, triangle)] of the workspace surface behind the slice that face the viewer, sorted from back to front."""
     subprocess.run([program, "workspace", FILE, "--box", "x=-0.45:0.45,y=0:0.45,z=-0.72:-0.2", "--cells",
                     "x=36,y=18,z=26", "--stl", folder], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
     data = next(Path(folder).glob("*.stl")).read_bytes()[84:]
@@ -132,15 +134,15 @@ ABOVE = np.cross(TO_EYE, RIGHT)
 
 
 class Sheet:
-    """Where points of space lie on the picture, and paths between them."""
+    """Orthographic projection of points in space onto the picture, and SVG paths through them."""
 
-    margin, foot = 34, 40  # [px]
+    margin, footer = 34, 40  # [px]
 
     def __init__(self, points):
         flat = self.flat(points)
         self.low = flat.min(axis=0)
         self.scale = (WIDTH - 2 * self.margin) / np.ptp(flat[:, 0])
-        self.height = round(np.ptp(flat[:, 1]) * self.scale + 2 * self.margin + self.foot)
+        self.height = round(np.ptp(flat[:, 1]) * self.scale + 2 * self.margin + self.footer)
 
     @staticmethod
     def flat(points):
@@ -149,27 +151,27 @@ class Sheet:
     def at(self, points):
         return (self.flat(np.asarray(points, float)) - self.low) * self.scale + self.margin
 
-    def path(self, points, end="", kept=0.0):
-        """The `d` of a line; of points that are nearer to the last than `kept` [px] none is needed."""
-        some = []
+    def path(self, points, end="", min_distance=0.0):
+        """Attribute `d` of a polyline; skips points closer to their predecessor than `min_distance` [px]."""
+        kept = []
         for point in self.at(points):
-            if not some or np.hypot(*(point - some[-1])) >= kept:
-                some.append(point)
-        return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in some) + end
+            if not kept or np.hypot(*(point - kept[-1])) >= min_distance:
+                kept.append(point)
+        return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in kept) + end
 
     def link(self, name, points):
-        if name.startswith("arm"):  # and the pin between its rods
+        if name.startswith("arm"):  # the crank, and the pin that connects its rods
             return self.path(points[:2]) + self.path(points[2:])
         return self.path(points, "Z" if name == "platform" else "")
 
 
 def colour(level):
-    place = (level - LEVELS[0]) / (LEVELS[-1] - LEVELS[0]) * (len(COLOURS) - 1)
-    return "#" + "".join(f"{round(np.interp(place, range(len(COLOURS)), channel)):02x}" for channel in COLOURS.T)
+    position = (level - LEVELS[0]) / (LEVELS[-1] - LEVELS[0]) * (len(COLOURS) - 1)
+    return "#" + "".join(f"{round(np.interp(position, range(len(COLOURS)), channel)):02x}" for channel in COLOURS.T)
 
 
 def within(points, line):
-    """Whether points of the picture lie inside a closed line: how often a ray to the right crosses it."""
+    """Whether points of the picture lie inside a closed polyline (even-odd rule with a ray to the right)."""
     (x, y), inside = points.T, np.zeros(len(points), bool)
     for a, b in zip(line, np.roll(line, -1, axis=0)):
         if a[1] != b[1]:
@@ -202,45 +204,45 @@ def picture(program):
     with tempfile.TemporaryDirectory() as folder:
         motion = Path(folder, "motion.toml")
         motion.write_text(MOTION)
-        way = table(program, folder, "trajectory", FILE, "--motion", motion, "--samples", str(SAMPLES))
-        section = table(program, folder, "workspace", FILE, "--held", "y=0", "--box", "x=-0.45:0.45,z=-0.72:-0.2",
+        trajectory = table(program, folder, "trajectory", FILE, "--motion", motion, "--samples", str(SAMPLES))
+        cells = table(program, folder, "workspace", FILE, "--held", "y=0", "--box", "x=-0.45:0.45,z=-0.72:-0.2",
                         "--cells", "x=360,z=208")  # fmt: skip
-        surface = behind(program, folder)
-    way_of_tool = np.stack([way["x"], way["y"], way["z"]], axis=1)
-    drawn = links([way[f"arm{i}"] for i in (1, 2, 3)], way_of_tool)
+        surface = surface_behind(program, folder)
+    tool_path = np.stack([trajectory["x"], trajectory["y"], trajectory["z"]], axis=1)
+    drawn = links([trajectory[f"arm{i}"] for i in (1, 2, 3)], tool_path)
     base = drawn.pop("base")
 
-    def lines(name, levels):
-        x, z, grid = field(section, name, "x", "z")
-        grid = continued(grid)
-        return [list(in_section(outlines(x, z, grid, level))) for level in levels]
+    def contours(name, levels):
+        x, z, grid = field(cells, name, "x", "z")
+        grid = extrapolated(grid)
+        return [list(in_slice(outlines(x, z, grid, level))) for level in levels]
 
-    def in_section(found):
+    def in_slice(found):
         for line in found:
-            if len(line) > 20:  # crumbs at a corner are left out
+            if len(line) > 20:  # omit tiny contours, which are artefacts of the grid
                 yield np.stack([line[:, 0], 0 * line[:, 0], line[:, 1]], axis=1)
 
-    edges = lines("margin", [0])[0]
+    edges = contours("margin", [0])[0]
     sheet = Sheet(np.concatenate([*edges, base, *(at for _, at in surface),
                                   *(line.reshape(-1, 3) for line in drawn.values())]))  # fmt: skip
     hidden = within(sheet.at([at for _, at in surface]).reshape(-1, 2), sheet.at(edges[0])).reshape(-1, 3).all(axis=1)
     surface = [facet for facet, gone in zip(surface, hidden) if not gone]
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {sheet.height}" width="{WIDTH}" role="img">',
-           "<title>A rotary Delta moves in its workspace, which is cut open</title>", f"<style>{STYLE}</style>",
+           "<title>A rotary Delta moves in a slice of its workspace</title>", f"<style>{STYLE}</style>",
            '<rect width="100%" height="100%" rx="10" fill="var(--paper)"/>', '<g class="behind">']  # fmt: skip
     for shade, run in itertools.groupby(surface, lambda facet: facet[0]):
         grey = f"hsl(205 22% {38 + 45 * shade / SHADES:.0f}%)"
         out.append(f'<path fill="{grey}" stroke="{grey}" d="{"".join(sheet.path(at, "Z") for _, at in run)}"/>')
     out.append("</g>")
 
-    out.append(f'<clipPath id="section"><path d="{"".join(sheet.path(edge, "Z", 0.7) for edge in edges)}"/></clipPath>')
-    out.append('<g clip-path="url(#section)">')
-    for level, found in zip(LEVELS, lines("conditioning", LEVELS)):
+    out.append(f'<clipPath id="slice"><path d="{"".join(sheet.path(edge, "Z", 0.7) for edge in edges)}"/></clipPath>')
+    out.append('<g clip-path="url(#slice)">')
+    for level, found in zip(LEVELS, contours("conditioning", LEVELS)):
         d = "".join(sheet.path(line, "Z", 0.7) for line in found)
         out.append(f'<path fill="{colour(level)}" d="{d}"/>')
     out.append("</g>")
     out += [f'<path class="edge" d="{sheet.path(edge, "Z", 0.7)}"/>' for edge in edges]
-    out.append(f'<path class="way" d="{sheet.path(way_of_tool)}"/><path class="base" d="{sheet.path(base, "Z")}"/>')
+    out.append(f'<path class="way" d="{sheet.path(tool_path)}"/><path class="base" d="{sheet.path(base, "Z")}"/>')
 
     out.append('<g stroke-linecap="round" stroke-linejoin="round">')
     for name in sorted(drawn, key=lambda name: float(drawn[name].mean(axis=(0, 1)) @ TO_EYE)):
@@ -250,9 +252,9 @@ def picture(program):
     out.append("</g>")
 
     for index, line, shift in (("a", drawn["arm 0"][:, :2], (0, -20)), ("b", drawn["rod 0 1"], (32, 0))):
-        places = [f"{x:.1f} {y:.1f}" for x, y in sheet.at(line.mean(axis=1)) + shift]
-        follow = animated(places, "animateTransform", 'attributeName="transform" type="translate"')
-        out.append(f'<text transform="translate({places[0]})">l<tspan font-size="70%" dy="4">{index}</tspan>'
+        positions = [f"{x:.1f} {y:.1f}" for x, y in sheet.at(line.mean(axis=1)) + shift]
+        follow = animated(positions, "animateTransform", 'attributeName="transform" type="translate"')
+        out.append(f'<text transform="translate({positions[0]})">l<tspan font-size="70%" dy="4">{index}</tspan>'
                    f"{follow}</text>")  # fmt: skip
     for k, level in enumerate(LEVELS):
         out.append(f'<rect x="{sheet.margin + 24 * k}" y="{sheet.height - 44}" width="24" height="20" '

@@ -1,7 +1,7 @@
-"""speed.py OUT.svg: designs tried per second by pkmopt and by what designers would take today, as bars.
+"""speed.py OUT.svg: a bar chart of the designs evaluated per second by pkmopt and by other optimisation tools.
 
-Figures are those of benchmarks/README.md, which benchmarks/peers/run.sh measures, and of the paper's own program
-(112.67 s for 2020 designs). One bar per tool and evaluator: the quickest of its optimisers.
+The rates are read from benchmarks/README.md, where benchmarks/peers/run.sh writes them; that of the paper's own program
+is 2020 designs in 112.67 s. There is one bar per tool and evaluator, for the fastest of the tool's optimisers.
   speed.py experiments/pictures/speed.svg
 """
 import html
@@ -12,11 +12,11 @@ from pathlib import Path
 FIGURES = Path(__file__).resolve().parents[2] / "benchmarks" / "README.md"
 PAPER = ("the paper's own program", 2020 / 112.67)
 EVALUATORS = {"C++ loop": "a loop in C++", "columns": "exact columns", "voxels": "the grid's voxels"}
-WIDTH, ROW, NAMES = 860, 30, 330  # of the picture, of a bar, and the room for names [px]
+WIDTH, ROW, NAMES = 860, 30, 330  # of the picture, of a row, and of the column of names [px]
 
 
 def rates():
-    """{what it is called: candidates per second} of the first table of peers, our columns left to ourselves."""
+    """{label: designs per second} from the table of the paper's problem; exact columns are listed for pkmopt only."""
     table = FIGURES.read_text().split("The paper's problem\n")[1].split("The wide-bounds problem\n")[0]
     found = {}
     for tool, evaluator, rate in re.findall(r"^\| ([^|]+) \| ([^|]+) \| \*{0,2}(\d+)\*{0,2} \|", table, re.M):
@@ -29,21 +29,21 @@ def rates():
 
 def picture():
     bars = rates()
-    most, height = max(bars.values()), ROW * len(bars) + 62
+    fastest, height = max(bars.values()), ROW * len(bars) + 62
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" role="img">',
-           "<title>Designs tried per second on the paper's problem</title>",
+           "<title>Designs evaluated per second on the paper's problem</title>",
            "<style>svg { --paper: #fff; --ink: #24292f; --other: #8c959f; --ours: #2f8f5b }\n"
            "@media (prefers-color-scheme: dark) { svg { --paper: #161b22; --ink: #e6edf3; --ours: #6fcf97 } }\n"
            "text { font: 16px sans-serif; fill: var(--ink) } .ours { fill: var(--ours) } .other { fill: var(--other) }"
            "</style>", '<rect width="100%" height="100%" rx="10" fill="var(--paper)"/>',
-           '<text x="24" y="32" font-weight="bold">Designs tried per second: workspaces of 4PPa-2PaR on 32 x 34 x 60 '
-           "voxels, or exact</text>"]  # fmt: skip
+           '<text x="24" y="32" font-weight="bold">Designs evaluated per second: workspaces of 4PPa-2PaR on 32 x 34 x '
+           "60 voxels, or exact</text>"]  # fmt: skip
     for row, (name, rate) in enumerate(bars.items()):
-        y, long = 50 + ROW * row, max((WIDTH - NAMES - 100) * rate / most, 1.5)
+        y, length = 50 + ROW * row, max((WIDTH - NAMES - 100) * rate / fastest, 1.5)
         out.append(f'<text x="{NAMES - 10}" y="{y + 17}" text-anchor="end">{html.escape(name)}</text>'
                    f'<rect class="{"ours" if name.startswith("pkmopt") else "other"}" x="{NAMES}" y="{y}" '
-                   f'width="{long:.1f}" height="{ROW - 8}"/>'
-                   f'<text x="{NAMES + long + 8:.1f}" y="{y + 17}">{rate:,.0f}</text>')  # fmt: skip
+                   f'width="{length:.1f}" height="{ROW - 8}"/>'
+                   f'<text x="{NAMES + length + 8:.1f}" y="{y + 17}">{rate:,.0f}</text>')  # fmt: skip
     return "\n".join(out) + "\n</svg>\n"
 
 

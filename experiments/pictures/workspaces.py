@@ -1,4 +1,4 @@
-"""workspaces.py OUT.png TITLE:WHAT:FIELD:FILE.vtkhdf ...: surfaces of workspaces side by side, coloured by a field."""
+"""workspaces.py OUT.png TITLE:SUBTITLE:FIELD:FILE.vtkhdf ...: workspace surfaces side by side, coloured by a field."""
 import sys
 
 import numpy as np
@@ -19,12 +19,12 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextProperty,
     vtkWindowToImageFilter,
 )
-import vtkmodules.vtkRenderingFreeType  # noqa: F401, draws text
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, draws
+import vtkmodules.vtkRenderingFreeType  # noqa: F401, registers text rendering
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, registers OpenGL rendering
 
 import h5py
 
-# Cividis, which is perceptually uniform and the same for colour-blind readers, at nine equal steps.
+# The colour map cividis, perceptually uniform and suited to colour-blind readers, at ten equidistant values.
 CIVIDIS = np.array(
     [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120], [165, 156, 116],
      [195, 179, 105], [225, 204, 85], [254, 232, 56]]) / 255  # fmt: skip
@@ -40,8 +40,8 @@ def colours():
     return table
 
 
-def spread(values):
-    """Values of neighbours where there are none: fields end at the last feasible cell, the surface a little beyond."""
+def extrapolated(values):
+    """Replaces NaN near known values by means of neighbours: the surface lies beyond the last feasible cells."""
     values = values.copy()
     for _ in range(3):
         padded = np.pad(values, 1, constant_values=np.nan)
@@ -52,22 +52,23 @@ def spread(values):
     return np.nan_to_num(values)
 
 
-def scene(title, what, field, path, place):
+def scene(title, subtitle, field, path, viewport):
     reader = vtkHDFReader()
     reader.SetFileName(path)
     reader.Update()
-    read = reader.GetOutput().GetPointData()
+    data = reader.GetOutput().GetPointData()
     cells = reader.GetOutput().GetDimensions()
-    of = {name: vtk_to_numpy(read.GetArray(name)).reshape(cells[::-1]) for name in ("margin", "feasible", field)}
-    inside = of[field][of["feasible"] > 0]
+    arrays = {name: vtk_to_numpy(data.GetArray(name)).reshape(cells[::-1]) for name in ("margin", "feasible", field)}
+    inside = arrays[field][arrays["feasible"] > 0]
 
-    # Axes of length 1, since a rotation is drawn beside lengths; a layer outside closes the surface at the box.
+    # All axes have length 1, because lengths and a rotation cannot share a scale; a layer of infeasible cells around
+    # the box closes the surface there.
     image = vtkImageData()
     image.SetDimensions(*(n + 2 for n in cells))
     image.SetSpacing(*(1 / n for n in cells))
-    outside = -1e-6 * np.abs(of["margin"]).max()
-    for name, values in (("margin", np.pad(of["margin"], 1, constant_values=outside)),
-                         ("shown", spread(np.pad(of[field], 1, constant_values=np.nan)))):  # fmt: skip
+    outside = -1e-6 * np.abs(arrays["margin"]).max()
+    for name, values in (("margin", np.pad(arrays["margin"], 1, constant_values=outside)),
+                         ("shown", extrapolated(np.pad(arrays[field], 1, constant_values=np.nan)))):  # fmt: skip
         array = numpy_to_vtk(values.ravel(), deep=True)
         array.SetName(name)
         image.GetPointData().AddArray(array)
@@ -97,13 +98,13 @@ def scene(title, what, field, path, place):
 
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
-    renderer.SetViewport(*place)
+    renderer.SetViewport(*viewport)
     renderer.AddActor(actor)
     renderer.AddActor(frame)
     with h5py.File(path) as file:
         axes = [name.decode() if isinstance(name, bytes) else name for name in file["pkmopt/axes"][:]]
     text(renderer, title, 22, (0.5, 0.945), bold=True)
-    text(renderer, "axes " + ", ".join(axes) + "; " + what, 17, (0.5, 0.89))
+    text(renderer, "axes " + ", ".join(axes) + "; " + subtitle, 17, (0.5, 0.89))
     renderer.AddActor2D(bar(mapper))
     camera = renderer.GetActiveCamera()
     camera.SetPosition(2.2, -2.6, 1.7)
@@ -148,14 +149,14 @@ def bar(mapper):
     return actor
 
 
-def main(out, wanted):
+def main(out, pictures):
     window = vtkRenderWindow()
     window.SetOffScreenRendering(1)
-    window.SetSize(400 * len(wanted), 480)
+    window.SetSize(400 * len(pictures), 480)
     window.SetMultiSamples(8)
-    for i, words in enumerate(wanted):
-        place = (i / len(wanted), 0, (i + 1) / len(wanted), 1)
-        window.AddRenderer(scene(*words.split(":", 3), place))
+    for i, words in enumerate(pictures):
+        viewport = (i / len(pictures), 0, (i + 1) / len(pictures), 1)
+        window.AddRenderer(scene(*words.split(":", 3), viewport))
     window.Render()
     grab = vtkWindowToImageFilter()
     grab.SetInput(window)

@@ -1,4 +1,4 @@
-// What a study file says is text, wherever the page shows it.
+// Text from study files is shown as text everywhere on the page and never interpreted as HTML, script or template.
 import assert from "node:assert/strict";
 import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -12,8 +12,8 @@ const evil = "<script>alert(1)</script>",
   attribute = `"><img src=x onerror=alert(4)> ' onmouseover='alert(5)`,
   ending = "</script></style></textarea><svg onload=alert(6)>",
   formula = "=cmd|' /C calc'!A0",
-  steering = "\u001b[31mred\u001b]0;title\u0007";
-const quoted = (text) => JSON.stringify(text); // TOML has JSON's escapes
+  controlCharacters = "\u001b[31mred\u001b]0;title\u0007";
+const quoted = (text) => JSON.stringify(text); // TOML strings have the same escapes as JSON
 writeFileSync(
   toml,
   `# </script><script>alert(3)</script> <!-- <script> \u2028 \u2029
@@ -38,11 +38,11 @@ type = "rail-length"
 [[reference]]
 name = "${bold}"
 design = { a = 0.2 }
-${[attribute, ending, formula, steering]
+${[attribute, ending, formula, controlCharacters]
   .map((name) => `[[reference]]\nname = ${quoted(name)}\ndesign = { a = 0.2 }\nvalues = { workspace-ratio = 0.1 }`)
   .join("\n")}
 [[motion]]
-name = ${quoted(attribute + ending + formula + steering)}
+name = ${quoted(attribute + ending + formula + controlCharacters)}
 type = "points"
 points = [{ x = 0.4, y = 1.25, z = -1.0, theta = 0 }, { z = -0.9 }]
 time = 0.5
@@ -58,13 +58,13 @@ const html = path.join(folder, "both.html"),
 copyFileSync(file, copy);
 pkmopt("report", file, copy, "--output", html, "--force");
 const page = await Page.open(html);
-for (const section of ["comparison", "motions", "populations"]) await page.draw(section);
+for (const panel of ["comparison", "motions", "populations"]) await page.draw(panel);
 assert.equal(await page.page.title(), `${evil}, ${evil} – pkmopt`);
 assert.equal(await page.text("h1"), evil);
 assert.equal(await page.page.locator("main script, main img, header script, header img").count(), 0);
 const everything = await page.text();
 for (const text of [evil, image, bold, attribute, ending, formula, "red"]) assert.ok(everything.includes(text), text);
-// Both studies have one name: they are told apart by their files.
+// Both studies have the same name, so the page shows their file names.
 const files = [file, copy].map((each) => path.basename(each)),
   names = (text) => files.some((each) => text.includes(each));
 assert.ok((await page.text("#comparison")).includes(image + ".h5"));
@@ -72,13 +72,13 @@ const {
   studies: [study],
 } = await page.data();
 assert.ok(study.summary.origin.toml.includes("</script><script>alert(3)</script> <!-- <script> \u2028 \u2029"));
-assert.ok((await page.text("#comparison")).includes("Workspaces over each other"), "both sweep the same coordinates");
+assert.ok((await page.text("#comparison")).includes("Overlay of the workspaces"), "both sweep the same coordinates");
 const legend = await page.page.locator("#comparison .plot .legendtext").first().textContent();
 assert.ok(names(legend), `legend: ${legend}`);
 const hover = await page.hover("comparison");
 assert.ok(names(hover), `hover: ${hover}`);
-// Nothing of a name has become an element or an attribute, however the page is used.
-const planted = await page.page.evaluate(() =>
+// No name has created an element or an attribute.
+const injected = await page.page.evaluate(() =>
   [...document.querySelectorAll("*")]
     .filter(
       (element) =>
@@ -88,8 +88,8 @@ const planted = await page.page.evaluate(() =>
     )
     .map((element) => element.outerHTML),
 );
-assert.deepEqual(planted, []);
-assert.ok(!readFileSync(html, "utf8").includes("\u001b"), "no control characters in the file");
+assert.deepEqual(injected, []);
+assert.ok(!readFileSync(html, "utf8").includes("\u001b"), "control characters in the file");
 await page.screenshots(folder, "1280-light", ["comparison", "summary"]);
 await page.close();
-console.log("names of a study are shown as text");
+console.log("text of a study is not interpreted");

@@ -1,5 +1,5 @@
-// The report of one mechanism's study: every section drawn, values as in the file, sliders and hover work.
-// Argument: the study's name in studies/.
+// The report of a study of one mechanism: all plots are drawn, values agree with the study file, sliders and hover
+// texts work. Argument: name of the study in studies/.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import path from "node:path";
@@ -15,10 +15,10 @@ const expected = {
 }[name];
 const { file, html } = reportOf(path.join(studies, name + ".toml"), folder);
 const page = await Page.open(html);
-assert.deepEqual(await page.sections(), expected);
+assert.deepEqual(await page.panels(), expected);
 await page.draw();
 
-// Values: the page's table against `pkmopt show`, generations' best against the file.
+// The table of designs agrees with `pkmopt show`, and the best value per generation with the study file.
 const shown = JSON.parse(pkmopt("show", file, "--json")),
   {
     studies: [study],
@@ -29,14 +29,14 @@ for (const [kind, values] of [
   ["variable", shown.best.design],
   ["objective", shown.best.objectives],
   ["constraint", shown.best.constraints],
-  ["report", shown.best.reports],
+  ["output", shown.best.reports],
 ])
   for (const [key, value] of Object.entries(values)) {
     assert.equal(inTable(kind, key), value, key);
     ++compared;
   }
 assert.ok(compared >= 4);
-// Four digits in mm or deg, and all of them in SI on hover.
+// Values have four digits in mm or deg, and full precision in SI units on hover.
 const cells = await page.page
   .locator("#summary tbody td [title]")
   .evaluateAll((list) => list.map((cell) => [cell.title.split(" ")[0], cell.textContent]));
@@ -49,9 +49,9 @@ for (const [key, value] of Object.entries(shown.best.design)) {
     `${key} = ${value} is not in the summary`,
   );
 }
-assert.equal(await page.page.locator(".decision dt").count(), 3);
+assert.equal(await page.page.locator(".conclusions dt").count(), 3);
 if (name === "2t1r-p-hybrid")
-  assert.ok((await page.text("#motions")).includes("Angles of the auxiliary chain"), "no curves of the chain");
+  assert.ok((await page.text("#motions")).includes("Quantities in deg"), "no plot of the quantities of the motion");
 const inFile = JSON.parse(
   execFileSync(
     "/usr/bin/python3",
@@ -69,19 +69,19 @@ with h5py.File(sys.argv[1], "r") as f:
 );
 if (study.problem.objectives.length === 1)
   assert.deepEqual(study.convergence[0].generations.objectives[0].best, inFile);
-const lengths = study.convergence[0].generations.number.length;
+const lengths = study.convergence[0].generations.numbers.length;
 assert.equal(lengths, inFile.length);
 
 await page.screenshots(folder, "1280-light");
 
-// Hovering shows values with units.
+// Hover texts have values with units.
 const unit = { "4ppa-2par": "rad", "3crr-r-cru": "generation", quadrupteron: "m²", "2t1r-p-hybrid": "m³" }[name];
 const curve = await page.hover("convergence");
 assert.ok(/\d/.test(curve) && curve.includes(unit), `hover over the convergence: “${curve}”`);
 const surface = await page.hover("workspace");
 assert.ok(/x −?[\d.]+ m/.test(surface.replace("-", "−")), `hover over the workspace: “${surface}”`);
 
-// Turning one workspace turns the other.
+// Rotating one workspace rotates the other.
 const linked = await page.page.evaluate(async () => {
   const [one, other] = document.querySelectorAll("#workspace .plot");
   await Plotly.relayout(one, { "scene.camera": { eye: { x: 2, y: 1, z: 0.5 } } });
@@ -91,17 +91,17 @@ const linked = await page.page.evaluate(async () => {
 assert.equal(linked, 1);
 
 let sliders = 0;
-for (const section of ["workspace", "mechanism", "populations", ...(expected.includes("coupling") ? ["coupling"] : [])])
-  sliders += await page.moveSliders(section);
+for (const panel of ["workspace", "mechanism", "populations", ...(expected.includes("coupling") ? ["coupling"] : [])])
+  sliders += await page.moveSliders(panel);
 assert.ok(sliders >= 6, `${sliders} sliders`);
 
-// Wide and dark, where the sliders have left it: of one mechanism, because pages are drawn without a graphics card.
+// Wide window and dark theme, for one mechanism only, because drawing is slow without a graphics card.
 if (name === "3crr-r-cru") {
   await page.page.setViewportSize({ width: 1920, height: 1080 });
   await page.page.click("#theme");
   const dark = ["summary", "workspace", "mechanism", "convergence"];
-  for (const section of dark) await page.draw(section);
+  for (const panel of dark) await page.draw(panel);
   await page.screenshots(folder, "1920-dark", dark);
 }
 await page.close();
-console.log(`${name}: ${expected.length} sections, ${compared} values as in the file, ${sliders} sliders`);
+console.log(`${name}: ${expected.length} panels, ${compared} values agree with the file, ${sliders} sliders`);

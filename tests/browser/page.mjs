@@ -1,4 +1,4 @@
-// What the tests of the page share: making reports with the program, and looking at them in Chromium.
+// Shared by the tests of the page: creates reports with pkmopt and opens them in Chromium.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
@@ -9,13 +9,14 @@ import { chromium } from "playwright-core";
 const { PKMOPT, CHROMIUM, BROWSER_OUTPUT } = process.env;
 export const studies = process.env.BROWSER_STUDIES;
 
-/** A folder in the build folder for what a test leaves behind. */
+/** Creates a folder for the output of a test in the build folder. */
 export function folderOf(name) {
   const folder = path.join(BROWSER_OUTPUT, name);
   mkdirSync(folder, { recursive: true });
   return folder;
 }
 
+/** Runs pkmopt; returns its output. */
 export function pkmopt(...parameters) {
   return execFileSync(PKMOPT, parameters, { encoding: "utf8", maxBuffer: 1e9 });
 }
@@ -30,7 +31,7 @@ export function reportOf(toml, folder) {
   return { file, html };
 }
 
-/** Opens a page and keeps what goes wrong in it: errors of the console, dialogs, requests to anywhere but the file. */
+/** A page in the browser. Records console errors, dialogs and requests to anything but the file as problems. */
 export class Page {
   static async open(html, { width = 1280, scheme = "light" } = {}) {
     const browser = await chromium.launch({
@@ -38,53 +39,55 @@ export class Page {
       args: ["--no-sandbox", "--enable-unsafe-swiftshader"], // WebGL without a graphics card
     });
     const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: scheme });
-    const self = Object.assign(new Page(), { browser, page, complaints: [] });
+    const self = Object.assign(new Page(), { browser, page, problems: [] });
     page.on("console", (message) => {
-      if (message.type() === "error") self.complaints.push("console: " + message.text());
+      if (message.type() === "error") self.problems.push("console: " + message.text());
     });
-    page.on("pageerror", (error) => self.complaints.push("error: " + error.stack));
+    page.on("pageerror", (error) => self.problems.push("error: " + error.stack));
     page.on("dialog", (dialog) => {
-      self.complaints.push("dialog: " + dialog.message());
+      self.problems.push("dialog: " + dialog.message());
       dialog.dismiss();
     });
     page.on("request", (request) => {
       if (!/^(data|blob):/.test(request.url()) && request.url() !== pathToFileURL(html).href)
-        self.complaints.push("request: " + request.url());
+        self.problems.push("request: " + request.url());
     });
     const begin = performance.now();
     await page.goto(pathToFileURL(html).href);
     await page
       .waitForFunction(() => window.report, null, { timeout: 60000 })
-      .catch(() => self.complaints.push("no report"));
+      .catch(() => self.problems.push("no report"));
     self.seconds = (performance.now() - begin) / 1000;
-    self.isFine();
+    self.expectNoProblems();
     return self;
   }
 
-  isFine() {
-    assert.deepEqual(this.complaints, []);
+  expectNoProblems() {
+    assert.deepEqual(this.problems, []);
   }
   async close() {
-    this.isFine();
+    this.expectNoProblems();
     await this.browser.close();
   }
+  /** Data of the page without the large panels. */
   data() {
     return this.page.evaluate(() => ({
       program: window.report.program,
       studies: window.report.studies.map(({ workspace, mechanism, populations, ...small }) => small),
     }));
   }
-  sections() {
-    return this.page.locator("main > section").evaluateAll((list) => list.map((section) => section.id));
+  /** Ids of the panels. */
+  panels() {
+    return this.page.locator("main > section").evaluateAll((list) => list.map((panel) => panel.id));
   }
   text(selector = "main") {
     return this.page.locator(selector).innerText();
   }
 
-  /** Draws every plot, or those of one section, and checks that each has something to show. */
-  async draw(section) {
-    await this.page.evaluate((id) => window.report.draw(id), section);
-    const empty = await this.page.locator((section ? "#" + section : "main") + " .plot").evaluateAll((plots) =>
+  /** Draws all plots, or those of one panel, and checks that none is empty. */
+  async draw(panel) {
+    await this.page.evaluate((id) => window.report.draw(id), panel);
+    const empty = await this.page.locator((panel ? "#" + panel : "main") + " .plot").evaluateAll((plots) =>
       plots.flatMap((plot) => {
         const numbers = (values) =>
           values
@@ -104,12 +107,12 @@ export class Page {
           : [plot.closest("section").id + ": " + plot.parentElement.innerText.slice(0, 60)];
       }),
     );
-    assert.deepEqual(empty, [], "plots without anything in them");
-    this.isFine();
+    assert.deepEqual(empty, [], "empty plots");
+    this.expectNoProblems();
   }
 
-  /** The drawn data of a section's plots, in short. */
-  drawn(section) {
+  /** Hashes of the data of the plots of a panel. */
+  drawn(panel) {
     return this.page.evaluate(
       (id) =>
         [...document.querySelectorAll(`#${id} .plot`)].map((plot) => {
@@ -126,19 +129,19 @@ export class Page {
                 hash = (hash * 31 + Math.round(1e6 * (Number(value) || 0))) % 2147483647;
           return hash;
         }),
-      section,
+      panel,
     );
   }
 
-  /** Moves every slider of a section to another value: what is drawn must change. */
-  async moveSliders(section) {
-    const sliders = this.page.locator(`#${section} input[type=range]`);
+  /** Moves every slider of a panel and checks that each changes a plot. Returns the number of sliders. */
+  async moveSliders(panel) {
+    const sliders = this.page.locator(`#${panel} input[type=range]`);
     let moved = 0;
     for (let i = 0; i < (await sliders.count()); ++i) {
       const slider = sliders.nth(i);
       const { value, max } = await slider.evaluate((input) => ({ value: Number(input.value), max: Number(input.max) }));
       if (max === 0) continue;
-      const before = await this.drawn(section);
+      const before = await this.drawn(panel);
       await slider.evaluate(
         (input, to) => {
           input.value = to;
@@ -146,16 +149,16 @@ export class Page {
         },
         value > max / 2 ? Math.floor(max / 3) : Math.ceil((2 * max) / 3),
       );
-      assert.notDeepEqual(await this.drawn(section), before, `slider ${i + 1} of ${section} changes nothing`);
+      assert.notDeepEqual(await this.drawn(panel), before, `slider ${i + 1} of ${panel} changes nothing`);
       ++moved;
     }
-    this.isFine();
+    this.expectNoProblems();
     return moved;
   }
 
-  /** What hovering shows: the pointer goes over points of a plot until a label appears. */
-  async hover(section, trace = (traces) => traces.findLastIndex((t) => t.hoverinfo !== "skip" && t.x?.length)) {
-    const plot = this.page.locator(`#${section} .plot`).first();
+  /** Moves the pointer over points of the first plot of a panel until a hover text appears; returns the text. */
+  async hover(panel, trace = (traces) => traces.findLastIndex((t) => t.hoverinfo !== "skip" && t.x?.length)) {
+    const plot = this.page.locator(`#${panel} .plot`).first();
     await plot.scrollIntoViewIfNeeded();
     const places = await plot.evaluate((node, source) => {
       const box = node.getBoundingClientRect(),
@@ -176,19 +179,19 @@ export class Page {
     for (const [x, y] of places.slice(0, 12)) {
       await this.page.mouse.move(x - 3, y - 3);
       await this.page.mouse.move(x, y, { steps: 3 });
-      const label = this.page.locator(`#${section} .plot`).first().locator(".hovertext").first();
+      const label = this.page.locator(`#${panel} .plot`).first().locator(".hovertext").first();
       const text = await label.textContent({ timeout: 1000 }).catch(() => "");
       if (text) return text;
     }
     return "";
   }
 
-  /** A picture of each section, without the bar that stays on top; for eyes, where BROWSER_PICTURES is set. */
-  async screenshots(folder, name, sections) {
+  /** Saves a screenshot of each panel without the top bar, if BROWSER_PICTURES is set. */
+  async screenshots(folder, name, panels) {
     if (!process.env.BROWSER_PICTURES) return;
     const style = await this.page.addStyleTag({ content: "#bar { position: static !important; }" });
-    for (const section of sections ?? (await this.sections()))
-      await this.page.locator("#" + section).screenshot({ path: path.join(folder, `${name}-${section}.png`) });
+    for (const panel of panels ?? (await this.panels()))
+      await this.page.locator("#" + panel).screenshot({ path: path.join(folder, `${name}-${panel}.png`) });
     await style.evaluate((node) => node.remove());
   }
 }

@@ -1,4 +1,4 @@
-// Studies that are not finished, also of earlier programs, and one whose text this program cannot read.
+// Reports of unfinished studies, also of earlier program versions, and of a study whose text this program cannot read.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, rmSync, writeFileSync } from "node:fs";
@@ -7,7 +7,7 @@ import { folderOf, Page, pkmopt } from "./page.mjs";
 
 const folder = folderOf("unfinished");
 
-/** Starts a long study and kills it once its file is there. */
+/** Starts a long study and kills its process when the study file exists; returns the file. */
 async function killed() {
   const toml = path.join(folder, "killed.toml"),
     file = path.join(folder, "killed.h5");
@@ -48,20 +48,20 @@ generations = 100000
   const page = await Page.open(html);
   await page.draw("convergence");
   assert.match(await page.text("#summary"), /still running/);
-  assert.ok((await page.sections()).includes("mechanism"));
+  assert.ok((await page.panels()).includes("mechanism"));
   await page.close();
 }
 
-// Real ones that earlier programs were stopped in.
+// Study files that earlier program versions wrote when they were interrupted.
 for (const schema of [1, 3]) {
   const name = `interrupted-schema-${schema}`,
     html = path.join(folder, name + ".html");
   pkmopt("report", path.join(process.env.BROWSER_DATA, name + ".h5"), "--output", html, "--force");
   const page = await Page.open(html),
     front = schema === 3 ? ["front"] : [];
-  const sections = ["summary", ...front, "workspace", "mechanism", "convergence", "populations"];
-  assert.deepEqual(await page.sections(), sections);
-  for (const section of ["convergence", ...front, "populations"]) await page.draw(section);
+  const panels = ["summary", ...front, "workspace", "mechanism", "convergence", "populations"];
+  assert.deepEqual(await page.panels(), panels);
+  for (const panel of ["convergence", ...front, "populations"]) await page.draw(panel);
   assert.match(await page.text("#summary"), /interrupted/);
   await page.close();
 }
@@ -71,7 +71,7 @@ pkmopt("report", path.join(process.env.BROWSER_DATA, "schema-3.h5"), "--output",
 const page = await Page.open(html);
 await page.draw();
 assert.match(await page.text("#summary"), /cannot read the study's text/);
-assert.deepEqual(await page.sections(), ["summary", "workspace", "convergence", "populations"]);
+assert.deepEqual(await page.panels(), ["summary", "workspace", "convergence", "populations"]);
 await page.screenshots(folder, "unreadable", ["summary"]);
 await page.close();
-console.log("interrupted, running and unreadable studies have their reports");
+console.log("interrupted, running and unreadable studies have reports");

@@ -1,4 +1,4 @@
-"""What the campaigns have in common: small studies, what they end with, the program as a child."""
+"""Shared by the campaigns: small studies, a digest of study files, and running the program as a child process."""
 
 import hashlib
 import os
@@ -59,20 +59,21 @@ STUDIES = {
     "file": FILE,
 }
 
-# Differ from run to run: clocks, the machine, the study's text where the interval of checkpoints is part of it.
-UNREPEATED = {"seconds", "toml", "toml_file", "text_digest", "created", "updated", "machine", "program_version",
+# Attributes and datasets that differ between runs: clocks, machine, and the study's text, which contains the checkpoint
+# interval.
+NOT_REPRODUCIBLE = {"seconds", "toml", "toml_file", "text_digest", "created", "updated", "machine", "program_version",
               "program_revision", "notes", "reproducible"}
 
 
 def digest(path):
-    """Of the bits of all that has to repeat in a study file."""
+    """Hash of all reproducible attributes and datasets of a study file."""
     lines = []
 
     def add(name, item):
         for key, value in sorted(item.attrs.items()):
-            if key not in UNREPEATED:
+            if key not in NOT_REPRODUCIBLE:
                 lines.append((name + "@" + key, repr(value)))
-        if isinstance(item, h5py.Dataset) and name.split("/")[-1] not in UNREPEATED:
+        if isinstance(item, h5py.Dataset) and name.split("/")[-1] not in NOT_REPRODUCIBLE:
             lines.append((name, hashlib.sha256(repr(item.shape).encode() + item[()].tobytes()).hexdigest()))
 
     with h5py.File(path, "r") as file:
@@ -87,7 +88,7 @@ def state(path):
 
 
 class Folder:
-    """A folder for files, and the program run in it."""
+    """A working folder and the program that is run in it."""
 
     def __init__(self, path, program):
         self.path, self.program = path, os.path.abspath(program)
@@ -105,18 +106,18 @@ class Folder:
                                 errors="replace")
 
     def run(self, arguments, variables=None, timeout=600):
-        """Exit code and all that was printed."""
+        """Runs the program. Returns its exit code (None after a timeout) and its output, including stderr."""
         child = self.start(arguments, variables)
         try:
             output = child.communicate(timeout=timeout)[0]
         except subprocess.TimeoutExpired:
             child.kill()
             child.communicate()
-            return None, "no end within %g s" % timeout
+            return None, "still running after %g s" % timeout
         return child.returncode, output
 
 
 def disk(library, folder, **settings):
-    """Variables for a child whose disk tests/campaigns/unreliable_disk.c stands for."""
+    """Environment variables for a child process whose file access is simulated by unreliable_disk.c."""
     return {"LD_PRELOAD": os.path.abspath(library), "DISK_FOLDER": folder,
             **{"DISK_" + name.upper(): str(value) for name, value in settings.items()}}

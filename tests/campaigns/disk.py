@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""A disk that fails at the n-th thing asked of it, for every n.
+"""Failures of the n-th disk operation, for every n.
 
 disk.py PROGRAM UNRELIABLE_DISK [--every K]
 
-The things asked are opening to write, write, fsync, rename; each fails once, or it and all after it (a full disk), or
-writes its first half. Whatever comes of it: a file that was there before is the one before or a complete one after,
-never a third; nothing is left beside it; a failure is told by a sentence and exit code 1. Prints a table.
+The operations are opening for writing, write, fsync and rename. One operation fails once, or it and all later ones fail
+(a full disk), or a write writes only its first half. In each case an existing file is afterwards either unchanged or
+complete, never anything else; no other files remain; and a failure is reported by a message and exit code 1. Prints a
+table.
 """
 
 import argparse
@@ -32,7 +33,7 @@ FAILURES = {
 
 
 class Scenario:
-    """A command, the files it begins with, and what may be there after it."""
+    """A command, its output file, and the files that exist before it."""
 
     def __init__(self, arguments, output, before):
         self.arguments, self.output, self.before = arguments, output, before
@@ -77,7 +78,7 @@ class Campaign:
         return campaign.Folder(path, self.program)
 
     def count(self, scenario):
-        """How many things a run asks of the disk, and what it leaves."""
+        """Number of disk operations of a run, and the files after it."""
         folder = self.fresh(scenario)
         number = os.path.join(self.root, "number")
         self.expect_run(folder, scenario.arguments, campaign.disk(self.library, folder.path, count=number))
@@ -89,7 +90,7 @@ class Campaign:
         print("%s, failure %d %s: %s" % (name, number, how, what), flush=True)
 
     def is_study(self, folder, name, finished):
-        """The one after but for its clocks or, unless it has to be `finished`, a checkpoint that ends as that one."""
+        """Whether a file is the complete study or, unless it must be `finished`, a checkpoint that resumes to it."""
         if not finished and folder.run(["resume", name, "--threads", "1"])[0] != 0:
             return False
         try:
@@ -102,26 +103,26 @@ class Campaign:
         before = files_below(folder.path)
         code, output = folder.run(scenario.arguments,
                                   campaign.disk(self.library, folder.path, fails_at=number, **FAILURES[how]), 120)
-        left = files_below(folder.path)
+        remaining = files_below(folder.path)
         fault = lambda what: self.fault(name, how, number, what)
         if code not in (0, 1):
             fault("exit code %s: %s" % (code, output[-300:]))
         error = os.strerror(FAILURES[how]["error"])
         if code == 1 and error not in output:
-            fault("the message does not say '%s': %s" % (error, output[-300:]))
-        for file in sorted(set(left) - set(before) - set(after)):
-            fault("%s is left" % file)
-        for file in sorted(set(before) - set(left)):
-            fault("%s is gone" % file)
-        for file in sorted(left):
-            if left[file] == after.get(file) or (code != 0 and left[file] == before.get(file)):
+            fault("the message does not contain '%s': %s" % (error, output[-300:]))
+        for file in sorted(set(remaining) - set(before) - set(after)):
+            fault("%s remains" % file)
+        for file in sorted(set(before) - set(remaining)):
+            fault("%s was deleted" % file)
+        for file in sorted(remaining):
+            if remaining[file] == after.get(file) or (code != 0 and remaining[file] == before.get(file)):
                 continue
             if file == scenario.output and file.endswith(".h5"):
                 if self.is_study(folder, file, finished=code == 0):
                     continue
-            fault("%s is a third file of %d bytes" % (file, len(left[file])))
-        if code == 0 and not set(after) <= set(left):
-            fault("exit code 0 without %s" % ", ".join(sorted(set(after) - set(left))))
+            fault("%s is neither the old nor the new file, %d bytes" % (file, len(remaining[file])))
+        if code == 0 and not set(after) <= set(remaining):
+            fault("exit code 0 without %s" % ", ".join(sorted(set(after) - set(remaining))))
         return code
 
     def run(self, name, scenario):
@@ -129,11 +130,11 @@ class Campaign:
         for how in FAILURES:
             ended = {0: 0, 1: 0}
             faults = len(self.faults)
-            tried = range(1, numbers + 1, self.every)
-            for number in tried:
+            tested = range(1, numbers + 1, self.every)
+            for number in tested:
                 code = self.check(name, scenario, how, number, after)
                 ended[code] = ended.get(code, 0) + 1
-            print("%-22s%-14s%8d%8d%10d%14d%8d" % (name, how, numbers, len(tried), ended[1], ended[0],
+            print("%-22s%-14s%8d%8d%10d%14d%8d" % (name, how, numbers, len(tested), ended[1], ended[0],
                                                    len(self.faults) - faults), flush=True)
 
 
@@ -141,7 +142,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
     parser.add_argument("unreliable_disk")
-    parser.add_argument("--every", type=int, default=1, help="every K-th n only")
+    parser.add_argument("--every", type=int, default=1, help="test only every K-th operation")
     arguments = parser.parse_args()
     run = ["run", "study.toml", "--output", "s.h5", "--threads", "1"]
     tables = ["export", "s.h5", "--csv", "tables", "--force"]
@@ -156,7 +157,7 @@ def main():
     }
     with tempfile.TemporaryDirectory(prefix="pkmopt-disk-") as path:
         campaign_ = Campaign(path, arguments.program, arguments.unreliable_disk, arguments.every)
-        print("%-22s%-14s%8s%8s%10s%14s%8s" % ("", "fails", "asked", "tried", "exit 1", "exit 0", "faults"))
+        print("%-22s%-14s%8s%8s%10s%14s%8s" % ("", "failure", "ops", "tested", "exit 1", "exit 0", "faults"))
         for name, scenario in scenarios.items():
             campaign_.run(name, scenario)
     print("%d faults" % len(campaign_.faults))

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Commands interrupted by SIGINT, SIGTERM or their time limit at random instants.
+"""Commands interrupted by SIGINT, SIGTERM or their time limit at random times.
 
 interrupts.py PROGRAM [--interrupts N] [--bound SECONDS] [--seed S]
 
-Over all commands that compute, among them studies whose evaluations or final steps have no end. Each has to end within
-the bound, `certify --proof` after it has written what it proved so far. A file that it writes is the one before, the
-complete one, or a study that can be resumed; a study that was interrupted and resumed has the bits of the run that
-nobody disturbed. Prints a table; exit code 1 if anything was late or lost.
+Covers all commands that compute, including studies whose evaluations or final steps do not end. Each command must end
+within the bound; `certify --proof` first writes its intermediate result. An output file is either unchanged, complete
+or a study that can be resumed, and a resumed study ends with the same bits as an uninterrupted run. Prints a table;
+exit code 1 if a command was late or a file was lost.
 """
 
 import argparse
@@ -24,7 +24,7 @@ import campaign
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "../.."))
 STOPS = os.path.join(ROOT, "tests/data/stops")
 MECHANISMS = os.path.join(ROOT, "experiments/mechanisms")
-LONGEST = 3  # s: later interrupts of a command without end show nothing new
+MAX_DELAY = 3  # [s]: later interrupts of an endless command test nothing new
 STOPPED = 3  # exit code
 GOUGH_LEGS = "left1=1.15,left2=1.38,left3=1.38,right1=1.43,right2=1.57,right3=1.42"  # m
 
@@ -40,7 +40,7 @@ class Command:
         self.file = file  # another file that it writes
         self.count = dict.fromkeys(("interrupts", "ended before", "late", "lost"), 0)
         self.longest = 0.0
-        self.seconds = LONGEST
+        self.seconds = MAX_DELAY
 
 
 def commands():
@@ -56,7 +56,7 @@ def commands():
         Command("run, seeds", ["run", "ga.toml", "--seeds", "20", "--output", "seeds.h5"]),
         Command("check", ["check", "slow-evaluations.toml"], endless=True),
         Command("evaluate", ["evaluate", "comb.toml", "--set", "w=0.01mm"], endless=True),
-        Command("evaluate, certain bounds", ["evaluate", robot, "--certain", "1e-3"], endless=True),
+        Command("evaluate, certified bounds", ["evaluate", robot, "--certain", "1e-3"], endless=True),
         Command("certify", ["certify", robot, "--gap", "1e-4", "--proof", "p.proof", "--force"], file="p.proof",
                 endless=True),
         Command("certify, box", ["certify", gough, "--box", "x=-0.2:0.2,y=-0.2:0.2,z=0.8:1.2"], endless=True),
@@ -82,9 +82,9 @@ class Campaign:
             self.folder.write(name + ".toml", text)
             code, output = self.folder.run(["run", name + ".toml", "--output", name + ".h5", "--threads", "1"])
             if code != 0:
-                sys.exit("%s did not run: %s" % (name, output))
+                sys.exit("%s failed: %s" % (name, output))
             self.digests[name] = campaign.digest(self.folder.file(name + ".h5"))
-            shutil.copy(self.folder.file(name + ".h5"), self.folder.file(name + "-straight.h5"))
+            shutil.copy(self.folder.file(name + ".h5"), self.folder.file(name + "-uninterrupted.h5"))
         self.folder.run(["report", "file.h5", "--force", "--output", "page.html"])
         for command in listed:
             if command.endless:
@@ -93,11 +93,11 @@ class Campaign:
             begin = time.monotonic()
             code, output = self.folder.run(command.arguments)
             if code not in (0, 1):
-                sys.exit("%s did not run: exit code %s: %s" % (command.name, code, output))
-            command.seconds = min(LONGEST, time.monotonic() - begin)
+                sys.exit("%s failed: exit code %s: %s" % (command.name, code, output))
+            command.seconds = min(MAX_DELAY, time.monotonic() - begin)
 
     def restore(self, command):
-        """The files that the command finds."""
+        """Prepares the files that the command needs."""
         if command.name.startswith("resume"):
             name = command.name.split()[1]
             self.remove(command.study)
@@ -108,9 +108,9 @@ class Campaign:
             child.communicate()
         elif command.study:
             self.remove(command.study)
-        for left in os.listdir(self.folder.path):
-            if left.startswith("seeds-"):
-                self.remove(left)
+        for name in os.listdir(self.folder.path):
+            if name.startswith("seeds-"):
+                self.remove(name)
 
     def remove(self, name):
         if os.path.exists(self.folder.file(name)):
@@ -127,7 +127,7 @@ class Campaign:
         child = self.folder.start(command.arguments + more)
         command.count["interrupts"] += 1
         try:
-            # Until it runs, a time limit counts nothing: starting up is not the limit's.
+            # A time limit counts from the start of the run: allow one second more for starting the program.
             output = child.communicate(timeout=wait + (1 if by_time else 0))[0]
             command.count["ended before"] += 0 if by_time else 1
         except subprocess.TimeoutExpired:
@@ -140,7 +140,7 @@ class Campaign:
                 child.kill()
                 child.communicate()
                 command.count["late"] += 1
-                raise Failed("no end within 60 s") from None
+                raise Failed("still running after 60 s") from None
             late = time.monotonic() - begin
             command.longest = max(command.longest, late)
             if late > self.bound + self.seconds_of_result(command):
@@ -151,7 +151,7 @@ class Campaign:
         self.check(command, before, output)
 
     def seconds_of_result(self, command):
-        """What writing a proof of what is known so far may take besides: tens of megabytes, at 50 MB/s."""
+        """Additional time for writing the intermediate proof: tens of megabytes, at 50 MB/s."""
         return 2e-8 * len(self.content(command.file) or b"") if command.name == "certify" else 0
 
     def content(self, name):
@@ -161,8 +161,7 @@ class Campaign:
             return file.read()
 
     def check(self, command, before, output):
-        left = [n for n in os.listdir(self.folder.path) if n.startswith(".pkmopt-")]
-        for name in left:
+        for name in [n for n in os.listdir(self.folder.path) if n.startswith(".pkmopt-")]:
             self.remove(name)
         if command.file:
             after = self.content(command.file)
@@ -171,7 +170,7 @@ class Campaign:
                 raise Failed("%s was lost" % command.file)
         if not command.study or not os.path.exists(self.folder.file(command.study)):
             if command.name.startswith("resume"):
-                raise Failed("the study file is gone")
+                raise Failed("the study file was deleted")
             return
         code, shown = self.folder.run(["show", command.study])
         if code not in (0, 4):
@@ -181,7 +180,7 @@ class Campaign:
         code, resumed = self.folder.run(["resume", command.study])
         name = command.study.removesuffix(".h5").removesuffix("-begun")
         if code != 0 or campaign.digest(self.folder.file(command.study)) != self.digests[name]:
-            raise Failed("resumed with exit code %s, it ended with other bits: %s" % (code, resumed[-300:]))
+            raise Failed("resumed with exit code %s to a different result: %s" % (code, resumed[-300:]))
 
     def run(self, listed, interrupts):
         for i in range(interrupts):
@@ -189,7 +188,7 @@ class Campaign:
             try:
                 self.interrupt(command)
             except Failed as what:
-                command.count["lost"] += "late" not in str(what) and not str(what).startswith(("ended after", "no end"))
+                command.count["lost"] += "late" not in str(what) and not str(what).startswith(("ended after", "still"))
                 print("%s: %s" % (command.name, what), flush=True)
 
 

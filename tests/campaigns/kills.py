@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Studies killed by SIGKILL at random instants and resumed until they are finished.
+"""Studies killed by SIGKILL at random times and resumed until they are finished.
 
 kills.py PROGRAM UNRELIABLE_DISK [--kills N] [--seed S]
 
-Over all optimisers, 1 and 2 threads, checkpoints after each generation to seconds and those that adapt themselves, on a
-sound disk, a slow one and one that fills up. After each kill the study file is complete, or there is none yet; what is
-resumed to its end has the bits of the run that nobody disturbed. Prints a table; exit code 1 if anything was lost.
+Covers all optimisers, 1 and 2 threads, checkpoint intervals from each generation to seconds and automatic ones, on a
+sound, a slow and a full disk. After each kill the study file is complete or does not exist yet, and the resumed study
+ends with the same bits as an uninterrupted run. Prints a table; exit code 1 if a study was lost.
 """
 
 import argparse
@@ -31,18 +31,18 @@ class Lost(Exception):
 class Campaign:
     def __init__(self, folder, library, seed):
         self.folder, self.library, self.random = folder, library, random.Random(seed)
-        self.straight = {}
+        self.uninterrupted = {}
         self.count = {name: dict.fromkeys(("studies", "kills", "before", "full", "lost"), 0)
                       for name in campaign.STUDIES}
 
     def measure(self):
         for name, text in campaign.STUDIES.items():
-            self.folder.write("straight.toml", text)
+            self.folder.write("uninterrupted.toml", text)
             begin = time.monotonic()
-            code, output = self.folder.run(["run", "straight.toml", "--output", name + ".h5", "--threads", "1"])
+            code, output = self.folder.run(["run", "uninterrupted.toml", "--output", name + ".h5", "--threads", "1"])
             if code != 0:
-                sys.exit("%s did not run: %s" % (name, output))
-            self.straight[name] = (time.monotonic() - begin, campaign.digest(self.folder.file(name + ".h5")))
+                sys.exit("%s failed: %s" % (name, output))
+            self.uninterrupted[name] = (time.monotonic() - begin, campaign.digest(self.folder.file(name + ".h5")))
 
     def variables(self, kind):
         if kind == "slow":
@@ -51,9 +51,9 @@ class Campaign:
             return campaign.disk(self.library, self.folder.path, fails_at=self.random.randrange(1, 60), fails_for=0)
         return {}
 
-    def one_study(self, name, most):
-        """Kills one study until it comes to its end, or has been killed `most` times. Returns the kills."""
-        seconds, digest = self.straight[name]
+    def one_study(self, name, limit):
+        """Kills and resumes one study until it is finished, at most `limit` times. Returns the number of kills."""
+        seconds, digest = self.uninterrupted[name]
         count = self.count[name]
         every = self.random.choice(EVERY)
         self.folder.write("study.toml", campaign.STUDIES[name] + ("[checkpoint]\nevery = %s\n" % every if every else ""))
@@ -64,23 +64,23 @@ class Campaign:
         count["studies"] += 1
         kills, seen = 0, False
         while True:
-            kind = self.random.choice(DISKS) if kills < most else "sound"
+            kind = self.random.choice(DISKS) if kills < limit else "sound"
             threads = ["--threads", str(self.random.choice([1, 2]))]
             first = ["run", "study.toml", "--output", "study.h5"]
             if seen and not os.path.exists(file):
-                raise Lost("the file is gone")
+                raise Lost("the study file was deleted")
             seen = os.path.exists(file)
             child = self.folder.start((["resume", "study.h5"] if seen else first) + threads, self.variables(kind))
             try:
-                # Late kills find a study on its way, early ones its beginning.
-                output = child.communicate(timeout=self.random.uniform(0, 1.2 * seconds) if kills < most else 600)[0]
+                # Random times: early kills hit the start of a run, late ones its course.
+                output = child.communicate(timeout=self.random.uniform(0, 1.2 * seconds) if kills < limit else 600)[0]
             except subprocess.TimeoutExpired:
                 child.send_signal(signal.SIGKILL)
                 child.communicate()
                 kills += 1
                 count["before"] += not os.path.exists(file)
-                if kills > most:
-                    raise Lost("no end within 600 s") from None
+                if kills > limit:
+                    raise Lost("still running after 600 s") from None
                 continue
             if child.returncode == 0:
                 break
@@ -88,7 +88,7 @@ class Campaign:
                 raise Lost("exit code %d on a %s disk: %s" % (child.returncode, kind, output[-500:]))
             count["full"] += 1
         if campaign.state(file) != "finished" or campaign.digest(file) != digest:
-            raise Lost("it ended with other bits")
+            raise Lost("the result differs from the uninterrupted run")
         return kills
 
     def run(self, kills):
@@ -98,15 +98,15 @@ class Campaign:
                 if done >= kills:
                     break
                 try:
-                    made = self.one_study(name, min(10, share, kills - done))
+                    count = self.one_study(name, min(10, share, kills - done))
                 except Lost as what:
-                    made = 1
+                    count = 1
                     self.count[name]["lost"] += 1
                     kept = tempfile.mkdtemp(prefix="pkmopt-lost-")
                     shutil.copytree(self.folder.path, kept, dirs_exist_ok=True)
                     print("%s: %s; its files: %s" % (name, what, kept), flush=True)
-                done += made
-                self.count[name]["kills"] += made
+                done += count
+                self.count[name]["kills"] += count
 
 
 def main():

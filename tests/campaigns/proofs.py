@@ -3,14 +3,14 @@
 
 proofs.py PROGRAM CHECKER [--mutations N] [--seed S] [--keep FOLDER]
 
-`certify --proof` writes small proofs. Each mutant of them is checked by CHECKER, and the volume that it claims is
-compared with bounds of the true volume, which an evaluator of its own computes: interval branch and bound over
-rational numbers (whole multiples of 2^-160), roots by whole roots, arcs and waves by their series. It shares no code
-and no method with the checker. Where the boxes of a mutant are valid, two false claims are put into it besides: more
-than the upper bound of the true volume, and less than the lower one.
+`certify --proof` writes small proofs, which are mutated. CHECKER checks each mutant. The volume that the mutant claims
+is compared with bounds of the true volume from an independent evaluator: interval branch and bound in fixed-point
+arithmetic (integer multiples of 2^-160), with integer square roots, and series for trigonometric functions. It shares
+neither code nor methods with the checker. If the boxes of a mutant are valid, two false claims are checked as well: a
+volume above the upper and one below the lower bound of the true volume.
 
-An accepted false volume, and an exit code that is neither 0 nor 1, fail. A mutant that is refused although its volume
-is true is counted, by the reason: its statement is true, its boxes do not show it.
+The campaign fails if a false volume is accepted, or if the exit code is neither 0 nor 1. Rejected mutants with a true
+volume are counted by reason: their statement is true, but their boxes do not prove it.
 """
 
 import argparse
@@ -25,15 +25,17 @@ import subprocess
 import sys
 import tempfile
 
-# ---- rational intervals: (lower, upper, is_defined), whole multiples of 2^-SCALE; None: defined nowhere ----
+# ---- fixed-point interval arithmetic ----
+# Interval: (lower, upper, is_defined). The bounds are integer multiples of 2^-SCALE; is_defined is true if the function
+# is defined on the whole box. None instead of an interval: defined nowhere on the box.
 
 SCALE = 160
 ONE = 1 << SCALE
-GUARD = 40  # more bits inside of a series, whose errors are below 2^(GUARD/2) of the last one
+GUARD = 40  # guard bits of series; their errors are below 2^(GUARD/2) units of the last guard bit
 
 
 def series_atan(t, one):
-    """Of 0 <= t <= 1, to less than 2^10 units of `one`."""
+    """arctan(t / one) in units of 1 / one, for 0 <= t <= one; the error is less than 2^10 units."""
     for _ in range(3):
         t = t * one // (one + math.isqrt(one * one + t * t))
     square, power, total, n = t * t // one, t, 0, 1
@@ -45,11 +47,12 @@ def series_atan(t, one):
 
 
 FINE = ONE << GUARD
-PI = 4 * (4 * series_atan(FINE // 5, FINE) - series_atan(FINE // 239, FINE))  # Machin
+PI = 4 * (4 * series_atan(FINE // 5, FINE) - series_atan(FINE // 239, FINE))  # Machin's formula
 SLACK = 1 << (GUARD // 2)
 
 
 def outward(fine, slack=SLACK):
+    """Bounds at SCALE of a value with guard bits and an error of at most `slack`."""
     return (fine - slack) >> GUARD, -((-fine - slack) >> GUARD)
 
 
@@ -57,7 +60,7 @@ PI_DOWN, PI_UP = outward(PI)
 
 
 def atan2_at(y, x):
-    """Of one point, not the origin, as (lower, upper)."""
+    """Bounds of atan2(y, x) at a point other than the origin."""
     a, b = abs(y), abs(x)
     t = series_atan((min(a, b) << (SCALE + GUARD)) // max(a, b), FINE)
     if a > b:
@@ -68,8 +71,9 @@ def atan2_at(y, x):
 
 
 def sine_at(x):
+    """Bounds of sin(x) at a point."""
     fine = (x << GUARD) % (2 * PI)
-    # the quotient of x by the period multiplies the error of PI
+    # the error of PI is multiplied by the number of periods in x
     slack = SLACK * (1 + abs((x << GUARD) // (2 * PI)))
     sign = 1
     if fine > PI:
@@ -90,27 +94,27 @@ def hull(values):
 
 
 class Unknown(Exception):
-    """The evaluator has no bounds here."""
+    """The evaluator cannot compute bounds."""
 
 
-def wave(x, quarter):
-    """sin(x + quarter * pi / 2)"""
+def shifted_sine(x, quarter):
+    """Enclosure of sin(x + quarter * pi / 2) over an interval."""
     low, high, ok = x
     if max(-low, high) > 100000 * ONE:
-        raise Unknown("the program has no sine beyond 1e5")
+        raise Unknown("the program does not evaluate the sine beyond 1e5")
     if high - low >= 2 * PI_DOWN:
         return -ONE, ONE, ok
     shifted = [low + quarter * PI_DOWN // 2, high + quarter * PI_UP // 2 + 1]
     ends = hull([sine_at(shifted[0]), sine_at(shifted[1])])
 
-    def reaches(quarters):  # a top at quarters * pi/2 + 2 k pi
+    def contains_extremum(quarters):  # at quarters * pi/2 + 2 k pi
         first = (2 * shifted[0] - quarters * PI_UP - 2) // (4 * PI_UP) - 1
         for k in range(first, first + 5):
-            place = sorted(((4 * k + quarters) * PI_DOWN // 2, (4 * k + quarters) * PI_UP // 2 + 1))
-            if place[1] >= shifted[0] and place[0] <= shifted[1]:
+            at = sorted(((4 * k + quarters) * PI_DOWN // 2, (4 * k + quarters) * PI_UP // 2 + 1))
+            if at[1] >= shifted[0] and at[0] <= shifted[1]:
                 return True
         return False
-    return (-ONE if reaches(3) else ends[0]), (ONE if reaches(1) else ends[1]), ok
+    return (-ONE if contains_extremum(3) else ends[0]), (ONE if contains_extremum(1) else ends[1]), ok
 
 
 def add(x, y):
@@ -137,7 +141,7 @@ def divide(x, y):
     if y[0] == y[1] == 0:
         return None
     if y[0] <= 0 <= y[1]:
-        raise Unknown("a pole")
+        raise Unknown("division by an interval that contains 0")
     quotients = [((a << SCALE) // b, -((-a << SCALE) // b)) for a in x[:2] for b in y[:2]]
     return (*hull(quotients), x[2] and y[2])
 
@@ -150,26 +154,28 @@ def root(x):
 
 
 def arc(x, is_sine):
+    """Enclosure of asin(x) or acos(x)."""
     if x[0] > ONE or x[1] < -ONE:
         return None
     ends = []
     for v in (max(x[0], -ONE), min(x[1], ONE)):
         cosine = (math.isqrt((ONE - v) * (ONE + v) << (2 * GUARD)), v << GUARD)
-        # the whole root is off by one unit of 2^-GUARD of the last bit
+        # the integer square root has an error of one unit of the last guard bit
         low, high = atan2_at(cosine[1], cosine[0]) if is_sine else atan2_at(*cosine)
         ends.append((low - 1, high + 1))
     return (*hull(ends), x[2] and -ONE <= x[0] and x[1] <= ONE)
 
 
 def angle(y, x):
+    """Enclosure of atan2(y, x)."""
     ok = x[2] and y[2]
     if y[0] <= 0 <= y[1] and (x[0] <= 0 <= x[1] or (x[0] < 0 and y[0] < 0)):
         return -PI_UP, PI_UP, ok
     return (*hull([atan2_at(b, a) for a in x[:2] for b in y[:2]]), ok)
 
 
-def turn(x):
-    """x - 2 pi ceil(x / (2 pi) - 1/2)"""
+def principal_angle(x):
+    """Enclosure of x - 2 pi ceil(x / (2 pi) - 1/2), the angle in (-pi, pi]."""
     low, high, ok = x
     counts = set()
     for v in (low, high):
@@ -183,31 +189,33 @@ def turn(x):
 
 
 def truth(x):
-    """True, False, or None where it is open."""
+    """Truth value of a condition: True, False, or None if undecided."""
     return True if x[0] > 0 or x[1] < 0 else False if x[0] == x[1] == 0 else None
 
 
-def answer(value, ok):
+def condition(value, ok):
+    """Interval of a condition: 1, 0 or [0, 1] if undecided."""
     return {True: (ONE, ONE, ok), False: (0, 0, ok), None: (0, ONE, ok)}[value]
 
 
 def ordered(x, y, strict):
     ok = x[2] and y[2]
     if x[1] < y[0] or (not strict and x[1] <= y[0]):
-        return answer(True, ok)
+        return condition(True, ok)
     if x[0] > y[1] or (strict and x[0] >= y[1]):
-        return answer(False, ok)
-    return answer(None, ok)
+        return condition(False, ok)
+    return condition(None, ok)
 
 
 def equal(x, y):
     ok = x[2] and y[2]
     if x[1] < y[0] or x[0] > y[1]:
-        return answer(False, ok)
-    return answer(True if x[0] == x[1] == y[0] == y[1] else None, ok)
+        return condition(False, ok)
+    return condition(True if x[0] == x[1] == y[0] == y[1] else None, ok)
 
 
 def choose(c, x, y):
+    """Enclosure of c ? x : y."""
     chosen = None if c is None else truth(c)
     if c is None:
         return None
@@ -223,9 +231,9 @@ def choose(c, x, y):
 def power(x, y):
     n = y[0] >> SCALE
     if y[0] != y[1] or n << SCALE != y[0] or abs(n) > 64:
-        raise Unknown("a broken power")
+        raise Unknown("not an integer power, or too large")
     result, factor, k = (ONE, ONE, True), x, abs(n)
-    if k % 2 == 0 and x[0] < 0:  # of the magnitude
+    if k % 2 == 0 and x[0] < 0:  # even power: of the magnitude
         factor = (max(0, x[0], -x[1]), max(-x[0], x[1]), x[2])
     while k:
         if k % 2:
@@ -245,40 +253,40 @@ def sign(x):
 
 
 FUNCTIONS = {
-    "sin": lambda x: wave(x, 0), "cos": lambda x: wave(x, 1),
-    "tan": lambda x: divide(wave(x, 0), wave(x, 1)),
+    "sin": lambda x: shifted_sine(x, 0), "cos": lambda x: shifted_sine(x, 1),
+    "tan": lambda x: divide(shifted_sine(x, 0), shifted_sine(x, 1)),
     "asin": lambda x: arc(x, True), "acos": lambda x: arc(x, False),
     "atan": lambda x: angle(x, (ONE, ONE, True)), "atan2": angle, "sqrt": root, "abs": magnitude, "sign": sign,
     "min": lambda x, y: (min(x[0], y[0]), min(x[1], y[1]), x[2] and y[2]),
     "max": lambda x, y: (max(x[0], y[0]), max(x[1], y[1]), x[2] and y[2]),
     "+": add, "-": lambda x, y: add(x, negative(y)), "*": multiply, "/": divide, "^": power,
-    "negative": negative, "turn": turn,
+    "negative": negative, "turn": principal_angle,
     "<": lambda x, y: ordered(x, y, True), "<=": lambda x, y: ordered(x, y, False),
     ">": lambda x, y: ordered(y, x, True), ">=": lambda x, y: ordered(y, x, False),
     "==": equal, "!=": lambda x, y: add((ONE, ONE, True), negative(equal(x, y))),
-    "&&": lambda x, y: FUNCTIONS["min"](answer(truth(x), x[2]), answer(truth(y), y[2])),
-    "||": lambda x, y: FUNCTIONS["max"](answer(truth(x), x[2]), answer(truth(y), y[2])),
+    "&&": lambda x, y: FUNCTIONS["min"](condition(truth(x), x[2]), condition(truth(y), y[2])),
+    "||": lambda x, y: FUNCTIONS["max"](condition(truth(x), x[2]), condition(truth(y), y[2])),
 }
 DOUBLES = {"+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b, "/": lambda a, b: a / b,
            "negative": lambda a: -a, "sqrt": math.sqrt, "abs": abs, "min": min, "max": max}
 
 
 def exact(number):
-    """A double as multiples of 2^-SCALE."""
+    """A double as an integer multiple of 2^-SCALE."""
     value = fractions.Fraction(number) * ONE
     if value.denominator != 1:
-        raise Unknown("a number with more bits")
+        raise Unknown("a number with more than SCALE bits after the point")
     return value.numerator
 
 
-# ---- the statement: formulas as nodes in the order of computation ----
+# ---- the statement of a proof: an expression graph with its nodes in order of evaluation ----
 
 RANK = {"||": 1, "&&": 2, "<": 4, "<=": 4, ">": 4, ">=": 4, "==": 4, "!=": 4, "+": 5, "-": 5, "*": 6, "/": 6, "^": 8}
 WORD = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)|([A-Za-z_]\w*)|(<=|>=|==|!=|&&|\|\||.))")
 
 
 class Statement:
-    """What a proof's lines before "boxes" say. Raises Unknown or ValueError."""
+    """Parser and evaluator of the lines of a proof before "boxes". Raises Unknown or ValueError."""
 
     def __init__(self, lines):
         self.nodes, self.names, self.axes, self.given, self.conditions = [], {}, [], [], []
@@ -310,13 +318,13 @@ class Statement:
         if operation == "^" and numbers[1] == 2:
             return self.add("number", numbers[0] * numbers[0])
         if operation not in DOUBLES:
-            raise Unknown("a function of a number alone, which the program computes in double precision")
+            raise Unknown("a function of constants, which the program evaluates in double precision")
         try:
             value = DOUBLES[operation](*numbers)
         except (ZeroDivisionError, ValueError):
             value = math.nan
         if not math.isfinite(value):
-            raise Unknown("no finite number")
+            raise Unknown("a constant that is not finite")
         return self.add("number", value)
 
     def formula(self, text):
@@ -324,40 +332,40 @@ class Statement:
         self.at = 0
         node = self.choice()
         if self.words[self.at] != (None, None, None):
-            raise ValueError("more than a formula")
+            raise ValueError("text after the formula")
         return node
 
-    def mark(self, *marks):
+    def accept(self, *symbols):
         found = self.words[self.at][2]
-        if found in marks:
+        if found in symbols:
             self.at += 1
             return found
         return None
 
-    def need(self, mark):
-        if not self.mark(mark):
-            raise ValueError("no " + mark)
+    def expect(self, symbol):
+        if not self.accept(symbol):
+            raise ValueError("expected " + symbol)
 
     def choice(self):
         condition = self.binary(1)
-        if not self.mark("?"):
+        if not self.accept("?"):
             return condition
         yes = self.choice()
-        self.need(":")
+        self.expect(":")
         return self.call("?", condition, yes, self.choice())
 
     def binary(self, rank):
         left = self.unary()
         while self.words[self.at][2] in RANK and RANK[self.words[self.at][2]] >= rank:
-            operation = self.mark(self.words[self.at][2])
+            operation = self.accept(self.words[self.at][2])
             right = self.binary(RANK[operation] + (operation != "^"))
             left = self.call(operation, left, right)
         return left
 
     def unary(self):
-        if self.mark("-"):
+        if self.accept("-"):
             return self.call("negative", self.binary(7))
-        self.mark("+")
+        self.accept("+")
         number, name, _ = self.words[self.at]
         if number:
             self.at += 1
@@ -367,11 +375,11 @@ class Statement:
             return self.add("number", math.pi)
         if name in FUNCTIONS:
             self.at += 1
-            self.need("(")
+            self.expect("(")
             arguments = [self.choice()]
-            while self.mark(","):
+            while self.accept(","):
                 arguments.append(self.choice())
-            self.need(")")
+            self.expect(")")
             if name in ("min", "max"):
                 node = arguments[0]
                 for other in arguments[1:]:
@@ -380,28 +388,29 @@ class Statement:
             return self.call(name, *arguments)
         if name:
             if name not in self.names:
-                raise Unknown("a function that the evaluator has not: " + name)
+                raise Unknown("a name that the evaluator does not support: " + name)
             self.at += 1
             return self.names[name]
-        self.need("(")
+        self.expect("(")
         node = self.choice()
-        self.need(")")
+        self.expect(")")
         return node
 
-    def order(self, open_conditions):
-        wanted = [False] * len(self.nodes)
-        for k in open_conditions:
-            wanted[self.conditions[k]] = True
+    def order(self, undecided):
+        """Indices of the nodes that the given conditions need."""
+        needed = [False] * len(self.nodes)
+        for k in undecided:
+            needed[self.conditions[k]] = True
         for i in range(len(self.nodes) - 1, -1, -1):
-            if wanted[i] and self.nodes[i][0] not in ("axis", "given", "number"):
+            if needed[i] and self.nodes[i][0] not in ("axis", "given", "number"):
                 for a in self.nodes[i][1]:
-                    wanted[a] = True
-        return [i for i, w in enumerate(wanted) if w]
+                    needed[a] = True
+        return [i for i, n in enumerate(needed) if n]
 
-    def values(self, box, given, open_conditions):
-        """Of the conditions by number; "unknown" where the evaluator has none."""
+    def values(self, box, given, undecided):
+        """Enclosures of the given conditions over a box; "unknown" if the evaluator has none."""
         found = {}
-        for i in self.order(open_conditions):
+        for i in self.order(undecided):
             operation, arguments = self.nodes[i]
             if operation == "axis":
                 found[i] = (*box[arguments[0]], True)
@@ -424,53 +433,53 @@ class Statement:
                         found[i] = square(values[0]) if same else FUNCTIONS[operation](*values)
                     except Unknown:
                         found[i] = "unknown"
-        return {k: found[self.conditions[k]] for k in open_conditions}
+        return {k: found[self.conditions[k]] for k in undecided}
 
     def volume(self, given, cells, gap):
-        """Bounds as fractions: branch and bound over all axes."""
+        """Bounds of the volume as fractions, by interval branch and bound over all axes."""
         unit = fractions.Fraction(1, ONE ** len(self.axes))
         inside = undecided = 0
         heap = []
 
-        def meet(box, still_open):
+        def classify(box, conditions):
             nonlocal inside, undecided
             size = math.prod(high - low for low, high in box)
-            still = []
-            for k, value in self.values(box, given, still_open).items():
+            remaining = []
+            for k, value in self.values(box, given, conditions).items():
                 if value is None or (value != "unknown" and value[1] < 0):
                     return
                 if value == "unknown" or value[0] < 0 or not value[2]:
-                    still.append(k)
-            if not still:
+                    remaining.append(k)
+            if not remaining:
                 inside += size
                 return
             undecided += size
-            heapq.heappush(heap, (-size, box, tuple(still)))
+            heapq.heappush(heap, (-size, box, tuple(remaining)))
 
-        meet(tuple(self.axes), tuple(range(len(self.conditions))))
+        classify(tuple(self.axes), tuple(range(len(self.conditions))))
         whole = [high - low for low, high in self.axes]
         for _ in range(cells):
             if not heap or undecided <= gap * (inside + undecided):
                 break
-            size, box, still_open = heapq.heappop(heap)
+            size, box, conditions = heapq.heappop(heap)
             undecided += size
             axis = max(range(len(box)), key=lambda a: fractions.Fraction(box[a][1] - box[a][0], whole[a]))
             low, high = box[axis]
             middle = (low + high) // 2
             for half in ((low, middle), (middle, high)):
-                meet(box[:axis] + (half,) + box[axis + 1:], still_open)
+                classify(box[:axis] + (half,) + box[axis + 1:], conditions)
         return inside * unit, (inside + undecided) * unit
 
 
 class Truth:
-    """Bounds of the true volume for the statements of proofs."""
+    """Bounds of the true volume of each statement, cached."""
 
     def __init__(self):
         self.known = {}
 
     def bounds(self, head, cells, gap, first_cells=0):
-        """For every value of what is given, and for one of them; None: unknown.
-        @param first_cells  as many instead, where the statement is new"""
+        """Bounds that hold for all values of the given intervals, and bounds for one of the values; None: unknown.
+        @param first_cells  number of cells instead of `cells` if the statement is new (0: `cells`)"""
         key = (head, cells)
         if key not in self.known:
             try:
@@ -487,7 +496,7 @@ class Truth:
 
 # ---- mutants ----
 
-SEEDS = {  # axes with their ranges, conditions, gap
+SEEDS = {  # name: (ranges of the axes, conditions, gap)
     "disc": ({"x": (-1.25, 1.25), "y": (-1.25, 1.25)}, ["1 - x^2 - y^2"], 0.5),
     "half-disc": ({"x": (-1, 1), "y": (-1, 1)}, ["sqrt(x^2 + y^2) - 0.25", "1 - x^2 - y^2", "y"], 0.6),
     "interval": ({"x": (-2, 3)}, ["0.75 - x*x"], 0.1),
@@ -514,7 +523,7 @@ joints = { %s }
 unit = "m"
 """
 MARGIN = '[[margin]]\nname = "margin %d"\nformula = "%s"\nunit = "1"\n'
-FILES = {"five-bar": 0.5, "3-rpr": 1.4}  # mechanisms of experiments, with gaps
+FILES = {"five-bar": 0.5, "3-rpr": 1.4}  # mechanism files in experiments, with gaps
 EXPERIMENTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../experiments/mechanisms")
 
 NUMBER = re.compile(r"-?\b\d+\.?\d*(?:e[-+]?\d+)?")
@@ -529,8 +538,8 @@ WRAPPINGS = ["min(%s, %s)", "max(%s, %s)", "abs(%s) + 0*%s", "sqrt(max(%s, 0)) +
 OPERATIONS = [" + ", " - ", " * ", " / "]
 
 
-def near(number, draw):
-    """A number like it."""
+def similar_number(number, draw):
+    """A number close to the given one, or with another sign or scale."""
     value = float(number)
     return repr(draw.choice([value * (1 + draw.choice([1e-15, 1e-9, 1e-3, 0.1]) * draw.choice([-1, 1])), -value,
                              value + draw.choice([-1, 1]) * 0.01, value * 2, value / 2]))
@@ -544,7 +553,7 @@ def mutate_head(lines, draw):
         numbers = list(NUMBER.finditer(lines[i]))
         if numbers:
             m = draw.choice(numbers)
-            text = near(m.group(), draw) if draw.random() < 0.7 else draw.choice(HARD_NUMBERS)
+            text = similar_number(m.group(), draw) if draw.random() < 0.7 else draw.choice(HARD_NUMBERS)
             lines[i] = lines[i][:m.start()] + text + lines[i][m.end():]
     elif kind == 1:
         del lines[i]
@@ -606,7 +615,7 @@ def mutate_steps(steps, draw):
                                 "r%d " % draw.randrange(1 << 30), "t0 0 1073741824 %d " % draw.randrange(1 << 30)])
     elif steps[i][0] in "xh":
         steps[i] = ("h" if steps[i][0] == "x" else "x") + steps[i][1:]
-    elif steps[i][0] == "/":  # the whole tree below it
+    elif steps[i][0] == "/":  # and the whole tree below it
         steps[i:] = [".\n"]
     return steps
 
@@ -645,7 +654,7 @@ def mutant(proofs, draw):
                            "x" not in line else line for line in proof.lines]
         elif kind < 0.9 and proof.steps:
             proof.steps = mutate_steps(proof.steps, draw)
-        elif kind < 0.95:  # the boxes of another proof
+        elif kind < 0.95:  # use the boxes of another proof
             proof.steps = draw.choice(proofs).steps
         else:
             return mutate_bytes(proof.text(), draw)
@@ -688,7 +697,7 @@ def with_volume(text, low, high):
 
 
 def double(fraction, toward):
-    """A double beyond a fraction, upward (1) or downward (-1)."""
+    """A double strictly above (toward = 1) or below (-1) a fraction."""
     value = float(fraction)
     for _ in range(2):
         value = math.nextafter(value, toward * math.inf)
@@ -707,7 +716,7 @@ class Campaign:
             done = subprocess.run([self.checker, self.file], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
                                   errors="replace")
         except subprocess.TimeoutExpired:
-            self.fail("no end within 60 s", text)
+            self.fail("still running after 60 s", text)
             return 1, ""
         if done.returncode not in (0, 1):
             self.fail("exit code %d: %s" % (done.returncode, done.stderr), text)
@@ -715,24 +724,25 @@ class Campaign:
 
     def fail(self, what, text):
         self.failures += 1
-        print("FOUND: " + what, flush=True)
+        print("FAULT: " + what, flush=True)
         if self.keep:
             os.makedirs(self.keep, exist_ok=True)
-            with open(os.path.join(self.keep, "finding-%d.proof" % self.failures), "w", encoding="utf-8",
+            with open(os.path.join(self.keep, "fault-%d.proof" % self.failures), "w", encoding="utf-8",
                       newline="") as file:
                 file.write(text)
         else:
             print(text[:4000], flush=True)
 
     def judge(self, text, cells, gap):
+        """Checks one mutant and compares the answer of the checker with the true volume."""
         code, reason = self.check(text)
-        valid_boxes = code == 0 or "the volume proved is" in reason
+        valid_boxes = code == 0 or "the proven " in reason  # lower or upper bound
         head, separator, _ = text.partition("\nboxes\n")
         lines = [line for line in head.split("\n") if not line.startswith("#")]
         claims = [line.split(" ") for line in lines if line.startswith("volume ")]
         if not separator or len(claims) != 1:
             if code == 0:
-                self.fail("accepted, and it is no proof", text)
+                self.fail("accepted, although it is not a proof", text)
             self.counts["no proof", code] += 1
             return
         statement = tuple(line for line in lines if not line.startswith("volume "))
@@ -746,13 +756,13 @@ class Campaign:
         except (ValueError, OverflowError):
             self.counts["no proof", code] += 1
             if code == 0:
-                self.fail("accepted, and its volume is no number", text)
+                self.fail("accepted, although its volume is not a number", text)
             return
         is_true, is_false = low <= every[0] and every[1] <= high, high < one[0] or low > one[1]
-        verdict = "true" if is_true else "false" if is_false else "open"
-        self.counts[verdict, code] += 1
+        claim = "true" if is_true else "false" if is_false else "undecided"
+        self.counts[claim, code] += 1
         if code == 0 and is_false:
-            self.fail("a false volume is accepted: it is between %g and %g" % (one[0], one[1]), text)
+            self.fail("a false volume is accepted; the true volume is between %g and %g" % (one[0], one[1]), text)
         if code == 1 and is_true:
             self.reasons[re.sub(r"-?\d[\d.e+-]*|'.*'|\".*\"", "_", reason.strip())] += 1
         if not valid_boxes:
@@ -762,7 +772,7 @@ class Campaign:
         for low, high in false_claims:
             false = with_volume(text, low, high)
             if self.check(false)[0] == 0:
-                self.fail("a false claim is accepted: it is between %g and %g" % (one[0], one[1]), false)
+                self.fail("a false claim is accepted; the true volume is between %g and %g" % (one[0], one[1]), false)
 
 
 def main():
@@ -771,8 +781,8 @@ def main():
     parser.add_argument("checker")
     parser.add_argument("--mutations", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--cells", type=int, default=400, help="of the evaluator, for each statement")
-    parser.add_argument("--keep", help="a folder for what is found")
+    parser.add_argument("--cells", type=int, default=400, help="boxes that the evaluator divides for each statement")
+    parser.add_argument("--keep", help="save the mutants that reveal faults in this folder")
     options = parser.parse_args()
     draw = random.Random(options.seed)
     with tempfile.TemporaryDirectory() as folder:
@@ -786,22 +796,22 @@ def main():
             bounds = campaign.truth.bounds(statement, options.cells, 1e-3, 10 * options.cells)
             campaign.judge(proof.text(), options.cells, 1e-3)
             if campaign.counts["false", 0] + campaign.counts["false", 1] or not campaign.counts["valid boxes"]:
-                campaign.fail("%s as it was written" % name, text)
+                campaign.fail("%s, the original proof" % name, text)
             volume = proof.lines[1].partition(" ")[2]
             found = "%.6g to %.6g" % tuple(map(float, bounds[0])) if bounds else "unknown"
             print("%-13s %5d steps  volume %s; the evaluator: %s" % (name, len(proof.steps), volume, found), flush=True)
         for number in range(options.mutations):
             campaign.judge(mutant(proofs, draw), options.cells, 1e-3)
             if number % 1000 == 999:
-                print("%d mutants, %d found" % (number + 1, campaign.failures), flush=True)
-    print("mutants         accepted  refused")
-    for verdict in ("true", "open", "false", "unknown", "no proof"):
-        print("%-14s  %8d  %7d" % (verdict, campaign.counts[verdict, 0], campaign.counts[verdict, 1]))
+                print("%d mutants, %d faults" % (number + 1, campaign.failures), flush=True)
+    print("mutants         accepted  rejected")
+    for claim in ("true", "undecided", "false", "unknown", "no proof"):
+        print("%-14s  %8d  %8d" % (claim, campaign.counts[claim, 0], campaign.counts[claim, 1]))
     print("with valid boxes: %d, each with two false claims" % campaign.counts["valid boxes"])
-    print("refused, and true, by reason:")
+    print("rejected although true, by reason:")
     for reason, count in campaign.reasons.most_common(12):
         print("%8d  %s" % (count, reason))
-    print("%d mutants, %d accepted false volumes or other findings" % (options.mutations, campaign.failures))
+    print("%d mutants, %d faults (accepted false volumes, wrong exit codes)" % (options.mutations, campaign.failures))
     return 1 if campaign.failures or not campaign.counts["valid boxes"] else 0
 
 

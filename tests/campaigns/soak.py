@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Memory of long runs.
+"""Memory use of long runs.
 
 soak.py PROGRAM [--evaluations N] [--runs R]
 
-One run of N evaluations: what is evaluated is kept, so memory grows with each by no more than its record takes. R runs
-in turns in one process (--seeds): memory is flat. Both are read from /proc while the program runs; exit code 1 if not.
+One run of N evaluations: evaluations are kept in memory, so memory may grow only by the size of their records. R
+successive runs in one process (--seeds): memory must not grow. Memory is read from /proc while the program runs. Exit
+code 1 if memory grows more.
 """
 
 import argparse
@@ -15,14 +16,14 @@ import time
 
 import campaign
 
-# A row holds 4 variables, an objective, margins, status and times: about 100 bytes. While a vector grows and while a
-# checkpoint is written and read back, several copies of it live.
-MOST_BYTES_PER_EVALUATION = 600
-MOST_GROWTH_OF_RUNS = 4 << 20  # [bytes] between the first tenth of the runs and the last
+# A row has 4 variables, an objective, margins, status and times: about 100 bytes. Several copies exist while a vector
+# is reallocated and while a checkpoint is written and read back.
+MAX_BYTES_PER_EVALUATION = 600
+MAX_GROWTH_OF_RUNS = 4 << 20  # [bytes] between the first tenth of the runs and the last
 
 
 def resident(pid):
-    """[bytes]; none once the process has ended."""
+    """Resident memory of a process [bytes]; None after it has ended."""
     try:
         with open("/proc/%d/statm" % pid, encoding="ascii") as file:
             pages = int(file.read().split()[1])
@@ -32,7 +33,7 @@ def resident(pid):
 
 
 def watch(folder, arguments, progress):
-    """Runs the program. Returns seconds and pairs of `progress()` and resident bytes."""
+    """Runs the program. Returns its time in seconds and samples (progress(), resident bytes)."""
     begin, pairs = time.monotonic(), []
     log = folder.file("output.txt")
     with open(log, "w", encoding="utf-8") as out:
@@ -60,9 +61,9 @@ def one_run(folder, evaluations):
     seconds, pairs = watch(folder, ["run", "long.toml", "--output", "long.h5", "--quiet"], lambda: 0)
     start, peak = pairs[0][1], max(bytes_ for _, bytes_ in pairs)
     each = (peak - start) / evaluations
-    print("one run: %d evaluations in %.0f s, %s at the start, %s at most: %.0f bytes for each evaluation"
+    print("one run: %d evaluations in %.0f s, %s at the start, maximum %s: %.0f bytes per evaluation"
           % (evaluations, seconds, mib(start), mib(peak), each))
-    return each <= MOST_BYTES_PER_EVALUATION
+    return each <= MAX_BYTES_PER_EVALUATION
 
 
 def many_runs(folder, runs):
@@ -74,9 +75,9 @@ def many_runs(folder, runs):
     tenth = max(runs // 10, 1)
     first = max((bytes_ for number, bytes_ in pairs if number <= tenth), default=0)
     last = max((bytes_ for number, bytes_ in pairs if number > runs - tenth), default=0)
-    print("in turns: %d runs in %.0f s, at most %s in the first tenth of them, %s in the last"
+    print("successive runs: %d in %.0f s, maximum %s in the first tenth of them, %s in the last tenth"
           % (runs, seconds, mib(first), mib(last)))
-    return first > 0 and last - first <= MOST_GROWTH_OF_RUNS
+    return first > 0 and last - first <= MAX_GROWTH_OF_RUNS
 
 
 def main():
@@ -87,9 +88,9 @@ def main():
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="pkmopt-soak-") as path:
         folder = campaign.Folder(path, arguments.program)
-        flat = [one_run(folder, arguments.evaluations), many_runs(folder, arguments.runs)]
-    print("memory is flat" if all(flat) else "memory grows")
-    return 0 if all(flat) else 1
+        passed = [one_run(folder, arguments.evaluations), many_runs(folder, arguments.runs)]
+    print("memory does not grow" if all(passed) else "memory grows")
+    return 0 if all(passed) else 1
 
 
 if __name__ == "__main__":

@@ -1,13 +1,13 @@
-// A disk that fails or is slow, for programs that are run with this library in LD_PRELOAD. It counts what is asked of
-// the disk: opening to write, write, pwrite, fsync, fdatasync, ftruncate, rename, link. Only files below DISK_FOLDER
-// count.
+// Fault injection for file access: a library for LD_PRELOAD that simulates a failing or slow disk. It intercepts the
+// operations on files below DISK_FOLDER (opening for writing, write, pwrite, fsync, fdatasync, ftruncate, rename, link)
+// and counts them. Environment variables:
 //
-//   DISK_FAILS_AT=n      the n-th of them, from 1, fails
-//   DISK_FAILS_FOR=k     and so do the k - 1 after it (default 1; 0: all)
-//   DISK_ERROR=e         with this errno (default ENOSPC)
-//   DISK_SHORT=1         a write that is to fail writes its first half instead, and the next one fails
-//   DISK_DELAY_US=t      each of them takes t microseconds longer
-//   DISK_COUNT=FILE      the number of them is written there at the end
+//   DISK_FAILS_AT=n      the n-th operation, counted from 1, fails
+//   DISK_FAILS_FOR=k     the number of operations that fail from then on (default 1; 0: all)
+//   DISK_ERROR=e         errno of the failures (default ENOSPC)
+//   DISK_SHORT=1         instead of failing, the n-th write writes its first half, and the next operation fails
+//   DISK_DELAY_US=t      delays every operation by t microseconds
+//   DISK_COUNT=FILE      writes the number of operations to FILE at exit
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -22,11 +22,11 @@
 #include <time.h>
 #include <unistd.h>
 
-static atomic_long asked;
+static atomic_long operations;
 
-static long number_of(const char* name, long otherwise) {
+static long variable(const char* name, long default_value) {
   const char* text = getenv(name);
-  return text ? strtol(text, NULL, 10) : otherwise;
+  return text ? strtol(text, NULL, 10) : default_value;
 }
 
 static int is_below(const char* path) {
@@ -34,7 +34,7 @@ static int is_below(const char* path) {
   return folder && strncmp(path, folder, strlen(folder)) == 0;
 }
 
-/// Relative paths are ours: the program is run inside the folder.
+/// Relative paths count: the program is run inside the folder.
 static int path_counts(const char* path) { return path[0] != '/' || is_below(path); }
 
 static int file_counts(int fd) {
@@ -46,19 +46,19 @@ static int file_counts(int fd) {
   return is_below(path);
 }
 
-/// What comes of the next thing asked: 0 it is done, 1 it fails, 2 only its first half is done.
+/// Outcome of the next operation: 0 success, 1 failure, 2 only the first half is written.
 static int next_outcome(void) {
-  const long delay = number_of("DISK_DELAY_US", 0);
+  const long delay = variable("DISK_DELAY_US", 0);
   if (delay > 0) {
     const struct timespec pause = {delay / 1000000, delay % 1000000 * 1000};
     nanosleep(&pause, NULL);
   }
-  const long number = atomic_fetch_add(&asked, 1) + 1, first = number_of("DISK_FAILS_AT", 0);
-  const long times = number_of("DISK_FAILS_FOR", 1), half = number_of("DISK_SHORT", 0);
+  const long number = atomic_fetch_add(&operations, 1) + 1, first = variable("DISK_FAILS_AT", 0);
+  const long times = variable("DISK_FAILS_FOR", 1), half = variable("DISK_SHORT", 0);
   if (first == 0 || number < first) return 0;
   if (half && number == first) return 2;
   if (times > 0 && number >= first + times + half) return 0;
-  errno = (int)number_of("DISK_ERROR", ENOSPC);
+  errno = (int)variable("DISK_ERROR", ENOSPC);
   return 1;
 }
 
@@ -87,20 +87,20 @@ int link(const char* from, const char* to) {
   return path_counts(to) && next_outcome() == 1 ? -1 : REAL(link)(from, to);
 }
 
-static int refuses(const char* path, int flags) {
+static int open_fails(const char* path, int flags) {
   return (flags & (O_WRONLY | O_RDWR)) != 0 && path_counts(path) && next_outcome() == 1;
 }
 
-#define OPEN(name, PLACE, GIVEN)                                            \
-  int name(PLACE const char* path, int flags, ...) {                        \
-    mode_t mode = 0;                                                        \
-    if (flags & (O_CREAT | __O_TMPFILE)) {                                  \
-      va_list more;                                                         \
-      va_start(more, flags);                                                \
-      mode = va_arg(more, mode_t);                                          \
-      va_end(more);                                                         \
-    }                                                                       \
-    return refuses(path, flags) ? -1 : REAL(name)(GIVEN path, flags, mode); \
+#define OPEN(name, PLACE, GIVEN)                                               \
+  int name(PLACE const char* path, int flags, ...) {                           \
+    mode_t mode = 0;                                                           \
+    if (flags & (O_CREAT | __O_TMPFILE)) {                                     \
+      va_list more;                                                            \
+      va_start(more, flags);                                                   \
+      mode = va_arg(more, mode_t);                                             \
+      va_end(more);                                                            \
+    }                                                                          \
+    return open_fails(path, flags) ? -1 : REAL(name)(GIVEN path, flags, mode); \
   }
 #define NOTHING
 #define FOLDER int folder,
@@ -110,7 +110,7 @@ OPEN(open64, NOTHING, NOTHING)
 OPEN(openat, FOLDER, GIVEN_FOLDER)
 OPEN(openat64, FOLDER, GIVEN_FOLDER)
 
-// What C++ streams open and write by.
+// Used by C++ streams.
 FILE* fopen(const char* path, const char* mode) {
   return (mode[0] != 'r' || strchr(mode, '+')) && path_counts(path) && next_outcome() == 1 ? NULL
                                                                                            : REAL(fopen)(path, mode);
@@ -124,11 +124,11 @@ ssize_t writev(int fd, const struct iovec* parts, int count) {
   return file_counts(fd) && next_outcome() == 1 ? -1 : REAL(writev)(fd, parts, count);
 }
 
-__attribute__((destructor)) static void tell_count(void) {
+__attribute__((destructor)) static void write_count(void) {
   const char* path = getenv("DISK_COUNT");
   if (!path) return;
   char text[32];
-  const int length = snprintf(text, sizeof text, "%ld\n", atomic_load(&asked));
+  const int length = snprintf(text, sizeof text, "%ld\n", atomic_load(&operations));
   const int fd = REAL(open)(path, O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (fd < 0) return;
   if (REAL(write)(fd, text, (size_t)length) != length) abort();

@@ -1,4 +1,4 @@
-// pose --stl and --dxf: the links of a mechanism at a pose, as CAD takes them.
+// `pkmopt pose --stl` and `--dxf`: export of a mechanism's links at one pose for CAD programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "engine/mechanisms/all.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/study_folder.hpp"
 
@@ -29,12 +29,13 @@ std::vector<PlacedLink> links() {
 }
 
 double length(const Segment<double>& axis) {
-  const auto way = difference(axis.to, axis.from);
-  return std::sqrt(dot(way, way));
+  const auto vector = difference(axis.to, axis.from);
+  return std::sqrt(dot(vector, vector));
 }
 
 class CliCad : public ::testing::Test {
  protected:
+  /// Runs `pkmopt pose` with an option that writes a file; the bytes of this file.
   std::string written(const std::string& option, const std::string& name) const {
     auto words = kPoseCommand;
     words.insert(words.end(), {option, name});
@@ -47,7 +48,7 @@ class CliCad : public ::testing::Test {
   StudyFolder folder_;
 };
 
-TEST_F(CliCad, SurfacesGoAroundTheVolumeOfTheLinks) {
+TEST_F(CliCad, StlSurfaceEnclosesTheVolumeOfTheLinks) {
   double expected = 0;
   for (const PlacedLink& link : links()) {
     const double r = link.body.radius;
@@ -59,18 +60,18 @@ TEST_F(CliCad, SurfacesGoAroundTheVolumeOfTheLinks) {
   ASSERT_EQ(bytes.size(), 84 + 50 * count);
   double volume = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    std::array<float, 12> facet;  // its normal, then its corners
+    std::array<float, 12> facet;  // its normal, then its vertices
     std::memcpy(facet.data(), &bytes[84 + 50 * k], 48);
-    const auto corner = [&facet](std::size_t i) {
+    const auto vertex = [&facet](std::size_t i) {
       return Point3<double>{facet[3 * i + 3], facet[3 * i + 4], facet[3 * i + 5]};
     };
-    volume += dot(corner(0), cross(corner(1), corner(2))) / 6;
+    volume += dot(vertex(0), cross(vertex(1), vertex(2))) / 6;
   }
-  EXPECT_LT(volume, expected);  // corners lie on the surface
+  EXPECT_LT(volume, expected);  // the vertices lie on the exact surface
   EXPECT_GT(volume, 0.97 * expected);
 }
 
-TEST_F(CliCad, ADrawingHasTheAxesOnLayersByPart) {
+TEST_F(CliCad, DxfHasTheLinkAxesOnOneLayerPerPart) {
   std::istringstream dxf(written("-o", "links.dxf"));
   std::vector<std::pair<int, std::string>> groups;
   for (std::string code, value; std::getline(dxf, code) && std::getline(dxf, value);)
@@ -93,7 +94,7 @@ TEST_F(CliCad, ADrawingHasTheAxesOnLayersByPart) {
   EXPECT_EQ(drawn, all.size());
 }
 
-TEST_F(CliCad, WhatDoesNotAssembleIsNotWritten) {
+TEST_F(CliCad, NoFileForAPoseThatDoesNotAssemble) {
   const auto result =
       pkmopt({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-3,theta=0", "--stl", "links.stl"}, folder_.path());
   EXPECT_EQ(result.exit_code, 1);

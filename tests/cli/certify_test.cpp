@@ -1,4 +1,4 @@
-// `pkmopt certify`, and the program that checks its proofs: it accepts what was written, and nothing that was changed.
+// `pkmopt certify`, and pkmopt-check-proof, which must accept its proofs and reject every modified proof.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,8 +21,7 @@ class Certify : public ::testing::Test {
   ProgramResult run(const std::vector<std::string>& arguments) const { return pkmopt(arguments, folder_.path()); }
   ProgramResult check(const std::string& file) const { return run_program({PKM_CHECKER, file}, folder_.path()); }
   std::string proof_of(const std::string& mechanism, const std::string& gap) const {
-    const auto written =
-        run({"certify", kMechanisms + mechanism + ".toml", "--gap", gap, "--proof", "a.proof", "--force"});
+    const auto written = run({"certify", mechanism, "--gap", gap, "--proof", "a.proof", "--force"});
     EXPECT_EQ(written.exit_code, 0) << written.err;
     std::ostringstream text;
     text << std::ifstream(folder_.path() + "/a.proof").rdbuf();
@@ -47,13 +46,23 @@ TEST_F(Certify, BoundsVolumes) {
   EXPECT_THAT(few.err, HasSubstr("needs more than 50 boxes"));
 }
 
-TEST_F(Certify, RefusesInOneSentence) {
-  EXPECT_THAT(run({"certify", "quadrupteron"}).err, HasSubstr("certify needs formulas"));
+TEST_F(Certify, RejectsInvalidArguments) {
+  EXPECT_THAT(run({"certify", "quadrupteron", "--limit", "clearance_min=5mm"}).err,
+              HasSubstr("mechanism quadrupteron has no certain bounds under a clearance"));
   EXPECT_THAT(run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0"}).err, HasSubstr("between 0 and 2"));
   EXPECT_THAT(run({"certify", kMechanisms + "orthoglide.toml", "--box", "x=0:1"}).err, HasSubstr("--box"));
 }
 
-TEST_F(Certify, HoldsTheExactVolumeOfAnEvaluation) {
+TEST_F(Certify, BoundsHoldTheExactVolumesOfTheBuiltInMechanisms) {
+  for (const char* mechanism : {"4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"}) {
+    const auto found = run({"evaluate", mechanism, "--certain", "5e-2", "--json"});
+    ASSERT_EQ(found.exit_code, 0) << mechanism << found.err;
+    EXPECT_EQ(found.json()["certain"]["holds_volume"], true) << mechanism;
+    EXPECT_LE(found.json()["certain"]["gap"], 5e-2) << mechanism;
+  }
+}
+
+TEST_F(Certify, EvaluateChecksItsVolumeAgainstTheBounds) {
   const auto found = run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "1e-2", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
   const auto json = found.json();
@@ -61,7 +70,6 @@ TEST_F(Certify, HoldsTheExactVolumeOfAnEvaluation) {
   EXPECT_LE(json["certain"]["gap"], 1e-2);
   EXPECT_LE(json["certain"]["lower"], json["workspace"]["volume"]);
   EXPECT_GE(json["certain"]["upper"], json["workspace"]["volume"]);
-  EXPECT_THAT(run({"evaluate", "quadrupteron", "--certain", "1e-2"}).err, HasSubstr("--certain needs formulas"));
   std::ofstream(folder_.path() + "/voxels.toml") << "[mechanism]\nfile = \"" << kMechanisms << R"(five-bar.toml"
 [variables]
 l_a = { min = "100 mm", max = "300 mm" }
@@ -72,11 +80,11 @@ type = "workspace-volume"
 [[stage]]
 optimiser = "ga"
 )";
-  EXPECT_THAT(run({"evaluate", "voxels.toml", "--certain", "1e-2"}).err, HasSubstr("whose exact volume it checks"));
+  EXPECT_THAT(run({"evaluate", "voxels.toml", "--certain", "1e-2"}).err, HasSubstr("whose volume it checks"));
   EXPECT_THAT(run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "2"}).err, HasSubstr("between 0 and 2"));
 }
 
-TEST_F(Certify, DecidesBoxesOfPoses) {
+TEST_F(Certify, CertifiesBoxesOfPoses) {
   const std::string file = kMechanisms + "orthoglide.toml";
   const auto inside = run({"certify", file, "--box", "x=-50mm:30mm,y=-50mm:30mm,z=-50mm:30mm", "--json"});
   EXPECT_EQ(inside.exit_code, 0) << inside.err;
@@ -84,10 +92,10 @@ TEST_F(Certify, DecidesBoxesOfPoses) {
   EXPECT_EQ(inside.json()["regular"]["verdict"], "yes");
   const auto across = run({"certify", file, "--box", "x=-0.1:0.12,y=-0.1:0.12,z=-0.1:0.12"});
   EXPECT_EQ(across.exit_code, 1);
-  EXPECT_THAT(across.out, HasSubstr("does not hold at x = "));
+  EXPECT_THAT(across.out, HasSubstr("is violated at x = "));
 }
 
-TEST_F(Certify, DecidesMotions) {
+TEST_F(Certify, CertifiesMotions) {
   const std::string file = kMechanisms + "orthoglide.toml";
   const auto points = [](const std::string& end) {
     return "type = \"points\"\ntime = 0.5\npoints = [{ x = 0, y = 0, z = 0 }, { x = \"30 mm\", z = " + end + " }]\n";
@@ -108,7 +116,7 @@ TEST_F(Certify, DecidesMotions) {
   EXPECT_EQ(leaves.json()["feasible"]["verdict"], "no");
   EXPECT_EQ(leaves.json()["regular"]["verdict"], "not examined");
   const double t = leaves.json()["feasible"]["time"];
-  // samples say the same, as far as they can
+  // samples agree: all before the infeasible instant are feasible, those just after it are not
   const auto sampled = run({"trajectory", file, "--motion", "leaves.toml", "--samples", "1001", "--json"}).json();
   for (const auto& sample : sampled["samples"]) {
     const double at = sample["time"];
@@ -116,10 +124,10 @@ TEST_F(Certify, DecidesMotions) {
     EXPECT_TRUE(feasible || at >= t - 1e-5) << at;
     EXPECT_TRUE(!feasible || at < t || at > t + 6e-4) << at;
   }
-  EXPECT_THAT(run({"certify", file, "--motion", "leaves.toml"}).out, HasSubstr("does not hold at t = "));
+  EXPECT_THAT(run({"certify", file, "--motion", "leaves.toml"}).out, HasSubstr("is violated at t = "));
 }
 
-TEST_F(Certify, ReportsSingularitiesAlways) {
+TEST_F(Certify, ReportsSingularPoses) {
   const std::string cables = PKM_TEST_DATA "/redundant/four-cables.toml";
   const auto box = run({"certify", cables, "--box", "x=-0.1:0.1,y=-0.1:0.1"});
   EXPECT_EQ(box.exit_code, 1);
@@ -138,21 +146,22 @@ TEST_F(Certify, ReportsSingularitiesAlways) {
   EXPECT_THAT(leaves.out, HasSubstr("regular    not examined, because not every pose is feasible\n"));
 }
 
-TEST_F(Certify, RefusesMotionsInOneSentence) {
+TEST_F(Certify, RejectsInvalidMotions) {
   const std::string file = kMechanisms + "orthoglide.toml";
   folder_.write("m.toml", "type = \"formulas\"\nduration = 1\nx = \"0.01*t\"\ny = 0\nz = 0\n");
   EXPECT_EQ(run({"certify", file, "--motion", "m.toml"}).exit_code, 0);
   EXPECT_THAT(run({"certify", file, "--motion", "missing.toml"}).err, HasSubstr("missing.toml"));
   EXPECT_THAT(run({"certify", file, "--motion", "m.toml", "--box", "x=0:0.1,y=0:0.1,z=0:0.1"}).err,
-              HasSubstr("--motion: found --box beside it; expected one of them"));
-  EXPECT_THAT(run({"certify", file, "--motion", "m.toml", "--proof", "p"}).err, HasSubstr("proofs are of volumes"));
-  EXPECT_THAT(run({"certify", "quadrupteron", "--motion", "m.toml"}).err, HasSubstr("certify needs formulas"));
+              HasSubstr("--motion: cannot be combined with --box"));
+  EXPECT_THAT(run({"certify", file, "--motion", "m.toml", "--proof", "p"}).err,
+              HasSubstr("proofs are written for volumes only"));
+  EXPECT_THAT(run({"certify", "quadrupteron", "--motion", "m.toml"}).err, HasSubstr("m.toml:1: phi: found nothing"));
   folder_.write("four.toml", "type = \"formulas\"\nduration = 1\nx = 0\ny = 0\nz = 0\nphi = 0\n");
   EXPECT_THAT(run({"certify", file, "--motion", "four.toml"}).err, HasSubstr("phi"));
 }
 
-/// The study of a five-bar whose volumes have to be within certain bounds.
-class CertainVolumes : public Certify {
+/// A study of a five-bar whose volumes are checked against certified bounds.
+class CertifiedVolumes : public Certify {
  protected:
   void SetUp() override {
     folder_.write("s.toml", "[mechanism]\nfile = \"" + kMechanisms +
@@ -163,7 +172,7 @@ class CertainVolumes : public Certify {
   }
 };
 
-TEST_F(CertainVolumes, AreToldByRunShowAndExport) {
+TEST_F(CertifiedVolumes, ArePrintedByRunShowAndExport) {
   const auto ran = run({"run", "s.toml", "--threads", "1"});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("volume, at least"));
@@ -187,7 +196,7 @@ TEST_F(CertainVolumes, AreToldByRunShowAndExport) {
   EXPECT_EQ(one, two);
 }
 
-TEST_F(CertainVolumes, AreCheckedByEvaluate) {
+TEST_F(CertifiedVolumes, AreCheckedByEvaluate) {
   const auto found = run({"evaluate", "s.toml", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
   EXPECT_EQ(found.json()["certain"]["holds_volume"], true);
@@ -198,95 +207,98 @@ TEST_F(CertainVolumes, AreCheckedByEvaluate) {
 }
 
 TEST_F(Certify, ProofsAreAccepted) {
-  for (const std::string mechanism : {"orthoglide", "4ppa-2par", "five-bar", "rotary-delta", "gough"}) {
-    proof_of(mechanism, mechanism == "rotary-delta" ? "0.8" : "0.3");
+  std::vector<std::string> mechanisms = {"4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"};
+  for (const char* name : {"orthoglide", "five-bar", "rotary-delta", "gough"})
+    mechanisms.push_back(kMechanisms + name + ".toml");
+  for (const std::string& mechanism : mechanisms) {
+    proof_of(mechanism, mechanism.ends_with("rotary-delta.toml") ? "0.8" : "0.3");
     const auto checked = check("a.proof");
     EXPECT_EQ(checked.exit_code, 0) << mechanism << ' ' << checked.err;
     EXPECT_THAT(checked.out, StartsWith("accepted: "));
   }
 }
 
-/// Replaces the first occurrence behind another text.
-std::string with(std::string text, const std::string& behind, const std::string& from, const std::string& to) {
-  const auto at = text.find(from, text.find(behind));
+/// Replaces the first occurrence of `from` after the text `after`.
+std::string with(std::string text, const std::string& after, const std::string& from, const std::string& to) {
+  const auto at = text.find(from, text.find(after));
   EXPECT_NE(at, std::string::npos) << from;
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 TEST_F(Certify, TamperedProofsAreRefused) {
-  const std::string proof = proof_of("orthoglide", "0.15");
+  const std::string proof = proof_of(kMechanisms + "orthoglide.toml", "0.15");
   EXPECT_EQ(check("a.proof").exit_code, 0) << "untouched";
   const std::string lower = proof.substr(proof.find("volume ") + 7, 5);
   const std::size_t boxes = proof.find("boxes\n") + 6, last = proof.find("end\n");
-  // the first box that has a step of each kind
-  const auto digit_behind = [&](char step) {
+  // a copy of the proof, and the position of the first step of a kind among the boxes
+  const auto find_step = [&](char step) {
     std::string changed = proof;
     const std::size_t at = changed.find(step, boxes);
     EXPECT_LT(at, last) << step;
     return std::pair(changed, at);
   };
   const auto step_changed = [&](char step, char to) {
-    auto [changed, at] = digit_behind(step);
+    auto [changed, at] = find_step(step);
     changed[at] = to;
     return changed;
   };
-  /// The root's range from its lower end, or from none.
+  /// The enclosure of a root, shrunk to its lower end.
   const auto narrowed_root = [&] {
-    auto [changed, at] = digit_behind('t');
+    auto [changed, at] = find_step('t');
     const auto first = changed.find(' ', at) + 1, second = changed.find(' ', first) + 1,
                third = changed.find(' ', second);
     return changed.replace(second, third - second, changed.substr(first, second - first - 1));
   };
   const std::vector<std::pair<std::string, std::string>> tampered = {
-      {"a greater least volume", with(proof, "volume", lower, "0.0179")},
-      {"a smaller greatest volume",
+      {"a larger lower bound", with(proof, "volume", lower, "0.0179")},
+      {"a smaller upper bound",
        [&] {
          const auto first = proof.find(' ', proof.find("volume") + 7) + 1;
          return std::string(proof).replace(first, proof.find('\n', first) - first, "0.0168");
        }()},
       {"another parameter", with(proof, "given", "0.31 0.31 L", "0.3 0.3 L")},
-      {"a parameter that is uncertain", with(proof, "given", "0.31 0.31 L", "0.3 0.32 L")},
+      {"an interval for a parameter", with(proof, "given", "0.31 0.31 L", "0.3 0.32 L")},
       {"another limit", with(proof, "given", "0.126 0.126", "0.16 0.16")},
       {"another formula", with(proof, "let n3", "n1 + n2", "n1 - n2")},
-      {"a formula of nothing", with(proof, "let n3", "n1 + n2", "n1 + n99")},
-      {"a formula that is none", with(proof, "let n3", "n1 + n2", "n1 n2")},
-      {"a name twice", with(proof, "let n2", "n2", "n1")},
+      {"a formula of an undefined name", with(proof, "let n3", "n1 + n2", "n1 + n99")},
+      {"a syntax error in a formula", with(proof, "let n3", "n1 + n2", "n1 n2")},
+      {"a name defined twice", with(proof, "let n2", "n2", "n1")},
       {"a wider axis", with(proof, "axis", "-0.31", "-0.5")},
-      {"an axis turned round", with(proof, "axis", "-0.31 0.31", "0.31 -0.31")},
-      {"one axis less", with(proof, "axis z", "axis z -0.31 0.31\n", "")},
-      {"another condition", with(proof, "condition", "condition n7 ", "condition n1 ")},
-      {"a condition less",
+      {"a reversed axis", with(proof, "axis", "-0.31 0.31", "0.31 -0.31")},
+      {"a missing axis", with(proof, "axis z", "axis z -0.31 0.31\n", "")},
+      {"another constraint", with(proof, "condition", "condition n7 ", "condition n1 ")},
+      {"a missing constraint",
        [&] {
          const auto at = proof.rfind("condition ");
          return std::string(proof).erase(at, proof.find('\n', at) + 1 - at);
        }()},
       {"inside instead of outside", step_changed('x', 'h')},
       {"outside instead of inside", step_changed('h', 'x')},
-      {"a root without a place", narrowed_root()},
-      {"a root that is none", step_changed('s', 'r')},
-      {"a step that is none", step_changed('n', 'q')},
-      {"a box less",
+      {"a root without an enclosure", narrowed_root()},
+      {"a split declared to be a root", step_changed('s', 'r')},
+      {"an unknown step", step_changed('n', 'q')},
+      {"a missing box",
        [&] {
          const auto at = proof.find(".\n", boxes), from = proof.rfind('\n', at) + 1;
          return std::string(proof).erase(from, at + 2 - from);
        }()},
-      {"a box twice",
+      {"a repeated box",
        [&] {
          const auto at = proof.find(".\n", boxes), from = proof.rfind('\n', at) + 1;
          return std::string(proof).insert(from, proof.substr(from, at + 2 - from));
        }()},
-      {"a box that is not halved",
+      {"a bisected box declared to be final",
        [&] {
          const auto at = proof.find("/0\n", boxes);
          return std::string(proof).replace(at, 2, ".");
        }()},
-      {"halved along what is no outer axis", with(proof, "boxes", "/0\n", "/2\n")},
-      {"halved along the other axis", with(proof, "boxes", "/0\n", "/1\n")},
-      {"cut off", proof.substr(0, (boxes + last) / 2)},
+      {"bisected along a coordinate that is not an outer axis", with(proof, "boxes", "/0\n", "/2\n")},
+      {"bisected along the other axis", with(proof, "boxes", "/0\n", "/1\n")},
+      {"truncated", proof.substr(0, (boxes + last) / 2)},
       {"without an end", proof.substr(0, last)},
-      {"more than its end", proof + "\n"},
+      {"text after the end", proof + "\n"},
       {"another version", with(proof, "pkmopt", "proof 1", "proof 2")},
-      {"nothing", ""},
+      {"an empty file", ""},
   };
   EXPECT_GE(tampered.size(), 20U);
   for (const auto& [what, text] : tampered) {
@@ -298,32 +310,32 @@ TEST_F(Certify, TamperedProofsAreRefused) {
   }
 }
 
-/// Proofs of false volumes that pass where a rule of the checker is wrong.
+/// Proofs of wrong volumes, each of which would pass if a certain rule of the checker were missing.
 TEST_F(Certify, FalseProofsAreRefused) {
   struct Case {
     std::string what, volume, head, boxes, reason;
   };
   const Case cases[] = {
-      {"a range whose length overflows: heights would be no numbers, which fail everywhere; its volume is 2", "0 1",
-       "axis x -1e308 1e308\nlet n1 = (1 - (x * x))\ncondition n1\n", "x0 .\n", "line 3: the range is too long"},
-      {"a slope that nowhere exists, of sqrt(0), beside that of z: it may be 0; its volume is 0", "0.7 0.8",
+      {"a range whose length overflows: heights would be NaN, which is infeasible everywhere; the true volume is 2",
+       "0 1", "axis x -1e308 1e308\nlet n1 = (1 - (x * x))\ncondition n1\n", "x0 .\n", "line 3: the range is too long"},
+      {"a derivative of sqrt(0), which does not exist, next to that of z; the true volume is 0", "0.7 0.8",
        "axis z -1 1\nlet u = min((z * z), 0)\nlet n1 = ((min(sqrt(u), z) * 2) - 0.5)\ncondition n1\n",
-       "t0 671088639 671088641 536870912 n.\n", "does not rise or fall"},
-      {"a number that overflowed: undefined in double precision, 1e400 in truth; its volume is 1", "0 0",
+       "t0 671088639 671088641 536870912 n.\n", "is not proven to be monotonic"},
+      {"a number that overflows in double precision, although it is 1e400; the true volume is 1", "0 0",
        "axis x 0 1\nlet n1 = ((1e200 * 1e200) + x)\ncondition n1\n", "x0 .\n", "no finite value"},
-      {"a third end of a range", "0 2", "axis x 0 1 2\nlet n1 = x\ncondition n1\n", "h0 .\n",
-       "line 3: the line end is expected, not '2'"},
-      {"a third bound of the volume", "0 2 0.5", "axis x 0 1\ncondition x\n", "h0 .\n", "line 2: the line end"},
-      {"an infinite volume", "0 inf", "axis x 0 1\ncondition x\n", "h0 .\n", "'inf' is no number"},
+      {"a third bound of a range", "0 2", "axis x 0 1 2\nlet n1 = x\ncondition n1\n", "h0 .\n",
+       "line 3: found '2'; expected the end of the line"},
+      {"a third bound of the volume", "0 2 0.5", "axis x 0 1\ncondition x\n", "h0 .\n", "line 2: found '0.5';"},
+      {"an infinite volume", "0 inf", "axis x 0 1\ncondition x\n", "h0 .\n", "'inf' is not a finite number"},
       {"a count that overflows", "0 2", "axis x 0 1\ncondition x\n", "h18446744073709551616 .\n",
-       "a whole number is expected"},
-      {"no end of halving", "0 2", "axis x 0 1\naxis y 0 1\ncondition y\n",
+       "an integer is expected"},
+      {"endless bisection", "0 2", "axis x 0 1\naxis y 0 1\ncondition y\n",
        [] {
          std::string boxes;
          for (int i = 0; i < 300; ++i) boxes += "n/0\n";
          return boxes;
        }(),
-       "the boxes are halved too often"},
+       "the boxes are bisected too often"},
   };
   for (const Case& one : cases) {
     folder_.write("false.proof",
@@ -334,7 +346,7 @@ TEST_F(Certify, FalseProofsAreRefused) {
   }
 }
 
-TEST_F(Certify, RefusesARangeWhoseLengthOverflows) {
+TEST_F(Certify, RejectsARangeWhoseLengthOverflows) {
   folder_.write("disc.toml", R"([mechanism]
 name = "disc"
 [parameters]
@@ -359,8 +371,8 @@ unit = "m^2"
   EXPECT_THAT(written.err, HasSubstr("no certain bounds over a range of x that is longer than the largest double"));
 }
 
-/// What could not be checked is not refused.
-TEST_F(Certify, TheCheckerSaysWhenItCouldNotCheck) {
+/// A proof that cannot be checked gives exit code 2, not that of a rejected proof.
+TEST_F(Certify, CheckerReportsWhenItCannotCheck) {
   folder_.write("a.proof", "pkmopt proof 1\nvolume 0 2\naxis x 0 1\ncondition x\nboxes\nh0 .\nend\n");
   EXPECT_EQ(check("a.proof").exit_code, 0);
   const auto shell = [&](const std::string& line) { return run_program({"/bin/sh", "-c", line}, folder_.path()); };
@@ -379,7 +391,7 @@ TEST_F(Certify, TheCheckerSaysWhenItCouldNotCheck) {
     EXPECT_EQ(found.exit_code, 2) << line << found.out;
     EXPECT_THAT(found.err, StartsWith(words)) << line;
   }
-#ifndef PKM_CHECK_CONTRACTS  // sanitizers need more memory than that
+#ifndef PKM_CHECK_CONTRACTS  // sanitizers need more memory
   const auto starved = shell("ulimit -v 60000; " + checker + "/dev/zero");
   EXPECT_EQ(starved.exit_code, 2);
   EXPECT_THAT(starved.err, StartsWith("not checked: out of memory"));

@@ -1,4 +1,4 @@
-// What a command line changes in a study: fixed parameters, limits, cells. It is part of what is stored.
+// Changes of a study on the command line (--set, --limit, --cells), which are stored in the study file with the study.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -36,7 +36,7 @@ points = 4
   }
 };
 
-TEST_F(ChangedStudy, IsRunAndStoredAsItIsChanged) {
+TEST_F(ChangedStudy, ChangesApplyToTheRunAndAreStored) {
   ASSERT_EQ(run({"run", "study.toml", "-o", "plain.h5", "--quiet"}), 0) << output_;
   ASSERT_EQ(run({"run", "study.toml", "-o", "new.h5", "--set", "L0=2 m", "--limit", "beta_max=70deg", "--cells", "6"}),
             0)
@@ -50,29 +50,29 @@ TEST_F(ChangedStudy, IsRunAndStoredAsItIsChanged) {
   ASSERT_TRUE(changed.final && changed.final->best);
   EXPECT_EQ(changed.final->best->cells, 6 * 6 * 6);
 
-  // The text that is stored is a study that does the same by itself.
+  // The stored text is itself a study with the same result.
   std::ofstream(path("stored.toml")) << changed.toml;
   ASSERT_EQ(run({"run", "stored.toml", "-o", "stored.h5", "--quiet"}), 0) << output_;
   EXPECT_EQ(read("stored.h5").final->best->objectives, changed.final->best->objectives);
   ASSERT_EQ(run({"check", "stored.toml", "--cells", "x=5,z=6,theta=7", "--json"}), 0) << output_;
-  EXPECT_THAT(output_, HasSubstr("\"x\": 5"));  // what is said last prevails
+  EXPECT_THAT(output_, HasSubstr("\"x\": 5"));  // the last change takes precedence
   EXPECT_THAT(output_, HasSubstr("\"beta_max\": 1.22173"));
   ASSERT_EQ(run({"show", "new.h5"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("changed by --set L0=2 m"));
 }
 
-TEST_F(ChangedStudy, GoesOnOnlyAsItWasChanged) {
+TEST_F(ChangedStudy, ResumesOnlyWithTheSameChanges) {
   ASSERT_EQ(run({"run", "study.toml", "-o", "s.h5", "--set", "L0=2", "--quiet"}), 0) << output_;
   EXPECT_EQ(run({"run", "study.toml", "-o", "s.h5", "--set", "L0=2", "--quiet", "--resume"}), 0) << output_;
-  const std::string way_out = "; go on with it by 'pkmopt resume s.h5', or overwrite it with --force\n";
+  const std::string advice = "; continue it with 'pkmopt resume s.h5', or overwrite it with --force\n";
   EXPECT_EQ(run({"run", "study.toml", "-o", "s.h5", "--set", "L0=3", "--quiet", "--resume"}), 1);
-  EXPECT_THAT(output_, HasSubstr("s.h5 holds the study with --set L0=2, not with --set L0=3" + way_out));
+  EXPECT_THAT(output_, HasSubstr("s.h5 holds the study with --set L0=2, not with --set L0=3" + advice));
   EXPECT_EQ(run({"run", "study.toml", "-o", "s.h5", "--quiet", "--resume"}), 1);
-  EXPECT_THAT(output_, HasSubstr("s.h5 holds the study with --set L0=2, not with no changes" + way_out));
+  EXPECT_THAT(output_, HasSubstr("s.h5 holds the study with --set L0=2, not with no changes" + advice));
   EXPECT_EQ(run({"resume", "s.h5", "--quiet"}), 0) << output_;
 }
 
-TEST_F(ChangedStudy, WhatCannotBeChangedIsRefused) {
+TEST_F(ChangedStudy, RejectsInvalidChanges) {
   const struct {
     std::vector<std::string> arguments;
     std::string sentence;
@@ -100,10 +100,10 @@ TEST_F(ChangedStudy, WhatCannotBeChangedIsRefused) {
   EXPECT_EQ(run({"check", "columns.toml", "--cells", "40"}), 2);
   EXPECT_THAT(output_, HasSubstr("--cells: found 40 for a study by exact columns, which has no cells"));
   EXPECT_EQ(run({"check", kFiles + "/par4.toml", "--cells", "40"}), 2);
-  EXPECT_THAT(output_, HasSubstr("found --cells 40 for a mechanism; expected a study, which they change"));
+  EXPECT_THAT(output_, HasSubstr("--cells 40: changes a study, and this is a mechanism file"));
 }
 
-TEST_F(ChangedStudy, CommandsThatSurveyTakeOneNumberOfCells) {
+TEST_F(ChangedStudy, OneNumberOfCellsAppliesToAllAxes) {
   const std::string delta = kFiles + "/rotary-delta.toml";
   const auto json = [this] { return nlohmann::json::parse(output_); };
   for (const std::string& target : {delta, std::string("study.toml"), std::string("4ppa-2par")}) {
@@ -114,7 +114,7 @@ TEST_F(ChangedStudy, CommandsThatSurveyTakeOneNumberOfCells) {
   }
   ASSERT_EQ(run({"coupling", "3crr-r-cru", "--cells", "5", "--json"}), 0) << output_;
   EXPECT_EQ(json()["cells"]["x"], 5);
-  // limits, too, of a study as of a bare mechanism
+  // --limit also works for mechanism files without a study
   const auto cells = [&](const std::string& limit) {
     EXPECT_EQ(run({"workspace", delta, "--cells", "12", "--limit", limit, "--json"}), 0) << output_;
     return json()["feasible_cells"].get<int>();

@@ -1,4 +1,4 @@
-// A child process that a test can start, kill at any instant and wait for.
+// A child process for tests: start it, send signals, wait for its end, read its output.
 #pragma once
 
 #include <fcntl.h>
@@ -19,8 +19,8 @@ namespace pkm::testing {
 class ChildProcess {
  public:
   struct Settings {
-    rlim_t file_size = RLIM_INFINITY;  ///< RLIMIT_FSIZE: a full disk in small
-    bool ignores_hangup = false;       ///< as by nohup
+    rlim_t file_size = RLIM_INFINITY;  ///< RLIMIT_FSIZE [bytes]; simulates a full disk
+    bool ignores_hangup = false;       ///< ignores SIGHUP, as under nohup
   };
 
   /// Starts `arguments` in `folder`; stdout and stderr go to `folder`/output.txt.
@@ -31,14 +31,15 @@ class ChildProcess {
     argv.push_back(nullptr);
     pid_ = fork();
     if (pid_ != 0) return;
-    // Between fork and exec: system calls only.
+    // Between fork and exec only async-signal-safe system calls are allowed.
     if (chdir(folder.c_str()) != 0) _exit(126);
     const int file = open("output.txt", O_WRONLY | O_CREAT | O_TRUNC, 0644);
     dup2(file, 1);
     dup2(file, 2);
     const rlimit limit{settings.file_size, settings.file_size};
     setrlimit(RLIMIT_FSIZE, &limit);
-    for (const int number : {SIGINT, SIGTERM}) ::signal(number, SIG_DFL);  // a script's background process ignores some
+    for (const int number : {SIGINT, SIGTERM})
+      ::signal(number, SIG_DFL);  // background processes of scripts inherit ignored signals
     ::signal(SIGHUP, settings.ignores_hangup ? SIG_IGN : SIG_DFL);
     execv(argv[0], argv.data());
     _exit(127);
@@ -57,7 +58,8 @@ class ChildProcess {
 
   void signal(int number) const { kill(pid_, number); }
 
-  /// Exit code, or 128 + the signal that ended it. Kills it after 120 s.
+  /// Waits for the end of the process.
+  /// @return its exit code; 128 + the number of the signal that ended it; -1 if it was killed after 120 s
   int wait() {
     int status = 0;
     for (int i = 0; i < 120'000; ++i) {

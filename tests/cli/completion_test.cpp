@@ -1,4 +1,4 @@
-// What shells complete and what man shows is what the program declares.
+// Shell completion scripts and manual pages contain all declared commands and options.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// What bash offers for the last of some words, in a folder.
+/// The completions that bash offers for the last of the words, in a folder.
 std::vector<std::string> offered(const std::vector<std::string>& words, const std::string& folder) {
   std::string list;
   for (const std::string& word : words) list += " '" + word + "'";
@@ -40,7 +40,7 @@ std::vector<std::string> offered(const std::vector<std::string>& words, const st
   return lines_of(result.out);
 }
 
-TEST(Completion, OffersCommandsOptionsNamesAndFiles) {
+TEST(Completion, BashOffersCommandsOptionsNamesAndFiles) {
   const testing::StudyFolder folder;
   for (const char* const name : {"a.toml", "b.h5", "c.txt"}) folder.write(name, "\n");
   const std::string& here = folder.path();
@@ -56,7 +56,7 @@ TEST(Completion, OffersCommandsOptionsNamesAndFiles) {
   EXPECT_THAT(offered({"pkmopt", "new", ""}, here), UnorderedElementsAre("mechanism", "study"));
 }
 
-TEST(Completion, OfOtherShellsNamesEveryOption) {
+TEST(Completion, ZshAndFishScriptsHaveEveryOption) {
   for (const std::string shell : {"zsh", "fish"}) {
     const auto result = run_program({PKM_PROGRAM, "completion", shell});
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -70,7 +70,7 @@ TEST(Completion, OfOtherShellsNamesEveryOption) {
   }
 }
 
-TEST(Completion, OfAnUnknownShellNamesTheNearest) {
+TEST(Completion, UnknownShellIsRejectedWithTheClosestName) {
   const auto result = run_program({PKM_PROGRAM, "completion", "bsh"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err,

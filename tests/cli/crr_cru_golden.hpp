@@ -1,4 +1,4 @@
-// The golden data of (3CRR/R)&CRU and the Quadrupteron as the command line takes it.
+// Golden data of (3CRR/R)&CRU and the Quadrupteron, converted to command line arguments.
 #pragma once
 
 #include <fstream>
@@ -15,14 +15,14 @@ inline const nlohmann::json& crr_cru_golden() {
   return data;
 }
 
-/// "x=0.2,y=0.17" of names and values.
+/// Names and values as "x=0.2,y=0.17".
 inline std::string assignments(const std::vector<std::string>& names, const nlohmann::json& values) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ",") + names[i] + "=" + values[i].dump();
   return text;
 }
 
-/// "-,-,+,-" of elbow signs.
+/// Elbow signs as "-,-,+,-".
 inline std::string mode_text(const nlohmann::json& sigma) {
   std::string mode;
   for (const int sign : sigma) mode += std::string(mode.empty() ? "" : ",") + (sign > 0 ? "+" : "-");

@@ -1,4 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron through the command line.
+// Kinematics and studies of (3CRR/R)&CRU and the Quadrupteron on the command line.
 #include <cmath>
 #include <fstream>
 
@@ -14,8 +14,9 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
-/// "l_11=...,..." of a golden case.
+/// The design of a golden case as "l_11=...,...".
 std::string crr_cru_design(const json& entry) {
   const json& p = entry.contains("params") ? entry["params"] : crr_cru_golden()["nominal"];
   std::string text = assignments({"r", "h", "l", "L", "rho_min", "rho_max"},
@@ -43,9 +44,9 @@ TEST(CliCrrCru, PoseAndForwardOfGoldenCases) {
       EXPECT_NEAR(pose["angles"]["theta_" + n + "2"], entry["theta2"][k].get<double>(), 1e-12);
       for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(pose["J"][k][j], entry["J"][k][j].get<double>(), 1e-12);
     }
-    EXPECT_NEAR(pose["indices"]["det_J"], entry["det_J"].get<double>(), 1e-12);
+    EXPECT_NEAR(pose["angles"]["det_J"], entry["det_J"].get<double>(), 1e-12);
     EXPECT_NEAR(pose["indices"]["kappa_p"], entry["parallel_index"].get<double>(), 1e-12);
-    EXPECT_TRUE(pose["Jq"].is_null());
+    EXPECT_EQ(pose["Jq"], json::parse("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"));
 
     const json found = pkmopt({"forward", entry["mechanism"], "--joints",
                                assignments({"rho1", "rho2", "rho3", "rho4"}, entry["q"]), "--set", set, "--json"})
@@ -57,31 +58,40 @@ TEST(CliCrrCru, PoseAndForwardOfGoldenCases) {
   }
 }
 
-TEST(CliCrrCru, PrintsWhatExists) {
+TEST(CliCrrCru, PrintsOnlyValuesThatExist) {
   const auto text = pkmopt({"pose", "quadrupteron", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3"});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_THAT(text.out, HasSubstr("  mode       -,-,+,-\n"));
-  EXPECT_THAT(text.out, HasSubstr("\nJ, where qdot = J V\n"));
+  EXPECT_THAT(text.out, HasSubstr("\nJ = Jq^-1 G, where qdot = J V\n"));
   EXPECT_THAT(text.out, HasSubstr("  kappa_p"));
-  EXPECT_THAT(text.out, ::testing::Not(HasSubstr("Jq")));
+  EXPECT_THAT(text.out, Not(HasSubstr("inputs, and quantities of the motion")));
 
   const auto far = pkmopt({"pose", "quadrupteron", "--at", "x=0.2,y=0.17,z=1.22,phi=0.3", "--json"});
   EXPECT_EQ(far.exit_code, 1);
   EXPECT_EQ(far.json()["assembles"], false);
-  for (const char* key : {"joints", "J", "conditioning"}) EXPECT_TRUE(far.json()[key].is_null()) << key;
-  EXPECT_LT(far.json()["margins"]["reach_1"], 0);
+  for (const char* key : {"J", "Jq", "G", "H", "T", "det_Jq", "joint_speeds", "conditioning"})
+    EXPECT_TRUE(far.json()[key].is_null()) << key;
+  EXPECT_LT(far.json()["margins"]["limb1 reaches"], 0);
+  EXPECT_TRUE(far.json()["margins"]["s_min"].is_null());
+  EXPECT_GT(far.json()["margins"]["c_min"], 0) << "of the yaw alone";
 
   const json info = pkmopt({"list", "mechanisms", "3crr-r-cru", "--json"}).json();
   EXPECT_EQ(info["modes"].size(), 16u);
   EXPECT_EQ(info["default_mode"], "-,-,+,-");
   EXPECT_EQ(info["held"], json::array({"phi"}));
-  for (const json& sweep : info["other_sweeps"]) EXPECT_TRUE(sweep["held"].is_array());
-  EXPECT_EQ(info["other_sweeps"].size(), 3u);
-  EXPECT_EQ(info["other_sweeps"][2]["columns_along"], "y");
+  EXPECT_EQ(info["columns_along"], "z");
+  const json& others = info["other_sweeps"];
+  EXPECT_EQ(others.size(), 13u) << "every set of coordinates but the default one and all four";
+  for (const json& sweep : others) {
+    EXPECT_EQ(sweep["held"].size() + sweep["swept"].size(), 4u);
+    EXPECT_THAT(sweep["swept"], ::testing::Contains(sweep["columns_along"]));
+  }
+  EXPECT_EQ(others[2]["held"], json::array({"x"}));
+  EXPECT_EQ(others[2]["columns_along"], "z");
   EXPECT_THAT(pkmopt({"list", "mechanisms", "3crr-r-cru"}).out, HasSubstr("other_sweeps"));
 }
 
-TEST(CliCrrCru, AStudyHoldsTheCoordinateThatItNames) {
+TEST(CliCrrCru, StudyFixesTheCoordinateThatItNames) {
   const StudyFolder folder;
   const auto study = [&](const std::string& workspace) {
     return folder.write("s.toml",

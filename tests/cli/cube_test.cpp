@@ -1,4 +1,4 @@
-// workspace --cube: the largest cube of cells, beside a search through all of them.
+// `pkmopt workspace --cube`, compared with an exhaustive search for the largest cube of cells.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class CliCube : public ::testing::Test {
     return result.json();
   }
 
-  /// Cells with feasible = 1 and at least this conditioning, the last axis running fastest.
+  /// By cell: whether it is feasible and has at least this conditioning; the last axis varies fastest.
   std::vector<bool> good_cells(double conditioning) const {
     std::ifstream in(folder_.path() + "/cells.csv");
     std::vector<bool> good;
@@ -48,7 +48,7 @@ class CliCube : public ::testing::Test {
   StudyFolder folder_;
 };
 
-/// The most cells along an edge of a cube within those of a grid of equal cells.
+/// Edge length [cells] of the largest cube of good cells in a cubic grid, by exhaustive search.
 int longest_edge(const std::vector<bool>& good) {
   const auto fits = [&good](int i, int j, int k, int edge) {
     for (int a = i; a < i + edge; ++a)
@@ -65,7 +65,7 @@ int longest_edge(const std::vector<bool>& good) {
   return 0;
 }
 
-TEST_F(CliCube, IsTheLargestThatTheCellsHold) {
+TEST_F(CliCube, EqualsAnExhaustiveSearch) {
   std::vector<double> sides;
   for (const double least : {0.0, 0.6}) {
     const json found =
@@ -83,27 +83,26 @@ TEST_F(CliCube, IsTheLargestThatTheCellsHold) {
   EXPECT_LT(sides[1], sides[0]);
 }
 
-TEST_F(CliCube, OfASliceItIsASquareWithCellsOfAnyShape) {
+TEST_F(CliCube, IsASquareInASliceWithNonSquareCells) {
   const json found = workspace(
       {"4ppa-2par", "--cut", "theta=0", "--box", "x=0.35:0.45,z=-0.9:-0.75", "--cells", "x=7,z=20,theta=1", "--cube"});
   EXPECT_NEAR(found["cube"]["side"], 0.1, 1e-12);  // all cells are feasible
   EXPECT_NEAR(found["cube"]["box"]["x"][0], 0.35, 1e-12);
-  EXPECT_GT(found["cube"]["box"]["z"][0], -0.9);  // in the midst of those that fit
+  EXPECT_GT(found["cube"]["box"]["z"][0], -0.9);  // the central one of several squares
 }
 
-TEST_F(CliCube, WhatHasNoneOrCannotHaveOne) {
+TEST_F(CliCube, IsNullWithoutGoodCellsAndRejectedForAngles) {
   EXPECT_EQ(workspace({kRobot, "--cube", "--least", "conditioning=1", "--cells", "8"})["cube"], nullptr);
-  const auto refusal = [](std::vector<std::string> words) {
+  const auto error_of = [](std::vector<std::string> words) {
     words.insert(words.begin(), "workspace");
     const auto result = pkmopt(words);
     EXPECT_EQ(result.exit_code, 2);
     return result.err;
   };
-  EXPECT_EQ(
-      refusal({"4ppa-2par", "--cube"}),
-      "pkmopt: --cube: found a workspace over x, z, theta; expected one over two or three lengths; --cut leaves an "
-      "angle at a value\n");
-  EXPECT_THAT(refusal({kRobot, "--cube", "--least", "conditionin=1"}),
+  EXPECT_EQ(error_of({"4ppa-2par", "--cube"}),
+            "pkmopt: --cube: found a workspace over x, z, theta; expected two or three lengths; --cut fixes an "
+            "angle\n");
+  EXPECT_THAT(error_of({kRobot, "--cube", "--least", "conditionin=1"}),
               ::testing::HasSubstr("--least: found the unknown name 'conditionin'"));
 }
 

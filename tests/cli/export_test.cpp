@@ -1,4 +1,4 @@
-// export and workspace: tables, images and surfaces of workspaces through the built program, read back by others.
+// `pkmopt export` and `workspace`: CSV tables, VTK images and STL surfaces, read back and compared.
 #include <gmock/gmock.h>
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/mechanisms/all.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "tests/cli/study_program.hpp"
 
 namespace pkm::testing {
@@ -28,7 +28,7 @@ class ExportProgram : public StudyProgram {
   void spill(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary) << bytes;
   }
-  /// A small study of voxels with a baseline, in study.h5.
+  /// Runs a small voxel study with a baseline into study.h5.
   void run_study() {
     spill("study.toml",
           "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.15, max = 0.3 }\nb = { min = 0.7, max = 1.5 "
@@ -43,7 +43,7 @@ class ExportProgram : public StudyProgram {
     for (std::string line; std::getline(text, line);) all.push_back(line);
     return all;
   }
-  /// What tests/python/read_vtk.py says.
+  /// Output of tests/python/read_vtk.py.
   std::string vtk(const std::string& arguments) const {
     const std::string command = "cd '" + folder_ + "' && /usr/bin/python3 '" + PKM_TEST_DATA +
                                 "/../python/read_vtk.py' " + arguments + " > python.txt 2>&1";
@@ -53,7 +53,7 @@ class ExportProgram : public StudyProgram {
   static bool has_vtk() { return std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOHDF' 2>/dev/null") == 0; }
 };
 
-/// Triangles of a binary STL file, corners after their normals.
+/// Triangles of a binary STL file: the normal, then three vertices.
 std::vector<std::array<std::array<float, 3>, 4>> triangles_of(const std::string& stl) {
   std::uint32_t count = 0;
   std::memcpy(&count, stl.data() + 80, 4);
@@ -63,6 +63,7 @@ std::vector<std::array<std::array<float, 3>, 4>> triangles_of(const std::string&
   return triangles;
 }
 
+/// Volume enclosed by the surface of a binary STL file (divergence theorem).
 double volume_of(const std::string& stl) {
   double sixfold = 0;
   for (const auto& [normal, p, q, r] : triangles_of(stl))
@@ -71,7 +72,7 @@ double volume_of(const std::string& stl) {
   return sixfold / 6;
 }
 
-TEST_F(ExportProgram, VtkAndTheTableOfAnyMechanismsWorkspaceAreTheSame) {
+TEST_F(ExportProgram, VtkAndCsvOfAnyMechanismAgree) {
   if (!has_vtk()) GTEST_SKIP() << "python3-vtk9 is missing";
   for (const auto& mechanism : all_mechanisms()) {
     const MechanismInfo& info = mechanism->info();
@@ -97,8 +98,8 @@ TEST_F(ExportProgram, SurfacesOfAnyMechanismsWorkspaceAreClosed) {
     SCOPED_TRACE(name);
     ASSERT_EQ(run({"workspace", name, "--stl", "."}), 0) << output_;
     const std::string stl = slurp(name + "-nominal.stl");
-    using Corner = std::array<float, 3>;
-    std::map<std::pair<Corner, Corner>, int> edges;
+    using Vertex = std::array<float, 3>;
+    std::map<std::pair<Vertex, Vertex>, int> edges;
     for (const auto& [normal, p, q, r] : triangles_of(stl))
       for (const auto& edge : {std::pair(p, q), std::pair(q, r), std::pair(r, p)}) ++edges[edge];
     for (const auto& [edge, times] : edges) ASSERT_EQ(edges[std::pair(edge.second, edge.first)], times);
@@ -107,24 +108,24 @@ TEST_F(ExportProgram, SurfacesOfAnyMechanismsWorkspaceAreClosed) {
   }
 }
 
-TEST_F(ExportProgram, MoreCellsThanAFileShouldHoldAreRefusedBeforeAnyIsEvaluated) {
+TEST_F(ExportProgram, TooManyCellsAreRejectedBeforeTheEvaluation) {
   run_study();
   StudyContents contents = read("study.h5");
   const auto at = contents.toml.find("x = 12, z = 14, theta = 16");
   contents.toml.replace(at, 26, "x = 800, z = 800, theta = 20");
-  contents.text_digest.clear();  // as before schema 5
+  contents.text_digest.clear();  // as in files before schema 5
   write_study(path("study.h5"), contents);
   for (const char* const option : {"--vtk", "--stl"}) {
     EXPECT_EQ(run({"export", "study.h5", option, "w"}), 2);
     EXPECT_EQ(output_,
               "pkmopt: [workspace] cells: found 12800000 cells; expected at most 1e+07 to write; 'pkmopt workspace "
-              "--cells' takes others\n");
+              "--cells' overrides them\n");
     EXPECT_FALSE(fs::exists(path("w")));
   }
   EXPECT_EQ(run({"export", "study.h5", "--csv", "tables"}), 0) << output_;
 }
 
-TEST_F(ExportProgram, WorkspaceSaysWhatEvaluateSays) {
+TEST_F(ExportProgram, WorkspaceAndEvaluateAgree) {
   run_study();
   ASSERT_EQ(run({"evaluate", "study.toml", "--set", "a=0.25", "--json"}), 0) << output_;
   const Json evaluated = Json::parse(output_);
@@ -144,13 +145,13 @@ TEST_F(ExportProgram, WorkspaceSaysWhatEvaluateSays) {
   EXPECT_THAT(output_, HasSubstr("dci_worst"));
 }
 
-TEST_F(ExportProgram, EndsOfTheExtentThatAreRoundingAreZero) {
+TEST_F(ExportProgram, RoundingErrorsInTheExtentArePrintedAsZero) {
   ASSERT_EQ(run({"workspace", "3crr-r-cru", "--cells", "x=8,y=8,z=8"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("  y   0 m .. 0.4 m "));
   EXPECT_THAT(output_, HasSubstr(" of 0 m .. 0.4 m "));
 }
 
-TEST_F(ExportProgram, AnotherCoordinateCanBeHeld) {
+TEST_F(ExportProgram, AnotherCoordinateCanBeFixed) {
   ASSERT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=200mm", "--cells", "x=8,y=8,phi=9", "--box",
                  "x=0:0.3,y=0.1:0.4,phi=-30deg:30deg", "--json"}),
             0)
@@ -161,8 +162,10 @@ TEST_F(ExportProgram, AnotherCoordinateCanBeHeld) {
   EXPECT_EQ(workspace["unit"], "m^2 rad");
   EXPECT_EQ(workspace["axes"][2]["unit"], "rad");
   EXPECT_EQ(workspace["touches_box"], true);
-  EXPECT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=0.2,x=0.1"}), 2);
-  EXPECT_THAT(output_, HasSubstr("expected one coordinate with its value"));
+  ASSERT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=0.2,x=0.1", "--cells", "8", "--json"}), 0) << output_;
+  EXPECT_EQ(Json::parse(output_)["unit"], "m rad");
+  EXPECT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=0.2,x=0.1,y=0.1,phi=0"}), 2);
+  EXPECT_THAT(output_, HasSubstr("expected coordinates that can be fixed together, with their values"));
   EXPECT_EQ(run({"workspace", "4ppa-2par", "--cells", "x=1000,z=1000,theta=1000"}), 2);
   EXPECT_THAT(output_, HasSubstr("--cells: found 1e+09 cells; expected at most 1e+07"));
 }
@@ -180,7 +183,7 @@ TEST_F(ExportProgram, WritesTablesImageAndSurfaceOfAStudy) {
   EXPECT_THAT(evaluations[0], HasSubstr("a [m],b [m],objective workspace-ratio [rad],margin rail-length [m]"));
   EXPECT_EQ(lines("tables/of/it/generations.csv").size(), 1 + study.stages[0].generations.size());
 
-  // the image is of the cells that the study's own map has
+  // the image has the same cells as the voxel map in the study file
   const auto& map = study.final->map->voxels;
   const double feasible = static_cast<double>(std::count(map.feasible.begin(), map.feasible.end(), 1));
   const std::string stl = slurp("cad/4ppa-2par-best.stl");
@@ -192,13 +195,13 @@ TEST_F(ExportProgram, WritesTablesImageAndSurfaceOfAStudy) {
   const std::string read = vtk("best.vtkhdf");
   EXPECT_THAT(read, HasSubstr("dimensions 12 14 16\n"));
   const std::size_t begin = read.find("feasible "), end = read.find('\n', begin);
-  double counted = 0;  // words of the bits of 1
+  double counted = 0;  // 1.0 as a hexadecimal bit pattern
   for (std::size_t at = read.find("3ff0000000000000", begin); at < end; at = read.find("3ff0000000000000", at + 1))
     ++counted;
   EXPECT_EQ(counted, feasible);
 }
 
-TEST_F(ExportProgram, AStudyByColumnsIsPicturedInItsBox) {
+TEST_F(ExportProgram, AStudyWithColumnsIsExportedWithinItsBox) {
   spill(
       "study.toml",
       "[mechanism]\ntype = \"3crr-r-cru\"\n[variables]\nl_11 = { min = 0.16, max = 0.18 }\n[workspace]\nmethod = "
@@ -206,7 +209,7 @@ TEST_F(ExportProgram, AStudyByColumnsIsPicturedInItsBox) {
       "= \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\npopulation = 4\ngenerations = 1\n");
   ASSERT_EQ(run({"run", "study.toml", "--output", "study.h5", "--quiet"}), 0) << output_;
   const StudyContents study = read("study.h5");
-  EXPECT_EQ(study.final->map->voxels.lower[2], 0.15);  // the file's own map keeps to it, too
+  EXPECT_EQ(study.final->map->voxels.lower[2], 0.15);  // the voxel map in the file is restricted to the box, too
   EXPECT_EQ(study.final->map->voxels.upper[2], 0.25);
   ASSERT_EQ(run({"workspace", "--from", "study.h5", "--json"}), 0) << output_;
   const Json workspace = Json::parse(output_);
@@ -219,7 +222,7 @@ TEST_F(ExportProgram, AStudyByColumnsIsPicturedInItsBox) {
   EXPECT_NEAR(volume_of(slurp("3crr-r-cru-best.stl")) / study.final->best->volume, 1, 0.02);
 }
 
-TEST_F(ExportProgram, AnyDesignOfAStudyCanBeNamed) {
+TEST_F(ExportProgram, AnyDesignOfAStudyCanBeSelected) {
   run_study();
   const StudyContents study = read("study.h5");
   const GenerationRecords& generations = study.stages[0].generations;
@@ -236,18 +239,18 @@ TEST_F(ExportProgram, AnyDesignOfAStudyCanBeNamed) {
   EXPECT_EQ(run({"export", "study.h5", "--generation", "9", "--individual", "1", "--stl", "."}), 2);
   EXPECT_THAT(output_, HasSubstr("--generation: found 9; expected a generation of stage 1, 0 to 3"));
   EXPECT_EQ(run({"export", "study.h5", "--baseline", "--csv", "t"}), 2);
-  EXPECT_THAT(output_, HasSubstr("--baseline: found tables only"));
+  EXPECT_THAT(output_, HasSubstr("--baseline: selects a design for --vtk or --stl"));
   EXPECT_EQ(run({"export", "study.h5"}), 2);
-  EXPECT_THAT(output_, HasSubstr("export: found nothing to write; expected at least one of --vtk, --csv, --stl"));
+  EXPECT_THAT(output_, HasSubstr("export: found no output; expected at least one of --vtk, --csv, --stl"));
 }
 
-TEST_F(ExportProgram, OverwritesOnlyWhenTold) {
+TEST_F(ExportProgram, OverwritesOnlyWithForce) {
   run_study();
   spill("best.vtkhdf", "mine");
   EXPECT_EQ(run({"export", "study.h5", "--vtk", "best.vtkhdf", "--csv", "t"}), 1);
   EXPECT_THAT(output_, HasSubstr("best.vtkhdf exists already; overwrite it with --force"));
   EXPECT_EQ(slurp("best.vtkhdf"), "mine");
-  EXPECT_FALSE(fs::exists(path("t")));  // nothing is written before all is known to be free
+  EXPECT_FALSE(fs::exists(path("t")));  // all output files are checked before the first one is written
   EXPECT_EQ(run({"export", "study.h5", "--vtk", "best.vtkhdf", "--csv", "t", "--force"}), 0) << output_;
   EXPECT_NE(slurp("best.vtkhdf"), "mine");
   EXPECT_EQ(run({"export", "study.h5", "--csv", "t"}), 1);
@@ -255,14 +258,14 @@ TEST_F(ExportProgram, OverwritesOnlyWhenTold) {
   ChildProcess::Settings small;
   small.file_size = 1000;
   EXPECT_EQ(run({"export", "study.h5", "--csv", "limited"}, small), 1);
-  EXPECT_THAT(output_, HasSubstr("limited/evaluations.csv: cannot be written, the previous state is kept (File too "
+  EXPECT_THAT(output_, HasSubstr("limited/evaluations.csv: cannot be written; any previous file is unchanged (File too "
                                  "large)"));
   EXPECT_TRUE(fs::is_empty(path("limited")));
   EXPECT_EQ(run({"export", "study.h5", "--csv", "study.toml"}), 1);
   EXPECT_THAT(output_, HasSubstr("study.toml"));
 }
 
-TEST_F(ExportProgram, BitsDoNotDependOnThreads) {
+TEST_F(ExportProgram, FilesAreBitIdenticalForAnyThreads) {
   for (const char* const threads : {"1", "3"})
     ASSERT_EQ(run({"workspace", "quadrupteron", "--cells", "x=9,y=9,z=9", "--threads", threads, "--vtk",
                    std::string(threads) + ".vtkhdf", "--stl", threads}),
@@ -272,7 +275,7 @@ TEST_F(ExportProgram, BitsDoNotDependOnThreads) {
   EXPECT_EQ(slurp("1/quadrupteron-nominal.stl"), slurp("3/quadrupteron-nominal.stl"));
 }
 
-TEST_F(ExportProgram, StudiesThatAreDamagedEmptyUnfinishedOrUnreadable) {
+TEST_F(ExportProgram, HandlesDamagedEmptyUnfinishedAndUnreadableStudies) {
   run_study();
   std::string bytes = slurp("study.h5");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
@@ -286,13 +289,13 @@ TEST_F(ExportProgram, StudiesThatAreDamagedEmptyUnfinishedOrUnreadable) {
   study.final.reset();
   write_study(path("running.h5"), study);
   ASSERT_EQ(run({"export", "running.h5", "--csv", "running", "--stl", "running"}), 0) << output_;
-  EXPECT_THAT(output_, HasSubstr("the study is running: what it has recorded is exported\n"));
+  EXPECT_THAT(output_, HasSubstr("the study is running: only the results recorded so far are exported\n"));
   EXPECT_EQ(lines("running/best.csv")[0], "kind,name,unit,best");
 
   study.toml = "[mechanism]\ntype = \"4ppa-2par\"\nforgotten = 1\n";
-  study.text_digest.clear();  // as before schema 5
+  study.text_digest.clear();  // as in files before schema 5
   write_study(path("old.h5"), study);
-  EXPECT_EQ(run({"export", "old.h5", "--csv", "old"}), 0) << output_;  // needs no problem
+  EXPECT_EQ(run({"export", "old.h5", "--csv", "old"}), 0) << output_;  // tables do not need the study's problem
   EXPECT_THAT(output_, HasSubstr("note: old.h5: this program cannot read the study's text ("));
   EXPECT_EQ(run({"export", "old.h5", "--vtk", "old.vtkhdf"}), 2);
   EXPECT_THAT(output_, HasSubstr("forgotten"));
@@ -307,7 +310,7 @@ TEST_F(ExportProgram, StudiesThatAreDamagedEmptyUnfinishedOrUnreadable) {
   EXPECT_EQ(lines("empty/evaluations.csv").size(), 1u);
   EXPECT_FALSE(fs::exists(path("empty/best.csv")));
   EXPECT_EQ(run({"export", "empty.h5", "--vtk", "e.vtkhdf"}), 2);
-  EXPECT_THAT(output_, HasSubstr("found no best design in study study; expected a study that has evaluated one"));
+  EXPECT_THAT(output_, HasSubstr("study study has no best design yet; expected an evaluated design"));
 }
 
 TEST_F(ExportProgram, AnEmptyWorkspaceHasNoSurface) {

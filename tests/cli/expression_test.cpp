@@ -1,4 +1,4 @@
-// Studies with objectives, constraints and reports written as formulas, end to end; and every example study.
+// Studies whose objectives, constraints and outputs are formulas, end to end; and all example studies and motions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ population = 20
 generations = 15
 )toml";
 
-/// The study with its comment inside of a formula taken out, and as the same study of built-in entries.
+/// The study without the comment in its formula, and the equivalent study with built-in objectives and constraints.
 std::string with_formulas() {
   std::string text = kStudy;
   text.replace(text.find("OBJECTIVE"), 9, "expression");
@@ -75,7 +75,7 @@ std::string built_in() {
   return text;
 }
 
-TEST(CliExpression, CheckSpellsThemOut) {
+TEST(CliExpression, CheckPrintsFormulas) {
   const StudyFolder folder;
   const auto check = pkmopt({"check", folder.write("s.toml", with_formulas())});
   EXPECT_EQ(check.exit_code, 0) << check.err;
@@ -100,7 +100,7 @@ TEST(CliExpression, EvaluateShowsFormulasAndTheirValues) {
   EXPECT_THAT(text.out, HasSubstr("volume / b >= 0.4 m rad\n"));
 }
 
-TEST(CliExpression, AStudyOfFormulasFindsWhatTheBuiltInEntriesFind) {
+TEST(CliExpression, FormulasGiveTheSameRunAsBuiltInEntries) {
   const StudyFolder folder;
   folder.write("formulas.toml", with_formulas());
   folder.write("built-in.toml", built_in());
@@ -110,7 +110,7 @@ TEST(CliExpression, AStudyOfFormulasFindsWhatTheBuiltInEntriesFind) {
   }
   const StudyContents formulas = read_study(folder.path() + "/formulas.h5");
   const StudyContents entries = read_study(folder.path() + "/built-in.h5");
-  // The same operations in the same order: the search takes the same way.
+  // The same operations in the same order give a bit-identical search.
   EXPECT_EQ(formulas.stages[0].table.designs, entries.stages[0].table.designs);
   EXPECT_EQ(formulas.stages[0].table.status, entries.stages[0].table.status);
   EXPECT_EQ(formulas.best.row, entries.best.row);
@@ -122,7 +122,7 @@ TEST(CliExpression, AStudyOfFormulasFindsWhatTheBuiltInEntriesFind) {
   EXPECT_EQ(resume.exit_code, 0) << resume.err;
 }
 
-TEST(CliExpression, GradientSolversTakeTheSameWayAsWithBuiltInEntries) {
+TEST(CliExpression, GradientSolversBehaveAsWithBuiltInEntries) {
   for (const std::string solver : {"nlopt", "ipopt"}) {
     const StudyFolder folder;
     for (const std::string name : {"formulas", "built-in"}) {
@@ -140,28 +140,27 @@ TEST(CliExpression, GradientSolversTakeTheSameWayAsWithBuiltInEntries) {
     };
     ASSERT_GE(formulas.best.row, 0);
     EXPECT_EQ(formulas.stages[0].table.size(), entries.stages[0].table.size()) << solver;
-    EXPECT_LT(formulas.stages[0].table.size(), 50u) << solver;  // exact gradients
+    EXPECT_LT(formulas.stages[0].table.size(), 50u) << solver;  // few evaluations, because gradients are exact
     EXPECT_NEAR(best(formulas), best(entries), 1e-9) << solver;
     EXPECT_NEAR(best(formulas), 0.43091372, 1e-7) << solver;
   }
 }
 
-TEST(CliExpression, MistakesAreNamed) {
+TEST(CliExpression, ACommentInAFormulaIsRejected) {
   const StudyFolder folder;
   std::string text = kStudy;
   text.replace(text.find("OBJECTIVE"), 9, "expression");
   const auto comment = pkmopt({"check", folder.write("s.toml", text)});
   EXPECT_EQ(comment.exit_code, 2);
-  EXPECT_THAT(comment.err,
-              HasSubstr("s.toml:18: constraint[1]: the formula \"  l_d - sqrt(l_u^2 + (b - "
-                        "a*cos_theta_min)^2)/2   # eq 21 \" has a '#' at character 51, which means nothing "
-                        "in a formula"));
+  EXPECT_THAT(comment.err, HasSubstr("s.toml:18: constraint[1]: the formula \"  l_d - sqrt(l_u^2 + (b - "
+                                     "a*cos_theta_min)^2)/2   # eq 21 \" has a '#' at character 51, which is not "
+                                     "allowed in formulas"));
 }
 
 TEST(CliExpression, ListShowsOptionsAndNames) {
   const json both = pkmopt({"list", "expression", "--json"}).json();
   EXPECT_EQ(both["objectives"]["direction"], "maximise");
-  EXPECT_EQ(both["constraints"]["level"], "design or survey");
+  EXPECT_EQ(both["constraints"]["level"], "design or workspace");
   const auto text = pkmopt({"list", "expression"}).out;
   EXPECT_TRUE(text.starts_with("objectives\n  name       expression\n"));
   EXPECT_THAT(text, HasSubstr("\nconstraints\n  name     expression\n"));
@@ -172,10 +171,10 @@ TEST(CliExpression, ListShowsOptionsAndNames) {
     return json();
   };
   EXPECT_EQ(named("l_u")["unit"], "m");
-  EXPECT_EQ(named("cos_theta_min")["known"], "before the survey");
+  EXPECT_EQ(named("cos_theta_min")["known"], "before the workspace analysis");
   EXPECT_EQ(named("volume"), (json{{"name", "volume"},
                                    {"unit", "m^2 rad"},
-                                   {"known", "after the survey"},
+                                   {"known", "after the workspace analysis"},
                                    {"meaning", "measure of the feasible poses over the swept coordinates"}}));
 }
 
@@ -193,7 +192,7 @@ TEST(CliExamples, EveryStudyPassesItsCheck) {
   EXPECT_GE(studies, 7);
 }
 
-TEST(CliExamples, EveryMotionIsFollowed) {
+TEST(CliExamples, EveryMotionIsFeasible) {
   int motions = 0;
   for (const auto& file : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
     const auto folder = file.path().parent_path();

@@ -1,10 +1,10 @@
-// Studies through the built program that are given higher limits.
+// `pkmopt resume` with higher limits (--generations, --evaluations) for finished studies.
 #include "tests/cli/ga_program.hpp"
 
 namespace pkm::testing {
 namespace {
 
-TEST_F(GaProgram, LimitsMayGrowOnly) {
+TEST_F(GaProgram, LimitsCanOnlyBeRaised) {
   write_toml(5);
   ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
   const StudyContents before = read("study.h5");
@@ -13,13 +13,13 @@ TEST_F(GaProgram, LimitsMayGrowOnly) {
   EXPECT_EQ(run({"resume", "study.h5", "--evaluations", "30"}), 2);
   EXPECT_EQ(run({"resume", "study.h5", "--generations", "1000000000000"}), 2);
   EXPECT_EQ(first_difference(before, read("study.h5")), "");
-  // evaluations alone lift the limit on generations
+  // --evaluations alone removes the limit on generations
   ASSERT_EQ(run({"resume", "study.h5", "--evaluations", "700", "--quiet"}), 0) << output_;
   EXPECT_EQ(read("study.h5").stages[1].table.size(), 700u);
   EXPECT_EQ(read("study.h5").stages[1].stop, "evaluation limit");
 }
 
-TEST_F(GaProgram, AnExtensionSurvivesAStopInTheReplay) {
+TEST_F(GaProgram, AnExtensionSurvivesAStopDuringTheReplay) {
   write_toml(40, "");
   ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
   ASSERT_EQ(run({"run", "study.toml", "--output", "long.h5", "--quiet"}), 0) << output_;
@@ -54,7 +54,7 @@ generations = 10
   // plain resume of a finished study changes nothing
   const auto before = fs::last_write_time(path("a.h5"));
   ASSERT_EQ(run({"resume", "a.h5"}), 0) << output_;
-  EXPECT_NE(output_.find("nothing is left to do"), std::string::npos);
+  EXPECT_NE(output_.find("the study is finished; --generations"), std::string::npos);
   EXPECT_EQ(fs::last_write_time(path("a.h5")), before);
 }
 

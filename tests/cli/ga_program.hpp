@@ -1,4 +1,4 @@
-// A study by two genetic algorithms, for the built program.
+// Test fixture with a study of two genetic algorithm stages, run by the built program.
 #pragma once
 
 #include <fstream>
@@ -10,7 +10,8 @@ namespace pkm::testing {
 
 class GaProgram : public StudyProgram {
  protected:
-  /// @param generations  of 40 designs on exact columns with active constraints
+  /// Writes study.toml, with exact columns and active constraints. @param generations  of the first stage, 40 designs
+  /// each
   void write_toml(int generations, const std::string& more = "[checkpoint]\nevery = 0\n") const {
     std::ofstream(folder_ + "/study.toml") << R"([study]
 name = "kill me"

@@ -1,4 +1,4 @@
-// Parameters that one limb has for itself, "arm2.l_b", in files, in studies and on the command line.
+// Parameters of a single limb, such as "arm2.l_b", in mechanism files, in studies and on the command line.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -29,7 +29,7 @@ class LimbParameter : public StudyProgram {
   }
 };
 
-TEST_F(LimbParameter, ChangesItsLimbAlone) {
+TEST_F(LimbParameter, ChangesOnlyItsLimb) {
   const auto usual = pose(""), all = pose("l_b=0.52"), one = pose("arm2.l_b=0.52");
   EXPECT_EQ(one["arm1"], usual["arm1"]);
   EXPECT_EQ(one["arm2"], all["arm2"]);
@@ -38,7 +38,7 @@ TEST_F(LimbParameter, ChangesItsLimbAlone) {
   EXPECT_EQ(pose("l_b=0.52,arm2.l_b=500mm"), pose("arm1.l_b=0.52,arm3.l_b=0.52"));
 }
 
-TEST_F(LimbParameter, ReachesTheLimbByWayOfLet) {
+TEST_F(LimbParameter, AppliesToFormulasOfLet) {
   std::ifstream file(kDelta);
   std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto change = [&text](const std::string& from, const std::string& to) {
@@ -49,13 +49,13 @@ TEST_F(LimbParameter, ReachesTheLimbByWayOfLet) {
   change("[[limb]]", "[let]\ntwice = \"2*l_b\"\n[[limb]]");
   std::ofstream(path("let.toml")) << text;
   EXPECT_EQ(pose("arm2.l_b=0.52", "let.toml"), pose("arm2.l_b=0.52"));
-  // The file may have it itself: with a dot, quoted or not.
+  // The mechanism file can declare such a parameter itself, with a dotted or a quoted key.
   change("[platform]", "arm2.l_b = { default = \"520 mm\" }\n\"arm3.l_b\" = { max = \"3 m\" }\n[platform]");
   std::ofstream(path("own.toml")) << text;
   EXPECT_EQ(pose("", "own.toml"), pose("arm2.l_b=0.52"));
 }
 
-TEST_F(LimbParameter, OfAStudyIsThatOfAllUnlessItSays) {
+TEST_F(LimbParameter, DefaultsToTheParameterOfAllLimbs) {
   std::ofstream(path("study.toml")) << study(
       "parameters = { l_b = 0.52, arm1.l_b = 0.51 }\n[variables]\n\"arm2.l_b\" = { min = 0.4, max = 0.6 }\n"
       "arm3.l_a = { min = 0.1, max = 0.3 }\n[baseline]\nl_b = 0.53\n");
@@ -81,7 +81,7 @@ TEST_F(LimbParameter, OfAStudyIsThatOfAllUnlessItSays) {
   EXPECT_EQ(find_named(read("set.h5").problem.parameters, "arm3.l_b")->value, 0.5);
 }
 
-TEST_F(LimbParameter, ThatIsNoneIsRefused) {
+TEST_F(LimbParameter, UnknownNamesAreRejected) {
   const std::pair<std::string, std::string> cases[] = {
       {"arm4.l_b", "found the unknown limb 'arm4' of arm4.l_b; expected one of arm1, arm2, arm3; did you mean 'arm1'?"},
       {"arm2.l_c",

@@ -1,4 +1,4 @@
-// A mechanism as a file: `new` writes one to begin with, and it stands wherever a mechanism's name does.
+// Mechanism files on the command line: `pkmopt new` creates one, and commands accept it instead of a mechanism's name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "engine/mechanisms/all.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/storage/study_file.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/study_folder.hpp"
@@ -51,13 +51,13 @@ class MechanismFile : public ::testing::Test {
   StudyFolder folder_;
 };
 
-TEST_F(MechanismFile, AFileToBeginWithIsShortAndChecks) {
+TEST_F(MechanismFile, NewFilesAreShortAndValid) {
   EXPECT_LE(std::ranges::count(text_of(path("delta.toml")), '\n'), 45);
   EXPECT_THAT(text_of(path("delta.toml")), HasSubstr("\nname   = \"my-delta\"\n"));
   EXPECT_THAT(run({"new", "mechanism"}).out, HasSubstr("\nname   = \"rotary-delta\"\n"));
   EXPECT_EQ(run({"check", "delta.toml"}).exit_code, 0);
   std::vector<std::string> mechanisms = {"delta.toml", "./delta.toml"};
-  for (const auto& mechanism : all_mechanisms()) mechanisms.push_back(mechanism->info().name);
+  for (const auto& mechanism : all_mechanisms()) mechanisms.push_back(mechanism.name());
   for (const std::string& mechanism : mechanisms) {
     SCOPED_TRACE(mechanism);
     const auto written = run({"new", "study", mechanism, "--output", "new.toml", "--force"});
@@ -71,7 +71,7 @@ TEST_F(MechanismFile, AFileToBeginWithIsShortAndChecks) {
   }
 }
 
-TEST_F(MechanismFile, AStudyNamesItRelativeToItsOwnFolder) {
+TEST_F(MechanismFile, AStudyRefersToItRelativeToItsOwnFolder) {
   std::filesystem::create_directory(path("studies"));
   EXPECT_EQ(run({"new", "study", "delta.toml", "-o", "studies/s.toml"}).err, "");
   EXPECT_THAT(text_of(path("studies/s.toml")), HasSubstr("file = \"../delta.toml\""));
@@ -80,7 +80,7 @@ TEST_F(MechanismFile, AStudyNamesItRelativeToItsOwnFolder) {
   EXPECT_EQ(checked.json()["mechanism_file"], "studies/../delta.toml");
 }
 
-TEST_F(MechanismFile, StandsForTheMechanismsName) {
+TEST_F(MechanismFile, ReplacesAMechanismName) {
   std::filesystem::copy(path("delta.toml"), path("delta"));
   for (const std::string file : {"delta.toml", "./delta.toml", "delta"}) {
     SCOPED_TRACE(file);
@@ -100,7 +100,7 @@ TEST_F(MechanismFile, StandsForTheMechanismsName) {
   EXPECT_GT(run({"workspace", "delta.toml", "--cells", "x=8,y=8,z=8", "--json"}).json()["feasible_cells"], 0);
 }
 
-TEST_F(MechanismFile, ForwardNearAPoseIsTheAssemblyNextToIt) {
+TEST_F(MechanismFile, ForwardWithNearFindsTheClosestAssemblyMode) {
   for (const std::string mechanism : {"delta.toml", "4ppa-2par"}) {
     const bool file = mechanism == "delta.toml";
     const std::string at = file ? "x=0.05,y=-0.03,z=-0.45" : "x=0.4,y=1.25,z=-0.9,theta=0.4";
@@ -120,7 +120,7 @@ TEST_F(MechanismFile, ForwardNearAPoseIsTheAssemblyNextToIt) {
   }
 }
 
-TEST_F(MechanismFile, ForwardSaysWhetherItsListIsComplete) {
+TEST_F(MechanismFile, ForwardReportsWhetherItsListIsComplete) {
   const auto of_file = [&](const std::vector<std::string>& more) {
     std::vector<std::string> command = {"forward", "delta.toml", "--joints", "arm1=0.4,arm2=0.4,arm3=0.4"};
     command.insert(command.end(), more.begin(), more.end());
@@ -133,7 +133,7 @@ TEST_F(MechanismFile, ForwardSaysWhetherItsListIsComplete) {
               HasSubstr("complete   no, found by Newton's method from the pose"));
   const std::vector<std::string> closed = {"forward", "4ppa-2par", "--joints",
                                            "q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846"};
-  EXPECT_THAT(run(closed).out, HasSubstr("complete   no, closed form: every isolated pose, of which --all lists"));
+  EXPECT_THAT(run(closed).out, HasSubstr("complete   no, closed form: every isolated pose; --all lists"));
   std::vector<std::string> all = closed;
   all.push_back("--all");
   EXPECT_THAT(run(all).out, HasSubstr("complete   yes, closed form: every isolated pose\n"));
@@ -166,7 +166,7 @@ TEST_F(MechanismFile, PoseNamesRowsAndColumnsOfItsJacobians) {
   EXPECT_THAT(run({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg"}).out, Not(HasSubstr("J_twist")));
 }
 
-TEST_F(MechanismFile, AStudyGoesOnAndIsShownWithoutIt) {
+TEST_F(MechanismFile, AStudyResumesAndIsShownWithoutTheFile) {
   ASSERT_EQ(run({"run", "study.toml", "--output", "s.h5", "--quiet"}).err, "");
   const std::string text = text_of(path("delta.toml"));
   const StudyContents stored = read_study(path("s.h5"));
@@ -176,7 +176,7 @@ TEST_F(MechanismFile, AStudyGoesOnAndIsShownWithoutIt) {
 
   const auto evaluate = [this] { return run({"evaluate", "--from", "s.h5"}).out; };
   const std::string evaluated = evaluate();
-  folder_.write("delta.toml", "not TOML");  // what is stored counts, not what is there
+  folder_.write("delta.toml", "not TOML");  // the stored text is used, not the file
   EXPECT_EQ(evaluate(), evaluated);
   std::filesystem::remove(path("delta.toml"));
   EXPECT_EQ(evaluate(), evaluated);
@@ -198,12 +198,13 @@ TEST_F(MechanismFile, AStudyGoesOnAndIsShownWithoutIt) {
   folder_.write("delta.toml", text + "# changed\n");
   const auto changed = run({"run", "study.toml", "--output", "s.h5", "--resume", "--quiet"});
   EXPECT_EQ(changed.exit_code, 1);
-  EXPECT_EQ(changed.err,
-            "pkmopt: s.h5 holds another text of the mechanism than delta.toml; go on with it by 'pkmopt resume s.h5', "
-            "or overwrite it with --force\n");
+  EXPECT_EQ(
+      changed.err,
+      "pkmopt: s.h5 holds a study whose mechanism file differs from delta.toml; continue it with 'pkmopt resume s.h5', "
+      "or overwrite it with --force\n");
 }
 
-TEST_F(MechanismFile, NoOutputOverwritesIt) {
+TEST_F(MechanismFile, IsNotOverwrittenByOutputs) {
   const std::string text = text_of(path("delta.toml"));
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"run", "study.toml", "--output", "delta.toml", "--force"},
@@ -221,7 +222,7 @@ TEST_F(MechanismFile, NoOutputOverwritesIt) {
   EXPECT_EQ(text_of(path("delta.toml")), text);
 }
 
-TEST_F(MechanismFile, WhatIsNoneIsRefused) {
+TEST_F(MechanismFile, InvalidFilesAreRejected) {
   folder_.write("both.toml", "[mechanism]\nfile = \"delta.toml\"\ntype = \"quadrupteron\"\n");
   folder_.write("nul.toml", "[mechanism]\nfile = \"a\\u0000b\"\n");
   folder_.write("folder.toml", "[mechanism]\nfile = \".\"\n");
@@ -243,8 +244,8 @@ TEST_F(MechanismFile, WhatIsNoneIsRefused) {
       {{"evaluate", "folder.toml"}, ".: found a folder; expected the mechanism in TOML that folder.toml:2 names"},
       {{"check", "large.toml"},
        "large: found more than 16 MiB; expected the mechanism in TOML that large.toml:2 names"},
-      {{"list", "study.toml"}, "study.toml: found a study; expected the description of a mechanism"},
-      {{"new", "study", "study.toml"}, "study.toml: found a study; expected the description of a mechanism"},
+      {{"list", "study.toml"}, "study.toml: found a study; expected a mechanism file"},
+      {{"new", "study", "study.toml"}, "study.toml: found a study; expected a mechanism file"},
       {{"new", "study"}, "new study: found no mechanism; expected a mechanism's name or its file"},
       {{"new", "stduy"}, "new: found 'stduy'; expected one of mechanism, study; did you mean 'study'?"},
       {{"new", "mechanism", "../x"},

@@ -1,4 +1,5 @@
-// What the program complains about, whatever it is given: in a sentence of at most 2 kB, in nobody's words but its own.
+// Fuzz test of error messages: for any arguments and any study they are at most 2 kB long, printable, and free of texts
+// of the standard library.
 #include <cstdlib>
 #include <filesystem>
 #include <regex>
@@ -14,16 +15,17 @@
 namespace pkm::testing {
 namespace {
 
-constexpr std::size_t kMostOfComplaint = 2048;  // bytes
+constexpr std::size_t kMaxMessage = 2048;  // bytes
 
-/// Runs the program, which may complain; "" or what is wrong with how it does.
+/// Runs the program and checks its error message.
+/// @return the defect of the message; "" if there is none
 std::string fault_of(const std::vector<std::string>& arguments, const std::string& folder = ".") {
   const ProgramResult result = pkmopt(arguments, folder);
   const std::string start = result.err.substr(0, 300);
   if (result.exit_code < 0 || result.exit_code > 3)
     return "exit code " + std::to_string(result.exit_code) + ": " + start;
-  if (result.exit_code != 0 && result.err.empty()) return "no word";
-  if (result.err.size() > kMostOfComplaint) return std::to_string(result.err.size()) + " bytes: " + start;
+  if (result.exit_code != 0 && result.err.empty()) return "no message";
+  if (result.err.size() > kMaxMessage) return std::to_string(result.err.size()) + " bytes: " + start;
   for (const char* const raw : {"std::", "_M_", "basic_string", "filesystem error", "stoi", "stod", "internal error"})
     if (result.err.find(raw) != std::string::npos) return result.err;
   for (const char c : result.err)
@@ -31,9 +33,9 @@ std::string fault_of(const std::vector<std::string>& arguments, const std::strin
   return "";
 }
 
-#ifndef PKM_SANITIZED  // which take ten times as long
-/// Whether this one of many like messages is looked at: two in five, so that each kind of the three, six or seven that
-/// alternate has its turn; in the campaign (PKM_EVERY_MESSAGE) all.
+#ifndef PKM_SANITIZED  // sanitized runs take ten times as long
+/// Selects two of five messages, so that each of the three, six or seven kinds that alternate is tested. If the
+/// environment variable PKM_EVERY_MESSAGE is set, all messages are selected.
 bool is_chosen() {
   static const bool are_all = std::getenv("PKM_EVERY_MESSAGE") != nullptr;
   static unsigned count = 0;
@@ -48,7 +50,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return {found.begin(), found.end()};
 }
 
-// Linux hands over no argument of more than 128 KiB.
+// The arguments are below the 128 KiB to which Linux limits a single argument.
 TEST(CliMessages, AreShortWhateverTheArguments) {
   std::string list;
   while (list.size() < 100'000) list += "x=1mm,";
@@ -77,8 +79,8 @@ TEST(CliMessages, AreShortWhateverTheArguments) {
   }
 }
 
-const char* const kAllSections = R"([study]
-name = "all sections"
+const char* const kAllTables = R"([study]
+name = "all tables"
 seed = 3
 output = "s.h5"
 [mechanism]
@@ -135,7 +137,7 @@ every = 0
 TEST(CliMessages, AreShortWhateverTheStudy) {
   const std::string much(1 << 17, 'k');
   std::vector<std::string> lines;
-  std::istringstream text(kAllSections);
+  std::istringstream text(kAllTables);
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   const StudyFolder folder;
   const auto expect_short = [&](std::size_t at, const std::string& line) {
@@ -145,7 +147,7 @@ TEST(CliMessages, AreShortWhateverTheStudy) {
     folder.write("much.toml", study);
     EXPECT_EQ(fault_of({"check", "much.toml"}, folder.path()), "") << lines[at] << " as " << line.substr(0, 40);
   };
-  folder.write("sound.toml", kAllSections);
+  folder.write("sound.toml", kAllTables);
   ASSERT_EQ(pkmopt({"check", "sound.toml"}, folder.path()).err, "");
   for (std::size_t at = 0; at < lines.size(); ++at) {
     const std::size_t equals = lines[at].find(" = "), brace = lines[at].find('{');
@@ -165,7 +167,7 @@ TEST(CliMessages, AreShortWhateverTheStudy) {
 }
 #endif
 
-// What is only noted or warned of, too: a file that this program cannot read in full, a name that is a whole book.
+// Warnings and notes, too: about a study file whose text cannot be read, and with a very long name.
 TEST(CliMessages, WarningsAndNotesAreShort) {
   const StudyFolder folder;
   const std::string much(1 << 17, 'n');
@@ -190,7 +192,7 @@ TEST(CliMessages, WarningsAndNotesAreShort) {
   ASSERT_TRUE(std::filesystem::exists(folder.path() + "/s.h5"));
   StudyContents unreadable = read_study(folder.path() + "/s.h5");
   unreadable.toml = "[study]\nname = \"" + much + "\"\n[" + much + "]\n";
-  unreadable.text_digest.clear();  // as before schema 5
+  unreadable.text_digest.clear();  // as in files before schema 5
   write_study(folder.path() + "/s.h5", unreadable, Existing::replaced);
   std::string path;
   while (path.size() < 3000) path += "./";

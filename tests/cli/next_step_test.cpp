@@ -1,4 +1,4 @@
-// What the program says of what to type next, and of what was meant.
+// Suggestions of the next command, and of the command that was probably meant.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Some builds are without the report's page.
+/// Whether this build contains the HTML page of reports.
 bool has_page() {
   try {
-    page_parts();
+    page_assets();
     return true;
   } catch (const std::exception&) {
     return false;
@@ -35,7 +35,7 @@ class CliNextStep : public StudyProgram {
   }
 };
 
-TEST_F(CliNextStep, EachStepNamesTheNext) {
+TEST_F(CliNextStep, EachStepSuggestsTheNextCommand) {
   ASSERT_EQ(run({"new", "mechanism", "delta", "-o", "d.toml"}), 0) << output_;
   EXPECT_THAT(output_, EndsWith("\nnext: pkmopt check d.toml\n"));
   ASSERT_EQ(run({"check", "d.toml"}), 0) << output_;
@@ -50,7 +50,7 @@ TEST_F(CliNextStep, EachStepNamesTheNext) {
   EXPECT_THAT(output_, EndsWith("\nnext: pkmopt report s-seed-1.h5 s-seed-2.h5\n"));
 }
 
-TEST_F(CliNextStep, WhatIsPrintedIsACommandForEveryName) {
+TEST_F(CliNextStep, SuggestedCommandsAreQuotedForTheShell) {
   const auto shell = [&](const std::string& printed) {
     ChildProcess child({"/bin/sh", "-c", "exec '" PKM_PROGRAM "'" + printed.substr(std::strlen("pkmopt"))}, folder_);
     const int code = child.wait();
@@ -64,10 +64,10 @@ TEST_F(CliNextStep, WhatIsPrintedIsACommandForEveryName) {
   for (const std::string stem : {"-x", "--json", "two words", "it's", "a$b;c", "\"q\""}) {
     fs::copy_file(path("s.toml"), path(stem + ".toml"));
     ASSERT_EQ(run({"run", "./" + stem + ".toml", "--time", "1e-9"}), 3) << output_;
-    const std::string resume = command_after("go on with: ");
+    const std::string resume = command_after("resume with: ");
     EXPECT_THAT(resume, ::testing::StartsWith("pkmopt resume "));
     ASSERT_EQ(run({"show", "./" + stem + ".h5"}), 0) << output_;
-    EXPECT_EQ(shell(command_after("go on with: ") + " --time 1e-9"), 3) << output_;
+    EXPECT_EQ(shell(command_after("resume with: ") + " --time 1e-9"), 3) << output_;
     ASSERT_EQ(shell(resume), 0) << resume << output_;
     const std::string report = command_after("next: ");
     EXPECT_THAT(report, ::testing::StartsWith("pkmopt report "));
@@ -76,13 +76,13 @@ TEST_F(CliNextStep, WhatIsPrintedIsACommandForEveryName) {
     ASSERT_EQ(run({"new", "study", "4ppa-2par", "-o", "./" + stem + "2.toml"}), 0) << output_;
     EXPECT_EQ(shell(command_after("next: ") + " --time 1e-9 --quiet"), 3) << output_;
     ASSERT_EQ(run({"run", "./" + stem + ".toml", "--seeds", "2", "--time", "1e-9"}), 3) << output_;
-    EXPECT_EQ(shell(command_after("go on with: ")), 0) << output_;
+    EXPECT_EQ(shell(command_after("resume with: ")), 0) << output_;
   }
   EXPECT_EQ(run({"show", "./-x.toml"}), 2);
   EXPECT_THAT(output_, HasSubstr("did you mean 'pkmopt check ./-x.toml'?"));
 }
 
-TEST_F(CliNextStep, ANewStudyVariesWhatHasAnEffect) {
+TEST_F(CliNextStep, NewStudyVariesInfluentialParametersOnly) {
   std::ofstream(path("m.toml")) << R"([mechanism]
 name = "five-bar"
 [parameters]
@@ -125,7 +125,7 @@ branch   = "-"
   for (const char* idle : {"width", "paint", "cover", "weight"}) EXPECT_THAT(output_, Not(HasSubstr(idle)));
 }
 
-TEST_F(CliNextStep, ANewStudyOfAMechanismWithoutABoxIsRefused) {
+TEST_F(CliNextStep, NewStudyOfAMechanismWithoutSearchBoxIsRefused) {
   std::ifstream file(PKM_EXPERIMENTS "/mechanisms/3-rrr.toml");
   std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto begin = text.find("[survey"), end = text.find("\n[[limb]]", begin);
@@ -140,8 +140,7 @@ TEST_F(CliNextStep, ANewStudyOfAMechanismWithoutABoxIsRefused) {
   EXPECT_FALSE(fs::exists(path("new.toml")));
 }
 
-// Whatever else is wrong with a command is found first.
-TEST_F(CliNextStep, AnOutputThatExistsIsComplainedOfLast) {
+TEST_F(CliNextStep, ExistingOutputIsReportedAfterAllOtherErrors) {
   for (const char* file : {"x.csv", "x.html", "x.toml", "x.stl", "x.vtkhdf"}) std::ofstream(path(file)) << "mine";
   ASSERT_EQ(run({"run", "s.toml", "-o", "s.h5", "--quiet"}), 0) << output_;
   const std::string five_bar = PKM_EXPERIMENTS "/mechanisms/five-bar.toml";
@@ -186,12 +185,12 @@ TEST_F(CliNextStep, AnOutputThatExistsIsComplainedOfLast) {
   }
 }
 
-TEST_F(CliNextStep, WhatIsPrintedAsAFileHoldsNoNextStep) {
+TEST_F(CliNextStep, FilesOnStandardOutputContainNoNextStep) {
   ASSERT_EQ(run({"new", "study", "4ppa-2par"}), 0) << output_;
   EXPECT_THAT(output_, Not(HasSubstr("next: ")));
 }
 
-TEST_F(CliNextStep, AFileOfTheOtherKindNamesTheCommandThatTakesIt) {
+TEST_F(CliNextStep, WrongKindOfFileSuggestsTheRightCommand) {
   ASSERT_EQ(run({"run", "s.toml", "--quiet"}), 0) << output_;
   const std::pair<std::vector<std::string>, std::string> cases[] = {
       {{"show", "s.toml"}, "pkmopt check s.toml"},
@@ -216,7 +215,7 @@ TEST_F(CliNextStep, AFileOfTheOtherKindNamesTheCommandThatTakesIt) {
   }
 }
 
-TEST_F(CliNextStep, AMechanismWhereAFileIsReadNamesTheCommandThatTakesIt) {
+TEST_F(CliNextStep, MechanismNameInsteadOfAFileSuggestsTheRightCommand) {
   const std::pair<std::vector<std::string>, std::string> cases[] = {
       {{"run", "4ppa-2par"}, "a study in TOML; did you mean 'pkmopt new study 4ppa-2par'?"},
       {{"check", "4ppa-2par"}, "a study or a mechanism in TOML; did you mean 'pkmopt list mechanisms 4ppa-2par'?"},
@@ -228,21 +227,20 @@ TEST_F(CliNextStep, AMechanismWhereAFileIsReadNamesTheCommandThatTakesIt) {
   }
 }
 
-TEST_F(CliNextStep, ShowTellsAKilledStudyFromOneThatIsRunning) {
+TEST_F(CliNextStep, ShowDistinguishesKilledFromRunningStudies) {
   ASSERT_EQ(run({"run", "s.toml", "--quiet"}), 0) << output_;
   StudyContents contents = read("s.h5");
-  contents.state = StudyState::running;  // as a kill leaves it
+  contents.state = StudyState::running;  // as recorded when the process was killed
   contents.final.reset();
   write_study(path("s.h5"), contents);
   ASSERT_EQ(run({"show", "s.h5"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("s: interrupted, "));
-  EXPECT_THAT(output_, EndsWith("\nit was interrupted; go on with: pkmopt resume s.h5\n"));
+  EXPECT_THAT(output_, EndsWith("\nstudy interrupted; resume with: pkmopt resume s.h5\n"));
 
   const StudyLock lock(path("s.h5"));
   ASSERT_EQ(run({"show", "s.h5"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("s: running, "));
-  EXPECT_THAT(output_, HasSubstr("\nprocess " + std::to_string(getpid()) + " "));
-  EXPECT_THAT(output_, EndsWith(" works on it\n"));
+  EXPECT_THAT(output_, HasSubstr("\nthe study is being run by process " + std::to_string(getpid()) + " "));
 }
 
 }  // namespace

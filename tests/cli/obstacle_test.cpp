@@ -1,4 +1,4 @@
-// [[obstacle]] of studies: what is understood, what is refused, what is drawn, what is stored.
+// [[obstacle]] of studies: interpretation, invalid definitions, drawings, effect on the workspace.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -27,7 +27,7 @@ radius = "40 mm"
 )";
 const std::string kClearance = "[[constraint]]\ntype = \"clearance\"\nmin = \"5 mm\"\n";
 
-std::string study(const std::string& mechanism, const std::string& sections) {
+std::string study(const std::string& mechanism, const std::string& tables) {
   return "[mechanism]\n" + mechanism + R"(
 [variables]
 r = { min = 0.04, max = 0.06 }
@@ -39,7 +39,7 @@ type = "workspace-volume"
 [[stage]]
 optimiser = "sweep"
 points = 3
-)" + sections;
+)" + tables;
 }
 const std::string kDeltaFile = "file = \"" PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml\"";
 
@@ -53,7 +53,7 @@ class Obstacle : public StudyProgram {
   }
 };
 
-TEST_F(Obstacle, IsTold) {
+TEST_F(Obstacle, IsListedByCheck) {
   write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("obstacles, of which all links that move keep clear\n"
@@ -71,18 +71,18 @@ TEST_F(Obstacle, IsTold) {
                                  "clearance; [[constraint]] type = \"clearance\" does"));
 }
 
-TEST_F(Obstacle, IsNamedWhereAPoseMeetsIt) {
+TEST_F(Obstacle, IsNamedInTheReasonOfAnInfeasiblePose) {
   write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0.15,y=0,z=-0.45"}), 0) << output_;
-  EXPECT_THAT(output_, HasSubstr("clearance_min is broken: "));
+  EXPECT_THAT(output_, HasSubstr("clearance_min is violated: "));
   EXPECT_THAT(output_, HasSubstr(" and lamp overlap"));
   write("s.toml", study(kDeltaFile, kTable + kClearance));
   ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0,y=0,z=-0.64", "--json"}), 0) << output_;
-  // the arms' capsules have a radius of 6 mm, and the table begins at -0.65
+  // the capsules of the arms have a radius of 6 mm, and the top of the table is at z = -0.65 m
   EXPECT_NEAR(nlohmann::json::parse(output_)["angles"]["clearance"].get<double>(), 0.01 - 0.006, 1e-12);
 }
 
-TEST_F(Obstacle, IsDrawn) {
+TEST_F(Obstacle, IsDrawnInFilesOfLinks) {
   write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0,y=0,z=-0.45", "-o", "l.dxf", "-o", "l.stl"}), 0) << output_;
   ASSERT_EQ(run({"pose", kDeltaFile.substr(8, kDeltaFile.size() - 9), "--at", "x=0,y=0,z=-0.45", "-o", "b.dxf", "-o",
@@ -99,13 +99,13 @@ TEST_F(Obstacle, IsDrawn) {
     return found;
   };
   EXPECT_EQ(count(bytes("l.dxf"), "\nLINE\n8\nobstacle\n"), 12u) << "the edges of the table";
-  EXPECT_EQ(count(bytes("l.dxf"), "\nPOINT\n8\nobstacle\n"), 1u) << "the middle of the lamp";
+  EXPECT_EQ(count(bytes("l.dxf"), "\nPOINT\n8\nobstacle\n"), 1u) << "the centre of the lamp";
   EXPECT_EQ(count(bytes("b.dxf"), "obstacle"), 0u);
   const auto triangles = [&](const std::string& name) { return (bytes(name).size() - 84) / 50; };
   EXPECT_GT(triangles("l.stl"), triangles("b.stl") + 12 + 200);
 }
 
-TEST_F(Obstacle, CutsTheWorkspaceOfAStudyThatGoesOnWithItAlone) {
+TEST_F(Obstacle, ReducesTheWorkspaceAndIsPartOfTheStudy) {
   write("free.toml", study(kDeltaFile, kClearance));
   write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"run", "free.toml", "--quiet"}), 0) << output_;
@@ -116,20 +116,20 @@ TEST_F(Obstacle, CutsTheWorkspaceOfAStudyThatGoesOnWithItAlone) {
   EXPECT_THAT(read("s.h5").toml, HasSubstr("[[obstacle]]\nname = \"table\""));
   write("s.toml", study(kDeltaFile, kTable + kClearance));
   EXPECT_EQ(run({"run", "s.toml", "--resume", "--quiet"}), 1) << output_;
-  EXPECT_THAT(output_, HasSubstr("s.h5 holds another text of the study than s.toml"));
+  EXPECT_THAT(output_, HasSubstr("s.h5 holds a study whose text differs from s.toml"));
   ASSERT_EQ(run({"report", "s.h5"}), 0) << output_;
 }
 
-TEST_F(Obstacle, OfTheExampleIsWhatItsBestDesignKeepsClearOf) {
+TEST_F(Obstacle, BestDesignOfTheExampleAvoidsIt) {
   const std::string example = PKM_EXPERIMENTS "/mechanisms/obstacles/rotary-delta.toml";
   ASSERT_EQ(run({"run", example, "-o", "s.h5", "--quiet"}), 0) << output_;
   EXPECT_GT(read("s.h5").final->best->objectives[0], 0.065);
   ASSERT_EQ(run({"trajectory", "--from", "s.h5", "--motion", "cycle"}), 0) << output_;
   EXPECT_EQ(run({"trajectory", example, "--set", "l_a=0.4,l_b=0.775", "--motion", "cycle"}), 1);
-  EXPECT_THAT(output_, HasSubstr("clearance_min is broken: rod of arm3 and wall overlap"));
+  EXPECT_THAT(output_, HasSubstr("clearance_min is violated: rod of arm3 and wall overlap"));
 }
 
-TEST_F(Obstacle, IsRefusedInASentence) {
+TEST_F(Obstacle, InvalidDefinitionsAreRefused) {
   const auto changed = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };

@@ -1,6 +1,7 @@
-// Studies that earlier programs were stopped in, one for each schema of the file (tests/data/README.md): this program
-// shows, reports, exports and evaluates them. It ends one of its own algorithms with the bits of the program that began
-// it, and refuses the others by the versions of both.
+// Interrupted studies of earlier versions of the program, one for each schema and algorithm version
+// (tests/data/README.md). This program shows, reports, exports and evaluates them. It resumes those of its own
+// algorithm version, with bit-identical results, and refuses to resume the others with a message that names both
+// versions.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -9,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/report/html_page.hpp"
-#include "engine/study/run_outcome.hpp"
+#include "engine/runner/run_outcome.hpp"
 #include "tests/cli/study_program.hpp"
 
 namespace pkm::testing {
@@ -38,7 +39,7 @@ const OldStudy kOldStudies[] = {{"interrupted-schema-1", 1, "0.1.0 (259d3de3a709
 
 class OldStudies : public StudyProgram, public ::testing::WithParamInterface<OldStudy> {
  protected:
-  /// A copy, which alone is there for the program.
+  /// Copies the study file to s.h5, without any other file.
   void fetch(const std::string& name) const { fs::copy_file(PKM_TEST_DATA "/" + name, path("s.h5")); }
   std::string slurp(const std::string& name) const {
     std::ifstream file(path(name), std::ios::binary);
@@ -92,7 +93,7 @@ TEST_P(OldStudies, AreReportedAndExported) {
   EXPECT_EQ(std::ranges::count(rows, '\n'), 1 + read("s.h5").evaluations());
   EXPECT_TRUE(fs::exists(path("best.vtkhdf")));
   try {
-    page_parts();
+    page_assets();
   } catch (const std::exception& reason) {
     GTEST_SKIP() << reason.what();
   }
@@ -100,56 +101,56 @@ TEST_P(OldStudies, AreReportedAndExported) {
   EXPECT_THAT(slurp("s.html"), HasSubstr("\"name\":\"" + read("s.h5").name + "\""));
 }
 
-// Bits may differ between versions of the algorithms, values may not.
-TEST_P(OldStudies, DesignsAreEvaluatedToTheValuesRecorded) {
+// Between algorithm versions, values may differ by rounding errors only.
+TEST_P(OldStudies, EvaluatingADesignReproducesTheRecordedValues) {
   fetch(GetParam().name + ".h5");
   const StudyContents file = read("s.h5");
   const StageRecord& stage = file.stages[0];
   const std::size_t generation = stage.generations.size() - 1;
   const auto row = static_cast<std::size_t>(stage.generations.population_of(generation)[0]);
   ASSERT_EQ(stage.table.status[row], Status::feasible);
-  const Json anew = json({"evaluate", "--from", "s.h5", "--stage", "1", "--generation", std::to_string(generation),
-                          "--individual", "1", "--json"});
-  EXPECT_EQ(anew["feasible"], true);
-  EXPECT_GE(anew["parameters"].size(), file.problem.parameters.size());  // mechanisms have gained some since
+  const Json evaluated = json({"evaluate", "--from", "s.h5", "--stage", "1", "--generation", std::to_string(generation),
+                               "--individual", "1", "--json"});
+  EXPECT_EQ(evaluated["feasible"], true);
+  EXPECT_GE(evaluated["parameters"].size(), file.problem.parameters.size());  // mechanisms may have new parameters
   for (const ParameterRecord& parameter : file.problem.parameters)
     if (parameter.variable < 0) {
-      EXPECT_EQ(anew["parameters"][parameter.name], parameter.value) << parameter.name;
+      EXPECT_EQ(evaluated["parameters"][parameter.name], parameter.value) << parameter.name;
     }
   for (std::size_t i = 0; i < file.problem.variables.size(); ++i)
-    EXPECT_EQ(anew["parameters"][file.problem.variables[i].name], stage.table.design(row)[i]);
+    EXPECT_EQ(evaluated["parameters"][file.problem.variables[i].name], stage.table.design(row)[i]);
   const auto expect = [&](const char* kind, const auto& infos, std::span<const double> recorded) {
-    ASSERT_EQ(anew[kind].size(), infos.size());
+    ASSERT_EQ(evaluated[kind].size(), infos.size());
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const double tolerance = file.algorithms == kAlgorithms ? 0 : 1e-12 * std::abs(recorded[i]);
-      EXPECT_NEAR(anew[kind][infos[i].name].template get<double>(), recorded[i], tolerance) << infos[i].name;
+      EXPECT_NEAR(evaluated[kind][infos[i].name].template get<double>(), recorded[i], tolerance) << infos[i].name;
     }
   };
   expect("objectives", file.problem.objectives, stage.table.objective_row(row));
   expect("constraints", file.problem.margins, stage.table.margin_row(row));
 }
 
-class OldStudiesOfOtherAlgorithms : public OldStudies {};
+class OldStudiesOfOtherVersions : public OldStudies {};
 
-TEST_P(OldStudiesOfOtherAlgorithms, AreRefusedByTheVersions) {
+TEST_P(OldStudiesOfOtherVersions, CannotBeResumed) {
   const OldStudy& old = GetParam();
   fetch(old.name + ".h5");
   const std::string before = slurp("s.h5");
   for (std::vector<std::string> arguments :
        {std::vector<std::string>{"resume", "s.h5"}, {"resume", "s.h5", "--generations", "50"}}) {
     EXPECT_EQ(run(arguments), 1);
-    EXPECT_EQ(output_, "pkmopt: s.h5 was written by pkmopt " + old.program + ", whose algorithms have version " +
+    EXPECT_EQ(output_, "pkmopt: s.h5: written by pkmopt " + old.program + " with algorithm version " +
                            std::to_string(old.algorithms) + "; this program has version " +
-                           std::to_string(kAlgorithms) + " and would not repeat it\n");
+                           std::to_string(kAlgorithms) + " and would not reproduce it\n");
   }
   EXPECT_EQ(slurp("s.h5"), before);
   EXPECT_EQ(files(), (std::set<std::string>{"s.h5", "output.txt"}));
 }
 
-class OldStudiesOfTheseAlgorithms : public OldStudies {};
+class OldStudiesOfThisVersion : public OldStudies {};
 
-// The straight study is of the program that was interrupted: its bits and this program's are compared.
-TEST_P(OldStudiesOfTheseAlgorithms, EndAsTheirOwnProgramEndedThem) {
+// The reference study was run without interruption by the original program.
+TEST_P(OldStudiesOfThisVersion, ResumedGiveTheResultOfTheOriginalProgram) {
   const std::string number = std::to_string(GetParam().algorithms);
   const StudyContents straight = read_study(PKM_TEST_DATA "/straight-algorithms-" + number + ".h5");
   ASSERT_EQ(straight.state, StudyState::finished);
@@ -170,18 +171,18 @@ std::string name_of_version(const ::testing::TestParamInfo<OldStudy>& info) {
   return "Version" + info.param.name.substr(info.param.name.size() - 1);
 }
 
-/// Those of this program's algorithms, or the others.
-std::vector<OldStudy> studies(bool of_these_algorithms) {
+/// The studies of this program's algorithm version, or the others.
+std::vector<OldStudy> studies(bool of_this_version) {
   std::vector<OldStudy> found;
   for (const OldStudy& study : kOldStudies)
-    if ((study.algorithms == kAlgorithms) == of_these_algorithms) found.push_back(study);
+    if ((study.algorithms == kAlgorithms) == of_this_version) found.push_back(study);
   return found;
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, OldStudies, ::testing::ValuesIn(kOldStudies), name_of_version);
-INSTANTIATE_TEST_SUITE_P(Refused, OldStudiesOfOtherAlgorithms, ::testing::ValuesIn(studies(false)), name_of_version);
-INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfTheseAlgorithms, ::testing::ValuesIn(studies(true)), name_of_version);
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OldStudiesOfTheseAlgorithms);  // until a release of theirs has files
+INSTANTIATE_TEST_SUITE_P(Refused, OldStudiesOfOtherVersions, ::testing::ValuesIn(studies(false)), name_of_version);
+INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfThisVersion, ::testing::ValuesIn(studies(true)), name_of_version);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OldStudiesOfThisVersion);  // a new version has no files yet
 
 }  // namespace
 }  // namespace pkm::testing

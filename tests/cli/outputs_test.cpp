@@ -1,4 +1,4 @@
-// -o wherever a command writes a file.
+// The option -o of all commands that write a file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(CliOutputs, TheShortOptionWritesWhatTheLongOneDoes) {
+TEST(CliOutputs, ShortAndLongOptionWriteTheSameFile) {
   const StudyFolder folder;
   const std::vector<std::string> commands[] = {
       {"coupling", "3crr-r-cru", "--cells", "4", "--csv"},
@@ -40,7 +40,7 @@ TEST(CliOutputs, TheShortOptionWritesWhatTheLongOneDoes) {
   }
 }
 
-TEST(CliOutputs, TheEndingSaysWhatAFileIs) {
+TEST(CliOutputs, ExtensionSelectsTheFormat) {
   const StudyFolder folder;
   const std::vector<std::string> plain = {"workspace", "4ppa-2par", "--cells", "8"};
   auto both = plain;
@@ -57,13 +57,14 @@ TEST(CliOutputs, TheEndingSaysWhatAFileIs) {
     EXPECT_EQ(refused.exit_code, 2);
     return refused.err;
   };
-  EXPECT_EQ(refusal({"-o", "w.dat"}),
-            "pkmopt: -o: found 'w.dat'; expected a file that ends in one of .csv, .html, .png, .stl, .svg, .vtkhdf\n");
+  EXPECT_EQ(
+      refusal({"-o", "w.dat"}),
+      "pkmopt: -o: found 'w.dat'; expected a file name that ends in one of .csv, .html, .png, .stl, .svg, .vtkhdf\n");
   EXPECT_EQ(refusal({"--csv", "a.csv", "-o", "b.csv"}),
-            "pkmopt: -o: found 'b.csv' beside 'a.csv'; expected one file of a kind\n");
+            "pkmopt: -o: found 'b.csv' in addition to 'a.csv'; expected one file per extension\n");
 }
 
-TEST(CliOutputs, ManualPagesAndCompletionKnowTheShortOption) {
+TEST(CliOutputs, ManualPagesAndCompletionContainTheShortOption) {
   EXPECT_THAT(pkmopt({"manual", "run"}).out, ::testing::HasSubstr("\n.B \\-o, \\-\\-output F.h5\n"));
   EXPECT_THAT(pkmopt({"completion", "bash"}).out, ::testing::HasSubstr("'run -o'"));
 }

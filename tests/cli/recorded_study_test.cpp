@@ -1,5 +1,5 @@
-// Study files whose numbers or text were changed and sealed again: each command compares both, and all treat a file
-// alike.
+// Study files whose recorded values or text were changed, with a valid checksum: every command compares text and
+// records, and all commands treat such a file in the same way.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -82,11 +82,11 @@ class RecordedStudy : public StudyProgram {
     StudyProgram::SetUp();
     std::ofstream(path("five-bar.toml")) << kMechanism;
     std::ofstream(path("study.toml")) << kStudyText;
-    ASSERT_EQ(run({"run", "study.toml", "-o", "sound.h5", "--quiet"}), 0) << output_;
-    sound_ = read("sound.h5");
+    ASSERT_EQ(run({"run", "study.toml", "-o", "unchanged.h5", "--quiet"}), 0) << output_;
+    unchanged_ = read("unchanged.h5");
   }
   void change(const std::function<void(StudyContents&)>& change) {
-    StudyContents contents = sound_;
+    StudyContents contents = unchanged_;
     change(contents);
     write_study(path("s.h5"), contents);
   }
@@ -102,16 +102,16 @@ class RecordedStudy : public StudyProgram {
   static std::vector<std::vector<std::string>> showing() {
     std::vector<std::vector<std::string>> all = {{"show", "s.h5"}, {"export", "s.h5", "--csv", "tables", "--force"}};
     try {
-      page_parts();
+      page_assets();
       all.push_back({"report", "s.h5", "--force"});
-    } catch (const std::exception&) {  // a build without the page
+    } catch (const std::exception&) {  // this build has no page
     }
     return all;
   }
-  StudyContents sound_;
+  StudyContents unchanged_;
 };
 
-TEST_F(RecordedStudy, SoundFilesGiveNoWarning) {
+TEST_F(RecordedStudy, UnchangedFilesGiveNoWarning) {
   change([](StudyContents&) {});
   for (auto commands : {evaluating(), showing(), {{"resume", "s.h5"}}})
     for (const auto& command : commands) {
@@ -120,7 +120,7 @@ TEST_F(RecordedStudy, SoundFilesGiveNoWarning) {
     }
 }
 
-TEST_F(RecordedStudy, ChangedValuesAreShownAndUsedWithOneWarning) {
+TEST_F(RecordedStudy, ChangedValuesAreUsedWithOneWarning) {
   const struct {
     std::function<void(StudyContents&)> change;
     std::string sentence;
@@ -151,7 +151,7 @@ TEST_F(RecordedStudy, ChangedValuesAreShownAndUsedWithOneWarning) {
                                                     {"resume", "s.h5", "--generations", "3"},
                                                     {"run", "study.toml", "-o", "s.h5", "--resume"}}) {
       EXPECT_EQ(run(command), 1) << output_;
-      EXPECT_THAT(output_, HasSubstr("pkmopt: s.h5 cannot be continued: it records ")) << command[0];
+      EXPECT_THAT(output_, HasSubstr("pkmopt: s.h5: cannot be continued: it records ")) << command[0];
       EXPECT_THAT(output_, HasSubstr(sentence)) << command[0];
     }
   }
@@ -162,7 +162,7 @@ TEST_F(RecordedStudy, ChangedValuesAreShownAndUsedWithOneWarning) {
   EXPECT_EQ(Json::parse(output_.substr(output_.find('{')))["parameters"]["d"], 0.17);
 }
 
-TEST_F(RecordedStudy, ChangedTextsAndNamesAreRefusedWhereSomethingWouldBeEvaluated) {
+TEST_F(RecordedStudy, ChangedTextsAndNamesAreRefusedByCommandsThatEvaluate) {
   const auto replace = [](std::string& text, const std::string& old, const std::string& with) {
     ASSERT_NE(text.find(old), std::string::npos) << old;
     text.replace(text.find(old), old.size(), with);
@@ -179,7 +179,7 @@ TEST_F(RecordedStudy, ChangedTextsAndNamesAreRefusedWhereSomethingWouldBeEvaluat
       [](StudyContents& c) { c.problem.margins[0].name = "breadth"; },
       [](StudyContents& c) { c.problem.parameters[0].name = "reach"; },
   };
-  const std::string sentence = "the study's text and what is recorded of it disagree: ";
+  const std::string sentence = "the text of the study does not match the recorded problem: ";
   for (std::size_t i = 0; i < std::size(cases); ++i) {
     change(cases[i]);
     for (const auto& command : evaluating()) {
@@ -192,7 +192,7 @@ TEST_F(RecordedStudy, ChangedTextsAndNamesAreRefusedWhereSomethingWouldBeEvaluat
       EXPECT_THAT(output_, HasSubstr(sentence)) << i << command[0];
     }
     EXPECT_EQ(run({"resume", "s.h5", "--generations", "3"}), 1) << i << output_;
-    EXPECT_THAT(output_, HasSubstr("s.h5 cannot be continued: " + sentence)) << i;
+    EXPECT_THAT(output_, HasSubstr("s.h5: cannot be continued: " + sentence)) << i;
   }
 }
 

@@ -1,4 +1,4 @@
-// report: files that are missing, damaged or there already. What the page shows is tested in tests/browser.
+// `pkmopt report`: missing, damaged and existing files. The contents of the page are tested in tests/browser.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ class ReportProgram : public StudyProgram {
   void SetUp() override {
     StudyProgram::SetUp();
     try {
-      page_parts();
+      page_assets();
     } catch (const std::exception& reason) {
       GTEST_SKIP() << reason.what();
     }
@@ -32,7 +32,7 @@ class ReportProgram : public StudyProgram {
   }
 };
 
-TEST_F(ReportProgram, IsCalledLikeTheStudyAndOverwritesNothingUnasked) {
+TEST_F(ReportProgram, IsNamedAfterTheStudyAndOverwritesNoFile) {
   ASSERT_EQ(run({"report", "study.h5"}), 0) << output_;
   EXPECT_THAT(output_, StartsWith("study.html: "));
   const std::string page = slurp("study.html");
@@ -51,7 +51,7 @@ TEST_F(ReportProgram, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(slurp("study.html"), page);
 }
 
-TEST_F(ReportProgram, DamagedAndMissingFilesAreSaidInOneSentence) {
+TEST_F(ReportProgram, DamagedAndMissingFilesAreReported) {
   std::string bytes = slurp("study.h5");
   bytes[bytes.size() / 2] ^= 1;
   std::ofstream(path("damaged.h5"), std::ios::binary) << bytes;
@@ -63,7 +63,7 @@ TEST_F(ReportProgram, DamagedAndMissingFilesAreSaidInOneSentence) {
   }
 }
 
-TEST_F(ReportProgram, ADesignHasAPageToo) {
+TEST_F(ReportProgram, WorkspaceWritesAPageOfOneDesign) {
   ASSERT_EQ(run({"workspace", "study.toml", "--html", "one.html"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("wrote one.html"));
   EXPECT_THAT(slurp("one.html"), HasSubstr("\"design\":{"));

@@ -1,4 +1,4 @@
-// Runs a program to its end and keeps what it printed.
+// Runs a program as a child process and captures its output.
 #pragma once
 
 #include <signal.h>
@@ -17,14 +17,14 @@
 namespace pkm::testing {
 
 struct ProgramResult {
-  int exit_code = -1;  ///< 128 + the signal's number where a signal ended the program; -1 when it was out of time
+  int exit_code = -1;  ///< 128 + signal number if a signal ended the program; -1 after a timeout
   std::string out, err;
 
-  /// What --json printed. Throws when stdout is no JSON.
+  /// Parses stdout, the output of --json. Throws if it is not JSON.
   nlohmann::json json() const { return nlohmann::json::parse(out); }
 };
 
-/// A file without a name that a child writes into.
+/// Temporary file without a name that captures the output of a child process.
 class Capture {
  public:
   Capture() : file_(std::tmpfile()) {
@@ -55,7 +55,7 @@ inline ProgramResult run_program(const std::vector<std::string>& command, const 
   argv.push_back(nullptr);
   const Capture out, err;
   const pid_t child = fork();
-  if (child == 0) {  // system calls only
+  if (child == 0) {  // between fork and exec only system calls are safe
     if (chdir(folder.c_str()) != 0 || dup2(out.descriptor(), 1) < 0 || dup2(err.descriptor(), 2) < 0) _exit(126);
     execv(argv[0], argv.data());
     _exit(127);
@@ -77,7 +77,7 @@ inline ProgramResult run_program(const std::vector<std::string>& command, const 
   return result;
 }
 
-/// The pkmopt of this build.
+/// Runs the pkmopt of this build.
 inline ProgramResult pkmopt(std::vector<std::string> arguments, const std::string& folder = ".") {
   arguments.insert(arguments.begin(), PKM_PROGRAM);
   return run_program(arguments, folder);

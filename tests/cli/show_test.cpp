@@ -1,4 +1,4 @@
-// show: also of a study whose text this program no longer reads, and of one that has found nothing feasible yet.
+// `pkmopt show`: studies whose text this program cannot read, infeasible best designs, rounded designs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,18 +35,18 @@ StudyContents interrupted(Status status) {
   return c;
 }
 
-TEST(CliShow, NeedsNotToUnderstandTheStudysText) {
+TEST(CliShow, WorksIfTheStudyTextCannotBeRead) {
   const StudyFolder folder;
   const std::string file = folder.path() + "/old.h5";
   write_study(file, interrupted(Status::feasible));
   const auto shown = pkmopt({"show", file});
   EXPECT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_THAT(shown.out, HasSubstr("best so far: a = 0.25, workspace-ratio = 0.125\n"));
-  EXPECT_THAT(shown.out, HasSubstr("note: this program cannot read the study's text, so references are left out ("));
+  EXPECT_THAT(shown.out, HasSubstr("note: this program cannot read the study's text, so references are omitted ("));
   EXPECT_THAT(shown.out, HasSubstr("forgotten"));
 }
 
-TEST(CliShow, SaysWhenTheBestSoFarIsNotFeasible) {
+TEST(CliShow, MarksAnInfeasibleBestDesign) {
   const StudyFolder folder;
   const std::string file = folder.path() + "/old.h5";
   write_study(file, interrupted(Status::infeasible));
@@ -54,7 +54,7 @@ TEST(CliShow, SaysWhenTheBestSoFarIsNotFeasible) {
               HasSubstr("best so far, which is infeasible: a = 0.25, workspace-ratio = 0.125\n"));
 }
 
-TEST(CliShow, SaysWhatIsWrongWithTheRoundedDesign) {
+TEST(CliShow, ExplainsProblemsOfTheRoundedDesign) {
   const StudyFolder folder;
   const std::string file = folder.path() + "/old.h5";
   StudyContents c = interrupted(Status::feasible);
@@ -79,7 +79,7 @@ TEST(CliShow, SaysWhatIsWrongWithTheRoundedDesign) {
   c.final->rounded->margins = {-0.5};
   write_study(file, c);
   EXPECT_THAT(pkmopt({"show", file}).out, HasSubstr("the rounded design is infeasible: a = 0.4 m lies outside its "
-                                                    "bounds; rail-length blocks, margin -0.5 m\n"));
+                                                    "bounds; rail-length is violated, margin -0.5 m\n"));
 }
 
 }  // namespace

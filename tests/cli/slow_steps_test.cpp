@@ -1,4 +1,4 @@
-// Steps that take long or have no end: results are stored before them, they are bounded, and stopped at once.
+// Long-running steps: results are stored before them, their time is limited, and signals stop them immediately.
 #include <gmock/gmock.h>
 
 #include "tests/cli/study_program.hpp"
@@ -10,7 +10,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kSoon = 2;  // s, beside other tests; 0.2 s on a quiet machine
+constexpr double kSoon = 2;  // s, with other tests running at the same time; 0.2 s on an idle machine
 
 class SlowSteps : public StudyProgram {
  protected:
@@ -18,7 +18,7 @@ class SlowSteps : public StudyProgram {
     StudyProgram::SetUp();
     fs::copy(std::string(PKM_TEST_DATA) + "/stops", folder_, fs::copy_options::recursive);
   }
-  /// Writes study.toml: a text of tests/data/stops with something else in place of a line's beginning.
+  /// Writes study.toml: a text of tests/data/stops in which `line` is replaced by `to`.
   void change(const std::string& file, const std::string& line, const std::string& to) const {
     std::ifstream in(path(file));
     std::ostringstream text;
@@ -30,7 +30,7 @@ class SlowSteps : public StudyProgram {
   void set_exact(const std::string& value) const {
     change("slow-exact.toml", "method = \"voxels\"", "method = \"voxels\"\nexact = " + value);
   }
-  /// Sends a signal once `file` holds final results. @return  seconds from there to the end
+  /// Sends a signal as soon as `file` contains final results. @return seconds from the signal to the end of the process
   double stop_in_final_step(ChildProcess& child, const std::string& file, int number, int& code) const {
     while (!fs::exists(path(file)) || !read(file).final) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     child.signal(number);
@@ -40,7 +40,7 @@ class SlowSteps : public StudyProgram {
   }
 };
 
-TEST_F(SlowSteps, ExactValuesAreGivenUpAndTheResultIsThere) {
+TEST_F(SlowSteps, ExactValuesAreAbandonedAfterTheTimeLimit) {
   set_exact("\"0.3 s\"");
   ASSERT_EQ(run({"run", "study.toml"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr(", then exact values of the final designs in at most 300 ms\n"));
@@ -52,11 +52,11 @@ TEST_F(SlowSteps, ExactValuesAreGivenUpAndTheResultIsThere) {
   const std::string note = "no exact values of the best design: they take longer than 300 ms ([workspace] exact)";
   EXPECT_THAT(found.notes, ElementsAre(note));
   EXPECT_THAT(output_, HasSubstr("note: " + note));
-  EXPECT_EQ(run({"resume", "study.h5"}), 0) << output_;  // and does not begin anew
-  EXPECT_THAT(output_, HasSubstr("nothing is left to do"));
+  EXPECT_EQ(run({"resume", "study.h5"}), 0) << output_;  // does not start again
+  EXPECT_THAT(output_, HasSubstr("the study is finished"));
 }
 
-TEST_F(SlowSteps, ExactValuesAreLeftOutWhereNobodyAsks) {
+TEST_F(SlowSteps, ExactValuesCanBeSwitchedOff) {
   set_exact("false");
   ASSERT_EQ(run({"run", "study.toml"}), 0) << output_;
   EXPECT_TRUE(read("study.h5").notes.empty());
@@ -65,7 +65,7 @@ TEST_F(SlowSteps, ExactValuesAreLeftOutWhereNobodyAsks) {
   EXPECT_THAT(output_, HasSubstr("no exact values of final designs"));
 }
 
-TEST_F(SlowSteps, TheKeyIsChecked) {
+TEST_F(SlowSteps, InvalidTimeLimitsAreRefused) {
   const std::string expected =
       "expected true, false, or the time that exact values may take: a time > 0 s, such as \"10 s\"";
   set_exact("\"0 s\"");
@@ -79,7 +79,7 @@ TEST_F(SlowSteps, TheKeyIsChecked) {
   EXPECT_THAT(output_, HasSubstr("this key belongs to method = \"voxels\""));
 }
 
-TEST_F(SlowSteps, ResultsAreStoredBeforeExactValuesAndSignalsStopThese) {
+TEST_F(SlowSteps, ResultsAreStoredBeforeExactValuesAreComputed) {
   set_exact("\"1 h\"");
   for (const int number : {SIGINT, SIGTERM}) {
     ChildProcess child(command({"run", "study.toml", "--force"}), folder_);
@@ -101,7 +101,7 @@ TEST_F(SlowSteps, ResultsAreStoredBeforeExactValuesAndSignalsStopThese) {
   EXPECT_EQ(read("study.h5").state, StudyState::interrupted);
 }
 
-TEST_F(SlowSteps, AnEvaluationWithoutEndIsStopped) {
+TEST_F(SlowSteps, SignalsStopAVeryLongEvaluation) {
   for (const int number : {SIGINT, SIGTERM}) {
     ChildProcess child(command({"run", "slow-evaluations.toml", "--quiet", "--output", "slow.h5", "--force"}), folder_);
     while (!fs::exists(path("slow.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -120,10 +120,10 @@ TEST_F(SlowSteps, AnEvaluationWithoutEndIsStopped) {
   EXPECT_THAT(output_, HasSubstr("stopped by time limit"));
 }
 
-TEST_F(SlowSteps, CheckEnds) {
+TEST_F(SlowSteps, CheckIsLimitedInTime) {
   const auto begin = Clock::now();
   EXPECT_EQ(run({"check", "slow-evaluations.toml"}), 0) << output_;
-  EXPECT_THAT(output_, ::testing::AnyOf(HasSubstr("no designs were tried, because one takes too long"),
+  EXPECT_THAT(output_, ::testing::AnyOf(HasSubstr("no sample designs were evaluated, because one takes too long"),
                                         HasSubstr("more would take longer than 10 s")));
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 60);
 }

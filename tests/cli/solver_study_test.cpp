@@ -1,4 +1,5 @@
-// Solver stages through the built program: killed inside NLopt and inside Ipopt, stopped by Ctrl-C, extended, refused.
+// Studies with solver stages, run by the built program: killed inside NLopt and Ipopt, stopped by Ctrl-C, extended;
+// incompatible settings.
 #include <gmock/gmock.h>
 
 #include "tests/cli/run_program.hpp"
@@ -98,7 +99,7 @@ TEST_F(SolverProgram, CtrlCStopsInsideASolver) {
   }
 }
 
-TEST_F(SolverProgram, AStageThatIsStoppedInItsFirstStartHasNoStarts) {
+TEST_F(SolverProgram, StageStoppedInItsFirstStartHasNoStarts) {
   write_toml(kSlsqp, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "s.h5", "--time", "0.0001", "--quiet"}), 3) << output_;
   ASSERT_EQ(run({"show", "s.h5"}), 0) << output_;
@@ -118,7 +119,7 @@ TEST_F(SolverProgram, ShowsStartsOptimalityAndSensitivities) {
   for (const char* part :
        {"stage 1: nlopt, 3 starts, ", "Sobol point 1", "converged (", "first-order optimality ",
         "workspace-shape  constraint ", "lower bound ",
-        "sensitivity of workspace-ratio [rad], of each unit the greatest first", "as built", "reoptimised"})
+        "sensitivity of workspace-ratio [rad], largest first within each unit", "as built", "reoptimised"})
     EXPECT_THAT(output_, HasSubstr(part));
   ASSERT_EQ(run({"show", "s.h5", "--json"}), 0);
   const auto json = nlohmann::json::parse(output_);
@@ -158,7 +159,8 @@ TEST_F(SolverProgram, ATimeLimitIsRecordedAndReplayed) {
   write_toml("[[stage]]\noptimiser = \"nlopt\"\nmultistart = 2\ntime = \"0 s\"\n" + std::string(kSlsqp), "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "s.h5"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("time limit"));
-  EXPECT_THAT(output_, HasSubstr("note: the clock ended a start, so another run with this seed may end elsewhere"));
+  EXPECT_THAT(output_,
+              HasSubstr("note: a time limit ended a start, so another run with this seed may give another result"));
   const StudyContents before = read("s.h5");
   EXPECT_FALSE(before.reproducible());
   ASSERT_EQ(run({"resume", "s.h5", "--evaluations", "2000", "--quiet"}), 0) << output_;
@@ -186,7 +188,7 @@ TEST_F(SolverProgram, AFinishedStudyGetsMoreEvaluations) {
   }
 }
 
-TEST_F(SolverProgram, CheckNamesBothSidesOfWhatDoesNotFit) {
+TEST_F(SolverProgram, CheckReportsIncompatibleSettings) {
   const auto message = [&](const std::string& stage, const std::string& from = "", const std::string& to = "") {
     write_toml(stage, "");
     std::string text;

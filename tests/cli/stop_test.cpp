@@ -1,5 +1,4 @@
-// Studies through the built program that are killed at random instants, stopped by signals or by the clock, and
-// resumed.
+// Studies that are killed at random times, stopped by signals or time limits, and resumed.
 #include <array>
 
 #include "tests/cli/ga_program.hpp"
@@ -33,7 +32,7 @@ TEST_F(GaProgram, AChainOfKillsEndsTheSame) {
   EXPECT_EQ(first_difference(read("straight.h5"), read("chain.h5")), "");
 }
 
-TEST_F(GaProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
+TEST_F(GaProgram, SignalsStopWithACheckpointAndTheResumeCommand) {
   write_toml(3000, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   int stopped = 0;
@@ -54,7 +53,7 @@ TEST_F(GaProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
       EXPECT_EQ(read(file).state, StudyState::interrupted);
       EXPECT_NE(output.find(number == SIGINT ? "stopped by SIGINT after" : "stopped by SIGTERM after"),
                 std::string::npos);
-      EXPECT_NE(output.find("go on with: pkmopt resume " + file), std::string::npos) << output;
+      EXPECT_NE(output.find("resume with: pkmopt resume " + file), std::string::npos) << output;
       ASSERT_EQ(run({"resume", file}), 0) << output_;
     }
     EXPECT_EQ(first_difference(read("straight.h5"), read(file)), "");
@@ -82,14 +81,14 @@ TEST_F(GaProgram, ASignalStopsAllSeeds) {
   while (!fs::exists(path("study-seed-9.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   child.signal(SIGINT);
   EXPECT_EQ(child.wait(), 3) << child.output();
-  EXPECT_NE(child.output().find("go on with: pkmopt run study.toml --seeds 1000 --seed 7 --resume --output study.h5"),
+  EXPECT_NE(child.output().find("resume with: pkmopt run study.toml --seeds 1000 --seed 7 --resume --output study.h5"),
             std::string::npos)
       << child.output();
   EXPECT_NE(child.output().find("of 1000 seeds"), std::string::npos);
   EXPECT_FALSE(fs::exists(path("study-seed-500.h5")));
 }
 
-TEST_F(GaProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
+TEST_F(GaProgram, ATimeLimitStopsEarlyAndTheStudyCanBeResumed) {
   write_toml(3000, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   {
@@ -104,7 +103,7 @@ TEST_F(GaProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
   EXPECT_EQ(first_difference(read("straight.h5"), read("t.h5")), "");
 }
 
-TEST_F(GaProgram, AHangupThatIsIgnoredEndsNothing) {
+TEST_F(GaProgram, AnIgnoredHangupDoesNotStopTheRun) {
   write_toml(60);
   ChildProcess child(command({"run", "study.toml", "--quiet"}), folder_, {.ignores_hangup = true});
   while (!fs::exists(path("study.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -1,4 +1,4 @@
-// A fresh folder for a test's files, removed at the end.
+// Temporary folder for the files of a test, removed by the destructor.
 #pragma once
 
 #include <cstdlib>
@@ -29,7 +29,7 @@ class StudyFolder {
   std::string path_;
 };
 
-/// A study of the paper's machine: `more` follows the mechanism and its variables.
+/// Text of a study of 4PPa-2PaR. @param more  inserted after the mechanism and its variables
 inline std::string study_with(const std::string& more) {
   return "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.15, max = 0.3 }\nb = { min = 0.7, max = 1.5 "
          "}\n" +

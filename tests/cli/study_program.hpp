@@ -1,4 +1,4 @@
-// The built program on studies in a folder of its own.
+// Test fixture that runs the built program in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace pkm::testing {
 
 namespace fs = std::filesystem;
 
-/// A fresh folder for studies, removed at the end, and the program run in it.
+/// A temporary folder for studies, and functions that run the program in it.
 class StudyProgram : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -41,9 +41,9 @@ class StudyProgram : public ::testing::Test {
   std::string path(const std::string& name) const { return folder_ + "/" + name; }
   StudyContents read(const std::string& name) const { return read_study(path(name)); }
 
-  /// Runs study.toml into files that are killed by SIGKILL at random instants and resumed; each must end like the run
-  /// that nobody disturbed. At least half of so many kills must hit a study on its way; where other programs make runs
-  /// shorter or longer than the first one was, more are tried.
+  /// Runs study.toml several times, kills each run by SIGKILL at a random time and resumes it. Expects that each result
+  /// is bit-identical to that of a run without interruption, and that at least `kills` / 2 runs were killed while the
+  /// study was running. If fewer were, because other processes change the duration of a run, more runs are killed.
   void kill_at_random(int kills, unsigned seed) {
     const auto begin = std::chrono::steady_clock::now();
     ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
@@ -76,8 +76,8 @@ class StudyProgram : public ::testing::Test {
       identical += difference.empty();
       ++tried;
     }
-    std::cout << tried << " runs killed by SIGKILL, " << killed_while_running << " of them with a study on its way, "
-              << identical << " ended bit-identical after resuming\n";
+    std::cout << tried << " runs killed by SIGKILL, " << killed_while_running
+              << " of them while the study was running, " << identical << " ended bit-identical after resuming\n";
     EXPECT_GE(killed_while_running, kills / 2);
   }
 

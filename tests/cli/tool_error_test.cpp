@@ -1,4 +1,4 @@
-// pose --joint-error: what errors of the joints do to the tool, beside forward kinematics of joints that are wrong.
+// `pkmopt pose --joint-error`: first-order tool errors, compared with forward kinematics of perturbed joints.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-/// Greatest difference of each coordinate, and greatest translation, over all signs of the joints' errors.
+/// Maximum difference of each coordinate and maximum translation over all signs of the joint errors, by forward
+/// kinematics.
 std::pair<json, double> by_forward(const std::string& mechanism, const std::string& at, const json& pose,
                                    double error) {
   json worst = json::object();
@@ -40,7 +41,7 @@ std::pair<json, double> by_forward(const std::string& mechanism, const std::stri
   return {worst, longest};
 }
 
-TEST(CliToolError, IsWhatForwardKinematicsFinds) {
+TEST(CliToolError, AgreesWithForwardKinematics) {
   const std::pair<std::string, std::string> cases[] = {
       {"4ppa-2par", "x=0.25,y=0.85,z=-0.8,theta=30deg"},
       {PKM_EXPERIMENTS "/mechanisms/3-rpr.toml", "x=0.5,y=0.3,phi=0.1"}};
@@ -55,7 +56,7 @@ TEST(CliToolError, IsWhatForwardKinematicsFinds) {
   }
 }
 
-TEST(CliToolError, JointsCanHaveErrorsOfTheirOwn) {
+TEST(CliToolError, JointErrorsByName) {
   const auto pose = [](const std::string& error) {
     return pkmopt({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg", "--joint-error", error, "--json"})
         .json();
@@ -66,10 +67,11 @@ TEST(CliToolError, JointsCanHaveErrorsOfTheirOwn) {
   EXPECT_LT(one["tool_error"]["translation"], pose("20um")["tool_error"]["translation"]);
 }
 
-TEST(CliToolError, IsToldInMicrometresAndDegrees) {
-  const auto told = pkmopt({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg", "--joint-error", "10um"});
-  EXPECT_THAT(told.out, HasSubstr("e-05 m (32.3737 um)\n"));
-  EXPECT_THAT(told.out, HasSubstr(" deg)\n  translation  "));
+TEST(CliToolError, IsPrintedInMicrometresAndDegrees) {
+  const auto printed =
+      pkmopt({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg", "--joint-error", "10um"});
+  EXPECT_THAT(printed.out, HasSubstr("e-05 m (32.3737 um)\n"));
+  EXPECT_THAT(printed.out, HasSubstr(" deg)\n  translation  "));
   const auto refused = pkmopt({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=0", "--joint-error", "10deg"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("--joint-error: found 10deg; expected a number in m"));

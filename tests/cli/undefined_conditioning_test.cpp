@@ -1,4 +1,4 @@
-// The conditioning where it is undefined: refused by every command that would compute with it, and never 0.
+// Mechanisms whose conditioning is undefined: every command that needs it refuses, and it is never reported as 0.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kRadius = "so [platform] needs characteristic_radius";
-const std::string kBoth = "so [platform] needs characteristic_length and characteristic_radius";
+const std::string kRadius = "[platform] needs characteristic_radius";
+const std::string kBoth = "[platform] needs characteristic_length and characteristic_radius";
 
-/// A folder with both robots, and the study of each.
+/// A folder with two robots and a study of each.
 class UndefinedConditioning : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -29,7 +29,7 @@ class UndefinedConditioning : public ::testing::Test {
     all << std::ifstream(PKM_TEST_DATA "/robots/" + name + ".toml").rdbuf();
     return all.str();
   }
-  /// Writes the robot with another line behind one that it has.
+  /// Writes the robot's file with a line inserted after the line that contains `after`.
   void write_with(const std::string& robot, const std::string& after, const std::string& line) const {
     std::string file = text(robot);
     const std::size_t at = file.find(after);
@@ -41,16 +41,16 @@ class UndefinedConditioning : public ::testing::Test {
   StudyFolder folder_;
 };
 
-TEST_F(UndefinedConditioning, IsRefusedByStudiesAtItsLine) {
+TEST_F(UndefinedConditioning, IsRefusedByStudiesWithItsLine) {
   for (const char* command : {"check", "run", "evaluate"}) {
     const auto slide = run({command, "crank-and-slide-study.toml"});
     EXPECT_EQ(slide.exit_code, 2) << slide.out;
     EXPECT_THAT(slide.err, HasSubstr("crank-and-slide-study.toml:10: objective[1].type: "));
-    EXPECT_THAT(slide.err, HasSubstr("its drives are lengths and angles, " + kRadius));
+    EXPECT_THAT(slide.err, HasSubstr("its drives mix lengths and angles; " + kRadius));
     const auto scara = run({command, "double-scara-study.toml"});
     EXPECT_EQ(scara.exit_code, 2) << scara.out;
     EXPECT_THAT(scara.err, HasSubstr("double-scara-study.toml:11: objective[1].type: "));
-    EXPECT_THAT(scara.err, HasSubstr("its coordinates and its drives are lengths and angles, " + kBoth));
+    EXPECT_THAT(scara.err, HasSubstr("its coordinates and its drives mix lengths and angles; " + kBoth));
   }
 }
 
@@ -61,7 +61,7 @@ TEST_F(UndefinedConditioning, IsRefusedInFormulasAndRegions) {
   folder_.write("crank-and-slide-study.toml", study);
   const auto found = run({"check", "crank-and-slide-study.toml"});
   EXPECT_EQ(found.exit_code, 2) << found.out;
-  EXPECT_THAT(found.err, HasSubstr("names conditioning_mean, and the conditioning of mechanism mix is undefined"));
+  EXPECT_THAT(found.err, HasSubstr("uses conditioning_mean, but the conditioning of mechanism mix is undefined"));
   EXPECT_THAT(found.err, HasSubstr(kRadius));
 }
 
@@ -88,9 +88,9 @@ TEST_F(UndefinedConditioning, IsAbsentFromPosesAndWorkspaces) {
   EXPECT_THAT(check.out.substr(check.out.find("not available, and why")), HasSubstr(kRadius));
 }
 
-/// Means over the cells of both studies, computed apart from the program (numpy: closed-form cranks, J by the closure,
-/// singular values).
-TEST_F(UndefinedConditioning, IsThatOfTheScaledJacobianWithARadius) {
+/// The expected values are means over the cells of both studies, computed independently with numpy (closed-form cranks,
+/// J from the loop-closure equations, singular values).
+TEST_F(UndefinedConditioning, IsDefinedByACharacteristicRadius) {
   const auto mean_of = [&](const std::string& study) {
     const auto found = run({"evaluate", study, "--json"});
     EXPECT_EQ(found.exit_code, 0) << found.err;
@@ -102,7 +102,7 @@ TEST_F(UndefinedConditioning, IsThatOfTheScaledJacobianWithARadius) {
   EXPECT_NEAR(mean_of("double-scara-study.toml"), 0.4053991262321131, 1e-12);
 }
 
-TEST_F(UndefinedConditioning, ADesignWhoseRadiusIsNotPositiveFailsWithItsReason) {
+TEST_F(UndefinedConditioning, ANonPositiveRadiusFailsWithAReason) {
   write_with("crank-and-slide", "coordinates", "characteristic_radius = \"0.25 - a\"");
   const auto study = run({"evaluate", "crank-and-slide-study.toml", "--set", "a=250mm"});
   EXPECT_THAT(study.out + study.err,

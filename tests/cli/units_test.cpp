@@ -1,4 +1,4 @@
-// Units on the command line and in what is printed.
+// Units on the command line and in the output.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,15 +24,15 @@ TEST(CliUnits, AnglesArePrintedInDegreesToo) {
   EXPECT_THAT(forward.out, HasSubstr("  0.523598775598 rad (30 deg)  below,below\n"));
 }
 
-TEST(CliUnits, DegreesTypedAsRadiansAreNoticed) {
-  const std::string note = "note       theta is more than a turn; degrees are typed theta=30deg\n";
+TEST(CliUnits, AnglesAboveOneRevolutionGiveANote) {
+  const std::string note = "note       theta exceeds one revolution; for degrees, write theta=30deg\n";
   EXPECT_THAT(pkmopt({"pose", "4ppa-2par", "--at", "x=0.3,y=1.2,z=-1,theta=30"}).out, HasSubstr(note));
   const auto cut = pkmopt({"workspace", "4ppa-2par", "--cells", "4", "--cut", "theta=30"});
-  EXPECT_THAT(cut.out, HasSubstr("theta is more than a turn; degrees are typed theta=30deg\n"));
+  EXPECT_THAT(cut.out, HasSubstr("theta exceeds one revolution; for degrees, write theta=30deg\n"));
   EXPECT_THAT(pkmopt({"pose", "4ppa-2par", "--at", "x=0.3,y=1.2,z=-1,theta=6"}).out, Not(HasSubstr("note")));
 }
 
-TEST(CliUnits, ListsGoOnWithoutTheirOption) {
+TEST(CliUnits, ListsContinueWithoutRepeatingTheOption) {
   const auto volume = [](std::vector<std::string> words) {
     words.insert(words.begin(), {"workspace", "4ppa-2par", "--json"});
     return pkmopt(words).json()["volume"];
@@ -42,7 +42,7 @@ TEST(CliUnits, ListsGoOnWithoutTheirOption) {
   EXPECT_EQ(volume({"--cells", "6", "--cut", "theta=0", "x=0.3"}), volume({"--cells", "6", "--cut", "theta=0,x=0.3"}));
 }
 
-TEST(CliUnits, AVolumeOverASizeIsNoAngle) {
+TEST(CliUnits, AVolumeRatioIsNotPrintedInDegrees) {
   const auto ratio = pkmopt({"evaluate", "experiments/4ppa-2par/paper-problem.toml"}, PKM_EXPERIMENTS "/..");
   EXPECT_THAT(ratio.out, HasSubstr(" rad"));
   EXPECT_THAT(ratio.out, Not(HasSubstr(" deg)")));

@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""Runs what pages show on a terminal: console.py PROGRAM PAGE.md...; with --write before PROGRAM it puts what came out
-into the pages instead of comparing it.
+"""Tests the terminal sessions on pages: console.py [--write] PROGRAM PAGE.md...
 
-A block ```console holds commands after `$ ` and what they print, on stdout and stderr. The commands of a page run one
-after the other in one empty folder, in which `pkmopt` is PROGRAM, `pkmopt-check-proof` its neighbour, `experiments`,
-`benchmarks` and `tests` are those of the repository, and the page's files are: a block ```{code-block} with
-`:caption: NAME`, or one below a line `<!-- NAME -->`, is written to NAME before the commands that stand below it. A
-command has to succeed, unless `$ echo $?` comes next. It runs on two threads.
+Runs the commands that the pages show and compares their output with the pages. With --write it writes the new output
+into the pages instead.
 
-What is printed has to be what the page shows, but for the number of spaces between words and for what every run has
-of its own, whose values are not compared: times (a number before ns, us, ms, s, min or h), numbers of threads, shares
-of time ("59 % on", "0.0 % of the time"), sizes of files (kB, MB), the revision behind the version, and what an estimate
-says of exact values, which it does if they take longer than it waits. A line `...` stands for any lines, `...` at the
-end of a line for its rest."""
+A block ```console contains commands after `$ ` and their output, from stdout and stderr. The commands of a page run one
+after the other in one temporary folder. In it, `pkmopt` is PROGRAM, `pkmopt-check-proof` is the program beside it, and
+`experiments`, `benchmarks` and `tests` are links to those of the repository. A block ```{code-block} with
+`:caption: NAME`, or any block below a line `<!-- NAME -->`, is written to the file NAME before the commands that follow
+it. A command has to succeed unless `$ echo $?` follows. It runs on two threads.
+
+The output has to match the page. Whitespace and values that differ from run to run are not compared: times (a number
+before ns, us, ms, s, min or h), numbers of threads, shares of time ("59 % on", "0.0 % of the time"), file sizes (kB,
+MB), the revision after the version, and the part of a cost estimate about exact values, which is printed only if they
+take long. A line `...` matches any number of lines, `...` at the end of a line matches its rest."""
 import os
 import re
 import subprocess
@@ -21,7 +22,7 @@ import tempfile
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-OWN_TO_EACH_RUN = [
+VARIABLE_PARTS = [
     (r", then exact values of the final designs in at most .*", ""),
     (r"\d[\d.]* (ns|us|ms|s|min|h)\b", "TIME"),
     (r"\d+ threads?\b", "THREADS"),
@@ -30,32 +31,32 @@ OWN_TO_EACH_RUN = [
     (r"(?<=\d )\([0-9a-f]{12}\S*\)", "(REVISION)"),
     (r"\s+", " "),
 ]
-# What a run says now and then, where it takes long: on a busy machine.
+# Progress messages, which appear only in long runs or on a busy machine.
 PROGRESS = re.compile(r"(stage \d+ of \d+: )?\S+ generation \d+, \d+ evaluations, .* left|final step: .*"
-                      r"|pkmopt: (measuring what an evaluation takes|evaluating .*|\S+ is computing, Ctrl-C ends it)")
+                      r"|pkmopt: (measuring the time of an evaluation|evaluating .*|\S+ is computing, Ctrl-C ends it)")
 
 
 def comparable(line):
-    for pattern, stand_in in OWN_TO_EACH_RUN:
-        line = re.sub(pattern, stand_in, line)
+    for pattern, replacement in VARIABLE_PARTS:
+        line = re.sub(pattern, replacement, line)
     return line.strip()
 
 
-def same(shown, printed):
-    """Whether lines that a page shows stand for those that were printed."""
+def matches(shown, printed):
+    """Return whether the printed lines match the lines on the page."""
     if not shown:
         return not printed
     if shown[0].strip() == "...":
-        return any(same(shown[1:], printed[i:]) for i in range(len(printed) + 1))
+        return any(matches(shown[1:], printed[i:]) for i in range(len(printed) + 1))
     if not printed:
         return False
     a, b = comparable(shown[0]), comparable(printed[0])
     equal = b.startswith(a[:-3].rstrip()) if a.endswith("...") else a == b
-    return equal and same(shown[1:], printed[1:])
+    return equal and matches(shown[1:], printed[1:])
 
 
 def blocks_of(lines):
-    """(first line, end, language, caption) of each fenced block; the lines are those between the fences."""
+    """Generate (begin, end, language, caption) of each fenced block; begin and end exclude the fences and options."""
     begin = None
     for number, line in enumerate(lines):
         if begin is None and line.startswith("```"):
@@ -73,7 +74,7 @@ def blocks_of(lines):
 
 
 def commands_of(lines):
-    """(command, lines shown below it) of a console block."""
+    """Return a list of (command, output lines), both as lists of lines, of a console block."""
     found = []
     for line in lines:
         if line.startswith("$ "):
@@ -83,12 +84,12 @@ def commands_of(lines):
         elif found:
             found[-1][1].append(line)
         else:
-            sys.exit(f"a block console begins with '{line}', not with a command after '$ '")
+            sys.exit(f"a console block begins with '{line}'; expected a command after '$ '")
     return found
 
 
 class Folder:
-    """Where the commands of a page run."""
+    """The temporary folder in which the commands of a page run, and the exit code of the last command."""
 
     def __init__(self, path, program):
         self.path, self.code = path, 0
@@ -112,7 +113,8 @@ class Folder:
         return [line for line in done.stdout.splitlines() if not PROGRESS.fullmatch(line)]
 
 
-def faults_of(page, program, write):
+def find_faults(page, program, write):
+    """Run the commands of a page; return descriptions of failures and differences. With write, update the page."""
     lines, faults, written, copied = page.read_text().splitlines(), [], [], 0
     with tempfile.TemporaryDirectory() as scratch:
         folder = Folder(Path(scratch), program)
@@ -126,11 +128,11 @@ def faults_of(page, program, write):
             commands = commands_of(lines[begin:end])
             for number, (command, shown) in enumerate(commands):
                 printed = folder.run("\n".join(command).removeprefix("$ "))
-                told = number + 1 < len(commands) and commands[number + 1][0] == ["$ echo $?"]
-                if folder.code != 0 and not told:
+                may_fail = number + 1 < len(commands) and commands[number + 1][0] == ["$ echo $?"]
+                if folder.code != 0 and not may_fail:
                     faults.append("\n".join([f"{page}:{begin}: {command[0]}", f"  ends with code {folder.code}",
                                              *printed]))
-                fits = same(shown, printed)
+                fits = matches(shown, printed)
                 if not fits:
                     faults.append("\n".join([f"{page}:{begin}: {command[0]}", "shown:", *shown, "printed:", *printed]))
                 written += [*command, *(shown if fits else printed)]
@@ -143,7 +145,7 @@ def main():
     arguments = sys.argv[1:]
     write = arguments[0] == "--write"
     program, *pages = map(Path, arguments[write:])
-    faults = [fault for page in pages for fault in faults_of(page, program, write)]
+    faults = [fault for page in pages for fault in find_faults(page, program, write)]
     for fault in faults:
         print(fault, end="\n\n")
     sys.exit(bool(faults) and not write)

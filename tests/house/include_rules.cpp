@@ -9,20 +9,21 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// A folder of engine/ may include itself and those before it.
-const Words kOrder = {"core",  "math",       "graph",   "model",      "motion",  "dynamics", "mechanism", "survey",
-                      "limbs", "mechanisms", "problem", "optimisers", "storage", "setup",    "study",     "report"};
+// Layers of engine/, lowest first. A folder may include itself and lower layers.
+const Words kLayers = {"core",      "math",      "expression", "geometry",     "motion",  "dynamics",
+                       "mechanism", "workspace", "generic",    "accelerators", "problem", "optimisers",
+                       "storage",   "config",    "runner",     "report"};
 
-// Where the headers of a library may be included.
+// The folders in which the headers of a library may be included.
 struct Library {
-  std::string start;  // of its headers' names
+  std::string start;  // of the names of its headers
   Words folders;
 };
 const std::vector<Library> kLibraries = {
     {"hdf5.h", {"engine/storage"}},
     {"xxhash.h", {"engine/storage"}},
     {"Random123/", {"engine/math"}},
-    {"toml++/", {"engine/setup"}},
+    {"toml++/", {"engine/config"}},
     {"nlopt.h", {"engine/optimisers"}},
     {"omp.h", {"engine/core"}},
     {"mpi.h", {"engine/core"}},
@@ -31,16 +32,16 @@ const std::vector<Library> kLibraries = {
     {"CLI/", {"experiments/app"}},
     {"zlib.h", {"experiments/app"}},
 };
-// May be included everywhere.
+// Headers that may be included everywhere.
 const Words kSystem = {"Eigen/", "sys/", "unistd.h", "fcntl.h", "sched.h", "signal.h", "spawn.h"};
 
-// Not although the order would allow it, and why.
+// Includes that are forbidden although the layering would allow them, with the reason.
 struct Ban {
   std::string from, to, reason;
 };
 const std::vector<Ban> kBans = {
-    {"engine/storage", "engine/optimisers", "what is stored is data of engine/problem"},
-    {"engine/report", "engine/study", "study and report do not include each other"},
+    {"engine/storage", "engine/optimisers", "storage uses the data structures of engine/problem only"},
+    {"engine/report", "engine/runner", "runner and report must not include each other"},
 };
 
 bool one_of(const std::string& word, const Words& words) { return std::ranges::find(words, word) != words.end(); }
@@ -57,65 +58,71 @@ std::string folder_of(const std::string& path) {
   return path.substr(0, second == std::string::npos ? first : second);
 }
 
-/// Place of an engine folder in the order; -1 for every other folder.
-int place(const std::string& folder) {
+/// Layer number of an engine folder; -1 for every other folder.
+int layer(const std::string& folder) {
   if (!folder.starts_with("engine/")) return -1;
-  const auto found = std::ranges::find(kOrder, folder.substr(7));
-  return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());
+  const auto found = std::ranges::find(kLayers, folder.substr(7));
+  return found == kLayers.end() ? -1 : static_cast<int>(found - kLayers.begin());
 }
 
-/// "hybrid" of "engine/mechanisms/hybrid/survey.hpp"; "" where a folder of the engine has no rooms, or not for it.
-std::string room_of(const std::string& path) {
+/// Subfolder of an engine folder that contains the file: "hybrid" for "engine/accelerators/hybrid/survey.hpp"; "" if
+/// the file is not in a subfolder.
+std::string subfolder_of(const std::string& path) {
   const std::string rest = path.substr(std::min(path.size(), folder_of(path).size() + 1));
   const auto end = rest.find('/');
   return path.starts_with("engine/") && end != std::string::npos ? rest.substr(0, end) : "";
 }
 
-/// "" or why a file may not include a header of ours.
-std::string refuse_own(const std::string& path, const std::string& header) {
+/// Why a file may not include a header of this project; "" if it may.
+std::string check_own_header(const std::string& path, const std::string& header) {
   const std::string from = folder_of(path), to = folder_of(header);
   if (to.empty() ||
       !starts_with_one_of(to, {"engine", "objectives", "constraints", "experiments", "tests", "benchmarks"}))
-    return "headers are named from the repository's root";
+    return "header paths must be relative to the repository root";
   if (from == to || from == "experiments/app" || from == "tests" || from == "benchmarks") {
     const bool climbs = from == "experiments/app" && (to == "tests" || to == "benchmarks");
-    const std::string here = room_of(path), there = room_of(header);
-    if (!here.empty() && !there.empty() && here != there) return "the rooms of " + to + " do not include each other";
-    return climbs ? "nothing includes " + to : "";
+    const std::string here = subfolder_of(path), there = subfolder_of(header);
+    if (!here.empty() && !there.empty() && here != there) return "subfolders of " + to + " must not include each other";
+    return climbs ? "the program must not include " + to : "";
   }
   if (from == "experiments/checker")
-    return to == "engine/graph" || to == "engine/math" ? "" : "it shares the reader of formulas and the intervals only";
-  // The reader of descriptions makes the mechanisms that they describe, and knows no other.
-  const bool made = path.starts_with("engine/setup/mechanism_") && room_of(header) == "described";
-  if (to == "engine/mechanisms") return made ? "" : "a mechanism is known by engine/mechanism alone";
+    return to == "engine/expression" || to == "engine/math"
+               ? ""
+               : "the proof checker may use engine/expression and engine/math only";
+  // The reader of mechanism files builds generic mechanisms; nothing else depends on how a mechanism is evaluated.
+  const bool builds = (path.starts_with("engine/config/mechanism_") && to == "engine/generic") ||
+                      path == "engine/config/built_in_mechanisms.cpp";
+  if (!builds && (to == "engine/generic" || to == "engine/accelerators"))
+    return "mechanisms are used through engine/mechanism only";
   if (from == "objectives" || from == "constraints")
-    return place(to) >= 0 && place(to) <= place("engine/problem")
+    return layer(to) >= 0 && layer(to) <= layer("engine/problem")
                ? ""
                : from + " may include engine/core to engine/problem only";
-  if (place(from) < 0) return from + " is no folder of the house";
-  if (place(to) < 0) return "engine includes nothing but engine";
+  if (layer(from) < 0) return from + " is not a known folder";
+  if (layer(to) < 0) return "engine may include engine only";
   for (const Ban& ban : kBans)
     if (ban.from == from && ban.to == to) return ban.reason;
-  return place(to) <= place(from) ? "" : from + " comes before " + to;
+  return layer(to) <= layer(from) ? "" : from + " is a lower layer than " + to;
 }
 
-/// "" or why the file may not include an outside header.
-std::string refuse_outside(const std::string& path, const std::string& header) {
+/// Why a file may not include an external header; "" if it may.
+std::string check_external_header(const std::string& path, const std::string& header) {
   const std::string folder = folder_of(path);
   if (folder == "tests" || folder == "benchmarks") return "";
   if (starts_with_one_of(header, kSystem)) return "";
   const auto library =
       std::ranges::find_if(kLibraries, [&](const Library& each) { return header.starts_with(each.start); });
   if (library == kLibraries.end())
-    return header.find_first_of("/.") == std::string::npos ? "" : "is in no list of tests/house/include_rules.cpp";
+    return header.find_first_of("/.") == std::string::npos ? "" : "is not listed in tests/house/include_rules.cpp";
   if (!one_of(folder, library->folders)) {
     std::string folders;
     for (const auto& each : library->folders) folders += (folders.empty() ? "" : " or ") + each;
-    return "belongs to " + folders;
+    return "may be included in " + folders + " only";
   }
-  // The program's headers are its own affair, as those are that CMakeLists.txt does not install: no user includes them.
+  // Headers that CMakeLists.txt does not install, such as those of the program, may include the library: users of the
+  // installed package do not see them.
   const bool own = folder == "experiments/app" || path == "engine/report/json_text.hpp";
-  return path.ends_with(".cpp") || own ? "" : "may appear in .cpp files only";
+  return path.ends_with(".cpp") || own ? "" : "may be included in .cpp files only";
 }
 
 const std::regex kInclude(R"(^\s*#\s*include\s*(["<])([^">]+)[">].*$)");
@@ -130,31 +137,31 @@ bool includes_first(const std::string& source, const std::string& header) {
   return false;
 }
 
-std::vector<std::string> broken_rules(const std::string& path, const std::string& text) {
-  std::vector<std::string> broken;
+std::vector<std::string> violations(const std::string& path, const std::string& text) {
+  std::vector<std::string> sentences;
   std::istringstream lines(text);
   std::string line;
   for (std::smatch match; std::getline(lines, line);) {
     if (!std::regex_match(line, match, kInclude)) continue;
     const std::string header = match[2];
-    const std::string reason = match[1] == "<" ? refuse_outside(path, header) : refuse_own(path, header);
-    if (!reason.empty()) broken.push_back(path + " includes " + header + ": " + reason);
+    const std::string reason = match[1] == "<" ? check_external_header(path, header) : check_own_header(path, header);
+    if (!reason.empty()) sentences.push_back(path + " includes " + header + ": " + reason);
   }
-  return broken;
+  return sentences;
 }
 
-std::vector<std::string> dead_rules(const std::vector<Source>& sources) {
-  std::vector<std::string> dead;
-  const auto look_for = [&](const std::string& start, const std::string& folder) {
+std::vector<std::string> unused_rules(const std::vector<Source>& sources) {
+  std::vector<std::string> unused;
+  const auto find_use = [&](const std::string& start, const std::string& folder) {
     const bool used = std::ranges::any_of(sources, [&](const Source& source) {
       return source.path.starts_with(folder) && source.text.find("#include <" + start) != std::string::npos;
     });
-    if (!used) dead.push_back(start + (folder.empty() ? "" : " in " + folder));
+    if (!used) unused.push_back(start + (folder.empty() ? "" : " in " + folder));
   };
   for (const Library& library : kLibraries)
-    for (const std::string& folder : library.folders) look_for(library.start, folder);
-  for (const std::string& start : kSystem) look_for(start, "");
-  return dead;
+    for (const std::string& folder : library.folders) find_use(library.start, folder);
+  for (const std::string& start : kSystem) find_use(start, "");
+  return unused;
 }
 
 }  // namespace pkm::house

@@ -1,7 +1,7 @@
-// Who may include whom: the order of the folders, and where outside libraries may appear.
+// Include rules: the layering of the folders, and the files in which external libraries may be used.
 //
-// Lower layers know nothing of higher ones, and a third-party type stops at the .cpp files of one folder, so that a
-// library can be replaced in one place and a header of ours needs nothing but Eigen.
+// A layer depends on lower layers only. Types of an external library appear in the .cpp files of one folder only, so
+// that a library can be replaced in one place, and the headers of this project depend on no library but Eigen.
 #pragma once
 
 #include <string>
@@ -9,19 +9,20 @@
 
 namespace pkm::house {
 
-/// One sentence per `#include` of `text` that breaks a rule.
-/// @param path  of the file from the repository's root: "engine/core/error.hpp"
-std::vector<std::string> broken_rules(const std::string& path, const std::string& text);
+/// One sentence for each `#include` in `text` that violates a rule.
+/// @param path  of the file, relative to the repository root: "engine/core/error.hpp"
+std::vector<std::string> violations(const std::string& path, const std::string& text);
 
-/// Whether the first `#include` of a source is `header`: then compiling the source shows that the header needs nothing
-/// before it.
+/// Whether the first `#include` of a source file is `header`: then compiling the source shows that the header compiles
+/// on its own.
 bool includes_first(const std::string& source, const std::string& header);
 
+/// A source file.
 struct Source {
-  std::string path;  ///< from the repository's root
+  std::string path;  ///< relative to the repository root
   std::string text;
 };
-/// The outside headers that the rules know and none of the sources includes: "hdf5.h in engine/storage".
-std::vector<std::string> dead_rules(const std::vector<Source>& sources);
+/// External headers that the rules allow but no source file includes: "hdf5.h in engine/storage".
+std::vector<std::string> unused_rules(const std::vector<Source>& sources);
 
 }  // namespace pkm::house

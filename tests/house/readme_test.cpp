@@ -1,4 +1,4 @@
-// What README.md tells a reader to run or to open must exist.
+// Files and commands named in README.md must exist, and experiments/README.md must document all keys of a study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -17,8 +17,8 @@ using ::testing::Contains;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
-/// Files of the repository that a Markdown text names: targets of links, pictures, and words of shell blocks that begin
-/// with one of our folders.
+/// Files of the repository that a Markdown text names: targets of links, images, and words in shell blocks that begin
+/// with one of the source folders.
 std::vector<std::string> files_named(const std::string& markdown) {
   static const std::regex link(R"re((?:\]\(|src=")(?!https?:|#)([^)"#\s]+))re");
   static const std::regex word(
@@ -43,7 +43,7 @@ std::vector<std::string> files_named(const std::string& markdown) {
   return names;
 }
 
-TEST(Readme, NamesOfFilesAreFound) {
+TEST(Readme, FileNamesAreExtractedFromMarkdown) {
   EXPECT_THAT(
       files_named("See [this](engine/storage/README.md#x) and [that](https://example.org/tests/a).\n"
                   "<img src=\"experiments/a.svg\" width=\"1\">\n"
@@ -52,7 +52,7 @@ TEST(Readme, NamesOfFilesAreFound) {
       UnorderedElementsAre("engine/storage/README.md", "experiments/a.svg", "tests/run.sh", "experiments/a.toml"));
 }
 
-TEST(Readme, NamesBothCommandsAndNothingThatIsMissing) {
+TEST(Readme, NamedFilesExistAndCommandsAreExecutable) {
   const fs::path root = PKM_ROOT;
   std::ostringstream text;
   text << std::ifstream(root / "README.md").rdbuf();
@@ -67,7 +67,7 @@ TEST(Readme, NamesBothCommandsAndNothingThatIsMissing) {
   }
 }
 
-/// The keys that the reader of studies looks for by name.
+/// The keys that the reader of study files looks up by name.
 std::set<std::string> keys_read(const fs::path& folder) {
   static const std::regex lookup(R"re((?:find|at|has|tables_of\(root,|type_of\(\w+,) ?\(?"([a-z][a-z_]*)")re");
   std::set<std::string> keys;
@@ -81,17 +81,17 @@ std::set<std::string> keys_read(const fs::path& folder) {
   return keys;
 }
 
-TEST(Readme, OfTheExperimentsTellsEveryKeyOfAStudy) {
+TEST(Readme, OfTheExperimentsDocumentsEveryKeyOfAStudy) {
   const fs::path root = PKM_ROOT;
   std::ostringstream file;
   file << std::ifstream(root / "experiments" / "README.md").rdbuf();
   const std::string text = file.str();
-  const auto keys = keys_read(root / "engine" / "setup");
+  const auto keys = keys_read(root / "engine" / "config");
   EXPECT_GT(keys.size(), 30u);
-  std::vector<std::string> untold;
+  std::vector<std::string> undocumented;
   for (const std::string& key : keys)
-    if (!std::regex_search(text, std::regex("[`\\[ ]" + key + "[`\\], =]"))) untold.push_back(key);
-  EXPECT_THAT(untold, IsEmpty());
+    if (!std::regex_search(text, std::regex("[`\\[ ]" + key + "[`\\], =]"))) undocumented.push_back(key);
+  EXPECT_THAT(undocumented, IsEmpty());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Every operation on random intervals, beside MPFI's, which has the least interval of doubles: ours holds it, and is
-// little wider. PKM_INTERVAL_OPERATIONS: how many of each.
+// Interval operations on random arguments against MPFI, which gives the tightest interval with double bounds: the
+// result must contain it and may be only slightly wider. The environment variable PKM_INTERVAL_OPERATIONS sets the
+// number of trials per operation.
 #include <cstdlib>
 #include <functional>
 #include <random>
@@ -13,7 +14,7 @@
 namespace pkm {
 namespace {
 
-/// Its bounds as doubles, whose 53 digits they have.
+/// RAII wrapper of an MPFI interval with 53 bits, so that its bounds are doubles.
 class Reference {
  public:
   explicit Reference(const Interval& x = {}) {
@@ -34,18 +35,18 @@ class Reference {
 
 struct Function {
   std::string name;
-  std::function<Interval(const Interval&, const Interval&)> ours;
+  std::function<Interval(const Interval&, const Interval&)> tested;
   std::function<void(mpfi_ptr, mpfi_ptr, mpfi_ptr)> reference;
-  double from, to;            ///< of arguments
-  double relative, absolute;  ///< how much wider each bound may be
+  double from, to;            ///< range of the arguments
+  double relative, absolute;  ///< tolerance of each bound
 };
 
-std::size_t operations() {
-  const char* const asked = std::getenv("PKM_INTERVAL_OPERATIONS");
-  return asked ? std::strtoull(asked, nullptr, 10) : 20000;
+std::size_t trials() {
+  const char* const given = std::getenv("PKM_INTERVAL_OPERATIONS");
+  return given ? std::strtoull(given, nullptr, 10) : 20000;
 }
 
-/// Of any size within the range: a number, narrow, wide, with a round end.
+/// A random interval within [from, to]: a single number, or a narrow or wide interval; some endpoints are integers.
 Interval random_interval(std::mt19937_64& random, double from, double to) {
   std::uniform_real_distribution<double> unit(0, 1);
   const auto number = [&] {
@@ -61,48 +62,51 @@ Interval random_interval(std::mt19937_64& random, double from, double to) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-class IntervalsBesideMpfi : public testing::TestWithParam<Function> {};
+class IntervalsAgainstMpfi : public testing::TestWithParam<Function> {};
 
-TEST_P(IntervalsBesideMpfi, HoldTheLeastOnesAndAreLittleWider) {
+TEST_P(IntervalsAgainstMpfi, ContainTheTightestOnesAndAreSlightlyWider) {
   const Function& f = GetParam();
   std::mt19937_64 random(7);
-  for (std::size_t i = 0; i < operations(); ++i) {
+  for (std::size_t i = 0; i < trials(); ++i) {
     const Interval x = random_interval(random, f.from, f.to), y = random_interval(random, f.from, f.to);
     Reference a(x), b(y), c;
     f.reference(c.get(), a.get(), b.get());
     const double lower = c.lower(), upper = c.upper();
-    if (lower != lower || upper != upper || lower > upper) continue;  // somewhere undefined
-    const bool at_jump = f.name == "atan2" && x.holds(0) && y.lower <= 0;
-    if ((f.name.starts_with("divide") && y.is_number() && y.lower == 0) || at_jump) continue;  // MPFI: any number
-    const Interval found = f.ours(x, y);
-    const auto slack = [&](double at) { return f.absolute + f.relative * std::fabs(at) + 1e-320; };
+    if (lower != lower || upper != upper || lower > upper) continue;  // undefined for some arguments
+    const bool at_branch_cut = f.name == "atan2" && x.holds(0) && y.lower <= 0;
+    // The result of MPFI is unspecified for these arguments.
+    if ((f.name.starts_with("divide") && y.is_number() && y.lower == 0) || at_branch_cut) continue;
+    const Interval found = f.tested(x, y);
+    const auto tolerance = [&](double at) { return f.absolute + f.relative * std::fabs(at) + 1e-320; };
     ASSERT_TRUE(found.lower <= lower && found.upper >= upper)
         << i << std::hexfloat << ": [" << x.lower << ", " << x.upper << "], [" << y.lower << ", " << y.upper
-        << "] gives [" << found.lower << ", " << found.upper << "], which lacks [" << lower << ", " << upper << "]";
+        << "] gives [" << found.lower << ", " << found.upper << "], which does not contain [" << lower << ", " << upper
+        << "]";
     if (std::isfinite(lower)) {
-      ASSERT_GE(found.lower, lower - slack(lower)) << i << ' ' << x.lower << ' ' << x.upper << ' ' << y.lower;
+      ASSERT_GE(found.lower, lower - tolerance(lower)) << i << ' ' << x.lower << ' ' << x.upper << ' ' << y.lower;
     }
     if (std::isfinite(upper)) {
-      ASSERT_LE(found.upper, upper + slack(upper)) << i << ' ' << x.lower << ' ' << x.upper << ' ' << y.lower;
+      ASSERT_LE(found.upper, upper + tolerance(upper)) << i << ' ' << x.lower << ' ' << x.upper << ' ' << y.lower;
     }
   }
 }
 
-/// A function of one argument.
-Function unary(std::string name, Interval (*ours)(const Interval&), int (*reference)(mpfi_ptr, mpfi_srcptr),
+/// Makes a test case from a function of one argument.
+Function unary(std::string name, Interval (*tested)(const Interval&), int (*reference)(mpfi_ptr, mpfi_srcptr),
                double from, double to, double relative, double absolute = 0) {
   return {std::move(name),
-          [ours](const Interval& x, const Interval&) { return ours(x); },
+          [tested](const Interval& x, const Interval&) { return tested(x); },
           [reference](mpfi_ptr c, mpfi_ptr a, mpfi_ptr) { reference(c, a); },
           from,
           to,
           relative,
           absolute};
 }
-template <class Ours>
-Function binary(std::string name, Ours ours, int (*reference)(mpfi_ptr, mpfi_srcptr, mpfi_srcptr), double from,
+/// Makes a test case from a function of two arguments.
+template <class Tested>
+Function binary(std::string name, Tested tested, int (*reference)(mpfi_ptr, mpfi_srcptr, mpfi_srcptr), double from,
                 double to, double relative, double absolute = 0) {
-  return {std::move(name), ours,    [reference](mpfi_ptr c, mpfi_ptr a, mpfi_ptr b) { reference(c, a, b); }, from, to,
+  return {std::move(name), tested,  [reference](mpfi_ptr c, mpfi_ptr a, mpfi_ptr b) { reference(c, a, b); }, from, to,
           relative,        absolute};
 }
 
@@ -110,7 +114,7 @@ using I = const Interval&;
 constexpr double kUlp = 0x1p-52;
 
 INSTANTIATE_TEST_SUITE_P(
-    EveryFunction, IntervalsBesideMpfi,
+    EveryFunction, IntervalsAgainstMpfi,
     testing::Values(
         binary(
             "add", [](I x, I y) { return x + y; }, mpfi_add, -1e3, 1e3, 2 * kUlp),
@@ -142,10 +146,10 @@ INSTANTIATE_TEST_SUITE_P(
         unary("cosh", cosh, mpfi_cosh, -20, 20, 64 * kUlp), unary("tanh", tanh, mpfi_tanh, -10, 10, 0, 64 * kUlp)),
     [](const auto& of) { return of.param.name; });
 
-/// x^y by MPFI's exp and log.
-TEST(IntervalsBesideMpfi, PowersHoldThoseByLogarithms) {
+/// x^y against exp(y log x) in MPFI, and integer powers against repeated multiplication with 400 bits.
+TEST(IntervalsAgainstMpfi, PowersContainThoseByLogarithms) {
   std::mt19937_64 random(11);
-  for (std::size_t i = 0; i < operations(); ++i) {
+  for (std::size_t i = 0; i < trials(); ++i) {
     const Interval x = random_interval(random, 1e-3, 30), y = random_interval(random, -5, 5);
     Reference a(x), b(y), c;
     mpfi_log(c.get(), a.get());
@@ -155,7 +159,7 @@ TEST(IntervalsBesideMpfi, PowersHoldThoseByLogarithms) {
     ASSERT_LE(found.lower, c.lower() * (1 + 64 * kUlp));
     ASSERT_GE(found.upper, c.upper() * (1 - 64 * kUlp));
     if (!y.is_number() || y.lower != std::nearbyint(y.lower)) continue;
-    // whole powers by multiplication in many digits
+    // Integer exponents.
     mpfi_t exact;
     mpfi_init2(exact, 400);
     mpfi_set(exact, a.get());

@@ -1,8 +1,8 @@
-// Mechanisms of a user, written against the public interface alone: what the engine does with machines that it does not
-// know. The contract suites hold them to the laws of the catalogue's, and tests/packaging makes a program of them.
+// User-defined mechanisms, which use the public interface only and have no accelerators. The contract tests check them
+// like the mechanisms of the catalogue, and tests/packaging builds a program with them.
 #pragma once
 
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/mechanism_list.hpp"
 
 namespace pkm::test {
 

@@ -1,30 +1,30 @@
-// A planar five-bar: two cranks on the base, two rods that meet in the tool.
+// Planar five-bar mechanism (5R): two driven cranks on the base and two rods that are joined at the tool.
 #include "tests/own_mechanisms/all.hpp"
 #include "tests/own_mechanisms/from_inverse.hpp"
 
 namespace pkm::test {
 namespace {
 
-enum { kBase, kCrank, kRod };  // order of the parameters
+enum { kBase, kCrank, kRod };  // indices of the parameters
 
 MechanismInfo five_bar_info() {
   MechanismInfo i;
   i.name = "five-bar";
-  i.title = "two cranks on the base and two rods that meet in the tool";
+  i.title = "two cranks on the base and two rods joined at the tool";
   i.source = "Liu, Wang, Pritschow: Kinematics, singularity and workspace of planar 5R symmetrical parallel mechanisms";
   i.parameters = {{"b", "m", 0.2, 0.01, 10, "distance of the cranks' axes"},
                   {"l_1", "m", 0.25, 0.01, 10, "length of the cranks"},
                   {"l_2", "m", 0.35, 0.01, 10, "length of the rods"}};
   i.coordinates = {{"x", "m"}, {"y", "m"}};
   i.joints = {{"q1", "rad"}, {"q2", "rad"}};
-  i.modes = {"+,-", "+,+", "-,-", "-,+"};  // the sense in which each crank is turned from the line to the tool
+  i.modes = {"+,-", "+,+", "-,-", "-,+"};  // sign of the angle from the line to the tool to each crank
   i.sweeps = all_sweeps(i.coordinates, {0, 1});
-  i.limits = {{"sin_rods_min", "1", 0, 0, 1, "singularity-margin", "", "least sine of the angle between the rods"}};
+  i.limits = {{"sin_rods_min", "1", 0, 0, 1, "singularity-margin", "", "minimum sine of the angle between the rods"}};
   i.characteristic_length = "l_1";
   return i;
 }
 
-/// Of crank 0 or 1.
+/// x coordinate of the axis of crank 0 or 1.
 double axis(Parameters p, std::size_t i) { return (i == 0 ? -0.5 : 0.5) * p[kBase]; }
 Vector<double, 2> elbow(Parameters p, const AxisVector<double>& q, std::size_t i) {
   const auto [sine, cosine] = sincos(q[i]);
@@ -42,8 +42,9 @@ class FiveBar final : public FromInverse<FiveBar, 2>, ForwardKinematics, Links {
     Vector<S, 2> q;
     for (std::size_t i = 0; i < 2; ++i) {
       const S x = at[0] - S(axis(p, i)), y = at[1], square = x * x + y * y;
-      const S turn = acos(S((square + (p[kCrank] * p[kCrank] - p[kRod] * p[kRod])) / (sqrt(square) * 2 * p[kCrank])));
-      q[i] = atan2(y, x) + turn * (mode[2 * i] == '+' ? 1.0 : -1.0);
+      const S crank_angle =
+          acos(S((square + (p[kCrank] * p[kCrank] - p[kRod] * p[kRod])) / (sqrt(square) * 2 * p[kCrank])));
+      q[i] = atan2(y, x) + crank_angle * (mode[2 * i] == '+' ? 1.0 : -1.0);
     }
     return q;
   }
@@ -51,10 +52,10 @@ class FiveBar final : public FromInverse<FiveBar, 2>, ForwardKinematics, Links {
                       const LimitSpec& limits) const {
     NamedValues all = {{"above the base", pose[1]}};
     for (std::size_t i = 0; i < 2; ++i) {
-      const double way = std::hypot(pose[0] - axis(p, i), pose[1]);
+      const double distance = std::hypot(pose[0] - axis(p, i), pose[1]);
       const std::string number = std::to_string(i + 1);
-      all.emplace_back("stretched " + number, p[kCrank] + p[kRod] - way);
-      all.emplace_back("folded " + number, way - std::fabs(p[kCrank] - p[kRod]));
+      all.emplace_back("stretched " + number, p[kCrank] + p[kRod] - distance);
+      all.emplace_back("folded " + number, distance - std::fabs(p[kCrank] - p[kRod]));
     }
     if (!std::isfinite(q[0] + q[1])) return all;
     const Vector<double, 2> a = elbow(p, q, 0), b = elbow(p, q, 1);
@@ -73,12 +74,11 @@ class FiveBar final : public FromInverse<FiveBar, 2>, ForwardKinematics, Links {
 
  private:
   std::vector<AssemblyMode> assemblies(Parameters p, const AxisVector<double>& q) const override {
-    const Vector<double, 2> a = elbow(p, q, 0), b = elbow(p, q, 1), way = b - a;
-    const double square = dot(way, way), height = std::sqrt(p[kRod] * p[kRod] / square - 0.25);
+    const Vector<double, 2> a = elbow(p, q, 0), b = elbow(p, q, 1), d = b - a;
+    const double square = dot(d, d), height = std::sqrt(p[kRod] * p[kRod] / square - 0.25);
     std::vector<AssemblyMode> found;
     for (const double sign : {1.0, -1.0}) {
-      const Pose<double> pose = {(a[0] + b[0]) / 2 - sign * height * way[1],
-                                 (a[1] + b[1]) / 2 + sign * height * way[0]};
+      const Pose<double> pose = {(a[0] + b[0]) / 2 - sign * height * d[1], (a[1] + b[1]) / 2 + sign * height * d[0]};
       if (std::isfinite(pose[0])) found.push_back({pose, sign > 0 ? "+" : "-"});
     }
     return found;

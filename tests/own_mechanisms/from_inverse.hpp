@@ -1,24 +1,24 @@
-// What a mechanism has as soon as its inverse kinematics is written for any scalar: Jacobian, conditioning, influence
-// coefficients and the report of a pose.
+// Base class that derives Jacobian, conditioning, influence coefficients and pose reports of a mechanism from its
+// inverse kinematics, by automatic differentiation along a motion (second-order Taylor arithmetic).
 #pragma once
 
 #include <cmath>
 
+#include "engine/geometry/conditioning.hpp"
 #include "engine/math/taylor.hpp"
 #include "engine/mechanism/mechanism.hpp"
-#include "engine/model/conditioning.hpp"
 
 namespace pkm::test {
 
 using Parameters = std::span<const double>;
 
-/// N coordinates and as many joints. Self has
+/// Mechanism with N coordinates and N driven joints (CRTP). Self defines
 ///
 ///   template <class S> Vector<S, N> joints(Parameters, const Vector<S, N>& pose, const std::string& mode) const;
 ///   NamedValues margins(Parameters, const Pose<double>&, const AxisVector<double>& joints, const LimitSpec&) const;
 ///   double length(Parameters) const;  // MechanismInfo::characteristic_length
 ///
-/// A joint is NaN where it does not reach the pose.
+/// A joint coordinate is NaN if its limb does not reach the pose.
 template <class Self, std::size_t N>
 class FromInverse : public Mechanism, Velocities {
  public:
@@ -36,7 +36,7 @@ class FromInverse : public Mechanism, Velocities {
     report.assembles = report.reason.empty();
     if (!report.assembles) return report;
     for (const auto& [name, margin] : report.margins)
-      if (!(margin >= 0) && report.reason.empty()) report.reason = name + " is broken";
+      if (!(margin >= 0) && report.reason.empty()) report.reason = name + " is violated";
     report.feasible = report.reason.empty();
     const Matrix<double, N, N> J = jacobian(p, pose, mode);
     report.J = J;
@@ -54,9 +54,9 @@ class FromInverse : public Mechanism, Velocities {
  private:
   const Self& self() const { return static_cast<const Self&>(*this); }
 
-  /// The joints with their derivatives by time, the pose moving steadily.
-  Vector<Taylor, N> moving(Parameters p, const Pose<double>& pose, const Vector<double, N>& velocity,
-                           const std::string& mode) const {
+  /// Joint coordinates with their first and second time derivatives, for a pose that moves at constant velocity.
+  Vector<Taylor, N> joints_along(Parameters p, const Pose<double>& pose, const Vector<double, N>& velocity,
+                                 const std::string& mode) const {
     Vector<Taylor, N> at;
     for (std::size_t i = 0; i < N; ++i) at[i] = {pose[i], velocity[i], 0};
     return self().joints(p, at, mode);
@@ -66,7 +66,7 @@ class FromInverse : public Mechanism, Velocities {
     for (std::size_t j = 0; j < N; ++j) {
       Vector<double, N> unit;
       unit[j] = 1;
-      const Vector<Taylor, N> q = moving(p, pose, unit, mode);
+      const Vector<Taylor, N> q = joints_along(p, pose, unit, mode);
       for (std::size_t i = 0; i < N; ++i) J(i, j) = q[i].d;
     }
     return J;
@@ -77,8 +77,8 @@ class FromInverse : public Mechanism, Velocities {
       if (!std::isfinite(joint)) return std::nullopt;
     Influence<double, N> found;
     found.G = jacobian(p, pose, mode);
-    found.H = matrices_of<N>([&](const Vector<double, N>& velocity) {
-      const Vector<Taylor, N> q = moving(p, pose, velocity, mode);
+    found.H = quadratic_form_matrices<N>([&](const Vector<double, N>& velocity) {
+      const Vector<Taylor, N> q = joints_along(p, pose, velocity, mode);
       Vector<double, N> terms;
       for (std::size_t i = 0; i < N; ++i) terms[i] = q[i].dd;
       return terms;

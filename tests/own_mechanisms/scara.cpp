@@ -1,4 +1,4 @@
-// The mechanism of tests/packaging/external, out of its program.
+// Includes the mechanism of tests/packaging/external without its main().
 #define main static __attribute__((unused)) main_of_scara
 #include "tests/packaging/external/scara.cpp"
 #undef main

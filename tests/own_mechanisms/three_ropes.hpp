@@ -1,5 +1,5 @@
-// A weight that three winches hold in a plane: one drive more than coordinates, so that the forces of the drives do not
-// follow from a motion.
+// Planar cable robot: a weight held by three winches. It has one drive more than coordinates (redundant actuation), so
+// that the drive forces are not determined by the motion.
 #pragma once
 
 #include "engine/mechanism/both_scalars.hpp"
@@ -58,7 +58,7 @@ class ThreeRopes final : public MechanismWith<DynamicsOf<ThreeRopes>> {
       d.M_X = AxisMatrix<S>::identity(2) * p[0];
       d.h_X = AxisVector<S>(2);
       d.G_X = AxisVector<S>{S(0.0), S(p[0] * kGravity)};
-      d.J_wrench = MatrixUpTo<S, 6, kMostJoints>(6, 2);
+      d.J_wrench = MatrixUpTo<S, 6, kMaxJoints>(6, 2);
       d.J_wrench(0, 0) = d.J_wrench(2, 1) = S(1.0);
     }
   }

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# A user's project with our sources as a subfolder is configured, by options of its own; its own file, the one file that
-# stands for MPI and the program's version compile; the rest is known to Ninja, with nothing that the user did not ask for.
-#   add_subdirectory.sh CMAKE SOURCE BUILD OPTION...
+# add_subdirectory.sh CMAKE SOURCE BUILD OPTION...: checks that a user's project can use pkmopt by add_subdirectory().
+# Configures the project with the given options, compiles its own source file, the file that depends on MPI and the
+# version file (compiling the whole library would take minutes), and checks in Ninja's list of commands that the library
+# and the program would be built, but none of pkmopt's tests, benchmarks and programs.
 set -euo pipefail
 cmake=$1 source=$2 build=$3
 shift 3

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# installed_files.sh PREFIX MANIFEST: everything a user looks for has been installed, and nothing that only builders need.
+# installed_files.sh PREFIX MANIFEST: checks that all files for users have been installed, and no file that only
+# developers need.
 set -euo pipefail
 prefix=$1 manifest=$2
 failures=0
@@ -18,14 +19,14 @@ for file in bin/pkmopt bin/pkmopt-check-proof 'lib[^/]*(/.*)?/libpkmopt\.a' 'lib
   installed "$file"
 done
 for script in "$prefix"/share/pkmopt/experiments/{3crr-r-cru/{force-curves,coupling-maps},2t1r-p-hybrid/motion-curves}.sh; do
-  [[ -x $script ]] || fail "not there to be run: $script"
+  [[ -x $script ]] || fail "missing or not executable: $script"
 done
 ! grep -E '\.(cpp|in|h5)$|CMakeLists|/(debian-packages|package|quickstart)\.sh$|experiments/app/[^p]' "$manifest" ||
-  fail "installed, and of no use there"
+  fail "installed, but for developers only"
 
-# Where the first page leads: to pages, studies and pictures.
+# The targets of the links in README.md: pages, studies and pictures.
 cd -- "$prefix/share/doc/pkmopt"
 links=$(grep -oE '(\]\(|src=")(docs|experiments)/[^)#"]*\.(md|toml|svg|png)' README.md | sed 's/^.*[("]//')
 (($(wc -l <<< "$links") > 5)) || fail "few links in README.md: $links"
-for link in $links; do [[ -e $link ]] || fail "README.md leads nowhere: $link"; done
+for link in $links; do [[ -e $link ]] || fail "broken link in README.md: $link"; done
 exit $failures

@@ -1,27 +1,30 @@
 #!/usr/bin/env bash
-# own_program.sh PROGRAM FOLDER PAGE: every command of a user's program with each of its mechanisms. What it writes goes
-# into the folder; PAGE is 1 where reports can be written.
+# own_program.sh PROGRAM FOLDER PAGE: runs the commands of a user's program with each of its own mechanisms. Output
+# files are written to FOLDER; PAGE is 1 if the program can write HTML reports.
 set -euo pipefail
 program=$1 folder=$2 page=$3
 rm -rf "$folder" && mkdir -p "$folder" && cd "$folder"
 
 fail() { printf '%s\n' "$*" >&2; exit 1; }
-# expect PATTERN COMMAND ARGUMENT...: exit code 0, and a line of the output that matches.
+# expect PATTERN COMMAND ARGUMENT...: requires exit code 0 and a line of the output that matches the pattern.
 expect() {
   local pattern=$1; shift
   "$program" "$@" > output.txt 2> errors.txt || fail "exit code $? of: $*" "$(cat errors.txt)"
   grep -Eq -- "$pattern" output.txt || fail "no line matches '$pattern' in what this printed: $*" "$(cat output.txt)"
 }
 
-# try NAME PARAMETER SWEPT POSE JOINT UNIT: PARAMETER has a range "min = .., max = ..", SWEPT cells, POSE is feasible,
-# JOINT is one, of this UNIT.
+# try NAME PARAMETER CELLS POSE JOINT UNIT: runs the commands with mechanism NAME.
+#   PARAMETER  a variable of the study, "name = { min = .., max = .. }"
+#   CELLS      number of voxels along the swept coordinates
+#   POSE       a feasible pose
+#   JOINT      a joint coordinate, and its UNIT
 try() {
-  local name=$1 variable=$2 swept=$3 pose=$4 joint=$5 unit=$6 values
+  local name=$1 variable=$2 cells=$3 pose=$4 joint=$5 unit=$6 values
   values=$(sed 's/=/ = /g; s/,/, /g; s/\([0-9]\)deg/"\1 deg"/g' <<< "$pose")
   cat > "$name.toml" <<STUDY
 mechanism = { type = "$name" }
 variables = { $variable }
-workspace = { method = "voxels", cells = { $swept } }
+workspace = { method = "voxels", cells = { $cells } }
 objective = [{ type = "workspace-volume" }]
 stage = [{ optimiser = "ga", population = 6, generations = 3 }]
 [[motion]]
@@ -37,7 +40,7 @@ STUDY
   expect "^ *$joint +-?[0-9.e-]+ $unit( \(.* deg\))?\$" pose "$name" --at "$pose"
   expect "feasible +yes" trajectory "$name.toml" --motion sway --samples 11 --csv "$name.csv"
   grep -q ",$joint," "$name.csv" || fail "$name.csv has no column $joint"
-  expect "feasible cells +[1-9]" workspace "$name" --cells "${swept// /}" --vtk "$name.vtkhdf" --csv "$name-cells.csv"
+  expect "feasible cells +[1-9]" workspace "$name" --cells "${cells// /}" --vtk "$name.vtkhdf" --csv "$name-cells.csv"
   grep -q "$joint" "$name-cells.csv" || fail "$name-cells.csv has no column $joint"
   expect "wrote .*best.csv" export "$name.h5" --csv "$name-tables" --vtk "$name-best.vtkhdf"
   expect "workspace-volume" show "$name.h5"
@@ -51,7 +54,7 @@ try rotary-delta "l_1 = { min = 0.1, max = 0.3 }" "x = 8, y = 8, z = 8" x=0.02,y
 try gough "r = { min = 0.2, max = 0.4 }" "x = 8, y = 8, z = 8" x=0,y=0.02,z=0.8,alpha=0,beta=0.1,gamma=0.1 l6 m
 try scara "l_1 = { min = 0.2, max = 0.4 }" "x = 10, y = 10, z = 2" x=0.2,y=0.1,z=0.1,phi=0.5 q4 rad
 
-# Angles in degrees, from point to point.
+# Point-to-point motions, with angles in degrees.
 cat > points.toml <<MOTION
 type = "points"
 points = [{ x = 0, y = 0, z = 0.8, alpha = 0, beta = 0, gamma = 0 }, { beta = "5 deg" }, { x = 0.05, gamma = "-10 deg" }]
@@ -68,4 +71,4 @@ expect "peak speed \[rad/s\]" trajectory five-bar --motion points.toml
 expect "^ *0\.0238[0-9]* +0\.3477[0-9]* " forward five-bar --joints q1=136deg,q2=0.6
 expect "^ *other_sweeps +19 over 3 coordinates, 15 over 2 coordinates, 6 over 1 coordinate; " list mechanisms gough
 expect "^ *q1 .* rad/s +.* rad/s\^2" pose five-bar --at x=2cm,y=350mm --velocity x=1
-echo "every command serves every mechanism"
+echo "all commands work with all mechanisms"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installing packages waits for another package manager: a process holds the lock of the package lists, then that of dpkg,
-# and releases each after two seconds. Works on a package database of its own, in FOLDER; apt asks nobody but root to lock.
-#   package_manager_lock.sh FOLDER
+# package_manager_lock.sh FOLDER: checks that installing packages waits for other package managers. Another process
+# holds the lock of the package lists, then that of dpkg, and releases each after two seconds. Uses a separate package
+# database in FOLDER. Skipped (exit code 77) unless run as root, because apt uses the locks only then.
 set -euo pipefail
 source "$(dirname -- "${BASH_SOURCE[0]}")/../../experiments/debian-packages.sh"
 ((EUID == 0)) || exit 77
@@ -11,7 +11,7 @@ rm -rf -- "$folder"
 mkdir -p -- "$folder"/{etc/apt.conf.d,etc/preferences.d,lists/partial,cache/archives/partial,dpkg/updates,dpkg/info,log,repository,made/DEBIAN}
 touch "$folder/dpkg/status" "$folder/etc/sources.list"
 
-# A package that no machine has, and a repository that holds it.
+# A package that is not installed anywhere, and a repository that contains it.
 printf 'Package: pkmopt-lock-test\nVersion: 1\nArchitecture: all\nMaintainer: nobody <nobody@localhost>\nDescription: test\n' \
   > "$folder/made/DEBIAN/control"
 dpkg-deb --build "$folder/made" "$folder/repository/made.deb" >/dev/null
@@ -28,15 +28,15 @@ DPkg::Options { "--admindir=$folder/dpkg"; "--force-all"; };
 CONF
 export APT_CONFIG=$folder/apt.conf
 
-hold() {  # hold FILE: locks it for two seconds, as apt and dpkg lock
+hold() {  # hold FILE: locks the file for two seconds by fcntl, like apt and dpkg
   python3 - "$1" <<'PYTHON' &
 import fcntl, sys, time
-with open(sys.argv[1], "w") as held:
-    fcntl.lockf(held, fcntl.LOCK_EX)
-    open(sys.argv[1] + ".is-held", "w").close()
+with open(sys.argv[1], "w") as file:
+    fcntl.lockf(file, fcntl.LOCK_EX)
+    open(sys.argv[1] + ".is-locked", "w").close()
     time.sleep(2)
 PYTHON
-  until [[ -e $1.is-held ]]; do sleep 0.05; done
+  until [[ -e $1.is-locked ]]; do sleep 0.05; done
 }
 
 hold "$folder/lists/lock"
@@ -49,10 +49,10 @@ pkm_install_missing pkmopt-lock-test
 ((SECONDS > begin)) || { echo "did not wait for dpkg"; exit 1; }
 grep -q "Package: pkmopt-lock-test" "$folder/dpkg/status"
 
-# Other errors are reported at once.
+# Other errors are reported immediately.
 echo "deb [trusted=yes] file:$folder/nowhere ./" > "$folder/etc/sources.list"
 begin=$SECONDS
-! pkm_update_lists > /dev/null 2> "$folder/errors.txt" || { echo "a repository that is missing is no error"; exit 1; }
+! pkm_update_lists > /dev/null 2> "$folder/errors.txt" || { echo "a missing repository was not reported"; exit 1; }
 grep -q "$folder/nowhere" "$folder/errors.txt"
 ((SECONDS - begin < 60))
 echo "waits for both locks"

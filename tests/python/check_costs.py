@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Growth of costs with the size of a file.
+"""Checks the computational complexity of commands in the size of their input file.
 
 check_costs.py PROGRAM CHECKER
 
-Each command runs on a file of n and on one of 2 n entries; the ratio of the CPU times, which hardly depends on the
-machine, shows the order: 2 is linear, 4 quadratic, 16 of fourth order. Pairs of links are quadratic by their number.
-Exit code 1 where a ratio exceeds its limit.
+Each command runs on files with n and with 2 n entries. The ratio of the CPU times, which hardly depends on the
+machine, shows the order of growth: 2 is linear, 4 quadratic, 16 fourth order. The limit for links allows quadratic
+growth, because the number of pairs of links is quadratic. Exit code 1 if a ratio exceeds its limit.
 """
 
 import os
@@ -39,7 +39,7 @@ def links(n):
 
 
 def lets(n):
-    """A chain of names, each used twice, so that a proof names it, too."""
+    """A chain of definitions, each used twice, so that proofs contain all of them as named subexpressions."""
     chain = "".join('a%d = "a%d + %d*y*a%d"\n' % (i, i - 1, i, max(i - 2, 0)) for i in range(1, n))
     return HEAD + '[let]\na0 = "x"\n' + chain + LIMB + MARGIN % ("min(a%d, x - 0.5)" % (n - 1))
 
@@ -51,7 +51,7 @@ def proof(n):
 
 
 def cpu_seconds(command, folder):
-    least = None
+    shortest = None
     for _ in range(3):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -59,8 +59,8 @@ def cpu_seconds(command, folder):
         if done.returncode != 0:
             sys.exit("%s: exit code %d: %s" % (" ".join(command), done.returncode, done.stdout[-2000:]))
         spent = after.ru_utime - before.ru_utime
-        least = spent if least is None else min(least, spent)
-    return least
+        shortest = spent if shortest is None else min(shortest, spent)
+    return shortest
 
 
 def main():
@@ -72,8 +72,8 @@ def main():
          [program, "certify", "--boxes", "1", "--gap", "1.99", "--proof", "a.proof", "--force", "--threads", "1"]),
         ("check of a proof", proof, 20000, 3, [checker]),
     ]
-    wrong = False
-    print("%-24s %8s  CPU seconds, and of twice as many  ratio  limit" % ("command", "entries"))
+    failed = False
+    print("%-24s %8s  CPU seconds     for twice as many  ratio  limit" % ("command", "entries"))
     with tempfile.TemporaryDirectory() as folder:
         for name, make, n, limit, command in cases:
             seconds = []
@@ -83,9 +83,9 @@ def main():
                     file.write(make(count))
                 seconds.append(cpu_seconds([*command, path], folder))
             ratio = seconds[1] / max(seconds[0], 1e-3)
-            wrong = wrong or ratio > limit
+            failed = failed or ratio > limit
             print("%-24s %8d  %11.3f  %20.3f  %5.1f  %5.1f" % (name, n, *seconds, ratio, limit), flush=True)
-    return 1 if wrong else 0
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-"""check_png.py PROGRAM: the picture that `pkmopt workspace` draws as dots has the area that it draws as SVG, and letters."""
+"""check_png.py PROGRAM: checks that the PNG and SVG images of `pkmopt workspace` show equal areas, and that the PNG
+image has a frame and text labels."""
 
 import re
 import struct
@@ -11,8 +12,8 @@ from pathlib import Path
 import numpy
 
 
-def dots_of(png):
-    """Height x width x 3; asserts that every chunk is whole."""
+def pixels_of(png):
+    """Pixels as an array height x width x 3; asserts that the checksum of every chunk is correct."""
     data = png.read_bytes()
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     chunks, at = {}, 8
@@ -31,8 +32,8 @@ def dots_of(png):
 
 
 def area_of(svg):
-    """In pixels, of the section's loops; holes count less."""
-    path = re.search(r'class="section".* d="([^"]*)"', svg)[1]
+    """Area of the slice in SVG pixels, from its boundary loops (shoelace formula); holes are subtracted."""
+    path = re.search(r'class="outline".* d="([^"]*)"', svg)[1]
     area = 0
     for loop in filter(None, path.split("Z")):
         x, y = numpy.array([pair.split() for pair in re.split("[ML]", loop)[1:]], float).T
@@ -45,19 +46,19 @@ def main(program):
         svg, png = Path(folder, "cut.svg"), Path(folder, "cut.png")
         subprocess.run([program, "workspace", "4ppa-2par", "--cut", "theta=20deg", "--cells", "12", "-o", svg, "-o", png],
                        check=True, stdout=subprocess.DEVNULL)
-        dots, text = dots_of(png), svg.read_text()
+        pixels, text = pixels_of(png), svg.read_text()
         width, height = (float(re.search(name + r'="([\d.]+)"', text)[1]) for name in ("width", "height"))
-        assert abs(dots.shape[1] - 2 * width) <= 1 and abs(dots.shape[0] - 2 * height) <= 1
-        filled = (dots[:, :, 2] - dots[:, :, 0] > 30).sum() / 4  # four dots a pixel; blue, also over grey lines
+        assert abs(pixels.shape[1] - 2 * width) <= 1 and abs(pixels.shape[0] - 2 * height) <= 1
+        filled = (pixels[:, :, 2] - pixels[:, :, 0] > 30).sum() / 4  # 2 x 2 PNG pixels per SVG pixel; blue area
         assert abs(filled - area_of(text)) < 0.02 * area_of(text), (filled, area_of(text))
-        left, top, across, down = (2 * float(number) for number in re.findall(
+        left, top, frame_width, frame_height = (2 * float(number) for number in re.findall(
             r'<rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"', text)[0])
-        dark = dots.max(axis=2) < 100
-        frame = dark[round(top), round(left):round(left + across)]
+        dark = pixels.max(axis=2) < 100
+        frame = dark[round(top), round(left):round(left + frame_width)]
         assert frame.mean() > 0.9
-        for name, part in {"title": dark[:round(top) - 4], "ticks": dark[round(top + down) + 6:],
-                           "names": dark[:, :round(left) - 4]}.items():
-            assert 100 < part.sum() < 0.1 * part.size, name
+        for name, region in {"title": dark[:round(top) - 4], "ticks": dark[round(top + frame_height) + 6:],
+                             "axis labels": dark[:, :round(left) - 4]}.items():
+            assert 100 < region.sum() < 0.1 * region.size, name
 
 
 main(*sys.argv[1:])

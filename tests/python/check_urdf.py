@@ -1,6 +1,6 @@
-"""check_urdf.py PROGRAM MECHANISM POSE [LOOPS]: the URDF that `pkmopt pose` writes is a tree from the frame, its shapes
-stand where the lines of the DXF file are, and it names so many cut loops. Where Debian's check_urdf is installed, it has
-to accept the file, too."""
+"""check_urdf.py PROGRAM MECHANISM POSE [LOOPS]: checks the URDF file written by `pkmopt pose`: its links form a tree
+with the root "frame", its shapes coincide with the lines of the DXF file, and it lists LOOPS cut kinematic loops. If
+Debian's check_urdf is installed, it must accept the file as well."""
 
 import math
 import shutil
@@ -14,9 +14,9 @@ import numpy
 
 
 def lines_of(dxf):
-    """The ends of each LINE and POINT."""
-    words = dxf.read_text().splitlines()
-    pairs = list(zip(map(int, words[::2]), words[1::2]))
+    """The endpoints of each LINE and POINT, as arrays 2 x 3."""
+    rows = dxf.read_text().splitlines()
+    pairs = list(zip(map(int, rows[::2]), rows[1::2]))
     starts = [k for k, pair in enumerate(pairs) if pair in ((0, "LINE"), (0, "POINT"))]
     found = []
     for start in starts:
@@ -35,8 +35,8 @@ def numbers(element, name):
     return numpy.array([float(word) for word in element.get(name).split()])
 
 
-def turned(rpy):
-    """About x, y and z of the parent, in this order."""
+def rotation_matrix(rpy):
+    """Roll, pitch, yaw: rotations about the fixed axes x, y and z of the parent, in this order."""
     (r, p, y), c, s = rpy, math.cos, math.sin
     about_x = numpy.array([[1, 0, 0], [0, c(r), -s(r)], [0, s(r), c(r)]])
     about_y = numpy.array([[c(p), 0, s(p)], [0, 1, 0], [-s(p), 0, c(p)]])
@@ -45,29 +45,30 @@ def turned(rpy):
 
 
 def shapes_of(robot):
-    """The ends of each cylinder and ball in the world; asserts that the links are a tree from the frame."""
+    """The endpoints of the axis of each cylinder and sphere in the root frame; asserts that the links form a tree."""
     links = {link.get("name"): link for link in robot.iter("link")}
-    assert len(links) == len(list(robot.iter("link"))), "two links of one name"
+    assert len(links) == len(list(robot.iter("link"))), "two links with the same name"
     joints = {joint.find("child").get("link"): joint for joint in robot.iter("joint")}
     assert len({joint.get("name") for joint in joints.values()}) == len(list(robot.iter("joint"))) == len(links) - 1
     assert set(joints) == set(links) - {"frame"}
 
-    def place_of(name):
-        place, steps = numpy.zeros(3), 0
+    def position_of(name):
+        position, steps = numpy.zeros(3), 0
         while name != "frame":
             origin = joints[name].find("origin")
             assert not numbers(origin, "rpy").any() and joints[name].get("type") == "fixed"
-            place, name, steps = place + numbers(origin, "xyz"), joints[name].find("parent").get("link"), steps + 1
+            position, name = position + numbers(origin, "xyz"), joints[name].find("parent").get("link")
+            steps += 1
             assert steps < len(links), "a loop"
-        return place
+        return position
 
     found = []
     for name, link in links.items():
         for visual in link.iter("visual"):
             origin, shape = visual.find("origin"), visual.find("geometry")[0]
-            half = float(shape.get("length", 0)) / 2 * turned(numbers(origin, "rpy"))[:, 2]
-            middle = place_of(name) + numbers(origin, "xyz")
-            found.append(numpy.array([middle - half, middle + half]))
+            half = float(shape.get("length", 0)) / 2 * rotation_matrix(numbers(origin, "rpy"))[:, 2]
+            centre = position_of(name) + numbers(origin, "xyz")
+            found.append(numpy.array([centre - half, centre + half]))
             assert float(shape.get("radius")) >= 0
     return found
 
@@ -81,7 +82,7 @@ def main(program, mechanism, at, loops=None):
             subprocess.run(["check_urdf", urdf], check=True, stdout=subprocess.DEVNULL)
         shapes, lines = shapes_of(ElementTree.parse(urdf).getroot()), lines_of(dxf)
         assert len(shapes) == len(lines) > 0
-        for line in lines:  # the tree has another order
+        for line in lines:  # the shapes have another order than the lines
             assert min(abs(shape - line).max() for shape in shapes) < 1e-9, line
         cuts = urdf.read_text().count("<!-- cut loop: ")
         assert loops is None or cuts == int(loops), f"{cuts} cut loops"

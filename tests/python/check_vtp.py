@@ -1,5 +1,6 @@
-"""check_vtp.py PROGRAM STUDY POSE: VTK reads what `pkmopt pose -o F.vtp` writes of a study with obstacles: each body has
-its name and its part, and is closed; boxes and balls have their volumes. Ends with code 77 where VTK is missing."""
+"""check_vtp.py PROGRAM STUDY POSE: uses VTK to read the file that `pkmopt pose -o F.vtp` writes for a study with
+obstacles. Checks that each body has its name and its part and is a closed surface, and that boxes and spheres have the
+correct volumes. Exit code 77 if VTK is missing."""
 
 import subprocess
 import sys
@@ -17,17 +18,19 @@ import numpy
 
 
 def texts(data, name):
+    """The strings of an array of field data."""
     array = data.GetFieldData().GetAbstractArray(name)
     return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
 
 
 def number(text):
-    """Of "20 mm" or "1 m" or 0, in m."""
+    """Converts "20 mm", "1 m" or a plain number to m."""
     value, unit = (text.split() if isinstance(text, str) else (text, "m"))
     return float(value) * {"mm": 1e-3, "m": 1}[unit]
 
 
 def volume(corners):
+    """Volume enclosed by oriented triangles (divergence theorem); corners: triangles x 3 x 3."""
     return numpy.einsum("ij,ij->", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])) / 6
 
 
@@ -51,7 +54,7 @@ def main():
     assert {"arm1", "platform", "obstacle"} < set(parts), parts
     assert texts(data, "title")[0].startswith("links of rotary-delta"), texts(data, "title")
 
-    for k in range(len(bodies)):  # every edge is gone along once in each direction
+    for k in range(len(bodies)):  # closed: every edge occurs once in each direction
         ends = numpy.roll(corners[body == k], -1, axis=1)
         edges = {(tuple(a), tuple(b)) for a, b in zip(corners[body == k].reshape(-1, 3), ends.reshape(-1, 3))}
         assert edges == {(b, a) for a, b in edges}, bodies[k]
@@ -60,11 +63,11 @@ def main():
     assert [bodies[k] for k in sorted(set(body[part == parts.index("obstacle")]))] == [o["name"] for o in obstacles]
     for obstacle in obstacles:
         if obstacle["shape"] == "box":
-            expected, share = prod(map(number, obstacle["size"])), 1e-6
+            expected, tolerance = prod(map(number, obstacle["size"])), 1e-6
         else:
-            expected, share = 4 / 3 * pi * number(obstacle["radius"]) ** 3, 0.05  # corners lie on the ball
+            expected, tolerance = 4 / 3 * pi * number(obstacle["radius"]) ** 3, 0.05  # inscribed polyhedron
         found = volume(corners[body == bodies.index(obstacle["name"])])
-        assert abs(found - expected) < share * expected, (obstacle["name"], found, expected)
+        assert abs(found - expected) < tolerance * expected, (obstacle["name"], found, expected)
     print(len(bodies), "bodies of", len(triangles), "triangles")
 
 

@@ -1,14 +1,14 @@
-"""Reads and changes study files with h5py, which is trusted, for tests/unit/storage/h5py_test.cpp.
+"""Reads and modifies study files with h5py, as an independent implementation, for tests/unit/storage/h5py_test.cpp.
 
-read_study.py values FILE         bits of what the sample study holds, one item per line
+read_study.py values FILE         prints values of the sample study bit by bit, one item per line
 read_study.py labels FILE         checks attributes and layout of every dataset
-read_study.py snippets FILE README  runs the README's Python snippets on the file
-read_study.py contiguous FILE     writes one dataset anew, in h5py's own layout
+read_study.py snippets FILE README  runs the Python examples of the README on the file
+read_study.py contiguous FILE     rewrites one dataset in h5py's default layout, big-endian
 read_study.py put FILE PATH INDEX VALUE  changes one value
-read_study.py shorten FILE PATH   takes the last row off a dataset
+read_study.py shorten FILE PATH   removes the last row of a dataset
 read_study.py remove FILE PATH    removes a dataset
-read_study.py wide FILE PATH      says where the names of a dataset's columns are, and some of them
-read_study.py forge FILE KIND     does what pkmopt never writes, see forge()
+read_study.py wide FILE PATH      prints where the column names of a dataset are stored, their number, first and last
+read_study.py forge FILE KIND     makes a change that pkmopt never writes, see forge()
 """
 
 import math
@@ -43,7 +43,7 @@ def values(path):
 def labels(path):
     count = 0
 
-    def listed(item, name):
+    def names_in(item, name):  # the attribute is a list of names, or the path of a dataset with the list
         label = item.attrs[name]
         return item.file[label].asstr()[:] if isinstance(label, str) and label.startswith("/") else label
 
@@ -59,8 +59,8 @@ def labels(path):
             if math.prod(item.chunks) * item.dtype.itemsize >= 1024:
                 assert item.compression == "gzip" and item.shuffle, name
         if "columns" in item.attrs:
-            names = listed(item, "columns")
-            assert len(names) == len(listed(item, "unit")) == item.shape[-1], name
+            names = names_in(item, "columns")
+            assert len(names) == len(names_in(item, "unit")) == item.shape[-1], name
             assert len(set(names)) == len(names), name
 
     with h5py.File(path, "r") as f:
@@ -106,12 +106,13 @@ def remove(path, name):
 
 def wide(path, name):
     with h5py.File(path, "r") as f:
-        beside = f[name].attrs["columns"]
-        names = f[beside].asstr()[:] if isinstance(beside, str) else beside
-        print(beside if isinstance(beside, str) else "attribute", len(names), names[0], names[-1])
+        columns = f[name].attrs["columns"]
+        names = f[columns].asstr()[:] if isinstance(columns, str) else columns
+        print(columns if isinstance(columns, str) else "attribute", len(names), names[0], names[-1])
 
 
 def forge(path, kind):
+    """Replaces the objectives by a link, foreign storage or values of another type, or writes invalid numbers."""
     rows = "stages/1/evaluations/objective"
     with h5py.File(path, "r+") as f:
         shape = f[rows].shape
@@ -124,7 +125,7 @@ def forge(path, kind):
         if kind == "cells":
             f["final/best"].attrs["feasible_cells"] = -1
             return
-        if kind == "unread":  # a copy for other programs
+        if kind == "unread":  # redundant data that pkmopt does not read
             del f["best/design"]
             f["best/design"] = h5py.SoftLink("/stages/1/evaluations/design")
             return

@@ -1,7 +1,7 @@
-"""Reads an image with VTK's own reader and prints what it finds, for tests of engine/report/workspace_export.hpp.
+"""Reads an image in VTKHDF format with VTK's own reader, for tests of engine/report/workspace_export.hpp.
 
-read_vtk.py FILE            dimensions, spacing, origin, and a line of bits per array, x running fastest
-read_vtk.py FILE TABLE.csv  compares every array with the column of its name in a table of pkmopt workspace --csv
+read_vtk.py FILE            prints dimensions, spacing, origin, and the bits of each array, x varying fastest
+read_vtk.py FILE TABLE.csv  compares every array with the column of the same name in a table of pkmopt workspace --csv
 """
 
 import csv

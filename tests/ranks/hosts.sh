@@ -1,22 +1,23 @@
 #!/usr/bin/env bash
-# hosts.sh RANK_PROGRAM FOLDER: two hosts, which are two network namespaces of this one with a veth pair between them and
-# names of their own. Messages, a study of uneven designs (claimed in turn) and a solver's starts; their files are those
-# of one process. Exit code 77: not root, or namespaces are not allowed.
+# hosts.sh RANK_PROGRAM FOLDER: tests ranks on two hosts, simulated by two network namespaces with different host names,
+# connected by a veth pair. Checks the messages, a study of designs with uneven evaluation times (claimed dynamically)
+# and a multistart solver stage; the files must equal those of one process. Exit code 77 (skipped): not root, or
+# namespaces are not permitted.
 set -euo pipefail
 program=$(realpath "$1") folder=$2
 tests=$(realpath "$(dirname -- "${BASH_SOURCE[0]}")/..")
 for tool in mpirun ip unshare nsenter; do
-  PATH=$PATH:/usr/sbin command -v "$tool" > /dev/null || { echo "skipped: there is no $tool"; exit 77; }
+  PATH=$PATH:/usr/sbin command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed"; exit 77; }
 done
 export PATH=$PATH:/usr/sbin
-unshare --net --uts true 2> /dev/null || { echo "skipped: no namespaces for this user"; exit 77; }
+unshare --net --uts true 2> /dev/null || { echo "skipped: this user cannot create namespaces"; exit 77; }
 fail() { printf '%s\n' "$*" >&2; exit 1; }
 
 rm -rf "$folder" && mkdir -p "$folder" && cd "$folder"
 declare -A holder
 trap 'kill "${holder[@]}"' EXIT
 for host in pkm-one pkm-two; do
-  unshare --net --uts sh -c "hostname $host && exec sleep 600" & # the namespaces end with it
+  unshare --net --uts sh -c "hostname $host && exec sleep 600" & # keeps the namespaces until it is killed
   holder[$host]=$!
 done
 on() { nsenter --target "${holder[$1]}" --net --uts -- "${@:2}"; }
@@ -31,7 +32,7 @@ for host in pkm-one pkm-two; do
   on $host ip link set pkm0 up
 done
 
-# mpirun starts its daemon on the other host by what is usually ssh.
+# Replaces ssh, by which mpirun starts its daemon on the other host.
 cat > agent <<AGENT
 #!/usr/bin/env bash
 while [[ \$1 == -* ]]; do shift; done
@@ -63,11 +64,11 @@ STUDY
 for study in slow starts; do
   "$program" run $study.toml --output $study-straight.h5 --quiet --threads 1
   on_two_hosts "$program" run $study.toml --output $study.h5 --threads 1 > $study.out
-  grep -q "on pkm-one, pkm-two: parallel" $study.out || fail "$study: not by two hosts"
+  grep -q "on pkm-one, pkm-two: parallel" $study.out || fail "$study: did not run on two hosts"
 done
-PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "a study by two hosts and the straight one differ"
+PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "the files of two hosts and of one process differ"
 from campaign import digest, state
 for name in ("slow", "starts"):
     assert state(name + ".h5") == "finished" and digest(name + ".h5") == digest(name + "-straight.h5"), name
 PY
-echo "two hosts ended with the same files as one process"
+echo "two hosts wrote the same files as one process"

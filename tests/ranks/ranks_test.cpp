@@ -1,5 +1,5 @@
-// One study by several processes: the same file whatever their number, killed and gone on with, refused where they do
-// not find one another.
+// Runs of a study by several MPI processes (ranks): bit-identical files for any number of ranks, resuming after kills,
+// and rejection of inconsistent ranks.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -43,12 +43,12 @@ class Ranks : public StudyProgram {
  protected:
   void SetUp() override {
     StudyProgram::SetUp();
-    if (!fs::exists(PKM_MPIRUN)) GTEST_SKIP() << "there is no mpirun, or the program was built without MPI";
-    // What an Open MPI would ask of a machine that it has to itself.
+    if (!fs::exists(PKM_MPIRUN)) GTEST_SKIP() << "mpirun is missing, or the program was built without MPI";
+    // Open MPI otherwise rejects root and more ranks than cores.
     for (const char* given :
          {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "OMPI_MCA_rmaps_base_oversubscribe"})
       setenv(given, "1", 1);
-    // Open MPI's plugins forget memory, and are unloaded before anyone can say whose it was.
+    // Open MPI's plugins leak memory, and are unloaded before the leaks can be attributed to them.
     setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
     setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 1);
   }
@@ -56,20 +56,21 @@ class Ranks : public StudyProgram {
   void write_toml(const std::string& rest, const std::string& head = kHead) const {
     std::ofstream(path("study.toml")) << head << rest;
   }
-  static std::vector<std::string> on(int ranks, std::vector<std::string> arguments,
-                                     const std::string& program = PKM_PROGRAM) {
+  /// Arguments of mpirun that start the program on a number of ranks.
+  static std::vector<std::string> mpi_command(int ranks, std::vector<std::string> arguments,
+                                              const std::string& program = PKM_PROGRAM) {
     const std::vector<std::string> words = {PKM_MPIRUN, "-n", std::to_string(ranks), "--bind-to", "none", program};
     arguments.insert(arguments.begin(), words.begin(), words.end());
     return arguments;
   }
   int run_on(int ranks, const std::vector<std::string>& arguments, const std::string& program = PKM_PROGRAM) {
-    ChildProcess child(on(ranks, arguments, program), folder_);
+    ChildProcess child(mpi_command(ranks, arguments, program), folder_);
     const int code = child.wait();
     output_ = child.output();
     return code;
   }
-  /// study.toml into a file for each number of ranks and threads: all like that of one process.
-  void expect_the_same(const std::set<int>& ranks, const std::string& program = PKM_PROGRAM) {
+  /// Runs study.toml with each number of ranks, on 1 and 2 threads, and expects the file of a run by one process.
+  void expect_same_files(const std::set<int>& ranks, const std::string& program = PKM_PROGRAM) {
     ChildProcess alone({program, "run", "study.toml", "--output", "alone.h5", "--quiet", "--threads", "1"}, folder_);
     ASSERT_EQ(alone.wait(), 0) << alone.output();
     for (const int count : ranks)
@@ -80,14 +81,14 @@ class Ranks : public StudyProgram {
         EXPECT_EQ(first_difference(read("alone.h5"), read(file)), "") << file;
       }
   }
-  /// For solvers, which take no steps and, some, no constraints.
-  static std::string smooth_head() {
+  /// kHead without variables with steps and without constraints, which not all solvers handle.
+  static std::string head_for_solvers() {
     std::string head = kHead;
     head.erase(head.find(", step = 0.001"), 14);
     return head.substr(0, head.find("[[constraint]]"));
   }
-  /// Those of our ranks that write the file.
-  static std::vector<pid_t> ranks_with(const std::string& word) {
+  /// Process ids of the ranks whose command line contains `word`.
+  static std::vector<pid_t> find_ranks(const std::string& word) {
     std::vector<pid_t> found;
     for (const auto& entry : fs::directory_iterator("/proc")) {
       const std::string name = entry.path().filename();
@@ -98,9 +99,10 @@ class Ranks : public StudyProgram {
     }
     return found;
   }
-  /// study.toml in one go, and killed and gone on with by other numbers of ranks: three times, or as often as
-  /// PKM_RANK_KILLS says. Studies that end before they are killed do not count.
-  void expect_kills_survived() {
+  /// Kills one of two ranks at a random time, resumes the study with another number of ranks, and compares the file
+  /// with that of an uninterrupted run. Repeats this three times, or PKM_RANK_KILLS times; studies that end before they
+  /// are killed do not count.
+  void expect_resumable_after_kills() {
     ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
     const char* const given = std::getenv("PKM_RANK_KILLS");
     const int kills = given ? std::atoi(given) : 3;
@@ -108,14 +110,15 @@ class Ranks : public StudyProgram {
     std::mt19937 engine(22);
     int killed = 0, longest = 1000;  // ms
     for (int attempt = 0; killed < kills; ++attempt) {
-      ASSERT_LT(attempt, 3 * kills) << "the study ends before kills";
+      ASSERT_LT(attempt, 3 * kills) << "the study ends too early to be killed";
       const std::string file = std::to_string(attempt) + ".h5";
       {
-        ChildProcess child(on(2, {"run", "study.toml", "--output", file, "--quiet", "--threads", "1"}), folder_);
+        ChildProcess child(mpi_command(2, {"run", "study.toml", "--output", file, "--quiet", "--threads", "1"}),
+                           folder_);
         while (!fs::exists(path(file))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         std::this_thread::sleep_for(
             std::chrono::milliseconds(20 + engine() % static_cast<std::mt19937::result_type>(longest)));
-        const std::vector<pid_t> ranks = ranks_with(file);
+        const std::vector<pid_t> ranks = find_ranks(file);
         if (!ranks.empty()) kill(ranks[engine() % ranks.size()], SIGKILL);
         const bool survived = child.wait() == 0;
         killed += !survived;
@@ -127,38 +130,38 @@ class Ranks : public StudyProgram {
       }
       EXPECT_EQ(first_difference(read("straight.h5"), read(file)), "") << file << " by " << other << " ranks";
     }
-    std::cout << killed << " kills, all gone on with\n";
+    std::cout << killed << " kills, all resumed\n";
   }
 };
 
 TEST_F(Ranks, ExchangeMessages) {
   for (const int ranks : {1, 2, 3}) {
     EXPECT_EQ(run_on(ranks, {"--exchange"}, PKM_RANK_PROGRAM), 0) << output_;
-    EXPECT_THAT(output_, HasSubstr(std::to_string(ranks) + " ranks exchange"));
+    EXPECT_THAT(output_, HasSubstr(std::to_string(ranks) + " ranks: all messages received"));
   }
 }
 
-TEST_F(Ranks, OfAGeneticAlgorithmEndTheSame) {
+TEST_F(Ranks, GeneticAlgorithmGivesTheSameFile) {
   write_toml(std::string(kRatio) + kGa);
-  expect_the_same({1, 2, 3, 7});
+  expect_same_files({1, 2, 3, 7});
 }
 
-TEST_F(Ranks, OfNsga2EndTheSame) {
+TEST_F(Ranks, Nsga2GivesTheSameFile) {
   write_toml(std::string(kRatio) + kVolume + "[[stage]]\noptimiser = \"nsga2\"\npopulation = 40\ngenerations = 8\n");
-  expect_the_same({1, 2, 3, 7});
+  expect_same_files({1, 2, 3, 7});
 }
 
-TEST_F(Ranks, OfSweepsAndSolversEndTheSame) {
+TEST_F(Ranks, SweepsAndSolversGiveTheSameFile) {
   write_toml(std::string(kRatio) +
                  "[[stage]]\noptimiser = \"sweep\"\ndesign = \"full-factorial\"\npoints = 4\n"
                  "[[stage]]\noptimiser = \"sweep\"\npoints = 9\n"
                  "[[stage]]\noptimiser = \"nlopt\"\nstart = \"best-of-basins\"\nstarts = 2\n"
                  "multistart = 5\n",
-             smooth_head());
-  expect_the_same({1, 2, 3, 7});
+             head_for_solvers());
+  expect_same_files({1, 2, 3, 7});
 }
 
-TEST_F(Ranks, WhereADesignsYawsAndMotionAreSharedOutEndTheSame) {
+TEST_F(Ranks, SharingOrientationsAndMotionsGivesTheSameFile) {
   write_toml(R"([mechanism]
 type = "3crr-r-cru"
 masses = "geometry"
@@ -192,28 +195,28 @@ optimiser = "nlopt"
 evaluations = 15
 )",
              "");
-  expect_the_same({1, 2});
+  expect_same_files({1, 2});
 }
 
-TEST_F(Ranks, RunIpopt) {  // whose sequential linear solver has an MPI_Init of its own
+TEST_F(Ranks, RunIpopt) {  // its sequential MUMPS defines MPI_Init, too
   write_toml(std::string(kRatio) + "[[stage]]\noptimiser = \"ipopt\"\nstart = \"none\"\nmultistart = 4\n",
-             smooth_head());
-  expect_the_same({2, 3});
+             head_for_solvers());
+  expect_same_files({2, 3});
 }
 
-TEST_F(Ranks, ClaimDesignsInTurnWhereTheyTakeUnevenTimes) {
+TEST_F(Ranks, ClaimDesignsDynamicallyIfTheyTakeUnevenTimes) {
   write_toml(
       "[[objective]]\ntype = \"slow\"\n[[stage]]\noptimiser = \"sweep\"\ndesign = \"full-factorial\"\npoints = 20\n"
       "[[stage]]\noptimiser = \"ga\"\npopulation = 60\ngenerations = 3\n",
       "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.15, max = 0.95 }\nb = { min = 0.5, max = 1 }\n");
-  expect_the_same({2, 3}, PKM_RANK_PROGRAM);
+  expect_same_files({2, 3}, PKM_RANK_PROGRAM);
 }
 
-TEST_F(Ranks, TellWhatTheyWere) {
+TEST_F(Ranks, AreReportedWithTheirThreads) {
   write_toml(std::string(kRatio) + kGa);
   ASSERT_EQ(run_on(2, {"run", "study.toml", "--output", "two.h5", "--threads", "1"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr(" on 2 ranks x 1 thread, messages between ranks "));
-  EXPECT_EQ(output_.find("this run:"), output_.rfind("this run:")) << "one rank talks";
+  EXPECT_EQ(output_.find("this run:"), output_.rfind("this run:")) << "only one rank prints";
   const StudyContents two = read("two.h5");
   ASSERT_EQ(two.notes.size(), 1u);
   EXPECT_THAT(two.notes[0], HasSubstr("520 evaluations by 2 ranks x 1 thread on "));
@@ -227,7 +230,7 @@ TEST_F(Ranks, WarnOfMoreThreadsThanCores) {
   EXPECT_THAT(output_, HasSubstr(" has 2 ranks of " + cores + " thread"));
 }
 
-TEST_F(Ranks, RunSeedsOneAfterTheOther) {
+TEST_F(Ranks, RunSeedsConsecutively) {
   write_toml(std::string(kRatio) + kGa);
   ASSERT_EQ(run({"run", "study.toml", "--seeds", "2", "--output", "alone.h5", "--quiet"}), 0) << output_;
   ASSERT_EQ(run_on(2, {"run", "study.toml", "--seeds", "2", "--output", "two.h5", "--quiet"}), 0) << output_;
@@ -235,21 +238,21 @@ TEST_F(Ranks, RunSeedsOneAfterTheOther) {
     EXPECT_EQ(first_difference(read(std::string("alone") + seed), read(std::string("two") + seed)), "");
 }
 
-TEST_F(Ranks, KilledAtRandomInstantsAndResumedByAnotherNumberEndTheSame) {
+TEST_F(Ranks, KilledAndResumedWithAnotherNumberGiveTheSameFile) {
   write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 60\n[checkpoint]\nevery = 0\n",
              std::string(kHead) + kRatio);
-  expect_kills_survived();
+  expect_resumable_after_kills();
 }
 
-TEST_F(Ranks, KilledWhileSolversWorkAndResumedByAnotherNumberEndTheSame) {
+TEST_F(Ranks, KilledInSolversAndResumedWithAnotherNumberGiveTheSameFile) {
   write_toml(
       "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"sbplx\"\nstart = \"none\"\nmultistart = 12\n"
       "evaluations = 60\n[checkpoint]\nevery = 0\n",
-      smooth_head() + kVolume);
-  expect_kills_survived();
+      head_for_solvers() + kVolume);
+  expect_resumable_after_kills();
 }
 
-TEST_F(Ranks, OfAMechanismFromAFileEndTheSameAlsoWithoutTheFile) {
+TEST_F(Ranks, MechanismFileGivesTheSameFileAlsoIfItIsRemoved) {
   fs::copy(PKM_EXPERIMENTS "/mechanisms/linear-delta.toml", path("delta.toml"));
   write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 60\n[checkpoint]\nevery = 0\n",
              R"([mechanism]
@@ -263,8 +266,8 @@ cells = { x = 12, y = 12, z = 12 }
 [[objective]]
 type = "workspace-volume"
 )");
-  expect_the_same({2, 3});
-  expect_kills_survived();
+  expect_same_files({2, 3});
+  expect_resumable_after_kills();
   const StudyContents alone = read("alone.h5");
   EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "left.h5", "--quiet", "--time", "100ms"}), 3) << output_;
   fs::remove(path("delta.toml"));
@@ -272,33 +275,33 @@ type = "workspace-volume"
   EXPECT_EQ(first_difference(alone, read("left.h5")), "");
 }
 
-TEST_F(Ranks, StopTogetherByASignalToRank0OrByTime) {
+TEST_F(Ranks, StopTogetherOnASignalOrATimeLimit) {
   write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 100000\n", std::string(kHead) + kRatio);
   EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "time.h5", "--quiet", "--time", "300ms"}), 3) << output_;
   EXPECT_THAT(output_, HasSubstr("stopped by time limit after "));
   EXPECT_EQ(read("time.h5").state, StudyState::interrupted);
-  ChildProcess child(on(2, {"run", "study.toml", "--output", "signal.h5", "--quiet"}), folder_);
+  ChildProcess child(mpi_command(2, {"run", "study.toml", "--output", "signal.h5", "--quiet"}), folder_);
   while (!fs::exists(path("signal.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  for (const pid_t rank : ranks_with("signal.h5")) kill(rank, SIGTERM);
+  for (const pid_t rank : find_ranks("signal.h5")) kill(rank, SIGTERM);
   EXPECT_EQ(child.wait(), 3) << child.output();
   EXPECT_THAT(child.output(), HasSubstr("stopped by SIGTERM after "));
 }
 
-TEST_F(Ranks, AreNamedWhereTheyComputeOtherNumbers) {
-  write_toml("[[objective]]\ntype = \"odd\"\n" + std::string(kGa), kHead);
+TEST_F(Ranks, AreNamedIfTheirResultsDiffer) {
+  write_toml("[[objective]]\ntype = \"inconsistent\"\n" + std::string(kGa), kHead);
   EXPECT_NE(run_on(3, {"run", "study.toml", "--quiet"}, PKM_RANK_PROGRAM), 0);
   EXPECT_THAT(output_, HasSubstr("rank 1 on "));
-  EXPECT_THAT(output_, HasSubstr("has other results here: the same program with the same libraries has to run"));
+  EXPECT_THAT(output_, HasSubstr("has other results here than on rank 0 ("));
   EXPECT_THAT(output_, Not(HasSubstr("rank 2 on ")));
-  // One design, which every rank evaluates alone.
-  write_toml("[[objective]]\ntype = \"odd\"\n[[stage]]\noptimiser = \"sweep\"\n", kHead);
+  // A single design, which each rank evaluates itself.
+  write_toml("[[objective]]\ntype = \"inconsistent\"\n[[stage]]\noptimiser = \"sweep\"\n", kHead);
   EXPECT_NE(run_on(3, {"run", "study.toml", "--quiet", "--force"}, PKM_RANK_PROGRAM), 0);
   EXPECT_THAT(output_, HasSubstr("rank 1 on "));
-  EXPECT_THAT(output_, HasSubstr("what was evaluated in generation 0 of stage 1 differs from that of rank 0 on "));
+  EXPECT_THAT(output_, HasSubstr("evaluations in generation 0 of stage 1 differ from those on rank 0 ("));
 }
 
-TEST_F(Ranks, ThatReadOtherFilesAreNamed) {
+TEST_F(Ranks, AreNamedIfTheirInputsDiffer) {
   write_toml(std::string(kRatio) + kGa);
   std::ofstream(path("other.toml")) << kHead << kVolume << kGa;
   fs::create_directory(path("here"));
@@ -319,13 +322,13 @@ TEST_F(Ranks, ThatReadOtherFilesAreNamed) {
                 {PKM_PROGRAM, "run", "other.toml", "--quiet", "-o", "a.h5"}),
             0);
   EXPECT_THAT(output_,
-              HasSubstr("called as 'pkmopt run other.toml --quiet -o a.h5' here, but as 'pkmopt run study.toml "
-                        "--quiet -o a.h5' as rank 0 on "));
+              HasSubstr("called as 'pkmopt run other.toml --quiet -o a.h5', but as 'pkmopt run study.toml --quiet "
+                        "-o a.h5' on rank 0 ("));
   EXPECT_NE(two({"--wdir", path("here"), PKM_PROGRAM, "run", "study.toml", "--quiet"},
                 {"--wdir", path("there"), PKM_PROGRAM, "run", "study.toml", "--quiet"}),
             0);
-  EXPECT_THAT(output_, HasSubstr("study.toml has another text here than for rank 0 on "));
-  // Where there is no such file, rank 0's is that of all.
+  EXPECT_THAT(output_, HasSubstr("study.toml: differs from the file read on rank 0 ("));
+  // A missing file is received from rank 0.
   fs::remove(path("there/study.toml"));
   EXPECT_EQ(two({"--wdir", path("here"), PKM_PROGRAM, "run", "study.toml", "--quiet", "--force"},
                 {"--wdir", path("there"), PKM_PROGRAM, "run", "study.toml", "--quiet", "--force"}),
@@ -333,7 +336,7 @@ TEST_F(Ranks, ThatReadOtherFilesAreNamed) {
       << output_;
 }
 
-TEST_F(Ranks, EndTogetherWhereRank0CannotBegin) {
+TEST_F(Ranks, EndTogetherIfRank0CannotStart) {
   write_toml("[[stage]]\noptimiser = \"gaa\"\n", std::string(kHead) + kRatio);
   EXPECT_EQ(run_on(3, {"run", "study.toml", "--quiet"}), 2);
   EXPECT_THAT(output_, HasSubstr("gaa"));
@@ -343,14 +346,14 @@ TEST_F(Ranks, EndTogetherWhereRank0CannotBegin) {
   EXPECT_THAT(output_, Not(HasSubstr("MPI_ABORT"))) << output_;
 }
 
-TEST_F(Ranks, LeaveOtherCommandsToTheFirst) {
+TEST_F(Ranks, RunOtherCommandsOnRank0Only) {
   EXPECT_EQ(run_on(2, {"list", "optimisers"}), 0) << output_;
   EXPECT_EQ(output_.find("  sweep"), output_.rfind("  sweep")) << output_;
 }
 
-// A launcher whose messages are not those that the program was built with starts N times a program that is alone.
-TEST_F(StudyProgram, OneOfSeveralProcessesThatIsAloneIsRefused) {
-  setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // as above
+// The launcher of another MPI library starts N processes that cannot communicate.
+TEST_F(StudyProgram, ProcessesWithoutTheirLauncherAreRejected) {
+  setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // leaks of MPI, see above
   setenv("PMI_SIZE", "3", 1);
   for (const char* rank : {"0", "1"}) {
     setenv("PMI_RANK", rank, 1);

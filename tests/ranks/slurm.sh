@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# slurm.sh PROGRAM FOLDER: the scripts of experiments/slurm under a Slurm of this host alone, with rank_program's slow
-# designs. A study that comes to its job's time limit is requeued and ends as the one that nobody disturbed; so do seeds
-# in jobs of their own. Exit code 77: there is no Slurm, or not root.
+# slurm.sh PROGRAM FOLDER: tests the scripts of experiments/slurm with a Slurm that runs on this host only, and the slow
+# objective of rank_program. A study whose job reaches its time limit is requeued, and its file must equal that of an
+# uninterrupted run; so must the files of seeds that run in separate jobs. Exit code 77 (skipped): Slurm is not
+# installed, or not root.
 set -euo pipefail
 program=$(realpath "$1") folder=$2
 tests=$(realpath "$(dirname -- "${BASH_SOURCE[0]}")/..") scripts=$(realpath "$(dirname -- "${BASH_SOURCE[0]}")/../../experiments/slurm")
 for tool in slurmctld slurmd munged sbatch; do
-  PATH=$PATH:/usr/sbin command -v "$tool" > /dev/null || { echo "skipped: there is no $tool"; exit 77; }
+  PATH=$PATH:/usr/sbin command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed"; exit 77; }
 done
-((EUID == 0)) || { echo "skipped: Slurm's daemons are started by root"; exit 77; }
+((EUID == 0)) || { echo "skipped: only root can start the Slurm daemons"; exit 77; }
 export PATH=$PATH:/usr/sbin
 fail() { printf '%s\n' "$*" >&2; tail -n 20 "$folder"/log/*.log "$folder"/*.out >&2 || true; exit 1; }
 
@@ -22,7 +23,7 @@ end() {
 }
 trap end EXIT
 
-# A key and a socket of our own. munged insists on folders that only its user can write.
+# A separate key and socket. munged requires folders that only its user can write.
 mkdir -m 755 munge
 dd if=/dev/urandom of=munge/key bs=128 count=1 status=none && chmod 600 munge/key
 munged --force --key-file "$folder/munge/key" --socket "$folder/munge/socket" --pid-file "$folder/munged.pid" \
@@ -59,7 +60,7 @@ for ((i = 0; i < 100; ++i)); do
   [[ $(sinfo --noheader --format %T 2> /dev/null) == idle ]] && break
   sleep 0.2
 done
-[[ $(sinfo --noheader --format %T) == idle ]] || fail "the node does not become idle"
+[[ $(sinfo --noheader --format %T) == idle ]] || fail "the Slurm node did not become idle"
 
 cat > study.toml <<STUDY
 mechanism = { type = "4ppa-2par" }
@@ -68,8 +69,8 @@ objective = [{ type = "slow" }]
 stage = [{ optimiser = "ga", population = 40, generations = 500 }]
 STUDY
 
-# The time limit is a minute, Slurm's least; the signal comes so long before it that the job is stopped after seconds, the
-# first time: then the limit is raised. A requeued job waits until its credential has expired.
+# The time limit is one minute, the minimum of Slurm. SIGTERM is sent 57 s before it, so that the first job stops after
+# seconds; then the limit is raised. A requeued job waits until its credential has expired.
 job=$(sbatch --parsable --ntasks-per-node 2 --cpus-per-task 1 --time 1 --signal TERM@57 --output job.out "$scripts/study.sbatch" study.toml --quiet)
 raised=
 for ((i = 0; i < 1200; ++i)); do
@@ -79,25 +80,25 @@ for ((i = 0; i < 1200; ++i)); do
   fi
   sleep 0.25
 done
-grep -q "stopped by SIGTERM" job.out || fail "the time limit stopped nothing"
-grep -q "goes on from its checkpoint (restart 1)" job.out || fail "the job did not go on"
+grep -q "stopped by SIGTERM" job.out || fail "the time limit did not stop the job"
+grep -q "goes on from its checkpoint (restart 1)" job.out || fail "the job did not resume the study"
 "$program" run study.toml --output straight.h5 --quiet --threads 8
-PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "the study by Slurm and the straight one differ"
+PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "the file of the Slurm job and of the uninterrupted run differ"
 from campaign import digest, state
 assert state("study.h5") == "finished" and digest("study.h5") == digest("straight.h5")
 PY
-echo "a study in several jobs ended as the one in one"
+echo "a study in several jobs wrote the same file as an uninterrupted run"
 
-# An array of jobs, one for each seed, and what tells of all.
+# A job array with one job per seed, and the summary of all seeds.
 sed 's/generations = 500/generations = 5/' study.toml > short.toml
 sbatch --quiet --wait --array 1-2 --cpus-per-task 1 --time 10 --output seeds.out "$scripts/seeds.sbatch" short.toml --quiet ||
   fail "the jobs of the seeds failed"
-"$program" run short.toml --seeds 2 --seed 1 --resume > spread.out || fail "the seeds cannot be read"
-grep -q ", 2 of 2 seeds" spread.out || fail "not all seeds have ended"
+"$program" run short.toml --seeds 2 --seed 1 --resume > spread.out || fail "the summary of the seeds failed"
+grep -q ", 2 of 2 seeds" spread.out || fail "not all seeds have finished"
 "$program" run short.toml --seeds 2 --seed 1 --output alone.h5 --quiet
-PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "seeds by jobs and by one process differ"
+PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "the files of seeds in jobs and in one process differ"
 from campaign import digest
 for seed in "12":
     assert digest(f"short-seed-{seed}.h5") == digest(f"alone-seed-{seed}.h5"), seed
 PY
-echo "two seeds in jobs of their own ended as by one process"
+echo "two seeds in separate jobs wrote the same files as one process"

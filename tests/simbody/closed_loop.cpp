@@ -11,7 +11,8 @@ using SimTK::Vec3;
 
 const double kRightAngle = SimTK::Pi / 2;
 
-/// Rails of the paper's figure: axis, plane axes, and a point per rail spacing.
+/// The rails of the paper's figure: direction e, axes p and q of the plane of the limb, and a point on the rail in
+/// units of the rail spacing.
 struct Rail {
   Vec3 e, p, q, point;
   double sense() const { return SimTK::dot(e, SimTK::cross(p, q)); }
@@ -21,12 +22,12 @@ const std::array<Rail, 4> kRails = {{{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 1, 0
                                      {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}},
                                      {{0, 1, 0}, {-1, 0, 0}, {0, 0, -1}, {1, 0, 1}}}};
 
-/// Axes whose x is `x` and whose y is `y`.
+/// The frame with the given x and y axes.
 SimTK::Rotation axes(const Vec3& x, const Vec3& y) {
   return {SimTK::UnitVec3(x), SimTK::XAxis, SimTK::UnitVec3(y), SimTK::YAxis};
 }
 
-/// A rod along x from the origin that turns about z.
+/// A rod along x from the origin that rotates about z. @param inertia  about z and y, at the centre of mass
 SimTK::Body::Rigid rod(double mass, double length, double inertia) {
   const SimTK::Inertia central(inertia * 0.05, inertia, inertia);
   const Vec3 centre(length / 2, 0, 0);
@@ -43,7 +44,7 @@ SimTK::Body point_mass(double mass) {
   return SimTK::Body::Rigid(SimTK::MassProperties(mass, Vec3(0), SimTK::Inertia(0)));
 }
 
-/// Rods of a limb: angles about e of rod 1 from p and of rod 2 from rod 1.
+/// Joint angles of a limb about e: of rod 1 relative to p, and of rod 2 relative to rod 1.
 struct Angles {
   double first, second;
 };
@@ -53,7 +54,7 @@ struct Angles {
 struct ClosedLoop::Model {
   explicit Model(const Parameters& parameters);
 
-  SimTK::Vec3 joint_on_circle(std::size_t i) const {  // C_i from N, in the platform
+  SimTK::Vec3 joint_on_circle(std::size_t i) const {  // C_i relative to N, in the platform frame
     return {p.r * std::cos(p.beta[i]), p.r * std::sin(p.beta[i]), 0};
   }
   Angles angles(std::size_t i, const Vec3& C, int elbow) const;
@@ -78,7 +79,7 @@ ClosedLoop::Model::Model(const Parameters& parameters) : p(parameters) {
     const double l1 = p.l_1[i], l2 = p.l_2[i];
     const Transform on_rail(axes(rail.e, rail.p), rail.point * p.L);
     slide[i] = MobilizedBody::Slider(matter.Ground(), on_rail, point_mass(p.slide), Transform());
-    // the slide's x is the rail; the rods' z is, and their x is p at angle 0
+    // the x axis of the slide is the rail; the z axis of the rods is, and their x axis is p at angle 0
     const Transform at_slide(axes(Vec3(0, 1, 0), Vec3(0, 0, 1)));
     first[i] = MobilizedBody::Pin(slide[i], at_slide, rod(p.m_1[i], l1, p.I_1[i]), Transform());
     second[i] = MobilizedBody::Pin(first[i], Vec3(l1, 0, 0), rod(p.m_2[i], l2, p.I_2[i]), Transform());
@@ -109,7 +110,7 @@ ClosedLoop::Model::Model(const Parameters& parameters) : p(parameters) {
   system.realizeModel(initial);
 }
 
-/// Law of cosines.
+/// Inverse kinematics of a limb by the law of cosines.
 Angles ClosedLoop::Model::angles(std::size_t i, const Vec3& C, int elbow) const {
   const Rail& rail = kRails[i];
   const double l1 = p.l_1[i], l2 = p.l_2[i];
@@ -147,7 +148,7 @@ Solution ClosedLoop::solve(const Case& at) const {
   const LoopForces found =
       loop_forces(m.system, m.matter, m.place(at), m.moving, {{3, 4, 5, 2}, velocity, acceleration}, Vec3(m.p.c, 0, 0),
                   at.wrench, {m.slide.begin(), m.slide.end()});
-  Solution solution{{}, found.constraints, found.constraint_rank, found.open, found.unbalanced};
+  Solution solution{{}, found.constraints, found.constraint_rank, found.closure_error, found.force_error};
   for (int i = 0; i < 4; ++i) solution.drive_forces[static_cast<std::size_t>(i)] = found.drives[i];
   return solution;
 }

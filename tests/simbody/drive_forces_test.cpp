@@ -1,16 +1,16 @@
-// Driving forces of (3CRR/R)&CRU and the Quadrupteron against Simbody's: the paper's oscillation, quintic moves along
+// Drive forces of (3CRR/R)&CRU and the Quadrupteron against Simbody: the oscillation of the paper, quintic moves along
 // x, y, z and a diagonal, and random states under wrenches, for nominal and random designs.
 #include <gtest/gtest.h>
 
 #include "tests/simbody/closed_loop.hpp"
-#include "tests/unit/mechanisms/crr_cru/states.hpp"
+#include "tests/unit/accelerators/crr_cru/states.hpp"
 
 namespace pkm::simbody {
 namespace {
 
 using testing::crr::State, testing::crr::Uniform;
 
-constexpr double kAccuracy = 1e-9;  // of the largest force of a state
+constexpr double kAccuracy = 1e-9;  // relative to the largest drive force of a state
 
 Parameters parameters_of(const std::string& mechanism, const std::vector<double>& p) {
   using namespace crr_cru;
@@ -36,13 +36,13 @@ Parameters parameters_of(const std::string& mechanism, const std::vector<double>
   q.m = p[kMass];
   q.c = p[kCentre];
   q.m_middle = p[kMass1];
-  q.slide = p[kTableExtras];
-  q.payload = p[kTableExtras + 1];
-  q.c_payload = p[kTableExtras + 2];
+  q.slide = p[kSlideMass];
+  q.payload = p[kPayload];
+  q.c_payload = p[kPayloadOffset];
   return q;
 }
 
-/// Compares states of one design, and keeps the largest difference.
+/// Compares drive forces at states of one design, and records the largest difference.
 class Comparison {
  public:
   Comparison(std::string mechanism, std::vector<double> design)
@@ -50,22 +50,23 @@ class Comparison {
 
   void check(State s) {
     s.parameters = design_;
-    const SchoenfliesPose<double>& X = s.motion.pose;
+    const Pose<double>& X = s.motion.pose;
     const Solution theirs =
-        loops_.solve({s.mode, {X.x, X.y, X.z, X.angle}, s.motion.velocity.m, s.acceleration.m, s.wrench.m});
-    const crr_cru::PoseDynamics<double> d = testing::crr::dynamics_of(name_, s);
+        loops_.solve({s.mode, fixed<4>(X).m, fixed<4>(s.motion.velocity).m, fixed<4>(s.acceleration).m, s.wrench.m});
+    const PoseDynamics<double> d = testing::crr::dynamics_of(name_, s);
     ASSERT_TRUE(d.assembles);
-    const Vector<double, 4> ours = drive_forces(d, s.acceleration, s.wrench);
-    double largest = 0, off = 0;
+    const AxisVector<double> ours = drive_forces(d, s.acceleration, s.wrench);
+    double largest = 0, error = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       largest = std::max(largest, std::fabs(theirs.drive_forces[i]));
-      off = std::max(off, std::fabs(ours[i] - theirs.drive_forces[i]));
+      error = std::max(error, std::fabs(ours[i] - theirs.drive_forces[i]));
     }
-    EXPECT_LE(off, kAccuracy * largest) << name_ << " at " << X.x << ", " << X.y << ", " << X.z << ", " << X.angle;
-    worst_ = std::max(worst_, off / largest);
-    // Theirs is a solution: loops closed, equations fulfilled; redundant constraints as many as the mechanism has.
-    EXPECT_LE(theirs.open, 1e-9);
-    EXPECT_LE(theirs.unbalanced, 1e-9 * largest);
+    EXPECT_LE(error, kAccuracy * largest) << name_ << " at " << X[0] << ", " << X[1] << ", " << X[2] << ", " << X[3];
+    worst_ = std::max(worst_, error / largest);
+    // Simbody's solution satisfies the loop-closure equations and the equations of motion, and has the expected number
+    // of redundant constraints.
+    EXPECT_LE(theirs.closure_error, 1e-9);
+    EXPECT_LE(theirs.force_error, 1e-9 * largest);
     EXPECT_EQ(theirs.constraints - theirs.constraint_rank, name_ == "quadrupteron" ? 3 : 4);
   }
   double worst() const { return worst_; }
@@ -79,7 +80,7 @@ class Comparison {
   double worst_ = 0;
 };
 
-/// A design whose plates have the inertia of real bodies (no component above the sum of the others).
+/// A random design whose plates have physically possible inertias (triangle inequality), as Simbody requires.
 std::vector<double> random_design(Uniform& uniform) {
   std::vector<double> p = testing::crr::random_design(uniform, 0.15);
   const std::vector<double> nominal = testing::crr::nominal();
@@ -87,13 +88,13 @@ std::vector<double> random_design(Uniform& uniform) {
     const double factor = uniform(0.7, 1.4);
     for (std::size_t k = 0; k < 3; ++k) p[plate + k] = nominal[plate + k] * factor;
   }
-  p[crr_cru::kTableExtras] = uniform(0, 0.5);
-  p[crr_cru::kTableExtras + 1] = uniform(0.01, 0.5);
-  p[crr_cru::kTableExtras + 2] = uniform(-0.05, 0.1);
+  p[crr_cru::kSlideMass] = uniform(0, 0.5);
+  p[crr_cru::kPayload] = uniform(0.01, 0.5);
+  p[crr_cru::kPayloadOffset] = uniform(-0.05, 0.1);
   return p;
 }
 
-/// The nominal design of each mechanism, and `count` random ones.
+/// Calls check() for the nominal design of each mechanism and for `count` random designs.
 template <class Check>
 void for_designs(int count, const Check& check) {
   Uniform uniform(21);
@@ -113,37 +114,37 @@ const crr_cru::WorkingMode kNominalMode = {-1, -1, 1, -1};
 State oscillation(const std::array<double, 4>& X0, double t) {
   const double A = 0.01, w = 2 * kPi;
   const auto [s, c] = sincos(w * t);
-  State state{{}, kNominalMode, {}, {}, {}};
-  state.motion.pose = {X0[0] + A * s, X0[1] + A * c, X0[2] + A * s, X0[3]};
-  state.motion.velocity = {{A * w * c, -A * w * s, A * w * c, 0}};
-  state.acceleration = {{-A * w * w * s, -A * w * w * c, -A * w * w * s, 0}};
-  return state;
+  return {{},
+          kNominalMode,
+          {{X0[0] + A * s, X0[1] + A * c, X0[2] + A * s, X0[3]}, {A * w * c, -A * w * s, A * w * c, 0}},
+          {-A * w * w * s, -A * w * w * c, -A * w * w * s, 0},
+          {}};
 }
 
-TEST(DriveForces, OfTheOscillation) {
+TEST(DriveForces, AgreeAlongTheOscillation) {
   for_designs(3, [](Comparison& comparison, Uniform&) {
     for (int k = 0; k <= 40; ++k) comparison.check(oscillation({0.2, 0.17, 0.22, 0}, k / 40.0));
     for (int k = 0; k <= 40; ++k) comparison.check(oscillation({0.2, 0.17, 0.22, 0.6}, k / 40.0));
   });
 }
 
-/// Rest to rest: 10 u^3 - 15 u^4 + 6 u^5 of the stroke, D accelerated by at most `peak` [m/s^2].
+/// Rest-to-rest move by the quintic law 10 u^3 - 15 u^4 + 6 u^5 over the stroke; peak acceleration of D: `peak`
+/// [m/s^2].
 State quintic(const std::array<double, 4>& start, const std::array<double, 4>& stroke, double peak, double u) {
   const double length = std::sqrt(stroke[0] * stroke[0] + stroke[1] * stroke[1] + stroke[2] * stroke[2]);
   const double T = std::sqrt(10 * length / (std::sqrt(3.0) * peak));
   const double s = u * u * u * (10 - 15 * u + 6 * u * u), v = 30 * u * u * (1 - u) * (1 - u) / T,
                a = 60 * u * (1 - u) * (1 - 2 * u) / (T * T);
-  State state{{}, kNominalMode, {}, {}, {}};
-  state.motion.pose = {start[0] + s * stroke[0], start[1] + s * stroke[1], start[2] + s * stroke[2],
-                       start[3] + s * stroke[3]};
+  State state{{}, kNominalMode, {Pose<double>(4), AxisVector<double>(4)}, AxisVector<double>(4), {}};
   for (std::size_t k = 0; k < 4; ++k) {
+    state.motion.pose[k] = start[k] + s * stroke[k];
     state.motion.velocity[k] = v * stroke[k];
     state.acceleration[k] = a * stroke[k];
   }
   return state;
 }
 
-TEST(DriveForces, OfQuinticMoves) {
+TEST(DriveForces, AgreeAlongQuinticMoves) {
   const std::array<double, 4> start = {0.1975, 0.137, 0.2319, 0};
   const std::array<std::array<double, 4>, 5> strokes = {{{-0.0906, 0, 0, 0},
                                                          {0, 0.05, 0, 0},
@@ -157,7 +158,7 @@ TEST(DriveForces, OfQuinticMoves) {
   });
 }
 
-TEST(DriveForces, OfRandomStatesUnderWrenches) {
+TEST(DriveForces, AgreeAtRandomStatesUnderWrenches) {
   for_designs(25, [](Comparison& comparison, Uniform& uniform) {
     for (int k = 0; k < 48; ++k)
       comparison.check(testing::crr::random_state(uniform, comparison.name(), testing::crr::mode_number(k % 16),

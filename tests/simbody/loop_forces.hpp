@@ -1,5 +1,5 @@
-// Forces of the drives of a closed-loop system of Simbody whose platform moves as told. Rates and accelerations are
-// solved from its constraints, forces from its equations of motion; where constraints are redundant, by least norm.
+// Inverse dynamics of a closed-loop Simbody system whose platform motion is prescribed. Velocities and accelerations
+// are solved from the constraints, forces from the equations of motion; with redundant constraints, by minimum norm.
 #pragma once
 
 #include <Simbody.h>
@@ -9,23 +9,24 @@
 
 namespace pkm::simbody {
 
-/// Angular velocity and velocity of the platform's origin: those with these numbers, 0 to 5, and their rates.
+/// Prescribed components of the platform's twist (0 to 2: angular velocity, 3 to 5: velocity of the origin) and of its
+/// time derivative.
 struct PlatformMotion {
-  std::vector<int> rows;
+  std::vector<int> rows;  ///< indices of the prescribed components
   Eigen::VectorXd velocity, acceleration;
 };
 
 struct LoopForces {
   Eigen::VectorXd drives;       ///< [N, N m]
-  Eigen::VectorXd multipliers;  ///< of the constraints: of a ball the force along x, y, z of the ground
+  Eigen::VectorXd multipliers;  ///< of the constraints; for a ball the force along x, y, z of the ground frame
   int constraints = 0, constraint_rank = 0;
-  double open = 0;        ///< greatest error of the loops' closure, as given and in rates [m, rad; per s, per s^2]
-  double unbalanced = 0;  ///< greatest residual of the equations of motion [N, N m]
+  double closure_error = 0;  ///< maximum residual of the loop-closure equations and their time derivatives (SI units)
+  double force_error = 0;    ///< maximum residual of the equations of motion [N, N m]
 };
 
-/// @param state    with the positions
-/// @param station  of the platform, where the wrench (force, moment) acts
-/// @param drives   bodies whose first mobility a drive moves
+/// @param state    contains the positions
+/// @param station  point in the platform frame where the wrench (force, moment) acts
+/// @param drives   bodies whose first mobility is driven
 LoopForces loop_forces(const SimTK::MultibodySystem& system, const SimTK::SimbodyMatterSubsystem& matter,
                        SimTK::State state, const SimTK::MobilizedBody& platform, const PlatformMotion& motion,
                        const SimTK::Vec3& station, const std::array<double, 6>& wrench,

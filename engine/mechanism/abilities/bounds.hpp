@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
+#include "engine/geometry/pose.hpp"
 #include "engine/mechanism/plan.hpp"
-#include "engine/model/pose.hpp"
 #include "engine/motion/motion.hpp"
 
 namespace pkm {
@@ -31,7 +31,7 @@ struct VolumeBounds {
 };
 
 /// Whether something holds at every pose of a box or of a motion.
-struct PosesVerdict {
+struct PosesFinding {
   enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
   std::string what = {};                   ///< does not hold, or is undecided, or why it was not examined
@@ -40,24 +40,24 @@ struct PosesVerdict {
 };
 
 struct PosesCertificate {
-  PosesVerdict feasible;
-  PosesVerdict regular;   ///< no singularity, parallel or serial; not examined where a pose is not feasible
+  PosesFinding feasible;
+  PosesFinding regular;   ///< no singularity, parallel or serial; not examined where a pose is not feasible
   std::size_t boxes = 0;  ///< looked at
   bool stopped = false;
 };
 
-class CertainBounds {
+class RigorousBounds {
  public:
-  virtual ~CertainBounds() = default;
+  virtual ~RigorousBounds() = default;
   /// Throws std::invalid_argument with a sentence where there are no bounds of a plan's workspace.
-  virtual void refuse_bounds(const SurveyPlan& plan) const = 0;
+  virtual void refuse_bounds(const WorkspacePlan& plan) const = 0;
   /// Of the workspace within the plan's box, else within the ranges that hold it, as the numbers stand. Throws
   /// std::invalid_argument with a sentence when the mechanism cannot serve the plan.
-  virtual VolumeBounds volume(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+  virtual VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               const BoundsOptions& options) const = 0;
   /// Of a box of poses, under the plan's limits.
   /// @param ranges  by coordinate; one of no width holds it
-  virtual PosesCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+  virtual PosesCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                                std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
   /// Of a motion, at every instant of it. Where it is infeasible, at the first instant that is, to 1e-6 of the
   /// duration.

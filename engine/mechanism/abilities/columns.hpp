@@ -12,8 +12,8 @@ class Columns {
  public:
   virtual ~Columns() = default;
   /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
-  virtual std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
-                                                  const Demand& demand) const = 0;
+  virtual std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
+                                                            const Demand& demand) const = 0;
   /// Whether ColumnOptions::box can cut them.
   virtual bool take_box() const { return false; }
   /// Whether they count Demand::rotors.
@@ -24,8 +24,8 @@ class Voxels {
  public:
   virtual ~Voxels() = default;
   /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
-  virtual std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
-                                                       const Demand& demand) const = 0;
+  virtual std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
+                                                        const Demand& demand) const = 0;
   /// Whether they count Demand::rotors.
   virtual bool take_rotors() const { return false; }
   /// Whether they know obstacles under a clearance.

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/geometry/pose.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/mechanism/plan.hpp"
-#include "engine/model/pose.hpp"
 
 namespace pkm {
 

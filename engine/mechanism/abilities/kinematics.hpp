@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/chain.hpp"
-#include "engine/model/influence.hpp"
-#include "engine/model/placed_link.hpp"
-#include "engine/model/pose.hpp"
+#include "engine/geometry/influence.hpp"
+#include "engine/geometry/placed_link.hpp"
+#include "engine/geometry/pose.hpp"
 #include "engine/motion/motion.hpp"
 
 namespace pkm {
@@ -69,20 +68,6 @@ class Links {
                                         const std::string& mode) const = 0;
   /// What the clearance of links does not count, for people; empty: it does not say.
   virtual std::vector<JoinedLinks> joined() const { return {}; }
-};
-
-/// One more input shaft, which turns one more output shaft on the platform while the platform moves.
-class AuxiliaryChain {
- public:
-  virtual ~AuxiliaryChain() = default;
-  virtual std::string input() const = 0;   ///< name of the angle
-  virtual std::string output() const = 0;  ///< name of the angle
-  /// At a pose on its way, with the motion of its input.
-  /// @param phase  of the forks of the chain's two universal joints [rad]
-  virtual ChainReport report(std::span<const double> parameters, const MotionSample& at, double phase) const = 0;
-  /// The input angle for an output [rad]; absent where it does not turn.
-  virtual std::optional<double> input_for(std::span<const double> parameters, const Pose<double>& pose, double output,
-                                          double phase) const = 0;
 };
 
 }  // namespace pkm

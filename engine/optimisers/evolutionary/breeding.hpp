@@ -1,5 +1,5 @@
-// From one population to the designs of the next: selection, crossover, mutation and the check that nothing is
-// evaluated twice. Knows the order of preference of the parents, not where it comes from.
+// Reproduction in evolutionary algorithms: parent selection, crossover, mutation and elimination of duplicate designs.
+// Only the rank of the parents is used, so that one and several objectives are handled alike.
 #pragma once
 
 #include <cstdint>
@@ -8,42 +8,48 @@
 
 #include "engine/core/parameter.hpp"
 #include "engine/optimisers/evolutionary/breeding_plan.hpp"
-#include "engine/optimisers/evolutionary/known_designs.hpp"
+#include "engine/optimisers/evolutionary/design_hash_set.hpp"
 #include "engine/optimisers/optimiser.hpp"
 
 namespace pkm {
 
-/// Makes designs and appends them, unevaluated, to one stage's table.
+/// Creates designs and appends them, not yet evaluated, to the table of one stage.
 class Breeder {
  public:
   Breeder(const BreedingPlan& plan, const DesignSpace& space, std::uint64_t seed)
       : plan_(plan), space_(space), seed_(seed) {}
 
-  /// The start population: the given designs first (moved into the space), then an even cover. At most `most_new` rows
-  /// are added. `members` receives the rows.
-  void start(const std::vector<StartDesign>& given, EvaluationTable& table, std::size_t most_new,
-             std::vector<std::int64_t>& members);
+  /// Creates the initial population: the given designs, projected onto the design space, then space-filling samples.
+  /// @param max_new_rows  0: adds no rows; otherwise at least the population
+  /// @param members  receives the rows of the population
+  void create_initial_population(const std::vector<StartDesign>& given_designs, EvaluationTable& table,
+                                 std::size_t max_new_rows, std::vector<std::int64_t>& members);
 
-  /// `count` children of `parents` (best first). A child that equals a known design is not added again: its row is
-  /// that design's (unless the plan says unique). Where no new design is found within a bounded number of tries, or
-  /// `most_new` rows are added, there are fewer children; those that there are do not depend on `most_new`.
-  void offspring(std::uint32_t generation, std::span<const std::int64_t> parents, std::size_t count,
-                 EvaluationTable& table, std::size_t most_new, std::vector<std::int64_t>& children);
+  /// Creates `count` children of `parents`. A child equal to an evaluated design is not added again: it is represented
+  /// by the row of that design or, if the plan requires unique children, changed until it is new. There are fewer
+  /// children if a bounded number of tries finds no new design, or once `max_new_rows` rows have been added; the
+  /// children created before that do not depend on `max_new_rows`.
+  /// @param parents  rows, best first
+  /// @param children  receives the rows of the children
+  void create_children(std::uint32_t generation, std::span<const std::int64_t> parents, std::size_t count,
+                       EvaluationTable& table, std::size_t max_new_rows, std::vector<std::int64_t>& children);
 
  private:
-  bool add(std::uint32_t generation, std::uint32_t individual, std::span<double> child, EvaluationTable& table,
-           std::size_t most_new, std::vector<std::int64_t>& members);
-  bool renew(std::uint32_t generation, std::uint32_t individual, std::span<double> child, const EvaluationTable& table);
-  void breed(const Pool& pool, std::size_t first, std::size_t second, Stream& stream, std::span<double> child) const;
-  void move_into_space(std::span<double> child) const;
+  bool add_child(std::uint32_t generation, std::uint32_t individual, std::span<double> child, EvaluationTable& table,
+                 std::size_t max_new_rows, std::vector<std::int64_t>& members);
+  bool make_unique(std::uint32_t generation, std::uint32_t individual, std::span<double> child,
+                   const EvaluationTable& table);
+  void make_child(const ParentPool& pool, std::size_t first, std::size_t second, Stream& stream,
+                  std::span<double> child) const;
+  void snap_to_space(std::span<double> child) const;
 
   const BreedingPlan& plan_;
   const DesignSpace& space_;
   std::uint64_t seed_;
-  KnownDesigns known_;
-  std::vector<double> pool_;      // designs of the parents, best first
-  std::vector<double> children_;  // designs as bred, known or not
-  std::vector<std::uint32_t> parents_;
+  DesignHashSet evaluated_;
+  std::vector<double> parent_designs_;  // designs of the parents, best first, row by row
+  std::vector<double> child_designs_;   // designs of the children, including duplicates, row by row
+  std::vector<std::uint32_t> parent_indices_;
 };
 
 }  // namespace pkm

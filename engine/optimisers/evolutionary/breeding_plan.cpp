@@ -7,8 +7,8 @@
 namespace pkm {
 namespace {
 
-// The words of each choice, in the order of the enumeration they stand for.
-const std::vector<std::string> kStarts = {"sobol", "latin-hypercube", "random"};
+// Option values, in the order of the enumerators that they denote.
+const std::vector<std::string> kSamplingMethods = {"sobol", "latin-hypercube", "random"};
 const std::vector<std::string> kSelections = {"tournament", "linear-ranking"};
 const std::vector<std::string> kCrossovers = {"differential", "sbx", "blend", "scattered"};
 const std::vector<std::string> kMutations = {"multiscale", "gaussian", "polynomial", "uniform"};
@@ -23,23 +23,24 @@ Enum choice(const Options& options, const std::string& name, const std::vector<s
 std::vector<OptionSpec> breeding_options() {
   return {
       integer_option("population", {}, 4, 1e6, "designs per generation (default: 5 per variable, at least 20)"),
-      word_option("start", kStarts, "how the first population covers the space"),
-      word_option("selection", kSelections,
-                  "how parents are chosen; linear-ranking uses stochastic universal sampling"),
-      integer_option("tournament_size", std::int64_t{2}, 1, 1e6, "tournament: members compared"),
-      number_option("selection_pressure", 2.0, 1, 2, "linear-ranking: expected children of the best over the average"),
-      word_option("crossover", kCrossovers, "how parents are recombined; scattered is discrete recombination"),
+      word_option("start", kSamplingMethods, "sampling method of the initial population"),
+      word_option("selection", kSelections, "parent selection; linear-ranking uses stochastic universal sampling"),
+      integer_option("tournament_size", std::int64_t{2}, 1, 1e6, "tournament: number of members compared"),
+      number_option("selection_pressure", 2.0, 1, 2,
+                    "linear-ranking: expected number of children of the best member, relative to the average"),
+      word_option("crossover", kCrossovers, "crossover operator; scattered is discrete recombination"),
       number_option("crossover_probability", 0.85, 0, 1,
-                    "share of children made by crossover; the others begin as copies"),
-      number_option("crossover_eta", 15.0, 0, 1000, "sbx: spread index, larger stays nearer to the parents"),
-      word_option("mutation", kMutations, "how a variable is changed"),
-      number_option(
-          "mutation_probability", {}, 0, 1,
-          "of each variable of each child (default: 1 per number of variables; differential: a fifth of that)"),
+                    "fraction of children made by crossover; the others start as copies of a parent"),
+      number_option("crossover_eta", 15.0, 0, 1000,
+                    "sbx: distribution index; larger values keep children closer to the parents"),
+      word_option("mutation", kMutations, "mutation operator"),
+      number_option("mutation_probability", {}, 0, 1,
+                    "probability of mutating a variable of a child (default: 1 / number of variables; differential: a "
+                    "fifth of that)"),
       number_option("mutation_sigma", 0.3, 0, 1,
-                    "gaussian: deviation as a share of the range; multiscale: the largest"),
-      number_option("mutation_eta", 20.0, 0, 1000, "polynomial: index, larger steps less far"),
-      flag_option("unique", true, "children equal to an evaluated design are mutated until they are new"),
+                    "gaussian: standard deviation as a fraction of the range; multiscale: its largest value"),
+      number_option("mutation_eta", 20.0, 0, 1000, "polynomial: distribution index; larger values make smaller steps"),
+      flag_option("unique", true, "mutate children equal to an evaluated design until they are new"),
   };
 }
 
@@ -55,7 +56,7 @@ BreedingPlan breeding_plan(Options options, const DesignSpace& space) {
   resolve_breeding(options, space);
   BreedingPlan plan;
   plan.population = static_cast<std::size_t>(options.integer("population"));
-  plan.start = choice<Start>(options, "start", kStarts);
+  plan.sampling = choice<Start>(options, "start", kSamplingMethods);
   plan.selection.kind = choice<Selection::Kind>(options, "selection", kSelections);
   plan.selection.tournament_size = options.integer("tournament_size");
   plan.selection.pressure = options.number("selection_pressure");

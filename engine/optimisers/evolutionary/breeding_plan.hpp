@@ -1,4 +1,4 @@
-// The settings of breeding, and the options from which a study sets them.
+// Settings of reproduction (population, selection, crossover, mutation), and the study options that define them.
 #pragma once
 
 #include <string>
@@ -7,26 +7,26 @@
 #include "engine/core/options.hpp"
 #include "engine/core/parameter.hpp"
 #include "engine/optimisers/evolutionary/operators.hpp"
-#include "engine/optimisers/start.hpp"
+#include "engine/optimisers/sampling.hpp"
 
 namespace pkm {
 
 struct BreedingPlan {
   std::size_t population = 20;
-  Start start = Start::sobol;
+  Start sampling = Start::sobol;  ///< of the initial population
   Selection selection;
   Crossover crossover;
   double crossover_probability = 0.85;
   Mutation mutation;
-  double mutation_probability = 0.05;  ///< of each variable of each child
-  bool unique = true;                  ///< a child that is already known is changed until it is new
+  double mutation_probability = 0.05;  ///< per variable of a child
+  bool unique = true;                  ///< a child equal to an evaluated design is changed until it is new
 };
 
-/// The options that `breeding_plan` reads: for the catalogue entries of population-based optimisers.
+/// Specifications of the options that `breeding_plan` reads, for the catalogue entries of population-based optimisers.
 std::vector<OptionSpec> breeding_options();
 BreedingPlan breeding_plan(Options options, const DesignSpace& space);
 
-/// Fills in the options whose default depends on the variables: population and mutation_probability.
+/// Sets population and mutation_probability, whose default values depend on the number of variables, if they are unset.
 void resolve_breeding(Options& options, const DesignSpace& space);
 
 }  // namespace pkm

@@ -9,10 +9,10 @@
 namespace pkm {
 namespace {
 
-// One run: the state that a stage carries from generation to generation.
-class Run {
+// State of one run of an evolutionary algorithm.
+class EvolutionRun {
  public:
-  Run(const EvolutionPlan& plan, const StageInput& input, EvaluationTable& table, Survivors& survivors)
+  EvolutionRun(const EvolutionPlan& plan, const StageInput& input, EvaluationTable& table, SurvivorSelection& survivors)
       : plan_(plan),
         input_(input),
         table_(table),
@@ -20,24 +20,24 @@ class Run {
         breeder_(plan.breeding, input.problem.space(), input.seed) {}
 
   StageResult operator()() {
-    breeder_.start(input_.starts, table_, room(), newcomers_);
+    breeder_.create_initial_population(input_.starts, table_, evaluations_left(), new_members_);
     while (true) {
-      const std::size_t first = evaluated_;
-      if (evaluated_ < table_.size()) input_.evaluate(table_, evaluated_);
-      evaluated_ = table_.size();
-      if (survivors_.take(newcomers_)) last_advance_ = generation_;
-      const bool goes_on = report(first);
-      if (const auto reason = stop()) return ended(*reason);
-      if (!goes_on) return ended(StopReason::interrupted);
+      const std::size_t first = evaluated_rows_;
+      if (evaluated_rows_ < table_.size()) input_.evaluate(table_, evaluated_rows_);
+      evaluated_rows_ = table_.size();
+      if (survivors_.update(new_members_)) last_progress_ = generation_;
+      const bool continues = report(first);
+      if (const auto reason = stop_reason()) return make_result(*reason);
+      if (!continues) return make_result(StopReason::interrupted);
       ++generation_;
-      breeder_.offspring(static_cast<std::uint32_t>(generation_), survivors_.population(), plan_.children, table_,
-                         room(), newcomers_);
-      if (newcomers_.empty()) return ended(StopReason::exhausted);
+      breeder_.create_children(static_cast<std::uint32_t>(generation_), survivors_.population(), plan_.children, table_,
+                               evaluations_left(), new_members_);
+      if (new_members_.empty()) return make_result(StopReason::exhausted);
     }
   }
 
  private:
-  std::size_t room() const {
+  std::size_t evaluations_left() const {
     return static_cast<std::size_t>(plan_.evaluations - static_cast<std::int64_t>(table_.size()));
   }
 
@@ -50,15 +50,15 @@ class Run {
                                       .front = survivors_.front()});
   }
 
-  std::optional<StopReason> stop() const {
-    if (survivors_.satisfied()) return StopReason::target;
-    if (plan_.stall && generation_ - last_advance_ >= *plan_.stall) return StopReason::stall;
-    if (room() == 0) return StopReason::evaluations;
+  std::optional<StopReason> stop_reason() const {
+    if (survivors_.target_reached()) return StopReason::target;
+    if (plan_.stall && generation_ - last_progress_ >= *plan_.stall) return StopReason::stall;
+    if (evaluations_left() == 0) return StopReason::evaluations;
     if (generation_ >= plan_.generations) return StopReason::generations;
     return {};
   }
 
-  StageResult ended(StopReason reason) const {
+  StageResult make_result(StopReason reason) const {
     StageResult result{reason, survivors_.best_row()};
     if (survivors_.front()) result.front = *survivors_.front();
     return result;
@@ -67,20 +67,21 @@ class Run {
   const EvolutionPlan& plan_;
   const StageInput& input_;
   EvaluationTable& table_;
-  Survivors& survivors_;
+  SurvivorSelection& survivors_;
   Breeder breeder_;
   std::int64_t generation_ = 0;
-  std::size_t evaluated_ = 0;            // rows of the table that are evaluated
-  std::vector<std::int64_t> newcomers_;  // rows of this generation's children
-  std::int64_t last_advance_ = 0;
+  std::size_t evaluated_rows_ = 0;         // number of evaluated rows of the table
+  std::vector<std::int64_t> new_members_;  // rows of the initial population or of this generation's children
+  std::int64_t last_progress_ = 0;
 };
 
 class Evolution final : public Optimiser {
  public:
-  Evolution(const EvolutionPlan& plan, SurvivorsMaker survivors) : plan_(plan), survivors_(std::move(survivors)) {}
+  Evolution(const EvolutionPlan& plan, SurvivorSelectionFactory survivors)
+      : plan_(plan), survivors_(std::move(survivors)) {}
 
   StageResult minimise(const StageInput& input, EvaluationTable& table) const override {
-    return Run(plan_, input, table, *survivors_(input.problem, table))();
+    return EvolutionRun(plan_, input, table, *survivors_(input.problem, table))();
   }
   std::int64_t evaluation_limit(const Problem&) const override {
     return std::min(plan_.evaluations, static_cast<std::int64_t>(plan_.breeding.population) +
@@ -89,25 +90,26 @@ class Evolution final : public Optimiser {
 
  private:
   EvolutionPlan plan_;
-  SurvivorsMaker survivors_;
+  SurvivorSelectionFactory survivors_;
 };
 
 }  // namespace
 
-std::unique_ptr<Optimiser> make_evolution(const EvolutionPlan& plan, SurvivorsMaker survivors) {
+std::unique_ptr<Optimiser> make_evolution(const EvolutionPlan& plan, SurvivorSelectionFactory survivors) {
   return std::make_unique<Evolution>(plan, std::move(survivors));
 }
 
-std::vector<OptionSpec> evolution_options(const std::string& progress) {
-  constexpr double kMany = 1e12;
+std::vector<OptionSpec> evolution_options(const std::string& measure) {
+  constexpr double kMaxCount = 1e12;
   std::vector<OptionSpec> specs = breeding_options();
-  specs.insert(specs.begin() + 1,
-               {integer_option("generations", std::int64_t{100}, 0, 4e9, "generations after the start population"),
-                integer_option("evaluations", {}, 1, kMany, "most designs to evaluate (default: no limit)")});
+  specs.insert(
+      specs.begin() + 1,
+      {integer_option("generations", std::int64_t{100}, 0, 4e9, "generations after the initial population"),
+       integer_option("evaluations", {}, 1, kMaxCount, "maximum number of designs to evaluate (default: no limit)")});
   specs.push_back(
-      integer_option("stall", {}, 1, kMany, "stop after so many generations without improvement (default: never)"));
-  specs.push_back(
-      number_option("tolerance", 1e-8, 0, 1, "relative improvement of " + progress + " that counts for stall"));
+      integer_option("stall", {}, 1, kMaxCount, "stop after this many generations without progress (default: never)"));
+  specs.push_back(number_option("tolerance", 1e-8, 0, 1,
+                                "relative improvement of " + measure + " that counts as progress for stall"));
   return specs;
 }
 

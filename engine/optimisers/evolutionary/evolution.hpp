@@ -1,5 +1,5 @@
-// What population-based optimisers share: generation after generation of breeding and evaluation, until a limit or
-// the survivors say that it is enough. Who survives is what they differ in.
+// Generational evolutionary algorithm, the main loop of the population-based optimisers: reproduction, evaluation and
+// survivor selection, until a stopping criterion is met. The optimisers differ in their survivor selection.
 #pragma once
 
 #include <cmath>
@@ -18,40 +18,42 @@ namespace pkm {
 
 struct EvolutionPlan {
   BreedingPlan breeding;
-  std::size_t children = 20;  ///< per generation
+  std::size_t children = 20;  ///< number of children per generation
   std::int64_t generations = 100;
   std::int64_t evaluations = std::numeric_limits<std::int64_t>::max();
-  std::optional<std::int64_t> stall;  ///< generations without progress after which to stop
-  double tolerance = 1e-8;            ///< relative improvement that is progress
+  std::optional<std::int64_t> stall;  ///< stop after this many generations without progress
+  double tolerance = 1e-8;            ///< relative improvement that counts as progress
 
-  bool progress(double gain, double before) const { return gain > tolerance * std::fabs(before); }
+  bool is_progress(double gain, double reference) const { return gain > tolerance * std::fabs(reference); }
 };
 
-/// Who lives on after a generation.
-class Survivors {
+/// Survivor selection: decides which designs form the next population.
+class SurvivorSelection {
  public:
-  virtual ~Survivors() = default;
-  /// Joins evaluated children (rows of the stage's table) with the population. Returns whether that was progress, as
-  /// far as stalling is concerned.
-  virtual bool take(const std::vector<std::int64_t>& children) = 0;
-  /// Rows of the population in the order of preference, best first.
+  virtual ~SurvivorSelection() = default;
+  /// Selects the next population from the current one and evaluated children (rows of the stage's table).
+  /// @return true if the generation made progress, for the stall criterion
+  virtual bool update(const std::vector<std::int64_t>& children) = 0;
+  /// Rows of the population, best first.
   virtual const std::vector<std::int64_t>& population() const = 0;
-  /// The row to be shown for all; -1 while there is none.
+  /// Best row so far (several objectives: compromise solution); -1 while there is none.
   virtual std::int64_t best_row() const = 0;
-  /// Whether nothing more is asked for.
-  virtual bool satisfied() const { return false; }
-  /// Several objectives: the trade-off so far.
+  /// True if the target of the study is reached, so that the run stops.
+  virtual bool target_reached() const { return false; }
+  /// Several objectives: the Pareto front so far. Otherwise null.
   virtual const Front* front() const { return nullptr; }
 };
 
-/// Makes the survivors of one run.
-using SurvivorsMaker = std::function<std::unique_ptr<Survivors>(const Problem&, const EvaluationTable&)>;
+/// Creates the survivor selection of one run.
+using SurvivorSelectionFactory =
+    std::function<std::unique_ptr<SurvivorSelection>(const Problem&, const EvaluationTable&)>;
 
-std::unique_ptr<Optimiser> make_evolution(const EvolutionPlan& plan, SurvivorsMaker survivors);
+std::unique_ptr<Optimiser> make_evolution(const EvolutionPlan& plan, SurvivorSelectionFactory survivors);
 
-/// The options that `evolution_plan` reads, for catalogue entries; `progress` says what stalls.
-std::vector<OptionSpec> evolution_options(const std::string& progress);
-/// All but `children`, which is the population.
+/// Specifications of the options that `evolution_plan` reads, for catalogue entries.
+/// @param measure  the quantity whose improvement counts as progress, for the help text of `tolerance`
+std::vector<OptionSpec> evolution_options(const std::string& measure);
+/// Reads the options; `children` is set to the population.
 EvolutionPlan evolution_plan(const Options& options, const DesignSpace& space);
 
 }  // namespace pkm

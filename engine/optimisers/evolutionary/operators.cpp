@@ -8,12 +8,13 @@
 namespace pkm {
 namespace {
 
-// One turn of a wheel with as many equally spaced pointers as parents are wanted: the number of times a member is
-// drawn differs from its expectation by less than one. Shuffled afterwards, so that neighbours are not mates.
-void sample_universally(double pressure, std::size_t population, Stream& stream, std::span<std::uint32_t> parents) {
+// Stochastic universal sampling (Baker 1987) with linear ranking: one pointer per parent, equally spaced, so that a
+// member is drawn its expected number of times, rounded up or down. The result is shuffled to randomise the pairs.
+void stochastic_universal_sampling(double pressure, std::size_t population, Stream& stream,
+                                   std::span<std::uint32_t> parents) {
   const double n = static_cast<double>(population), count = static_cast<double>(parents.size());
   const double offset = stream.u01();
-  double reached = 0;  // expected number of draws of the members up to `next`
+  double reached = 0;  // cumulative expected number of draws of the members before `next`
   std::size_t next = 0;
   for (std::size_t i = 0; i < parents.size(); ++i) {
     const double pointer = static_cast<double>(i) + offset;
@@ -27,7 +28,7 @@ void sample_universally(double pressure, std::size_t population, Stream& stream,
   for (std::size_t i = parents.size(); i > 1; --i) std::swap(parents[i - 1], parents[stream.below(i)]);
 }
 
-void differential(const Pool& pool, std::size_t first, Stream& stream, std::span<double> child) {
+void differential_crossover(const ParentPool& pool, std::size_t first, Stream& stream, std::span<double> child) {
   const std::size_t size = pool.size(), n = child.size();
   const std::size_t elite = std::min(size, std::max<std::size_t>(2, size / 10));
   const std::size_t guide = stream.below(elite);
@@ -35,24 +36,24 @@ void differential(const Pool& pool, std::size_t first, Stream& stream, std::span
   std::size_t q = (p + 1 + stream.below(size - 1)) % size;
   if (p > q && stream.chance(0.75)) std::swap(p, q);
   const double factor = 0.45 + 0.9 * stream.u01();
-  const std::size_t always = stream.below(n);
+  const std::size_t forced = stream.below(n);
   const auto x = pool.design(first), g = pool.design(guide), xp = pool.design(p), xq = pool.design(q);
   for (std::size_t i = 0; i < n; ++i) {
-    const bool moves = stream.chance(0.9) || i == always;
-    child[i] = moves ? x[i] + factor * (g[i] - x[i]) + factor * (xp[i] - xq[i]) : x[i];
+    const bool takes_step = stream.chance(0.9) || i == forced;
+    child[i] = takes_step ? x[i] + factor * (g[i] - x[i]) + factor * (xp[i] - xq[i]) : x[i];
   }
 }
 
-void simulated_binary(double eta, std::span<const double> x, std::span<const double> y, Stream& stream,
-                      std::span<double> child) {
+void simulated_binary_crossover(double eta, std::span<const double> x, std::span<const double> y, Stream& stream,
+                                std::span<double> child) {
   for (std::size_t i = 0; i < child.size(); ++i) {
     child[i] = x[i];
     if (stream.chance(0.5)) continue;
     const double u = stream.u01();
     const double base = u < 0.5 ? 2 * u : 1 / (2 * (1 - u));
     const double spread = portable::pow(base, 1 / (eta + 1));
-    const double side = stream.chance(0.5) ? 1 : -1;
-    child[i] = 0.5 * ((x[i] + y[i]) + side * spread * (x[i] - y[i]));
+    const double sign = stream.chance(0.5) ? 1 : -1;
+    child[i] = 0.5 * ((x[i] + y[i]) + sign * spread * (x[i] - y[i]));
   }
 }
 
@@ -66,7 +67,7 @@ double polynomial_step(double eta, double u) {
 void select_parents(const Selection& selection, std::size_t population, Stream& stream,
                     std::span<std::uint32_t> parents) {
   if (selection.kind == Selection::Kind::linear_ranking) {
-    sample_universally(selection.pressure, population, stream, parents);
+    stochastic_universal_sampling(selection.pressure, population, stream, parents);
     return;
   }
   for (std::uint32_t& parent : parents) {
@@ -76,14 +77,14 @@ void select_parents(const Selection& selection, std::size_t population, Stream& 
   }
 }
 
-void cross(const Crossover& crossover, const Pool& pool, std::size_t first, std::size_t second, Stream& stream,
-           std::span<double> child) {
+void recombine(const Crossover& crossover, const ParentPool& pool, std::size_t first, std::size_t second,
+               Stream& stream, std::span<double> child) {
   const auto x = pool.design(first), y = pool.design(second);
   switch (crossover.kind) {
     case Crossover::Kind::differential:
-      return differential(pool, first, stream, child);
+      return differential_crossover(pool, first, stream, child);
     case Crossover::Kind::sbx:
-      return simulated_binary(crossover.eta, x, y, stream, child);
+      return simulated_binary_crossover(crossover.eta, x, y, stream, child);
     case Crossover::Kind::blend:
       for (std::size_t i = 0; i < child.size(); ++i) child[i] = x[i] + (2 * stream.u01() - 0.5) * (y[i] - x[i]);
       return;
@@ -93,7 +94,7 @@ void cross(const Crossover& crossover, const Pool& pool, std::size_t first, std:
   }
 }
 
-double mutated(const Mutation& mutation, const Variable& variable, double value, Stream& stream) {
+double mutate(const Mutation& mutation, const Variable& variable, double value, Stream& stream) {
   constexpr double kLog10000 = 9.210340371976182736;
   const double range = variable.upper - variable.lower;
   switch (mutation.kind) {

@@ -1,8 +1,8 @@
-// Ipopt with exact gradients and a limited-memory Hessian.
+// Solver stage with Ipopt (interior-point method): exact gradients and a limited-memory quasi-Newton Hessian.
 //
-// Debian's MUMPS is not thread-safe and Ipopt 3.11 does not guard it, so one lock is held from the construction of an
-// application to its destruction. Its file ipopt.opt in the working folder is never read. An exception in a callback
-// ends the solver with a status of its own; that is also how a stop gets out at once.
+// Debian's MUMPS is not thread-safe and Ipopt 3.11 does not protect it, so that a mutex is locked from the construction
+// of an Ipopt application to its destruction. A file ipopt.opt in the working folder is not read. An exception in a
+// callback ends the solver with a separate status, which is also how a run is stopped.
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -22,63 +22,64 @@
 namespace pkm {
 namespace {
 
-std::mutex ipopt_lock;
+std::mutex ipopt_mutex;
 
-struct StopNow {};
+struct StopRequested {};
 
-class Program final : public Ipopt::TNLP {
+/// Adapter from NonlinearProgram to Ipopt's interface.
+class IpoptProblem final : public Ipopt::TNLP {
  public:
   using Index = Ipopt::Index;
   using Number = Ipopt::Number;
 
-  Program(Trials& trials, const std::vector<double>& from, double tighten)
-      : trials_(trials), from_(from), tighten_(tighten) {}
+  IpoptProblem(NonlinearProgram& program, const std::vector<double>& start, double tighten)
+      : program_(program), start_(start), tighten_(tighten) {}
   const std::vector<double>& solution() const { return solution_; }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
-    n = static_cast<Index>(trials_.dimension());
-    m = static_cast<Index>(trials_.margins());
+    n = static_cast<Index>(program_.dimension());
+    m = static_cast<Index>(program_.constraints());
     jacobian = n * m;
     hessian = 0;
     style = C_STYLE;
     return true;
   }
-  bool get_bounds_info(Index n, Number* lower, Number* upper, Index m, Number* least, Number* greatest) override {
+  bool get_bounds_info(Index n, Number* lower, Number* upper, Index m, Number* g_lower, Number* g_upper) override {
     std::fill_n(lower, n, 0.0);
     std::fill_n(upper, n, 1.0);
-    std::fill_n(least, m, tighten_);
-    std::fill_n(greatest, m, 2e19);  // Ipopt's infinity begins at 1e19
+    std::fill_n(g_lower, m, tighten_);
+    std::fill_n(g_upper, m, 2e19);  // no upper bound: values from 1e19 are infinite for Ipopt
     return true;
   }
   bool get_starting_point(Index, bool, Number* u, bool, Number*, Number*, Index, bool, Number*) override {
-    std::ranges::copy(from_, u);
+    std::ranges::copy(start_, u);
     return true;
   }
   bool eval_f(Index, const Number* u, bool, Number& value) override {
-    const Trials::Point& point = at(u);
+    const NonlinearProgram::Point& point = evaluate(u);
     value = point.objective;
-    return point.usable;  // false: Ipopt cuts its step
+    return point.usable;  // false: Ipopt reduces its step
   }
   bool eval_grad_f(Index, const Number* u, bool, Number* gradient) override {
-    const Trials::Point& point = at(u);
+    const NonlinearProgram::Point& point = evaluate(u);
     std::ranges::copy(point.gradient, gradient);
     return point.usable;
   }
   bool eval_g(Index, const Number* u, bool, Index, Number* margins) override {
-    const Trials::Point& point = at(u);
+    const NonlinearProgram::Point& point = evaluate(u);
     std::ranges::copy(point.margins, margins);
     return point.usable;
   }
   bool eval_jac_g(Index n, const Number* u, bool, Index m, Index, Index* row, Index* column, Number* values) override {
-    if (!values) {  // the structure: full
+    if (!values) {  // the sparsity structure: dense
       for (Index k = 0; k < n * m; ++k) {
         row[k] = k / n;
         column[k] = k % n;
       }
       return true;
     }
-    const Trials::Point& point = at(u);
-    std::ranges::copy(point.margin_gradient, values);
+    const NonlinearProgram::Point& point = evaluate(u);
+    std::ranges::copy(point.margin_jacobian, values);
     return point.usable;
   }
   void finalize_solution(Ipopt::SolverReturn, Index n, const Number* u, const Number*, const Number*, Index,
@@ -88,19 +89,19 @@ class Program final : public Ipopt::TNLP {
   }
 
  private:
-  const Trials::Point& at(const Number* u) {
-    const Trials::Point* point = trials_.at(u);
-    if (!point) throw StopNow{};
+  const NonlinearProgram::Point& evaluate(const Number* u) {
+    const NonlinearProgram::Point* point = program_.evaluate(u);
+    if (!point) throw StopRequested{};
     return *point;
   }
 
-  Trials& trials_;
-  const std::vector<double>& from_;
+  NonlinearProgram& program_;
+  const std::vector<double>& start_;
   double tighten_;
   std::vector<double> solution_;
 };
 
-/// "" or what is wrong with an option.
+/// Sets an option of Ipopt. @return "" or an error message
 std::string set_option(Ipopt::IpoptApplication& application, const std::string& name, const Setting& value) {
   using namespace Ipopt;
   const SmartPtr<const RegisteredOption> option = application.RegOptions()->GetOption(name);
@@ -117,28 +118,28 @@ std::string set_option(Ipopt::IpoptApplication& application, const std::string& 
   switch (option->Type()) {
     case OT_Number:
       if (!text && option->IsValidNumberSetting(number) && options->SetNumericValue(name, number)) return "";
-      return "Ipopt's option " + name + " = " + shown + ", which must be a number in Ipopt's range for it";
+      return "Ipopt's option " + name + " = " + shown + " is invalid; expected a number in the option's range";
     case OT_Integer:
-      // Ipopt's integers are shorter than ours.
+      // Ipopt's integers have fewer bits.
       if (whole && std::in_range<Index>(*whole) && option->IsValidIntegerSetting(static_cast<Index>(*whole)) &&
           options->SetIntegerValue(name, static_cast<Index>(*whole)))
         return "";
-      return "Ipopt's option " + name + " = " + shown + ", which must be an integer in Ipopt's range for it";
+      return "Ipopt's option " + name + " = " + shown + " is invalid; expected an integer in the option's range";
     case OT_String:
       if (text && option->IsValidStringSetting(*text) && options->SetStringValue(name, *text)) return "";
-      return "Ipopt's option " + name + " = " + shown + ", which must be one of Ipopt's words for it";
+      return "Ipopt's option " + name + " = " + shown + " is invalid; expected one of the option's values";
     case OT_Unknown:
       break;
   }
-  return "Ipopt's option " + name + " is of an unknown kind";
+  return "Ipopt's option " + name + " has an unsupported type";
 }
 
-/// Options that belong to the stage: it would not work as it promises with others.
+/// Options that the stage sets itself and that a study must not change.
 const char* const kReserved[] = {"hessian_approximation", "max_iter",        "output_file", "print_level", "sb",
                                  "bound_relax_factor",    "option_file_name"};
 
-/// How Ipopt ended, in words.
-std::string text(Ipopt::ApplicationReturnStatus status) {
+/// Status message for Ipopt's return code.
+std::string status_text(Ipopt::ApplicationReturnStatus status) {
   static const std::map<Ipopt::ApplicationReturnStatus, std::string> words = {
       {Ipopt::Solve_Succeeded, "optimal solution found"},
       {Ipopt::Solved_To_Acceptable_Level, "solved to acceptable level"},
@@ -159,10 +160,10 @@ class IpoptSolver final : public Solver {
  public:
   explicit IpoptSolver(const Options& options) : options_(options) {}
 
-  /// Throws std::invalid_argument for an option that Ipopt does not take. The lock must be held.
+  /// Creates an Ipopt application. Throws std::invalid_argument for an invalid option. The mutex must be locked.
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application() const {
-    Ipopt::SmartPtr<Ipopt::IpoptApplication> made = new Ipopt::IpoptApplication(false);
-    const auto options = made->Options();
+    Ipopt::SmartPtr<Ipopt::IpoptApplication> app = new Ipopt::IpoptApplication(false);
+    const auto options = app->Options();
     options->SetStringValue("sb", "yes");  // no banner
     options->SetIntegerValue("print_level", 0);
     options->SetStringValue("hessian_approximation", "limited-memory");
@@ -172,24 +173,24 @@ class IpoptSolver final : public Solver {
     options->SetStringValue("mu_strategy", "adaptive");
     if (options_.has("options"))
       for (const auto& [name, value] : options_.settings("options")) {
-        std::string wrong = set_option(*made, name, value);
+        std::string error = set_option(*app, name, value);
         if (std::ranges::find(kReserved, name) != std::end(kReserved))
-          wrong = "Ipopt's option " + name + " is set by the stage and cannot be changed";
-        if (!wrong.empty()) throw std::invalid_argument(wrong);
+          error = "Ipopt's option " + name + " is set by the stage and cannot be changed";
+        if (!error.empty()) throw std::invalid_argument(error);
       }
-    if (made->Initialize("") != Ipopt::Solve_Succeeded)
-      throw std::runtime_error("Ipopt does not start with these options");
-    return made;
+    if (app->Initialize("") != Ipopt::Solve_Succeeded)
+      throw std::runtime_error("Ipopt cannot be initialised with these options");
+    return app;
   }
 
-  SolverEnd solve(Trials& trials, const std::vector<double>& from, std::uint64_t) const override {
-    const std::lock_guard guard(ipopt_lock);
+  SolverResult solve(NonlinearProgram& program, const std::vector<double>& start, std::uint64_t) const override {
+    const std::lock_guard guard(ipopt_mutex);
     const auto app = application();
-    const Ipopt::SmartPtr<Program> program = new Program(trials, from, options_.number("tighten"));
-    const Ipopt::ApplicationReturnStatus status = app->OptimizeTNLP(program);
+    const Ipopt::SmartPtr<IpoptProblem> problem = new IpoptProblem(program, start, options_.number("tighten"));
+    const Ipopt::ApplicationReturnStatus status = app->OptimizeTNLP(problem);
     if (status == Ipopt::Insufficient_Memory) throw std::bad_alloc();
-    return {status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level, text(status),
-            program->solution()};
+    return {status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level, status_text(status),
+            problem->solution()};
   }
 
  private:
@@ -202,11 +203,11 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
   SolverPlan plan = solver_plan(options);
   const auto solver = std::make_shared<IpoptSolver>(options);
   {
-    const std::lock_guard guard(ipopt_lock);
-    solver->application();  // refuses what Ipopt does not take
+    const std::lock_guard guard(ipopt_mutex);
+    solver->application();  // checks the options
   }
   plan.solver = solver;
-  plan.side_by_side = false;
+  plan.concurrent = false;
   plan.detail = Detail::derivatives;
   return make_solver_stage(std::move(plan));
 }
@@ -224,7 +225,7 @@ std::vector<OptionSpec> options() {
 
 OptimiserEntry ipopt_stage() {
   return {.name = "ipopt",
-          .meaning = "Ipopt: interior-point refinement by gradients",
+          .meaning = "Ipopt: local optimisation by an interior-point method, with gradients",
           .capabilities = capabilities,
           .options = options(),
           .make = make};

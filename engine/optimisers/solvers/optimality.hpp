@@ -1,13 +1,15 @@
-// First-order optimality of an evaluated design, worked out from its slopes alone, whatever solver found it.
+// KKT residual and Lagrange multipliers of an evaluated design, computed from its derivatives, independently of the
+// solver.
 //
-// With f the objective to be minimised and c >= 0 the margins, both as functions of the unit cube u, a local optimum
-// has multipliers >= 0 (Karush, Kuhn, Tucker) with
+// With the minimised objective f and the constraints c >= 0 as functions of the unit cube coordinates u, a local
+// optimum has multipliers lambda, mu >= 0 (Karush-Kuhn-Tucker conditions) with
 //
-//   grad f - sum over active margins of lambda_i grad c_i - sum over active bounds of mu_k (+- e_k) = 0.
+//   grad f - sum over active constraints of lambda_i grad c_i - sum over active bounds of mu_k (+- e_k) = 0.
 //
-// The multipliers are the non-negative least-squares solution (Lawson and Hanson 1974, chapter 23); what is left of the
-// gradient, divided by the objective's size, is the optimality: the relative gain per full range of a variable that is
-// still to be had to first order.
+// The multipliers are the non-negative least-squares solution of this equation (active-set method of Lawson and Hanson
+// 1974, chapter 23). The KKT residual, here called optimality, is the largest component of the left-hand side, divided
+// by the magnitude of the objective: the relative improvement still possible, to first order, per full range of a
+// variable.
 #pragma once
 
 #include <optional>
@@ -21,43 +23,48 @@ namespace pkm {
 struct ActiveBound {
   std::size_t variable = 0;
   bool upper = false;
-  double multiplier = 0;  ///< gain of the objective per unit of the variable, in the objective's direction
+  double multiplier = 0;  ///< improvement of the objective per unit by which the bound is relaxed
 };
 
-struct ActiveMargin {
-  std::size_t margin = 0;
-  double multiplier = 0;  ///< gain of the objective per unit by which the margin is relaxed
+struct ActiveConstraint {
+  std::size_t margin = 0;  ///< index of the constraint
+  double multiplier = 0;   ///< improvement of the objective per unit by which the constraint is relaxed
 };
 
 struct Optimality {
-  double optimality = 0;  ///< largest component of what is left of the gradient, relative to the objective
+  double optimality = 0;  ///< KKT residual
   std::vector<ActiveBound> bounds;
-  std::vector<ActiveMargin> margins;
+  std::vector<ActiveConstraint> margins;
 };
 
-/// That of a point of the unit cube, not relative to anything; NaN where the multipliers do not settle.
-/// @param u                in the unit cube
-/// @param gradient         of the objective, to be minimised
-/// @param margins          >= 0 holds; active within what a step of 1e-7 changes it by
-/// @param margin_gradient  margins x variables
-Optimality first_order(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
-                       std::span<const double> margin_gradient);
+/// Evaluates the KKT conditions at a point of the unit cube. The residual is not divided by the magnitude of the
+/// objective; it is NaN if the multipliers cannot be computed.
+/// @param u                coordinates in [0, 1]; a bound is active within 1e-7
+/// @param gradient         gradient of the minimised objective
+/// @param margins          constraint values, satisfied if >= 0; active if a step of 1e-7 can reduce them to 0
+/// @param margin_jacobian  constraints x variables
+Optimality evaluate_kkt(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
+                        std::span<const double> margin_jacobian);
 
-/// @param design  the variables
-/// @param slopes  as in EvaluationShape::slopes
-/// @param size    of the objective, for an objective that is 0 at the optimum; |f| counts where it is larger
-/// A bound is active within 1e-7 of the variable's range, a margin within what such a step changes it by.
+/// Evaluates the KKT conditions of an evaluated design, for the first objective. Multipliers are per physical unit of a
+/// variable; the residual is relative to max(size, |f|).
+/// @param design  values of the variables
+/// @param slopes  values and derivatives, laid out as described at EvaluationShape::slopes
+/// @param size    magnitude of the objective, for objectives that vanish at the optimum
 Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> slopes,
                       double size = 0);
 
-/// The nearest point of the unit cube at which the margins that are nearly 0 are 0 to first order; coordinates that lie
-/// on a bound stay there. None: nothing to move.
-/// @param near  of a margin: what a step of this length changes it by
-std::optional<std::vector<double>> onto_margins(const std::vector<double>& point, std::span<const double> margins,
-                                                std::span<const double> margin_gradient, double near);
+/// Projects a point of the unit cube onto the linearised active constraints (minimum-norm Newton step). Coordinates on
+/// a bound are fixed; the other coordinates may leave the unit cube.
+/// @param activity_tolerance  length of a step within which an active constraint vanishes
+/// @return nullopt if no constraint is active or all coordinates are fixed
+std::optional<std::vector<double>> project_onto_active_constraints(const std::vector<double>& point,
+                                                                   std::span<const double> margins,
+                                                                   std::span<const double> margin_jacobian,
+                                                                   double activity_tolerance);
 
-/// min |A x - b| over x >= 0. A is given by columns, each as long as b. Throws std::runtime_error when it does not
-/// settle.
+/// Minimises |A x - b| over x >= 0 (NNLS, Lawson and Hanson 1974). Throws std::runtime_error if it does not converge.
+/// @param columns  columns of A, each as long as b
 std::vector<double> non_negative_least_squares(const std::vector<std::vector<double>>& columns,
                                                const std::vector<double>& b);
 

@@ -7,131 +7,133 @@
 
 #include "engine/core/ranks.hpp"
 #include "engine/core/stop.hpp"
-#include "engine/optimisers/solvers/joined_starts.hpp"
-#include "engine/optimisers/solvers/solve_start.hpp"
+#include "engine/optimisers/solvers/multistart_merger.hpp"
+#include "engine/optimisers/solvers/solve_from_start.hpp"
 #include "engine/problem/replay.hpp"
 #include "engine/problem/row_exchange.hpp"
 
 namespace pkm {
 namespace {
 
-/// One run of a stage.
-class Run {
+/// One run of a solver stage, on this rank.
+class SolverStageRun {
  public:
-  Run(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
-      : plan_(plan), input_(input), table_(table), stage_(plan, input, table) {}
+  SolverStageRun(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
+      : plan_(plan), input_(input), table_(table), merger_(plan, input, table) {}
 
   StageResult operator()() {
-    const std::vector<StartRun>& starts = stage_.starts();
-    std::vector<std::size_t> open;
+    const std::vector<StartRun>& starts = merger_.starts();
+    std::vector<std::size_t> unfinished;
     for (std::size_t k = 0; k < starts.size(); ++k)
-      if (!starts[k].ended) open.push_back(k);
-    if (open.size() < starts.size() && leads()) stage_.join();  // those that had ended
+      if (!starts[k].ended) unfinished.push_back(k);
+    if (unfinished.size() < starts.size() && is_rank_0()) merger_.merge();  // finished starts of a resumed stage
     {
       ranks::Counter claims, stops;
       stops_ = &stops;
       const auto work = [&] {
-        for (auto k = claims.next(); k < std::ssize(open) && !stage_.stopped(); k = claims.next())
-          run(open[static_cast<std::size_t>(k)]);
+        for (auto k = claims.next(); k < std::ssize(unfinished) && !merger_.stopped(); k = claims.next())
+          run_start(unfinished[static_cast<std::size_t>(k)]);
       };
-      share_long_pieces(plan_.side_by_side ? std::min(workers(), open.size()) : 1, work);
+      parallel_for_nested(plan_.concurrent ? std::min(workers(), unfinished.size()) : 1, work);
     }
-    if (ranks::size() > 1) agree();
-    return stage_.result();
+    if (ranks::size() > 1) synchronise_ranks();
+    return merger_.result();
   }
 
  private:
-  static bool leads() { return ranks::rank() == 0; }
+  static bool is_rank_0() { return ranks::rank() == 0; }
 
-  /// One start, on this thread.
-  void run(std::size_t k) {
-    if (stage_.stopped()) return;
-    StartRun& start = stage_.starts()[k];
-    start.here = true;
+  /// Runs one start on this thread.
+  void run_start(std::size_t k) {
+    if (merger_.stopped()) return;
+    StartRun& run = merger_.starts()[k];
+    run.is_local = true;
     try {
       try {
-        ReplayEvaluator replay(input_.evaluator, start.recorded);
-        solve(k, start, replay);
+        ReplayEvaluator replay(input_.evaluator, run.recorded);
+        solve(k, run, replay);
       } catch (const ReplayMismatch&) {
-        const std::lock_guard guard(stage_.mutex());
-        start.warning = "Start " + std::to_string(k + 1) + " (" + start.from.origin +
-                        ") left the path on record, as solvers may on another processor; it began anew.";
-        start.table = start.recorded = EvaluationTable(start.table.shape());
+        const std::lock_guard guard(merger_.mutex());
+        run.warning = "Start " + std::to_string(k + 1) + " (" + run.start.origin +
+                      ") deviated from its recorded evaluations, as can happen on another processor; it was restarted.";
+        run.table = run.recorded = EvaluationTable(run.table.shape());
       }
-      if (!start.warning.empty()) solve(k, start, input_.evaluator);
-    } catch (const Stopped&) {  // within an evaluation, which is made again
-      stage_.stop();
+      if (!run.warning.empty()) solve(k, run, input_.evaluator);
+    } catch (const Stopped&) {  // during an evaluation, which is repeated when the study is resumed
+      merger_.stop();
     } catch (...) {
-      stage_.stop();  // the others need not go on
+      merger_.stop();  // stops the other starts
       throw;
     }
   }
 
-  void solve(std::size_t k, StartRun& start, Evaluator& evaluator) {
-    // The solver's table is its thread's; what others may read is a copy of it.
-    EvaluationTable table(start.table.shape());
+  void solve(std::size_t k, StartRun& run, Evaluator& evaluator) {
+    // `table` belongs to this thread; run.table is a copy that other threads read under the mutex.
+    EvaluationTable table(run.table.shape());
     const auto evaluated = [&] {
-      const std::lock_guard guard(stage_.mutex());
-      start.table.append(table, table.size() - 1);
-      return joined();
+      const std::lock_guard guard(merger_.mutex());
+      run.table.append(table, table.size() - 1);
+      return merge_and_check_stop();
     };
-    Trials trials({input_.problem, evaluator, table, stage_.how(), evaluated}, plan_.limits, start.from.design);
-    const bool measurable = !stage_.has_front() || table.status[0] != Status::failed;
-    std::optional<StartOutcome> outcome = solve_start(*plan_.solver, trials, table, input_.seed + k, measurable);
+    NonlinearProgram program({input_.problem, evaluator, table, merger_.scalarisation(), evaluated}, plan_.limits,
+                             run.start.design);
+    const bool start_evaluated = !merger_.has_front() || table.status[0] != Status::failed;
+    std::optional<StartOutcome> outcome =
+        solve_from_start(*plan_.solver, program, table, input_.seed + k, start_evaluated);
     if (!outcome) return;
-    outcome->origin = start.from.origin;
-    const std::lock_guard guard(stage_.mutex());
-    start.outcome = std::move(*outcome);
-    start.ended = true;
-    if (!leads()) {
+    outcome->origin = run.start.origin;
+    const std::lock_guard guard(merger_.mutex());
+    run.outcome = std::move(*outcome);
+    run.ended = true;
+    if (!is_rank_0()) {
       std::string message(reinterpret_cast<const char*>(&input_.seed), sizeof input_.seed);
-      pack_start(stage_.known_of(k), message);
+      pack_unmerged_start(merger_.snapshot(k), message);
       ranks::post(message);
     }
-    joined();
+    merge_and_check_stop();
   }
 
-  /// After each evaluation, with the stage's mutex. False: stop.
-  bool joined() {
+  /// Called after each evaluation, with the mutex locked. @return false to stop
+  bool merge_and_check_stop() {
     if (ranks::size() > 1) {
-      if (!leads()) {
-        // Rank 0 says when to stop; to ask it costs a message.
+      if (!is_rank_0()) {
+        // Rank 0 decides when to stop. A query costs a message, so that its rate is limited.
         const auto now = std::chrono::steady_clock::now();
-        if (now - asked_ < std::chrono::milliseconds(100)) return !stage_.stopped();
-        asked_ = now;
-        if (stops_->next(0) > 0) stage_.stop();
-        return !stage_.stopped();
+        if (now - last_stop_query_ < std::chrono::milliseconds(100)) return !merger_.stopped();
+        last_stop_query_ = now;
+        if (stops_->next(0) > 0) merger_.stop();
+        return !merger_.stopped();
       }
       while (const auto message = ranks::poll()) {
-        std::uint64_t stage = 0;  // messages may outlive the stage that they were sent in
+        std::uint64_t stage = 0;  // messages may arrive after the end of the stage in which they were sent
         std::memcpy(&stage, message->data(), sizeof stage);
-        if (stage == input_.seed) know(*message, sizeof stage);
+        if (stage == input_.seed) receive(*message, sizeof stage);
       }
     }
-    if (!stage_.join()) stops_->next();
-    return !stage_.stopped();
+    if (!merger_.merge()) stops_->next();
+    return !merger_.stopped();
   }
 
-  /// Every rank has what all have found, or knows that the stage was stopped.
-  void agree() {
+  /// Exchanges the results of all ranks, and whether the stage was stopped. Collective.
+  void synchronise_ranks() {
     std::string mine;
-    for (std::size_t k = 0; k < stage_.starts().size(); ++k)
-      if (stage_.starts()[k].here) pack_start(stage_.known_of(k), mine);
-    for (const std::string& bytes : ranks::all_gather(mine)) know(bytes, 0);
-    if (leads()) stage_.join();
-    std::string state(1, stage_.stopped() ? kStopped : kDone);
-    if (leads()) state += std::to_string(hash_of_rows(table_, 0, table_.size()));
+    for (std::size_t k = 0; k < merger_.starts().size(); ++k)
+      if (merger_.starts()[k].is_local) pack_unmerged_start(merger_.snapshot(k), mine);
+    for (const std::string& bytes : ranks::all_gather(mine)) receive(bytes, 0);
+    if (is_rank_0()) merger_.merge();
+    std::string state(1, merger_.stopped() ? kStopped : kDone);
+    if (is_rank_0()) state += std::to_string(hash_of_rows(table_, 0, table_.size()));
     ranks::broadcast(state);
-    if (state.front() == kStopped) return stage_.stop();
-    if (leads()) return;
-    stage_.join();
+    if (state.front() == kStopped) return merger_.stop();
+    if (is_rank_0()) return;
+    merger_.merge();
     if (state.substr(1) != std::to_string(hash_of_rows(table_, 0, table_.size())))
-      ranks::abandon("what the solver's starts have come to differs from what rank 0 on " + ranks::host(0) +
-                     " has: the same program with the same libraries has to run on every host");
+      ranks::abort_all_ranks("the results of the solver differ from those on rank 0 (" + ranks::host(0) +
+                             "); every host must run the same program with the same libraries");
   }
 
-  void know(const std::string& bytes, std::size_t at) {
-    while (at < bytes.size()) stage_.know(unpack_start(bytes, at, table_.shape()));
+  void receive(const std::string& bytes, std::size_t at) {
+    while (at < bytes.size()) merger_.receive(unpack_unmerged_start(bytes, at, table_.shape()));
   }
 
   static constexpr char kStopped = 's', kDone = 'd';
@@ -139,9 +141,9 @@ class Run {
   const SolverPlan& plan_;
   const StageInput& input_;
   EvaluationTable& table_;
-  JoinedStarts stage_;
-  ranks::Counter* stops_ = nullptr;  ///< above 0: rank 0 has stopped
-  std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
+  MultistartMerger merger_;
+  ranks::Counter* stops_ = nullptr;  ///< above 0: rank 0 has stopped the stage
+  std::chrono::steady_clock::time_point last_stop_query_ = std::chrono::steady_clock::now();
 };
 
 class SolverStage final : public Optimiser {
@@ -149,12 +151,12 @@ class SolverStage final : public Optimiser {
   explicit SolverStage(SolverPlan plan) : plan_(std::move(plan)) {}
 
   StageResult minimise(const StageInput& input, EvaluationTable& table) const override {
-    return Run(plan_, input, table)();
+    return SolverStageRun(plan_, input, table)();
   }
   std::int64_t evaluation_limit(const Problem&) const override {
     return (plan_.starts + plan_.multistart) * plan_.limits.evaluations;
   }
-  std::int64_t at_once() const override { return plan_.side_by_side ? plan_.starts + plan_.multistart : 1; }
+  std::int64_t at_once() const override { return plan_.concurrent ? plan_.starts + plan_.multistart : 1; }
   Detail detail() const override { return plan_.detail; }
 
  private:

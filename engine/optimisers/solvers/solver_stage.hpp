@@ -1,57 +1,57 @@
-// What the stages of the solver libraries share: starts side by side, each within its limits, the best of each kept,
-// resumed by replay.
+// Multistart local search with a solver library (NLopt, Ipopt): concurrent runs from several start designs.
 //
-// A start depends on nothing but its design and its number, so it has a table of its own, and its rows join the stage's
-// table in the order of the starts: what the stage comes to is the same as one after the other. A start that had ended
-// when a run was killed is taken from the record as it is; those at work are replayed through the solver. Where a
-// solver leaves the recorded path (another processor, another version of the library), that one start begins anew, and
-// the user is told.
+// A run depends only on its start design and number. It has its own table, and the rows are merged into the stage table
+// in start order (multistart_merger.hpp), so that the result equals that of consecutive runs. When a stage is resumed,
+// finished runs are restored from the record, and interrupted ones replay their recorded evaluations through the
+// solver. If a solver deviates from its record (on another processor, or with another version of the library), that run
+// is restarted with a warning.
 //
-// Of several ranks each takes the next start that nobody has, and posts to rank 0 what it came to; at the stage's end
-// all have everything. Rank 0 alone reports, and says when to stop.
+// With several ranks, each rank claims the next unclaimed start and posts its result to rank 0; at the end of the stage
+// all ranks exchange all results. Only rank 0 reports progress and decides when to stop.
 #pragma once
 
 #include <memory>
 
-#include "engine/optimisers/solvers/trials.hpp"
+#include "engine/optimisers/solvers/nonlinear_program.hpp"
 
 namespace pkm {
 
-/// How a solver came back.
-struct SolverEnd {
+/// Result of one solver call.
+struct SolverResult {
   bool converged = false;
-  std::string message;        ///< its own words
-  std::vector<double> point;  ///< in the unit cube
+  std::string message;        ///< the solver's status message
+  std::vector<double> point;  ///< final point in the unit cube; empty if there is none
 };
 
-/// One run of one solver.
+/// A local or global optimisation algorithm of a library.
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// @param from  point of the unit cube to start at
-  /// Neither trusts nor reports anything but points: what they are worth is in the trials.
-  virtual SolverEnd solve(Trials& trials, const std::vector<double>& from, std::uint64_t seed) const = 0;
+  /// Runs the solver. The best recorded evaluation is the result of a start: the returned point is only a candidate,
+  /// and the returned status matters only if the KKT residual does not show convergence.
+  /// @param start  start point in the unit cube
+  virtual SolverResult solve(NonlinearProgram& program, const std::vector<double>& start, std::uint64_t seed) const = 0;
 };
 
 struct SolverPlan {
   std::shared_ptr<const Solver> solver;
-  TrialLimits limits;  ///< of each start
-  std::int64_t starts = 1;
-  std::int64_t multistart = 0;  ///< Sobol points besides the designs given
-  bool side_by_side = true;     ///< the solver may work in several threads at once
+  StartLimits limits;           ///< per start
+  std::int64_t starts = 1;      ///< maximum number of given start designs
+  std::int64_t multistart = 0;  ///< number of additional starts from Sobol points
+  bool concurrent = true;       ///< the solver library may run in several threads at once
   Detail detail = Detail::complete;
-  Scalarisation scalarisation = {};  ///< of several objectives; its extents come with the stage's input
-  std::string objective = {};        ///< epsilon-constraint: the one that is to gain; "": the first
+  Scalarisation scalarisation = {};  ///< of several objectives; the stage's input sets the extents
+  std::string objective = {};        ///< epsilon-constraint: the minimised objective; "": the first
 };
 
 std::unique_ptr<Optimiser> make_solver_stage(SolverPlan plan);
 
-/// Stages that start from points of a front handle several objectives, and need a front.
+/// Capabilities of a solver stage. With start = "pareto" it handles several objectives and needs a front.
 Capabilities solver_capabilities(const Options& options, bool constraints, bool gradient);
 
-/// The options that every solver stage has, and the plan that they describe (its solver is left to the caller). Throws
-/// std::invalid_argument with a sentence when they leave no start.
+/// Specifications of the options common to all solver stages.
 std::vector<OptionSpec> solver_options();
+/// Reads the common options; the caller sets the solver. Throws std::invalid_argument for contradictory options.
 SolverPlan solver_plan(const Options& options);
 OptionSpec tighten_option();
 

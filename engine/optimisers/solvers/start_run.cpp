@@ -2,14 +2,15 @@
 
 #include <utility>
 
-#include "engine/optimisers/start.hpp"
+#include "engine/optimisers/sampling.hpp"
 
 namespace pkm {
 namespace {
 
-/// Starts that had ended are taken as they are, but for those that ended by a limit that has been raised since.
+/// Restores the recorded starts. Finished ones are adopted as they are, except those that ended by an evaluation limit
+/// that has been raised since.
 void read_record(const SolverPlan& plan, const StageInput& input, std::vector<StartRun>& starts) {
-  const auto know = [&](std::size_t k, EvaluationTable table, const StartOutcome* outcome) {
+  const auto restore = [&](std::size_t k, EvaluationTable table, const StartOutcome* outcome) {
     if (k >= starts.size() || table.size() < starts[k].recorded.size()) return;
     starts[k].recorded = std::move(table);
     if (!outcome || (outcome->stop == words(StopReason::evaluations) && outcome->rows < plan.limits.evaluations))
@@ -24,31 +25,31 @@ void read_record(const SolverPlan& plan, const StageInput& input, std::vector<St
     StartOutcome outcome = input.recorded_starts[k];
     outcome.end_row -= std::exchange(outcome.first_row, 0);
     const std::size_t end = next + static_cast<std::size_t>(outcome.rows);
-    know(k, record.slice(next, end), &outcome);
+    restore(k, record.slice(next, end), &outcome);
     next = end;
   }
-  know(input.recorded_starts.size(), record.slice(next, record.size()), nullptr);
-  for (const StartAhead& ahead : input.recorded_ahead)
-    know(static_cast<std::size_t>(ahead.number), ahead.table, ahead.outcome ? &*ahead.outcome : nullptr);
+  restore(input.recorded_starts.size(), record.slice(next, record.size()), nullptr);
+  for (const UnmergedStart& ahead : input.recorded_unmerged_starts)
+    restore(static_cast<std::size_t>(ahead.number), ahead.table, ahead.outcome ? &*ahead.outcome : nullptr);
 }
 
 }  // namespace
 
-std::vector<StartRun> starts_of_stage(const SolverPlan& plan, const StageInput& input) {
+std::vector<StartRun> make_start_runs(const SolverPlan& plan, const StageInput& input) {
   const DesignSpace& space = input.problem.space();
   const EvaluationShape shape = input.problem.shape(plan.detail);
   std::vector<StartRun> starts;
-  const auto add = [&](StartDesign from) {
-    starts.push_back({std::move(from), EvaluationTable(shape), EvaluationTable(shape)});
+  const auto add = [&](StartDesign start) {
+    starts.push_back({std::move(start), EvaluationTable(shape), EvaluationTable(shape)});
   };
-  for (const StartDesign& from : input.starts) add(from);
+  for (const StartDesign& start : input.starts) add(start);
   const auto count = static_cast<std::size_t>(plan.multistart);
-  const auto units = start_points(Start::sobol, count, space.dimension(), input.seed);
+  const auto units = unit_cube_samples(Start::sobol, count, space.dimension(), input.seed);
   for (std::size_t k = 0; k < count; ++k) {
-    StartDesign from{{}, "Sobol point " + std::to_string(k + 1)};
+    StartDesign start{{}, "Sobol point " + std::to_string(k + 1)};
     for (std::size_t i = 0; i < space.dimension(); ++i)
-      from.design.push_back(space.from_unit(i, units[k * space.dimension() + i]));
-    add(std::move(from));
+      start.design.push_back(space.from_unit(i, units[k * space.dimension() + i]));
+    add(std::move(start));
   }
   if (input.recorded) read_record(plan, input, starts);
   return starts;

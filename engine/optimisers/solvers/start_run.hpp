@@ -1,4 +1,4 @@
-// One start of a solver stage, with what is known of it.
+// State of one multistart run: its start design, evaluations, recorded evaluations and outcome.
 #pragma once
 
 #include <string>
@@ -9,19 +9,22 @@
 namespace pkm {
 
 struct StartRun {
-  StartDesign from;
-  EvaluationTable table;     ///< its evaluations so far, which a solver adds to
-  EvaluationTable recorded;  ///< those on record; they are not less than they were
+  StartDesign start;
+  EvaluationTable table;     ///< evaluations of this run so far
+  EvaluationTable recorded;  ///< recorded evaluations of an earlier run, which are replayed
   bool ended = false;
-  bool here = false;          ///< this rank works on it
-  StartOutcome outcome = {};  ///< rows from 0
+  bool is_local = false;      ///< this rank runs it
+  StartOutcome outcome = {};  ///< rows count from 0
   std::string warning = {};
 
-  /// What a checkpoint should hold of it: the record until it has been overtaken.
-  const EvaluationTable& known() const { return !ended && recorded.size() > table.size() ? recorded : table; }
+  /// Evaluations to be stored in a checkpoint: the record, until the replay has passed its end.
+  const EvaluationTable& checkpoint_table() const {
+    return !ended && recorded.size() > table.size() ? recorded : table;
+  }
 };
 
-/// All starts of a stage: the designs that it is given, then Sobol points; with what is on record of them.
-std::vector<StartRun> starts_of_stage(const SolverPlan& plan, const StageInput& input);
+/// Creates the runs of a stage, from the start designs of its input and then from Sobol points, with their recorded
+/// evaluations.
+std::vector<StartRun> make_start_runs(const SolverPlan& plan, const StageInput& input);
 
 }  // namespace pkm

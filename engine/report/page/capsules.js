@@ -1,6 +1,6 @@
-// Links as solids: capsules, all that lies within a radius of a segment.
+// Geometry of links, which are drawn as capsules: all points within a radius of a line segment.
 
-/** The outline of a capsule seen along an axis: two half circles around the ends (one circle where they coincide). */
+/** Outline of a capsule projected along an axis: two half circles around its ends (one circle if they coincide). */
 function capsuleOutline([x0, y0], [x1, y1], radius, points = 10) {
   const along = Math.atan2(y1 - y0, x1 - x0);
   const x = [],
@@ -19,19 +19,19 @@ function capsuleOutline([x0, y0], [x1, y1], radius, points = 10) {
   return { x, y };
 }
 
-/** A unit vector across another. */
-function anyAcross([x, y, z]) {
+/** A unit vector perpendicular to a given unit vector. */
+function perpendicular([x, y, z]) {
   const [a, b, c] = Math.abs(z) < 0.9 ? [-y, x, 0] : [0, -z, y];
   const length = Math.hypot(a, b, c) || 1;
   return [a / length, b / length, c / length];
 }
 
-/** Adds a capsule to a mesh { x, y, z, i, j, k, text }: rings from one pole to the other. */
+/** Adds a triangulated capsule to a Plotly mesh { x, y, z, i, j, k, text }: rings of vertices from pole to pole. */
 function addCapsule(mesh, from, to, radius, text, sides = 12) {
-  const span = to.map((value, c) => value - from[c]),
-    length = Math.hypot(...span);
-  const axis = length > 1e-12 ? span.map((value) => value / length) : [0, 0, 1];
-  const u = anyAcross(axis),
+  const direction = to.map((value, c) => value - from[c]),
+    length = Math.hypot(...direction);
+  const axis = length > 1e-12 ? direction.map((value) => value / length) : [0, 0, 1];
+  const u = perpendicular(axis),
     v = [axis[1] * u[2] - axis[2] * u[1], axis[2] * u[0] - axis[0] * u[2], axis[0] * u[1] - axis[1] * u[0]];
   const rings = [
     [from, -75],
@@ -43,13 +43,13 @@ function addCapsule(mesh, from, to, radius, text, sides = 12) {
   ];
   const first = mesh.x.length;
   for (const [centre, latitude] of rings) {
-    const out = radius * Math.cos((latitude * Math.PI) / 180),
-      lift = radius * Math.sin((latitude * Math.PI) / 180);
+    const ringRadius = radius * Math.cos((latitude * Math.PI) / 180),
+      offset = radius * Math.sin((latitude * Math.PI) / 180);
     for (let s = 0; s < sides; ++s) {
       const angle = (2 * Math.PI * s) / sides,
-        cos = out * Math.cos(angle),
-        sin = out * Math.sin(angle);
-      ["x", "y", "z"].forEach((name, c) => mesh[name].push(centre[c] + lift * axis[c] + cos * u[c] + sin * v[c]));
+        cos = ringRadius * Math.cos(angle),
+        sin = ringRadius * Math.sin(angle);
+      ["x", "y", "z"].forEach((name, c) => mesh[name].push(centre[c] + offset * axis[c] + cos * u[c] + sin * v[c]));
       mesh.text.push(text);
     }
   }

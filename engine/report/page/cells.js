@@ -1,41 +1,45 @@
-// The cells of a workspace: which are feasible, their fields, cuts through them. Lengths are shown in mm, angles in degrees.
+// Voxel grid of a workspace: feasible cells, their fields, slices. Lengths are shown in mm, angles in degrees.
 
 function axisTitle(axis) {
   return axisName(axis.name, shownUnit(axis.unit));
 }
 function shownValue(value, axis, count = 4) {
   const shown = value * shownScale(axis.unit);
-  return quantity(Math.abs(shown) < 1e-9 ? 0 : shown, shownUnit(axis.unit), count); // rounding of a middle is 0
+  return quantity(Math.abs(shown) < 1e-9 ? 0 : shown, shownUnit(axis.unit), count); // a rounding error instead of 0
 }
 
-/** "dci_1" as people say it. */
+/** Title of a field: "DCI of limb 1" for "dci_1". */
 function fieldTitle(name, joints) {
   const limb = /^dci_(\d)$/.exec(name);
   if (limb) return "DCI of limb " + limb[1] + (joints ? " (" + joints[limb[1] - 1] + ")" : "");
   return (
     {
-      dci_worst: "largest DCI",
+      dci_worst: "maximum DCI",
       conditioning: "conditioning",
-      margin: "least margin",
-      inertia_condition: "conditioning of inertia",
+      margin: "minimum margin",
+      inertia_condition: "conditioning of the inertia matrix",
     }[name] || name
   );
 }
 
-/** The packed workspace of one design, unpacked. */
+/**
+ * The workspace of one design, unpacked. `values` maps the name of a field to its values at the feasible cells; the value
+ * of a cell is at feasibleIndex[cell], which is -1 for infeasible cells.
+ */
 class Cells {
   constructor(packed) {
     Object.assign(this, packed);
     this.axes = packed.axes.map((axis) => ({ ...axis, step: (axis.upper - axis.lower) / axis.cells }));
     this.strides = this.axes.map((_, k) => this.axes.slice(k + 1).reduce((product, axis) => product * axis.cells, 1));
     this.feasible = unpack(packed.feasible);
-    this.number = new Int32Array(this.strides[0] * this.axes[0].cells).fill(-1);
+    this.feasibleIndex = new Int32Array(this.strides[0] * this.axes[0].cells).fill(-1);
     let count = 0;
-    for (let cell = 0; cell < this.number.length; ++cell) if (this.feasible[cell]) this.number[cell] = count++;
+    for (let cell = 0; cell < this.feasibleIndex.length; ++cell)
+      if (this.feasible[cell]) this.feasibleIndex[cell] = count++;
     this.values = new Map(packed.fields.map((field) => [field.name, unpack(field.values)]));
-    const { surface } = packed; // of three axes only
+    const { surface } = packed; // only if three coordinates are swept
     this.surface = surface && {
-      at: surface.vertices.map(unpack),
+      vertices: surface.vertices.map(unpack),
       triangles: unpack(surface.triangles),
       values: new Map(Object.entries(surface.values).map(([field, values]) => [field, unpack(values)])),
     };
@@ -46,32 +50,32 @@ class Cells {
   centres(axis) {
     return Array.from({ length: this.axes[axis].cells }, (_, k) => this.centre(axis, k));
   }
-  /** The layer that holds a value; -1 outside. */
+  /** Index along an axis of the cells that contain a coordinate value; -1 if it is outside the grid. */
   layer(axis, value) {
     const k = Math.floor((value - this.axes[axis].lower) / this.axes[axis].step);
     return k >= 0 && k < this.axes[axis].cells ? k : -1;
   }
-  /** What `of` says of cells: rows along `up` (one if it is undefined), columns along `across`. */
-  matrix(across, up, of) {
+  /** valueOf(cell) for the cells of a plane: rows along the axis `up` (one row if undefined), columns along `across`. */
+  matrix(across, up, valueOf) {
     const steps = up === undefined ? 1 : this.axes[up].cells;
     return Array.from({ length: steps }, (_, j) =>
       Array.from({ length: this.axes[across].cells }, (_, i) =>
-        of(i * this.strides[across] + (j && j * this.strides[up])),
+        valueOf(i * this.strides[across] + (j && j * this.strides[up])),
       ),
     );
   }
-  /** A field on a cut; null where there is none. */
-  cut(field, { fixed, across, up }, layer) {
+  /** Values of a field on a slice, one layer of the axis `fixed`; null at infeasible cells. Without a field: 1. */
+  slice(field, { fixed, across, up }, layer) {
     const values = this.values.get(field);
     return this.matrix(across, up, (cell) => {
       if (layer < 0) return null;
-      const number = this.number[cell + (layer && layer * this.strides[fixed])];
-      if (number < 0) return null;
-      const value = values ? values[number] : 1;
+      const index = this.feasibleIndex[cell + (layer && layer * this.strides[fixed])];
+      if (index < 0) return null;
+      const value = values ? values[index] : 1;
       return Number.isFinite(value) ? value : null;
     });
   }
-  /** Length of the feasible cells along an axis. */
+  /** Total length of the feasible cells along the axis `along`, for each line of cells. */
   lengths(along, across, up) {
     const { cells, step } = this.axes[along];
     return this.matrix(across, up, (cell) => {
@@ -82,33 +86,33 @@ class Cells {
   }
 }
 
-/** The axes as they are drawn: x, y, rotations, z, so that z or else a rotation points up. */
+/** Order in which axes are drawn: x, y, others, rotations, z, so that z, or otherwise a rotation, points up. */
 function drawingOrder(axes) {
-  const place = (axis) => ["x", "y", "other", "turn", "z"].indexOf(axis.role);
-  return [...axes.keys()].sort((a, b) => place(axes[a]) - place(axes[b]));
+  const rank = (axis) => ["x", "y", "other", "rotation", "z"].indexOf(axis.role);
+  return [...axes.keys()].sort((a, b) => rank(axes[a]) - rank(axes[b]));
 }
 
-/** What both designs' pictures span, in shown units: the feasible cells and a little room. */
+/** Common axis range of the plots of all designs, in displayed units: the feasible cells and a margin. */
 function sharedRange(designs, axis) {
   const [low, high] = feasibleRange(designs, axis),
     { unit, step } = designs[0].axes[axis];
-  const room = 1.2 * step + 0.02 * (high - low);
-  return [(low - room) * shownScale(unit), (high + room) * shownScale(unit)];
+  const margin = 1.2 * step + 0.02 * (high - low);
+  return [(low - margin) * shownScale(unit), (high + margin) * shownScale(unit)];
 }
 
 /** Range of a field over all designs. */
 function fieldRange(designs, field) {
   const [low, high] = rangeOf(designs.flatMap((d) => rangeOf(d.values.get(field) || [])));
-  return high - low > 1e-9 * Math.abs(high) ? [low, high] : widened([low, high]); // of a constant
+  return high - low > 1e-9 * Math.abs(high) ? [low, high] : widened([low, high]); // the field is constant
 }
 
 /**
- * What a matrix of Cells says, on the axes that all designs share: cells of a plane in colour, or along one coordinate a
- * curve.
+ * Plot of a matrix from Cells, with axes common to all designs: a heat map of a plane, or a curve over one coordinate.
+ * @param style  see planeTraces()
  */
-function cellsPicture(designs, design, matrix, across, up, look) {
+function cellsPlot(designs, design, matrix, across, up, style) {
   if (up !== undefined)
-    return { data: planeTraces(design, matrix, across, up, look), layout: planeAxes(designs, across, up) };
+    return { data: planeTraces(design, matrix, across, up, style), layout: planeAxes(designs, across, up) };
   const h = design.axes[across];
   return {
     data: [
@@ -119,17 +123,17 @@ function cellsPicture(designs, design, matrix, across, up, look) {
         y: matrix[0],
         line: { color: seriesColours[0], width: 2 },
         marker: { size: 4, color: seriesColours[0] },
-        hovertemplate: `${label(h.name)} %{x:.4g} ${label(unitText(shownUnit(h.unit)))}<br>${label(look.title)} %{y:.4g} ${label(unitText(look.unit))}<extra></extra>`,
+        hovertemplate: `${label(h.name)} %{x:.4g} ${label(unitText(shownUnit(h.unit)))}<br>${label(style.title)} %{y:.4g} ${label(unitText(style.unit))}<extra></extra>`,
       },
     ],
     layout: {
       xaxis: axis(axisTitle(h), { range: sharedRange(designs, across), zeroline: false }),
-      yaxis: axis(axisName(look.title, look.unit), { range: widened(look.range) }),
+      yaxis: axis(axisName(style.title, style.unit), { range: widened(style.range) }),
     },
   };
 }
 
-/** Axes of a plane, to scale where both are lengths. */
+/** Axes of a plane, with equal scales if both are lengths. */
 function planeAxes(designs, across, up) {
   const [h, v] = [designs[0].axes[across], designs[0].axes[up]];
   const toScale = h.unit === v.unit && h.unit === "m";
@@ -143,7 +147,10 @@ function planeAxes(designs, across, up) {
   };
 }
 
-/** A field on a plane: cells in colour, and contour lines where there is room for them. */
+/**
+ * Traces of a matrix on a plane: a heat map and contour lines.
+ * @param style  { range, title, unit } of the values; whether to draw contour `lines` and a colour `bar`; `colours`
+ */
 function planeTraces(
   design,
   matrix,
@@ -193,7 +200,7 @@ function planeTraces(
   return traces;
 }
 
-/** Between which values of an axis the designs have feasible cells. */
+/** Range of an axis that the feasible cells of all designs cover. */
 function feasibleRange(designs, axis) {
   const ranges = designs.map((design) => {
     design.extents ??= design.axes.map((_, k) => {
@@ -210,47 +217,48 @@ function feasibleRange(designs, axis) {
 }
 
 /**
- * Controls for a cut: which coordinate is held, and where. A workspace of fewer than three is shown whole.
- * @returns { fixed, across, up, layer(design) }, always as they are set; undefined where there is no such axis
+ * Adds controls for a slice: the fixed coordinate and its value. Workspaces of one or two coordinates need no slice.
+ * @returns { fixed, across, up, layer(design) }: the current axes, undefined if the workspace has no such axis, and the
+ * layer of a design on the fixed axis
  */
-function cutControls(parent, designs, changed) {
+function sliceControls(parent, designs, changed) {
   const first = designs[0],
     order = drawingOrder(first.axes);
   if (order.length < 3) return { across: order[0], up: order[1], layer: () => 0 };
   const names = order.map((k) => first.axes[k].name);
-  const rotation = order.findIndex((k) => first.axes[k].role === "turn");
+  const rotation = order.findIndex((k) => first.axes[k].role === "rotation");
   const steps = 41;
-  let place = (steps - 1) / 2;
-  const cut = {
+  let position = (steps - 1) / 2;
+  const slice = {
     fixed: order[rotation >= 0 ? rotation : 2],
     get across() {
-      return order.filter((k) => k !== cut.fixed)[0];
+      return order.filter((k) => k !== slice.fixed)[0];
     },
     get up() {
-      return order.filter((k) => k !== cut.fixed)[1];
+      return order.filter((k) => k !== slice.fixed)[1];
     },
     get value() {
-      const [low, high] = feasibleRange(designs, cut.fixed);
-      return low + ((high - low) * place) / (steps - 1);
+      const [low, high] = feasibleRange(designs, slice.fixed);
+      return low + ((high - low) * position) / (steps - 1);
     },
-    layer: (design) => design.layer(cut.fixed, cut.value),
+    layer: (design) => design.layer(slice.fixed, slice.value),
   };
-  choice(parent, "cut at", names, order.indexOf(cut.fixed), (k) => {
-    cut.fixed = order[k];
-    where.set((place = (steps - 1) / 2));
+  choice(parent, "slice at", names, order.indexOf(slice.fixed), (k) => {
+    slice.fixed = order[k];
+    positionSlider.set((position = (steps - 1) / 2));
     changed();
   });
-  const where = slider(
+  const positionSlider = slider(
     parent,
     "",
     steps,
-    place,
-    () => shownValue(cut.value, first.axes[cut.fixed]),
+    position,
+    () => shownValue(slice.value, first.axes[slice.fixed]),
     (k) => {
-      place = k;
+      position = k;
       changed();
     },
   );
-  where.node.querySelector("input").setAttribute("aria-label", "where to cut");
-  return cut;
+  positionSlider.node.querySelector("input").setAttribute("aria-label", "position of the slice");
+  return slice;
 }

@@ -1,4 +1,4 @@
-// Several studies beside each other: results, convergence, best designs, their workspaces and forces.
+// Panel "Comparison" of several studies: results, convergence, best designs, workspaces and drive forces.
 
 function studyColour(i) {
   return seriesColours[i % seriesColours.length];
@@ -55,10 +55,10 @@ function comparisonTable(studies) {
     });
   });
   table.append(body);
-  return element("div", "panel", element("div", "scroll", table));
+  return element("div", "box", element("div", "scroll", table));
 }
 
-/** Best so far against evaluations, over all stages. */
+/** Best objective value so far over the evaluations of all stages. */
 function bestCurve(study, k) {
   const x = [],
     y = [];
@@ -74,9 +74,9 @@ function bestCurve(study, k) {
   return { x, y };
 }
 
-/** What the best designs come to, a column for each study: objectives, reports, margins of constraints. */
+/** Table of the best designs, one column per study: objectives, outputs, margins of constraints. */
 function resultsTable(studies) {
-  const kinds = ["objective", "report", "constraint"],
+  const kinds = ["objective", "output", "constraint"],
     found = new Map(); // rows by kind, name and unit
   for (const kind of kinds)
     studies.forEach((study, i) => {
@@ -94,17 +94,20 @@ function resultsTable(studies) {
   ]);
   return element(
     "div",
-    "panel",
-    element("h3", "", "Best designs in numbers"),
-    simpleTable(["quantity", "what", ...studies.map((study) => study.name)], rows),
+    "box",
+    element("h3", "", "Results of the best designs"),
+    simpleTable(["quantity", "kind", ...studies.map((study) => study.name)], rows),
   );
 }
 
-/** 1, 2, 5, 10, ..: what an axis of powers of ten says. */
-const roundNumbers = Array.from({ length: 30 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
+/** Tick values of a logarithmic axis: 1, 2, 5, 10, .. */
+const logarithmicTicks = Array.from({ length: 30 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
 
-/** The studies whose `item`s have the same key; those that are alone are left out. */
-function together(studies, itemsOf) {
+/**
+ * Groups items of all studies that have the same key; groups of one item are omitted.
+ * @param itemsOf  itemsOf(study) gives objects { key, .. }
+ */
+function groupByKey(studies, itemsOf) {
   const groups = new Map();
   studies.forEach((study, i) => {
     for (const { key, ...item } of itemsOf(study)) {
@@ -115,8 +118,8 @@ function together(studies, itemsOf) {
   return [...groups.values()].filter((group) => group.length > 1);
 }
 
-/** What a motion of the same name asks of the drives of several best designs: the largest of all of one unit. */
-function addForces(studies, grid) {
+/** Plots the maximum drive force over time for motions that have the same name in several studies. */
+function addForcePlots(studies, grid) {
   const drives = ({ motions }) =>
     (motions?.motions ?? []).flatMap((motion) =>
       [...new Set(motions.joints.map((joint) => joint.unit))].flatMap((unit) => {
@@ -126,15 +129,15 @@ function addForces(studies, grid) {
         return [{ key: motion.name + "|" + unit, motion, unit, curves }];
       }),
     );
-  for (const those of together(studies, drives)) {
-    const [title, name, unit, scale] = motionColumns.forces[those[0].unit];
+  for (const group of groupByKey(studies, drives)) {
+    const [title, name, unit, scale] = motionColumns.forces[group[0].unit];
     addPlot(grid, {
-      title: `${title}, ${those[0].motion.name}`,
-      caption: "The largest of all drives at each time, of the best designs.",
+      title: `${title}, ${group[0].motion.name}`,
+      caption: "Maximum over all drives of the best designs.",
       size: "half",
       height: 360,
       make: () => ({
-        data: those.map(({ study, i, motion, curves }) => ({
+        data: group.map(({ study, i, motion, curves }) => ({
           type: "scatter",
           mode: "lines",
           x: timesOf(motion),
@@ -145,7 +148,7 @@ function addForces(studies, grid) {
         })),
         layout: {
           xaxis: axis("time [s]"),
-          yaxis: axis(axisName("largest " + name, unit), { rangemode: "tozero" }),
+          yaxis: axis(axisName("maximum " + name, unit), { rangemode: "tozero" }),
           legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
         },
       }),
@@ -153,19 +156,19 @@ function addForces(studies, grid) {
   }
 }
 
-/** The outline of the feasible cells of a plane; a ring of others around the grid closes it. */
+/** Outline of the feasible cells of a plane. A border of infeasible cells around the grid makes it closed. */
 function outlineTrace(cells, [across, up], name, colour) {
   const shown = (axis) =>
     [-1, ...Array(cells.axes[axis].cells + 1).keys()].map(
       (k) => cells.centre(axis, k) * shownScale(cells.axes[axis].unit),
     );
   const rows = cells.matrix(across, up, (cell) => cells.feasible[cell]).map((row) => [0, ...row, 0]),
-    none = rows[0].map(() => 0);
+    border = rows[0].map(() => 0);
   return {
     type: "contour",
     x: shown(across),
     y: shown(up),
-    z: [none, ...rows, none],
+    z: [border, ...rows, border],
     contours: { start: 0.5, end: 0.5, size: 1, coloring: "lines" },
     colorscale: [
       [0, colour],
@@ -179,22 +182,22 @@ function outlineTrace(cells, [across, up], name, colour) {
   };
 }
 
-/** The best designs' workspaces over each other, of studies that sweep the same two or three coordinates. */
-function addOverlays(studies, grid) {
+/** Overlays the workspaces of the best designs of studies that sweep the same two or three coordinates. */
+function addOverlayPlots(studies, grid) {
   const workspaces = ({ workspace }) => {
     const packed = workspace?.designs[0];
     if (!packed || packed.axes.length < 2) return [];
     const key = packed.axes.map((axis) => `${axis.name} [${axis.unit}]`).join(", ");
     return [{ key, cells: (packed.cells ??= new Cells(packed)) }];
   };
-  for (const those of together(studies, workspaces)) {
-    const all = those.map(({ cells }) => cells),
+  for (const group of groupByKey(studies, workspaces)) {
+    const all = group.map(({ cells }) => cells),
       order = drawingOrder(all[0].axes);
     addPlot(grid, {
-      title: "Workspaces over each other",
+      title: "Overlay of the workspaces",
       caption: [
-        "Of the best designs, with their volumes by cells: ",
-        ...those.flatMap(({ study, cells }, k) => [
+        "Workspaces of the best designs; volumes by voxels: ",
+        ...group.flatMap(({ study, cells }, k) => [
           (k ? ", " : "") + study.name + " ",
           result(cells.volume, cells.volume_unit),
         ]),
@@ -202,14 +205,14 @@ function addOverlays(studies, grid) {
       ],
       size: "half",
       height: 460,
-      make: (away) =>
+      make: (distance) =>
         order.length === 2
           ? {
-              data: those.map(({ study, i, cells }) => outlineTrace(cells, order, label(study.name), studyColour(i))),
+              data: group.map(({ study, i, cells }) => outlineTrace(cells, order, label(study.name), studyColour(i))),
               layout: planeAxes(all, ...order),
             }
           : {
-              data: those.map(({ study, i, cells }) =>
+              data: group.map(({ study, i, cells }) =>
                 surfaceTrace(cells, null, null, order, {
                   name: label(study.name),
                   color: studyColour(i),
@@ -218,7 +221,7 @@ function addOverlays(studies, grid) {
                 }),
               ),
               layout: {
-                scene: workspaceScene(all, order, away),
+                scene: workspaceScene(all, order, distance),
                 uirevision: "camera",
                 margin: { l: 0, r: 0, t: 0, b: 0 },
               },
@@ -227,41 +230,41 @@ function addOverlays(studies, grid) {
   }
 }
 
-/** @param given  those of one name are told apart by their files */
-function showComparison(given, section) {
+/** @param given  studies; if several have the same name, their file names are shown instead */
+function showComparison(given, panel) {
   const studies = given.map((study) =>
     given.some((other) => other !== study && other.name === study.name) ? { ...study, name: study.file } : study,
   );
-  section.append(
+  panel.append(
     element(
       "p",
       "lead",
       count(studies.length, "study", "studies") +
-        ". The sections below show one of them; choose it at the top of the page.",
+        ". The other panels show one study; select it at the top of the page.",
     ),
   );
   const grid = element("div", "grid");
-  section.append(grid);
+  panel.append(grid);
   grid.append(comparisonTable(studies), resultsTable(studies));
-  const names = [
+  const objectives = [
     ...new Map(studies.flatMap((s) => s.problem.objectives.map((o) => [o.name + "|" + o.unit, o]))).values(),
   ];
-  for (const objective of names) {
-    const those = studies
+  for (const objective of objectives) {
+    const group = studies
       .map((study, i) => ({
         study,
         i,
         k: study.problem.objectives.findIndex((o) => o.name === objective.name && o.unit === objective.unit),
       }))
       .filter(({ study, k }) => k >= 0 && study.convergence);
-    if (those.length)
+    if (group.length)
       addPlot(grid, {
         title: "Best " + objective.name,
-        caption: "Of the feasible designs so far.",
+        caption: "Best feasible value so far.",
         size: "half",
         height: 360,
         make: () => ({
-          data: those.map(({ study, i, k }) => ({
+          data: group.map(({ study, i, k }) => ({
             type: "scatter",
             mode: "lines",
             ...bestCurve(study, k),
@@ -270,21 +273,21 @@ function showComparison(given, section) {
             hovertemplate: `%{y:.4g} ${label(unitText(objective.unit))}<br>after %{x} evaluations<extra>${label(study.name)}</extra>`,
           })),
           layout: {
-            xaxis: axis("evaluations", { type: "log", tickangle: 0, tickmode: "array", tickvals: roundNumbers }),
+            xaxis: axis("evaluations", { type: "log", tickangle: 0, tickmode: "array", tickvals: logarithmicTicks }),
             yaxis: axis(axisName(objective.name, objective.unit)),
             legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
           },
         }),
       });
   }
-  addOverlays(studies, grid);
-  addForces(studies, grid);
+  addOverlayPlots(studies, grid);
+  addForcePlots(studies, grid);
   const variables = [
     ...new Map(studies.flatMap((s) => s.problem.variables.map((v) => [v.name + "|" + v.unit, v]))).values(),
   ];
   addPlot(grid, {
-    title: "Best designs",
-    caption: "Each variable from 0, its least bound among the studies, to 1, its greatest.",
+    title: "Variables of the best designs",
+    caption: "Each variable is scaled from 0, its smallest lower bound in all studies, to 1, its largest upper bound.",
     size: "half",
     height: 360,
     make: () => ({
@@ -319,7 +322,7 @@ function showComparison(given, section) {
       }),
       layout: {
         xaxis: axis("variable", { type: "category" }),
-        yaxis: axis("share of the bounds [1]", { range: [-0.05, 1.05] }),
+        yaxis: axis("position between the bounds [1]", { range: [-0.05, 1.05] }),
         legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
       },
     }),

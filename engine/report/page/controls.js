@@ -1,6 +1,10 @@
-// What the reader moves. Each gives { node, value } and calls back when its value changes.
+// Input controls: slider, drop-down list, group of buttons. Each is an object { node, value } and calls changed(value)
+// when the user changes its value.
 
-/** A slider over the whole numbers 0 .. count - 1. @param text  what a number stands for */
+/**
+ * A slider over the integers 0 .. count - 1.
+ * @param text  text(i) is displayed for the value i
+ */
 function slider(parent, name, count, start, text, changed) {
   const input = element("input");
   Object.assign(input, { type: "range", min: 0, max: count - 1, step: 1, value: start });
@@ -14,22 +18,22 @@ function slider(parent, name, count, start, text, changed) {
     },
     set(value) {
       input.value = value;
-      tell();
+      showText();
     },
   };
-  const tell = () => {
+  const showText = () => {
     shown.textContent = text(control.value);
     input.setAttribute("aria-valuetext", shown.textContent);
   };
   input.addEventListener("input", () => {
     changed(control.value);
-    tell();
+    showText();
   });
   parent.append(control.node);
   return control;
 }
 
-/** One of several names, as a list to choose from. */
+/** A drop-down list; the value is the index of the selected option. */
 function choice(parent, name, options, start, changed) {
   const select = element("select");
   options.forEach((option, i) => select.append(new Option(option, i, false, i === start)));
@@ -44,7 +48,7 @@ function choice(parent, name, options, start, changed) {
   return control;
 }
 
-/** One of a few names, side by side. */
+/** A row of buttons of which one is pressed; the value is its index. */
 function buttons(parent, name, options, start, changed) {
   const group = element("span", "switch");
   group.setAttribute("role", "group");

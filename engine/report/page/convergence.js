@@ -1,33 +1,36 @@
-// How the search went: the objectives, the feasible share and the diversity, against evaluations or generations. Stages
-// follow each other on one axis; starts of solvers are marked where they begin and end.
+// Panel "Convergence": objectives, feasible share, diversity and front indicators over evaluations or generations. The
+// stages follow each other on one axis; multistart runs of solvers are marked at their first and final evaluation.
 
-/** Where each stage begins on the axis, and a function from its evaluations to places there. */
+/**
+ * Position of each stage on the horizontal axis: its `offset` and `end`, the positions `x` of its generations, and a
+ * function `position(evaluation)` for its evaluations.
+ */
 function stageAxis(stages, byGeneration) {
   let begin = 0;
   return stages.map((stage) => {
-    const { evaluations, number, all } = stage.generations;
+    const { evaluations, numbers, total } = stage.generations;
     const offset = begin;
-    begin += byGeneration ? all : stage.evaluations;
-    const place = (evaluation) => {
+    begin += byGeneration ? total : stage.evaluations;
+    const position = (evaluation) => {
       if (!byGeneration) return offset + evaluation;
       const g = evaluations.findIndex((end) => evaluation <= end);
-      if (g < 0) return offset + all - 1;
+      if (g < 0) return offset + total - 1;
       const before = g ? evaluations[g - 1] : 0,
-        from = g ? number[g - 1] : number[g] - 1;
-      return offset + from + ((number[g] - from) * (evaluation - before)) / (evaluations[g] - before);
+        from = g ? numbers[g - 1] : numbers[g] - 1;
+      return offset + from + ((numbers[g] - from) * (evaluation - before)) / (evaluations[g] - before);
     };
     return {
       stage,
       offset,
       end: begin,
-      place,
-      x: byGeneration ? number.map((g) => offset + g) : evaluations.map((e) => offset + e),
+      position,
+      x: byGeneration ? numbers.map((g) => offset + g) : evaluations.map((e) => offset + e),
     };
   });
 }
 
-/** What separates the stages, and their names above the plot. */
-function stageMarks(axes) {
+/** Vertical lines between the stages, and their names above the plot. */
+function stageSeparators(axes) {
   const shapes = [],
     annotations = [];
   for (const { stage, offset } of axes) {
@@ -61,18 +64,18 @@ function objectiveTraces(axes, k, objective) {
   const unit = unitText(objective.unit) ? " " + label(unitText(objective.unit)) : "";
   const [bestInk, medianInk] = [seriesColours[0], seriesColours[4]];
   const traces = [];
-  axes.forEach(({ stage, x, place }, i) => {
+  axes.forEach(({ stage, x, position }, i) => {
     const { best, median, lower, upper } = stage.generations.objectives[k];
-    const number = stage.generations.number;
+    const numbers = stage.generations.numbers;
     const common = {
       x,
       legendgroup: "",
       showlegend: i === 0,
-      mode: number.length > 1 ? "lines" : "markers",
+      mode: numbers.length > 1 ? "lines" : "markers",
       type: "scatter",
-      customdata: number,
+      customdata: numbers,
     };
-    const hover = (what) => `${what} %{y:.4g}${unit}<br>generation %{customdata}<extra></extra>`;
+    const hover = (title) => `${title} %{y:.4g}${unit}<br>generation %{customdata}<extra></extra>`;
     const hasSpread = median.some((value) => value !== null);
     if (hasSpread && !stage.starts)
       traces.push(
@@ -83,7 +86,7 @@ function objectiveTraces(axes, k, objective) {
           line: { width: 0 },
           fill: "tonexty",
           fillcolor: faded(medianInk, 0.25),
-          name: "middle half of the population",
+          name: "interquartile range of the population",
           legendgroup: "spread",
           hoverinfo: "skip",
         },
@@ -103,7 +106,7 @@ function objectiveTraces(axes, k, objective) {
           traces.push({
             type: "scatter",
             mode: "markers",
-            x: points.map((p) => place(p.evaluation)),
+            x: points.map((p) => position(p.evaluation)),
             y: points.map((p) => p.objectives[k]),
             customdata: points.map((p) => p.evaluation),
             name: feasible ? "solver, feasible" : "solver, infeasible",
@@ -118,8 +121,8 @@ function objectiveTraces(axes, k, objective) {
           });
       }
       for (const [end, symbol, name] of [
-        ["begin", "triangle-right-open", "start begins"],
-        ["end", "diamond", "start ends with"],
+        ["begin", "triangle-right-open", "start of a run"],
+        ["end", "diamond", "result of a run"],
       ])
         traces.push({
           type: "scatter",
@@ -127,7 +130,7 @@ function objectiveTraces(axes, k, objective) {
           name,
           legendgroup: end,
           showlegend: !traces.some((t) => t.legendgroup === end),
-          x: stage.starts.map((s) => place(end === "end" ? s.last : s.begin.evaluation)),
+          x: stage.starts.map((s) => position(end === "end" ? s.last_evaluation : s.begin.evaluation)),
           y: stage.starts.map((s) => s[end].objectives[k]),
           customdata: stage.starts.map((s) => [
             label(s.origin),
@@ -155,8 +158,8 @@ function objectiveTraces(axes, k, objective) {
   return traces;
 }
 
-/** A curve of numbers per generation, over all stages that have it. */
-function curve(axes, key, name, ink, more = {}) {
+/** One curve per stage of a quantity of its generations, except for stages that lack it. */
+function generationTraces(axes, key, name, ink, more = {}) {
   const traces = [];
   for (const { stage, x } of axes) {
     const y = stage.generations[key];
@@ -166,7 +169,7 @@ function curve(axes, key, name, ink, more = {}) {
       mode: y.length > 1 ? "lines" : "markers",
       x,
       y,
-      customdata: stage.generations.number,
+      customdata: stage.generations.numbers,
       name,
       legendgroup: key,
       showlegend: traces.length === 0,
@@ -178,7 +181,7 @@ function curve(axes, key, name, ink, more = {}) {
   return traces;
 }
 
-/** Room for the starts' extreme values must not flatten everything else: the axis follows best and quartiles. */
+/** Axis range that covers the best values and the quartiles, or the results of solver runs, but not all outliers. */
 function objectiveRange(axes, k) {
   const values = axes
     .flatMap(({ stage }) => {
@@ -194,51 +197,51 @@ function objectiveRange(axes, k) {
   if (!values.length) return {};
   const low = Math.min(...values),
     high = Math.max(...values),
-    room = 0.06 * (high - low) || 0.05 * Math.abs(high) || 1;
-  return { range: [low - room, high + room] };
+    margin = 0.06 * (high - low) || 0.05 * Math.abs(high) || 1;
+  return { range: [low - margin, high + margin] };
 }
 
-function showConvergence(study, section) {
+function showConvergence(study, panel) {
   const stages = study.convergence;
   const thinned = stages
-    .filter((stage) => stage.generations.every > 1)
+    .filter((stage) => stage.generations.stride > 1)
     .map(
       (stage) =>
-        `every ${ordinal(stage.generations.every)} generation of ${stage.generations.all} of stage ${stage.stage} is shown`,
+        `only every ${ordinal(stage.generations.stride)} of the ${stage.generations.total} generations of stage ${stage.stage} is shown`,
     );
-  section.append(
+  panel.append(
     element(
       "p",
       "lead",
-      "Best design so far, and the population behind it: its median and its middle half, of feasible designs only." +
+      "Best objective value so far, and the median and interquartile range of the feasible designs of the population." +
         (thinned.length ? " To keep the page small, " + thinned.join("; ") + "." : ""),
     ),
   );
   const controls = element("div", "controls");
   const grid = element("div", "grid");
-  section.append(controls, grid);
-  const list = [];
-  const axisOf = () => stageAxis(stages, against.value === 1);
+  panel.append(controls, grid);
+  const plots = [];
+  const currentAxis = () => stageAxis(stages, against.value === 1);
   const xaxis = (more = {}) =>
     axis(against.value === 1 ? "generation" : "evaluations", { rangemode: "tozero", ...more });
   const against = buttons(controls, "against", ["evaluations", "generations"], 0, () =>
-    list.forEach((plot) => plot.update()),
+    plots.forEach((plot) => plot.update()),
   );
   study.problem.objectives.forEach((objective, k) => {
-    list.push(
+    plots.push(
       addPlot(grid, {
         title: objective.name,
         caption: objective.meaning,
         size: study.problem.objectives.length > 1 ? "half" : "",
         height: 430,
         make() {
-          const axes = axisOf();
+          const axes = currentAxis();
           return {
             data: objectiveTraces(axes, k, objective),
             layout: {
               xaxis: xaxis(),
               yaxis: axis(axisName(objective.name, objective.unit), objectiveRange(axes, k)),
-              ...stageMarks(axes),
+              ...stageSeparators(axes),
               legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
             },
           };
@@ -247,45 +250,45 @@ function showConvergence(study, section) {
     );
   });
   if (stages.some((stage) => !stage.starts))
-    list.push(
+    plots.push(
       addPlot(grid, {
         title: "Feasible share and diversity",
         caption:
-          "Of the population: which part is feasible, and how far apart its designs are (1: as a uniform sample).",
+          "Share of feasible designs in the population, and diversity of its designs (1: that of a uniform sample).",
         size: "half",
         height: 320,
         make() {
-          const axes = axisOf();
+          const axes = currentAxis();
           return {
             data: [
-              ...curve(axes, "feasible_share", "feasible share", seriesColours[0]),
-              ...curve(axes, "diversity", "diversity", seriesColours[1]),
+              ...generationTraces(axes, "feasible_share", "feasible share", seriesColours[0]),
+              ...generationTraces(axes, "diversity", "diversity", seriesColours[1]),
             ],
             layout: {
               xaxis: xaxis(),
               yaxis: axis("share, diversity [1]", { rangemode: "tozero" }),
               legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" },
-              ...stageMarks(axes),
+              ...stageSeparators(axes),
             },
           };
         },
       }),
     );
   if (stages.some((stage) => stage.generations.hypervolume))
-    list.push(
+    plots.push(
       addPlot(grid, {
         title: "Hypervolume of the front",
         caption:
-          "What the trade-off encloses with its reference corner, and how evenly the population lies on it (spread, 0: evenly).",
+          "Hypervolume between Pareto front and reference point; spread of the population along the front (0: uniform).",
         size: "half",
         height: 320,
         make() {
-          const axes = axisOf();
+          const axes = currentAxis();
           return {
             data: [
-              ...curve(axes, "hypervolume", "hypervolume", seriesColours[0]),
-              ...curve(axes, "spread", "spread", seriesColours[1], { yaxis: "y2" }),
-              ...curve(axes, "igd_plus", "IGD+", seriesColours[2], { yaxis: "y2" }),
+              ...generationTraces(axes, "hypervolume", "hypervolume", seriesColours[0]),
+              ...generationTraces(axes, "spread", "spread", seriesColours[1], { yaxis: "y2" }),
+              ...generationTraces(axes, "igd_plus", "IGD+", seriesColours[2], { yaxis: "y2" }),
             ],
             layout: {
               xaxis: xaxis(),
@@ -297,20 +300,20 @@ function showConvergence(study, section) {
                 showgrid: false,
               }),
               legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" },
-              ...stageMarks(axes),
+              ...stageSeparators(axes),
             },
           };
         },
       }),
     );
-  list.push(
+  plots.push(
     addPlot(grid, {
-      title: "Evaluations in time",
+      title: "Computing time",
       caption: "Wall time of the study at the end of each generation.",
       size: "half",
       height: 320,
       make() {
-        const axes = axisOf();
+        const axes = currentAxis();
         const data = axes.map(({ stage, x }, i) => ({
           type: "scatter",
           mode: x.length > 1 ? "lines" : "markers",
@@ -318,7 +321,7 @@ function showConvergence(study, section) {
           y: stage.generations.seconds,
           name: stage.stage + ". " + label(stage.optimiser),
           line: { color: seriesColours[i % seriesColours.length], width: 2 },
-          customdata: stage.generations.number,
+          customdata: stage.generations.numbers,
           hovertemplate: "%{y:.4g} s<br>generation %{customdata}<extra></extra>",
         }));
         return {
@@ -327,7 +330,7 @@ function showConvergence(study, section) {
             xaxis: xaxis(),
             yaxis: axis("wall time [s]", { rangemode: "tozero" }),
             legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" },
-            ...stageMarks(axes),
+            ...stageSeparators(axes),
           },
         };
       },

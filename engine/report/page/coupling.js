@@ -1,24 +1,24 @@
-// How much the drives disturb each other: dynamic coupling indices (DCI) of the limbs, 0 for none, up to 1.
+// Panel "Coupling": dynamic coupling indices (DCI) of the limbs, from 0 (the drives are decoupled) to 1.
 
 const limbNames = (joints) => joints.map((joint, i) => `limb ${i + 1} (${joint})`);
 
-function againstRotation(design, names) {
+function rotationTraces(design, names) {
   const x = design.rotations.map((value) => (value * 180) / Math.PI);
   return names.flatMap((name, i) =>
     [
       ["mean", "solid", 2.5],
       ["max", "dot", 1.5],
-    ].map(([what, dash, width]) => ({
+    ].map(([statistic, dash, width]) => ({
       type: "scatter",
       mode: x.length > 30 ? "lines" : "lines+markers",
       x,
-      y: design.indices[i][what],
-      name: label(name) + (what === "mean" ? "" : ", greatest"),
+      y: design.indices[i][statistic],
+      name: label(name) + (statistic === "mean" ? "" : ", maximum"),
       line: { color: limbColours[i], dash, width },
       marker: { size: 5, color: limbColours[i] },
-      hovertemplate: `%{y:.4f} at %{x:.4g} deg<extra>${label(name)}, ${what}</extra>`,
+      hovertemplate: `%{y:.4f} at %{x:.4g} deg<extra>${label(name)}, ${statistic}</extra>`,
       legendgroup: name,
-      showlegend: what === "mean",
+      showlegend: statistic === "mean",
     })),
   );
 }
@@ -43,12 +43,12 @@ function histogramTraces(cells, names) {
       line: { color: limbColours[i], width: 2, shape: "hvh" },
       fill: "tozeroy",
       fillcolor: faded(limbColours[i], 0.12),
-      hovertemplate: `%{y:.2f} % of the poses have an index near %{x:.2f}<extra>${label(name)}</extra>`,
+      hovertemplate: `%{y:.2f} % of the poses have a DCI near %{x:.2f}<extra>${label(name)}</extra>`,
     };
   });
 }
 
-function showCoupling(study, section) {
+function showCoupling(study, panel) {
   const { coupling } = study,
     names = limbNames(coupling.joints),
     n = names.length;
@@ -57,37 +57,37 @@ function showCoupling(study, section) {
     return { ...design, cells: (packed.cells ??= new Cells(packed)) };
   });
   const all = designs.map((design) => design.cells);
-  section.append(
+  panel.append(
     element(
       "p",
       "lead",
-      `Dynamic coupling indices of the drives over the feasible poses: 0 where a drive's acceleration needs no force of the others, up to 1. Masses by the model “${coupling.masses}”.`,
+      `Dynamic coupling indices of the drives over the feasible poses: 0 if the acceleration of a drive needs no force of the other drives; the maximum is 1. Mass model: “${coupling.masses}”.`,
     ),
   );
   const grid = element("div", "grid");
-  section.append(grid);
+  panel.append(grid);
   const size = designs.length > 1 ? "half" : "";
-  const turning = designs.filter((design) => design.rotations);
+  const withRotation = designs.filter((design) => design.rotations);
   const top = Math.min(
     1,
-    1.05 * Math.max(...turning.flatMap((d) => d.indices.slice(0, n).flatMap((i) => rangeOf(i.max)[1]))),
+    1.05 * Math.max(...withRotation.flatMap((d) => d.indices.slice(0, n).flatMap((i) => rangeOf(i.max)[1]))),
   );
-  for (const design of turning)
+  for (const design of withRotation)
     addPlot(grid, {
-      title: `Against ${coupling.rotation}, ${design.name}`,
-      caption: "Mean over the feasible poses, and dotted the greatest.",
+      title: `DCI over ${coupling.rotation}, ${design.name}`,
+      caption: "Mean over the feasible poses (solid) and maximum (dotted).",
       size,
       height: 380,
       make: () => ({
-        data: againstRotation(design, names),
+        data: rotationTraces(design, names),
         layout: { xaxis: axis(axisName(coupling.rotation, "deg")), yaxis: axis("DCI [1]", { range: [0, top] }) },
       }),
     });
-  // A limb that is all but decoupled has all its poses in one bar, which must not flatten the others.
+  // The histogram of an almost decoupled limb is one high bar. The axis is cut off so that the others remain visible.
   const heights = designs.flatMap((design) =>
     histogramTraces(design.cells, names).map((trace) => Math.max(...trace.y)),
   );
-  const often = Math.min(
+  const highest = Math.min(
     Math.max(...heights),
     Math.max(
       30,
@@ -97,32 +97,32 @@ function showCoupling(study, section) {
   );
   for (const design of designs)
     addPlot(grid, {
-      title: `How often, ${design.name}`,
-      caption: "Share of the workspace's cells with an index in each fiftieth.",
+      title: `Distribution of the DCI, ${design.name}`,
+      caption: "Histogram over the cells of the workspace, 50 bins.",
       size,
       height: 340,
       make: () => ({
         data: histogramTraces(design.cells, names),
         layout: {
           xaxis: axis("DCI [1]", { range: [0, 1] }),
-          yaxis: axis("share of the poses [%]", { range: [0, often] }),
+          yaxis: axis("share of the poses [%]", { range: [0, highest] }),
         },
       }),
     });
-  const bar = element("div", "controls panel");
+  const bar = element("div", "controls box");
   let maps = [];
   const redraw = () => maps.forEach((plot) => plot.update());
-  const which =
+  const selected =
     designs.length > 1
       ? buttons(
           bar,
-          "maps of",
+          "design",
           designs.map((d) => d.name),
           0,
           redraw,
         )
       : { value: 0 };
-  const cut = cutControls(bar, all, redraw);
+  const slice = sliceControls(bar, all, redraw);
   if (bar.children.length) grid.append(bar);
   const range = rangeOf(names.flatMap((_, i) => fieldRange(all, "dci_" + (i + 1))));
   maps = names.map((name, i) =>
@@ -131,9 +131,9 @@ function showCoupling(study, section) {
       size: "half",
       height: 380,
       make() {
-        const { cells } = designs[which.value];
-        const matrix = cells.cut("dci_" + (i + 1), cut, cut.layer(cells));
-        return cellsPicture(all, cells, matrix, cut.across, cut.up, { range, title: "DCI", unit: "1" });
+        const { cells } = designs[selected.value];
+        const matrix = cells.slice("dci_" + (i + 1), slice, slice.layer(cells));
+        return cellsPlot(all, cells, matrix, slice.across, slice.up, { range, title: "DCI", unit: "1" });
       },
     }),
   );

@@ -1,14 +1,14 @@
-// One design without a study: what it is.
+// Panel "Design" of a page for one design without a study: mechanism, name and parameters.
 
-function showDesign(study, section) {
+function showDesign(study, panel) {
   const { mechanism, title, name, parameters } = study.design;
-  section.append(element("h1", "", mechanism), element("p", "facts", title), element("p", "facts", name));
-  addOverview(study, section);
+  panel.append(element("h1", "", mechanism), element("p", "facts", title), element("p", "facts", name));
+  addOverview(study, panel);
   const rows = parameters.map((p) => [p.name, measured(p.value, p.unit), p.meaning]);
-  section.append(
+  panel.append(
     element(
       "div",
-      "panel",
+      "box",
       element(
         "details",
         "",

@@ -1,17 +1,17 @@
-# Puts the page of `pkmopt report` into the library: its parts beside this file, and Plotly from the npm registry in the
-# version that package-lock.json pins. Without npm everything but that page is built.
+# Embeds the page of `pkmopt report` into the library: the files of this folder, and Plotly from the npm registry in the
+# version that package-lock.json pins. Without npm, pkmopt is built without `report`.
 set(PKM_PAGE ${CMAKE_CURRENT_LIST_DIR})
 set(pkm_page_build ${CMAKE_CURRENT_BINARY_DIR}/page)
 set(PKM_PLOTLY ${pkm_page_build}/node_modules/plotly.js-dist-min/plotly.min.js)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PKM_PAGE}/package-lock.json)
 
-# Fetches Plotly where it is not there yet, or no longer in the pinned version; `why` is "" or why it is not there.
+# Fetches Plotly unless the pinned version is already in the build folder. Sets `why` to "", or to the reason of a failure.
 function(pkm_fetch_plotly why)
   set(${why} "" PARENT_SCOPE)
   set(lock ${pkm_page_build}/package-lock.json)
   execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${PKM_PAGE}/package-lock.json ${lock}
-                  RESULT_VARIABLE other ERROR_QUIET)
-  if(NOT other AND EXISTS ${PKM_PLOTLY})
+                  RESULT_VARIABLE differs ERROR_QUIET)
+  if(NOT differs AND EXISTS ${PKM_PLOTLY})
     return()
   endif()
   find_program(PKM_NPM npm)
@@ -30,8 +30,8 @@ endfunction()
 
 pkm_fetch_plotly(why)
 if(why)
-  message(WARNING "pkmopt report is left out, everything else is built: ${why}. Configure again once npm and its "
-                  "registry can be reached.")
+  message(WARNING "pkmopt is built without `pkmopt report`: ${why}. Make npm and its registry available, then configure "
+                  "again.")
   return()
 endif()
 

@@ -1,8 +1,10 @@
-// The trade-off: designs of which no other one is better everywhere, with knees and compromise. A click on one loads it.
+// Panel "Pareto front": non-dominated designs with knees and the compromise. A click on a point shows its design in the
+// other panels.
 
 const frontSymbols = ["circle", "diamond", "square", "cross"];
 
-function frontPoint(study, front, point) {
+/** Hover text of a point. */
+function frontPointText(study, front, point) {
   const { variables, objectives } = study.problem;
   const lines = [`<b>stage ${front.stage}, point ${front.points.indexOf(point) + 1}</b>`];
   objectives.forEach((o, k) => lines.push(label(o.name) + " = " + label(quantity(point.objectives[k], o.unit))));
@@ -10,6 +12,7 @@ function frontPoint(study, front, point) {
   return lines.join("<br>");
 }
 
+/** @param x, y, byColour  indices of the objectives on the axes and, for three or more objectives, in colour */
 function frontTraces(study, x, y, byColour) {
   const { fronts, baseline } = study.front;
   const { objectives } = study.problem;
@@ -21,8 +24,8 @@ function frontTraces(study, x, y, byColour) {
     name: `stage ${front.stage}, ${label(front.optimiser)}`,
     x: front.points.map((p) => p.objectives[x]),
     y: front.points.map((p) => p.objectives[y]),
-    text: front.points.map((p) => frontPoint(study, front, p)),
-    hovertemplate: "%{text}<br><i>click: load it</i><extra></extra>",
+    text: front.points.map((p) => frontPointText(study, front, p)),
+    hovertemplate: "%{text}<br><i>click to show this design</i><extra></extra>",
     front: f,
     marker: {
       size: f ? 9 : 7,
@@ -61,7 +64,7 @@ function frontTraces(study, x, y, byColour) {
     traces.push({
       type: "scatter",
       mode: "markers",
-      name: "shown",
+      name: "shown design",
       x: [study.point.objectives[x]],
       y: [study.point.objectives[y]],
       hoverinfo: "skip",
@@ -83,64 +86,64 @@ function frontTraces(study, x, y, byColour) {
 }
 
 function loadButton(text, pressed) {
-  const node = button(element("span"), text, "load the design " + text, pressed);
+  const node = button(element("span"), text, "show the design " + text, pressed);
   node.className = "link";
   return node;
 }
 
-/** The designs worth naming: ends, knees, compromise. Each name loads its design. */
-function namedPoints(study, load) {
+/** Table of distinguished designs: best of each objective, knees, compromise. A click on a name shows the design. */
+function distinguishedPoints(study, load) {
   const { variables, objectives } = study.problem;
   const rows = [];
   for (const [f, front] of study.front.fronts.entries()) {
     front.points.forEach((point, i) => {
-      const marks = objectives.flatMap((o, k) => {
+      const roles = objectives.flatMap((o, k) => {
         const values = front.points.map((p) => p.objectives[k]);
         const best = o.maximise ? Math.max(...values) : Math.min(...values);
         return values.indexOf(best) === i ? ["best " + o.name] : [];
       });
-      if (point.knee) marks.push("knee");
-      if (point.compromise) marks.push("compromise");
-      if (marks.length)
+      if (point.knee) roles.push("knee");
+      if (point.compromise) roles.push("compromise");
+      if (roles.length)
         rows.push([
           loadButton(front.stage + " / " + (i + 1), () => load(f, i)),
-          marks.join(", "),
+          roles.join(", "),
           ...point.objectives.map((v, k) => result(v, objectives[k].unit)),
           ...point.design.map((v, i) => measured(v, variables[i].unit)),
         ]);
     });
   }
   const name = (each) => each.name;
-  return simpleTable(["stage / point", "what", ...objectives.map(name), ...variables.map(name)], rows);
+  return simpleTable(["stage / point", "property", ...objectives.map(name), ...variables.map(name)], rows);
 }
 
-function showFront(study, section) {
+function showFront(study, panel) {
   const { objectives } = study.problem;
   const sizes = study.front.fronts.map((front) => `${count(front.points.length, "design")} of stage ${front.stage}`);
-  section.append(
+  panel.append(
     element(
       "p",
       "lead",
       sizes.join(", ") +
-        ". To leave a knee in any direction costs more than it gains; the compromise is nearest to the best of all objectives. A click on a point loads it into the page.",
+        ". At a knee, a small gain in one objective costs much more in another. The compromise has the smallest maximum loss over all objectives, relative to their ranges on the front. Click a point to show its design in the other panels.",
     ),
   );
   const controls = element("div", "controls"),
     grid = element("div", "grid");
   const names = objectives.map((o) => o.name);
-  section.append(controls, grid);
+  panel.append(controls, grid);
   const redraw = () => plot.update();
-  const x = choice(controls, "across", names, 0, redraw),
-    y = choice(controls, "up", names, 1, redraw);
+  const x = choice(controls, "horizontal", names, 0, redraw),
+    y = choice(controls, "vertical", names, 1, redraw);
   const third = names.length > 2 ? choice(controls, "colour", names, 2, redraw) : { value: -1 };
-  const load = (f, p) => study.choose(chosenPoint(study.whole ?? study, f, p));
-  pointChoice(controls, study, load);
+  const load = (f, p) => study.choose(chosenPoint(study.original ?? study, f, p));
+  addPointList(controls, study, load);
   if (study.point?.missing)
-    section.insertBefore(
+    panel.insertBefore(
       element(
         "p",
         "warning",
-        `The page has the values of ${study.point.name}, but not its workspace: below are those of the ${study.whole.summary.table.columns[0].name}. Its own: `,
+        `The page includes the values of ${study.point.name}, but not its workspace; the panels below show the ${study.original.summary.table.columns[0].name} design. To see the workspace of this point: `,
         code(pointCommand(study, study.point)),
       ),
       grid,
@@ -164,5 +167,5 @@ function showFront(study, section) {
         if (hit.data.front !== undefined) load(hit.data.front, hit.pointIndex);
       });
   };
-  grid.append(element("div", "panel", element("h3", "", "Designs worth naming"), namedPoints(study, load)));
+  grid.append(element("div", "box", element("h3", "", "Distinguished designs"), distinguishedPoints(study, load)));
 }

@@ -1,9 +1,9 @@
-// The report: a study at a time, section by section, and several studies beside each other.
+// Builds the page from its data: the comparison of several studies, and the panels of the selected study.
 
-const sections = [
+const panels = [
   { id: "summary", title: "Summary", show: showSummary },
   { id: "design", title: "Design", show: showDesign },
-  { id: "front", title: "Trade-off", show: showFront },
+  { id: "front", title: "Pareto front", show: showFront },
   { id: "workspace", title: "Workspace", show: showWorkspace },
   { id: "mechanism", title: "Mechanism", show: showMechanism },
   { id: "motions", title: "Motions", show: showMotions },
@@ -12,20 +12,21 @@ const sections = [
   { id: "populations", title: "Populations", show: showPopulations },
 ];
 
-/** A section's heading, and the element that its content goes into. */
-function sectionOf(page, id, title) {
-  const section = element("section");
-  section.id = id;
-  section.tabIndex = -1; // a link to it takes the keyboard there
-  section.setAttribute("aria-label", title || id);
-  if (title) section.append(element("h2", "", title));
-  page.append(section);
-  return section;
+/** Adds an empty panel with a heading; returns the element for its content. */
+function addPanel(page, id, title) {
+  const panel = element("section");
+  panel.id = id;
+  panel.tabIndex = -1; // so that a link to the panel moves the keyboard focus there
+  panel.setAttribute("aria-label", title || id);
+  if (title) panel.append(element("h2", "", title));
+  page.append(panel);
+  return panel;
 }
 
-let markContents = () => {}; // the link of the section in view
-addEventListener("scroll", () => markContents(), { passive: true });
+let highlightCurrent = () => {}; // highlights the link of the panel in view
+addEventListener("scroll", () => highlightCurrent(), { passive: true });
 
+/** Fills the table of contents. */
 function showContents(list) {
   const links = list.map(({ id, title }) => {
     const link = element("a", "", title);
@@ -35,7 +36,7 @@ function showContents(list) {
   document
     .getElementById("contents")
     .replaceChildren(element("ol", "", ...links.map((link) => element("li", "", link))));
-  markContents = () => {
+  highlightCurrent = () => {
     const tops = list.map(({ id }) => document.getElementById(id).getBoundingClientRect().top);
     const here = Math.max(
       0,
@@ -47,52 +48,52 @@ function showContents(list) {
       else link.removeAttribute("aria-current");
     });
   };
-  markContents();
+  highlightCurrent();
 }
 
 /**
- * @param point  of the trade-off, as chosenPoint() gives it, which the page shows in place of the best design; null: the
- *               best
+ * Shows the panels of a study.
+ * @param point  point of the Pareto front, from chosenPoint(), to be shown instead of the best design; null: none
  */
-function showStudy(report, whole, point = null) {
-  const study = point ? withPoint(whole, point) : whole;
-  study.choose = (other) => keepInView("front", () => showStudy(report, whole, other));
-  forgetPlots();
+function showStudy(report, original, point = null) {
+  const study = point ? withPoint(original, point) : original;
+  study.choose = (other) => keepInView("front", () => showStudy(report, original, other));
+  removePlots();
   const page = document.getElementById("page");
   page.replaceChildren();
-  tellChosen(study);
+  showChosenPoint(study);
   const shown = [];
   if (report.studies.length > 1) {
     shown.push({ id: "comparison", title: "Comparison" });
-    showComparison(report.studies, sectionOf(page, "comparison", "Comparison"));
+    showComparison(report.studies, addPanel(page, "comparison", "Comparison"));
   }
-  for (const { id, title, show } of sections) {
+  for (const { id, title, show } of panels) {
     if (!study[id]) continue;
     shown.push({ id, title });
-    show(study, sectionOf(page, id, id === "summary" || id === "design" ? "" : title));
+    show(study, addPanel(page, id, id === "summary" || id === "design" ? "" : title));
   }
   const files = report.studies
     .map((each) => each.file)
     .filter(Boolean)
     .join(", ");
-  page.append(element("footer", "", "Made by " + report.program + (files ? " from " + files : "") + "."));
+  page.append(element("footer", "", "Created by " + report.program + (files ? " from " + files : "") + "."));
   showContents(shown);
 }
 
-/** j and k go to the next and the last section. */
-function stepSections(event) {
+/** The keys j and k move to the next and the previous panel. */
+function stepPanels(event) {
   if (!/^[jk]$/.test(event.key) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (/^(input|select|textarea)$/i.test(event.target.localName ?? "")) return;
   const links = [...document.querySelectorAll("#contents a")];
   const here = links.findIndex((link) => link.classList.contains("here"));
   const link = links[here + (event.key === "j" ? 1 : -1)];
   if (!link) return;
-  const section = document.querySelector(link.hash);
-  section.scrollIntoView();
-  section.focus({ preventScroll: true });
+  const panel = document.querySelector(link.hash);
+  panel.scrollIntoView();
+  panel.focus({ preventScroll: true });
 }
 
-/** Makes a section anew where it is in view; a control that had the keyboard has it again. */
+/** Runs change(), which rebuilds a panel, and restores its scroll position and the keyboard focus. */
 function keepInView(id, change) {
   const top = () => document.getElementById(id).getBoundingClientRect().top;
   const controls = () => [...document.querySelectorAll(`#${id} select`)];
@@ -117,7 +118,7 @@ function showReport(report) {
   else chooser.append(element("span", "title", report.studies[0].name));
   themeButton(document.getElementById("theme"));
   showStudy(report, report.studies[0]);
-  addEventListener("keydown", stepSections);
+  addEventListener("keydown", stepPanels);
   const loaded = loadPlotly();
-  window.report = { ...report, draw: (section) => loaded.then(() => drawPlots(section)) }; // for readers that are programs
+  window.report = { ...report, draw: (id) => loaded.then(() => drawPlots(id)) }; // for tests and scripts
 }

@@ -1,4 +1,4 @@
-// The mechanism, to scale, at the poses that the file was asked for: front, top and 3-D, with its workspace.
+// Panel "Mechanism": the links to scale at the stored poses, in front view, top view and 3-D, with the workspace.
 
 function partColour(part, parts) {
   if (part === "frame") return "#8893a0";
@@ -9,44 +9,49 @@ function partColour(part, parts) {
   return ["#56b4e9", "#d55e00", "#b8a000"][others.indexOf(part) % 3];
 }
 
-const room = ["x", "y", "z"]; // roles of the coordinates that are places in it
+const cartesian = ["x", "y", "z"]; // roles of the coordinates that are positions in space
+const isCartesian = (axis) => cartesian.includes(axis.role);
 
-/** The axes of the workspace that are x, y and z, in this order; -1: not swept. */
-function axesInRoom(cells) {
-  return room.map((role) => cells.axes.findIndex((axis) => axis.role === role));
+/** Indices of the workspace axes x, y and z, in this order; -1 if not swept. */
+function cartesianAxes(cells) {
+  return cartesian.map((role) => cells.axes.findIndex((axis) => axis.role === role));
 }
 
-/** Where the cells lie that share a pose's values of all that is no place in the room; null: none does. */
-function layerAt(cells, values) {
-  const layers = cells.axes.map((axis, k) => (room.includes(axis.role) ? 0 : cells.layer(k, values[axis.coordinate])));
+/** Index of the first cell at given values of the non-Cartesian coordinates; null if they are outside the grid. */
+function firstCellAt(cells, values) {
+  const layers = cells.axes.map((axis, k) => (isCartesian(axis) ? 0 : cells.layer(k, values[axis.coordinate])));
   return layers.some((layer) => layer < 0) ? null : layers.reduce((sum, layer, k) => sum + layer * cells.strides[k], 0);
 }
 
-const toRoom = (values) => Array.from(values, (value) => value * shownScale("m")); // drawn in mm
+const toMillimetres = (values) => Array.from(values, (value) => value * shownScale("m"));
 
-/** Cells of the workspace that are feasible at a pose's rotation, seen along an axis; null where it does not show. */
-function workspaceShadow(cells, values, h, v) {
-  const places = axesInRoom(cells);
-  const [across, up] = [places[h], places[v]];
-  const first = layerAt(cells, values);
+/**
+ * Projection onto the plane of the axes h and v of the cells that are feasible at the rotation of a pose.
+ * @returns null if h or v is not swept, or the rotation is outside the grid
+ */
+function projectWorkspace(cells, values, h, v) {
+  const axes = cartesianAxes(cells);
+  const [across, up] = [axes[h], axes[v]];
+  const first = firstCellAt(cells, values);
   if (across < 0 || up < 0 || first === null) return null;
-  const depth = places[3 - h - v];
+  const depth = axes[3 - h - v];
   const layers = depth < 0 ? [0] : Array.from({ length: cells.axes[depth].cells }, (_, k) => k * cells.strides[depth]);
   const z = Array.from({ length: cells.axes[up].cells }, (_, j) =>
     Array.from({ length: cells.axes[across].cells }, (_, i) =>
       layers.some((k) => cells.feasible[first + k + i * cells.strides[across] + j * cells.strides[up]]) ? 1 : null,
     ),
   );
-  return { x: toRoom(cells.centres(across)), y: toRoom(cells.centres(up)), z };
+  return { x: toMillimetres(cells.centres(across)), y: toMillimetres(cells.centres(up)), z };
 }
 
-function flatTraces(poses, pose, cells, values, [h, v]) {
+/** Traces of a pose projected onto the plane of the axes h and v (0: x, 1: y, 2: z). */
+function viewTraces(poses, pose, cells, values, [h, v]) {
   const traces = [];
-  const shadow = cells && workspaceShadow(cells, values, h, v);
-  if (shadow)
+  const projection = cells && projectWorkspace(cells, values, h, v);
+  if (projection)
     traces.push({
       type: "heatmap",
-      ...shadow,
+      ...projection,
       colorscale: [
         [0, "#56b4e9"],
         [1, "#56b4e9"],
@@ -78,12 +83,13 @@ function flatTraces(poses, pose, cells, values, [h, v]) {
 }
 
 /**
- * The workspace in the room: its surface, or of those that sweep other coordinates too, the cells at the pose's values
- * of these: a layer where the platform's plane is, or a line.
- * @param place  of the platform, [x, y, z] in mm
+ * 3-D trace of the workspace. If x, y and z are swept, it is the boundary surface. Otherwise it shows the feasible
+ * cells at the pose's values of the other coordinates, as a layer or a line through the platform.
+ * @param position  of the platform, [x, y, z] in mm
+ * @returns null if nothing is feasible there
  */
-function solidWorkspace(cells, values, place) {
-  const look = {
+function workspaceTrace(cells, values, position) {
+  const style = {
     type: "mesh3d",
     color: "#56b4e9",
     opacity: 0.22,
@@ -91,23 +97,23 @@ function solidWorkspace(cells, values, place) {
     name: "workspace",
     showlegend: true,
   };
-  const order = axesInRoom(cells);
+  const order = cartesianAxes(cells);
   if (order.every((k) => k >= 0)) {
-    const { at, triangles } = cells.surface;
+    const { vertices, triangles } = cells.surface;
     const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
-    const [x, y, z] = order.map((axis) => toRoom(at[axis]));
-    return { ...look, x, y, z, i: corner(0), j: corner(1), k: corner(2) };
+    const [x, y, z] = order.map((axis) => toMillimetres(vertices[axis]));
+    return { ...style, x, y, z, i: corner(0), j: corner(1), k: corner(2) };
   }
-  const first = layerAt(cells, values),
+  const first = firstCellAt(cells, values),
     mesh = { x: [], y: [], z: [], i: [], j: [], k: [] };
-  const [a, b] = cells.axes.flatMap((axis, k) => (room.includes(axis.role) ? [k] : []));
+  const [a, b] = cells.axes.flatMap((axis, k) => (isCartesian(axis) ? [k] : []));
   if (first === null || a === undefined) return null;
   if (b === undefined) {
-    const line = toRoom(cells.centres(a)).map((value, k) =>
+    const line = toMillimetres(cells.centres(a)).map((value, k) =>
       cells.feasible[first + k * cells.strides[a]] ? value : null,
     );
-    const points = room.map((role, c) => line.map((value) => (cells.axes[a].role === role ? value : place[c])));
-    const { color, hoverinfo, name, showlegend } = look;
+    const points = cartesian.map((role, c) => line.map((value) => (cells.axes[a].role === role ? value : position[c])));
+    const { color, hoverinfo, name, showlegend } = style;
     return {
       type: "scatter3d",
       mode: "lines",
@@ -126,20 +132,21 @@ function solidWorkspace(cells, values, place) {
         [1, 1],
         [0, 1],
       ]) {
-        const at = { [a]: p + da, [b]: q + db };
-        room.forEach((role, c) => {
+        const node = { [a]: p + da, [b]: q + db };
+        cartesian.forEach((role, c) => {
           const axis = cells.axes[order[c]];
-          mesh[role].push(axis ? shownScale("m") * (axis.lower + at[order[c]] * axis.step) : place[c]);
+          mesh[role].push(axis ? shownScale("m") * (axis.lower + node[order[c]] * axis.step) : position[c]);
         });
       }
       mesh.i.push(corner, corner);
       mesh.j.push(corner + 1, corner + 2);
       mesh.k.push(corner + 2, corner + 3);
     }
-  return mesh.x.length ? { ...look, ...mesh, lighting: { ambient: 1, diffuse: 0 } } : null;
+  return mesh.x.length ? { ...style, ...mesh, lighting: { ambient: 1, diffuse: 0 } } : null;
 }
 
-function solidTraces(poses, pose, cells, values) {
+/** 3-D traces of the links of a pose and, with cells, of the workspace. */
+function spaceTraces(poses, pose, cells, values) {
   const meshes = new Map();
   for (const link of poses.linksAt(pose)) {
     if (!meshes.has(link.part)) meshes.set(link.part, { x: [], y: [], z: [], i: [], j: [], k: [], text: [] });
@@ -155,133 +162,137 @@ function solidTraces(poses, pose, cells, values) {
     lighting: { ambient: 0.6, diffuse: 0.6, specular: 0.15, roughness: 0.7 },
     lightposition: { x: 1e4, y: -2e4, z: 3e4 },
   }));
-  const around = cells && solidWorkspace(cells, values, poses.place(values));
-  return around ? [...traces, around] : traces;
+  const workspace = cells && workspaceTrace(cells, values, poses.position(values));
+  return workspace ? [...traces, workspace] : traces;
 }
 
-/** A scene of the room, to scale. @param spans  of x, y and z @param away  how far the camera is */
-function roomScene(spans, away) {
-  const extents = spans.map(([low, high]) => high - low),
-    most = Math.max(...extents);
-  const [x, y, z] = extents.map((extent) => (1.35 * extent) / most);
+/**
+ * A 3-D scene to scale.
+ * @param ranges    [low, high] of x, y and z
+ * @param distance  relative distance of the camera
+ */
+function spaceScene(ranges, distance) {
+  const extents = ranges.map(([low, high]) => high - low),
+    largest = Math.max(...extents);
+  const [x, y, z] = extents.map((extent) => (1.35 * extent) / largest);
   return {
-    xaxis: sceneAxis("x [mm]", spans[0], extents[0] / most),
-    yaxis: sceneAxis("y [mm]", spans[1], extents[1] / most),
-    zaxis: sceneAxis("z [mm]", spans[2], extents[2] / most),
-    bgcolor: colour("panel"), // of the film, too
+    xaxis: sceneAxis("x [mm]", ranges[0], extents[0] / largest),
+    yaxis: sceneAxis("y [mm]", ranges[1], extents[1] / largest),
+    zaxis: sceneAxis("z [mm]", ranges[2], extents[2] / largest),
+    bgcolor: colour("box"), // not transparent, for recordings
     aspectmode: "manual",
     aspectratio: { x, y, z },
-    camera: { eye: { x: 1.1 * away, y: -1.45 * away, z: 0.75 * away }, center: { x: 0, y: 0, z: -0.1 } },
+    camera: { eye: { x: 1.1 * distance, y: -1.45 * distance, z: 0.75 * distance }, center: { x: 0, y: 0, z: -0.1 } },
   };
 }
 
 const posesOf = (packed) => (packed.poses ??= new Poses(packed));
 
-/** The workspace of the design of this name; null: the page has none. */
+/** The workspace cells of the design with this name; null if the page has none. */
 function cellsOf(study, name) {
   const found = study.workspace?.designs.find((design) => design.name === name);
   return found ? (found.cells ??= new Cells(found)) : null;
 }
 
-/** It moves in the plane of x and y. */
+/** True if the mechanism moves in the x-y plane: its coordinates are x, y and at most one rotation. */
 function isPlanar({ coordinates }) {
   const roles = coordinates.map((coordinate) => coordinate.role);
   return (
     ["x", "y"].every((role) => roles.includes(role)) &&
-    roles.every((role, c) => /x|y/.test(role) || (role === "turn" && roles.indexOf(role) === c))
+    roles.every((role, c) => /x|y/.test(role) || (role === "rotation" && roles.indexOf(role) === c))
   );
 }
 
-function showMechanism(study, section) {
+function showMechanism(study, panel) {
   const { designs, mode } = study.mechanism;
   const all = designs.map(posesOf);
-  const turning = all[0].coordinates.some((coordinate) => coordinate.role === "turn");
+  const rotates = all[0].coordinates.some((coordinate) => coordinate.role === "rotation");
   const planar = isPlanar(all[0]);
-  const goes = study.workspace?.designs.some((design) => design.axes.some((axis) => room.includes(axis.role)));
-  section.append(
+  const hasWorkspace = study.workspace?.designs.some((design) => design.axes.some(isCartesian));
+  panel.append(
     element(
       "p",
       "lead",
-      `Drawn to scale in working mode ${mode}. The sliders step through stored poses` +
+      `Drawn to scale in working mode ${mode}. The sliders select one of the stored poses` +
         (all.some((design) => design.motions.length)
-          ? ", the player along the " + (study.motions?.left_out ? `first ${all[0].motions.length} ` : "") + "motions"
+          ? "; the player shows the " + (study.motions?.omitted ? `first ${all[0].motions.length} ` : "") + "motions"
           : "") +
-        (goes ? "; blue is where the platform can go" + (turning ? " at this rotation" : "") : "") +
+        (hasWorkspace ? ". The blue region is the workspace" + (rotates ? " at this rotation" : "") : "") +
         ".",
     ),
   );
-  const controls = element("div", "controls panel"),
+  const controls = element("div", "controls box"),
     grid = element("div", "grid");
-  section.append(grid);
+  panel.append(grid);
   grid.append(controls);
-  const playBar = element("div", "controls panel");
+  const playBar = element("div", "controls box");
   if (all.some((design) => design.motions.length)) grid.append(playBar);
   let poses,
-    places,
+    positions,
     sliders,
     player,
-    inSpace,
+    spacePlot,
     plots = [];
-  const verdict = element("p", "verdict"),
+  const feasibility = element("p", "feasibility"),
     readout = element("div", "readout");
-  let along = null; // { motion, k }: a pose of a motion instead of the sliders'
-  const now = () => (along ? along.motion.first + along.k : poses.pose(places));
-  const valuesNow = () => (along ? along.motion.coordinates.map((column) => column[along.k]) : poses.values(places));
-  const tell = () => {
-    const pose = now(),
-      number = poses.number[pose],
-      reason = poses.reasons[poses.reason[pose]];
-    verdict.className = "verdict " + (reason ? "worse" : "better");
-    verdict.textContent =
-      (reason ? (number < 0 ? "Does not assemble: " : "Not feasible: ") + reason : "Feasible") + ".";
+  let sample = null; // { motion, k }: shows the k-th pose of a motion instead of the sliders' pose
+  const currentPose = () => (sample ? sample.motion.first + sample.k : poses.pose(positions));
+  const currentValues = () => (sample ? sample.motion.coordinates.map((c) => c[sample.k]) : poses.values(positions));
+  const showFacts = () => {
+    const pose = currentPose(),
+      index = poses.assembledIndex[pose],
+      reason = poses.reasons[poses.reason_index[pose]];
+    feasibility.className = "feasibility " + (reason ? "worse" : "better");
+    feasibility.textContent =
+      (reason ? (index < 0 ? "Does not assemble: " : "Infeasible: ") + reason : "Feasible") + ".";
     readout.replaceChildren(
-      ...(number < 0
+      ...(index < 0
         ? []
         : [
-            ...poses.joints.map((joint, i) => [joint.name, shownValue(poses.positions[i][number], joint)]),
-            ["conditioning", digits(poses.conditioning[number])],
+            ...poses.joints.map((joint, i) => [joint.name, shownValue(poses.joint_positions[i][index], joint)]),
+            ["conditioning", digits(poses.conditioning[index])],
           ]
       ).map(([name, value]) => element("div", "", element("span", "", name + " "), element("b", "", value))),
     );
   };
-  const moved = () => {
-    tell();
+  const update = () => {
+    showFacts();
     plots.forEach((plot) => plot.update());
   };
-  const choose = (i) => {
+  const chooseDesign = (i) => {
     poses = all[i];
-    places = poses.places(poses.start);
+    positions = poses.sliderPositions(poses.initial_pose);
     sliders?.forEach((control) => control.node.remove());
     sliders = poses.coordinates.map((coordinate, c) =>
       slider(
         controls,
         coordinate.name,
         coordinate.values.length,
-        places[c],
+        positions[c],
         (k) => shownValue(coordinate.values[k], coordinate),
         (k) => {
-          places[c] = k;
+          positions[c] = k;
           player?.stop();
-          along = null;
-          moved();
+          sample = null;
+          update();
         },
       ),
     );
     player?.stop();
     playBar.replaceChildren();
-    along = null;
+    sample = null;
     player = poses.motions.length
       ? addPlayer(
           playBar,
           poses.motions,
           (motion, k) => {
-            along = { motion, k };
-            moved();
+            sample = { motion, k };
+            update();
           },
-          () => inSpace?.node.querySelector("canvas"),
+          () => spacePlot?.node.querySelector("canvas"),
         )
       : null;
-    moved();
+    update();
   };
   if (all.length > 1)
     buttons(
@@ -289,28 +300,26 @@ function showMechanism(study, section) {
       "design",
       all.map((design) => design.name),
       0,
-      choose,
+      chooseDesign,
     );
-  choose(0);
-  const span = () =>
-    all
-      .map((design) => design.span())
-      .reduce((a, b) => a.map(([low, high], c) => [Math.min(low, b[c][0]), Math.max(high, b[c][1])]));
-  const spans = span(),
-    [xs, ys, zs] = spans;
+  chooseDesign(0);
+  const ranges = all
+    .map((design) => design.ranges())
+    .reduce((a, b) => a.map(([low, high], c) => [Math.min(low, b[c][0]), Math.max(high, b[c][1])]));
+  const [xs, ys, zs] = ranges;
   const [width, depth, height] = [xs, ys, zs].map(([low, high]) => high - low);
   const slim = Math.max(depth, height) > 1.6 * width;
-  const column = element("div", "half column" + (slim ? " abreast" : ""));
-  const flat = (title, h, v, tall = slim ? 694 : 312) =>
+  const column = element("div", "half column" + (slim ? " side-by-side" : ""));
+  const addPlaneView = (title, h, v, height = slim ? 694 : 312) =>
     addPlot(column, {
       title,
-      height: tall,
+      height,
       make: () => ({
-        data: flatTraces(poses, now(), cellsOf(study, poses.name), valuesNow(), [h, v]),
+        data: viewTraces(poses, currentPose(), cellsOf(study, poses.name), currentValues(), [h, v]),
         layout: {
-          xaxis: axis(axisName(room[h], "mm"), { range: spans[h], zeroline: false, constrain: "domain" }),
-          yaxis: axis(axisName(room[v], "mm"), {
-            range: spans[v],
+          xaxis: axis(axisName(cartesian[h], "mm"), { range: ranges[h], zeroline: false, constrain: "domain" }),
+          yaxis: axis(axisName(cartesian[v], "mm"), {
+            range: ranges[v],
             scaleanchor: "x",
             constrain: "domain",
             zeroline: false,
@@ -319,27 +328,27 @@ function showMechanism(study, section) {
         },
       }),
     });
-  const solid = () =>
+  const addSpaceView = () =>
     addPlot(grid, {
-      title: "In space",
+      title: "3-D view",
       size: "half",
       height: 694,
-      make(away) {
+      make(distance) {
         return {
-          data: solidTraces(poses, now(), cellsOf(study, poses.name), valuesNow()),
+          data: spaceTraces(poses, currentPose(), cellsOf(study, poses.name), currentValues()),
           layout: {
             uirevision: "camera",
             margin: { l: 0, r: 0, t: 0, b: 0 },
-            legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
-            scene: roomScene(spans, Math.sqrt(away)), // it may be turned and come nearer
+            legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("box"), 0.6) },
+            scene: spaceScene(ranges, Math.sqrt(distance)), // nearer than proposed: readers can zoom
           },
         };
       },
     });
   if (planar) {
     column.className = "half";
-    plots = [flat("In its plane", 0, 1, 694)];
-  } else plots = [(inSpace = solid()), flat("From the front", 0, 2), flat("From above", 0, 1)];
+    plots = [addPlaneView("Plane of motion", 0, 1, 694)];
+  } else plots = [(spacePlot = addSpaceView()), addPlaneView("Front view", 0, 2), addPlaneView("Top view", 0, 1)];
   grid.append(column);
-  grid.append(element("div", "panel", element("h3", "", "At this pose"), verdict, readout));
+  grid.append(element("div", "box", element("h3", "", "Values at this pose"), feasibility, readout));
 }

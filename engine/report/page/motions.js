@@ -1,6 +1,6 @@
-// What the study's motions ask of the drives: positions, speeds, forces and power against time.
+// Panel "Motions": positions, speeds, forces and power of the joints over time along the motions of the study.
 
-// Of joints by their unit: title, name, unit and what is shown of it in SI. Power has one unit for all.
+// Plots of joint quantities by unit of the joint ("": any): title, name of the axis, displayed unit, factor from SI.
 const motionColumns = {
   positions: {
     m: ["Positions of the joints", "position", "mm", 1000],
@@ -11,34 +11,28 @@ const motionColumns = {
   power: { "": ["Power of the drives", "power", "W", 1] },
 };
 
-// Of the auxiliary chain; the last is the unit per radian.
-const chainColumns = [
-  ["angles", "Angles of the auxiliary chain", "angle", "deg", 180 / Math.PI],
-  ["speeds", "Its angular speeds", "angular speed", "rad/s", 1],
-  ["accelerations", "Its angular accelerations", "angular acceleration", "rad/s^2", 1],
-];
-
-/** How an array of sums that cancel is told: what is rounding beside the rest is 0. */
-function beside(value, size) {
+/** Replaces a sum whose terms cancel by 0 if it is a rounding error relative to `size`. */
+function withoutRounding(value, size) {
   return Math.abs(value) < 1e-9 * Math.abs(size) ? 0 : value;
 }
 
-const turns = (coordinate) => coordinate.unit === "rad";
+const isRotation = (coordinate) => coordinate.unit === "rad";
 
 function timesOf(motion) {
   return Array.from({ length: motion.samples }, (_, k) => (motion.duration * k) / (motion.samples - 1));
 }
 
 /**
- * One line for each of `names`, of every design.
- * @param names     null: this curve is not meant
- * @param curvesOf  packed; what is shown is `scale` times it
+ * One curve per name and design.
+ * @param names     names of the curves; null: omit this curve
+ * @param scale     factor from SI to `unit`
+ * @param curvesOf  curvesOf(design) gives the packed curves, or null
  */
 function motionTraces(motion, names, unit, scale, curvesOf) {
   const time = timesOf(motion);
-  const meant = [...names.keys()].filter((i) => names[i] !== null);
+  const included = [...names.keys()].filter((i) => names[i] !== null);
   return motion.designs.flatMap((design, d) =>
-    (curvesOf(design) ? meant.map((i) => [curvesOf(design)[i], i]) : []).map(([packed, i]) => ({
+    (curvesOf(design) ? included.map((i) => [curvesOf(design)[i], i]) : []).map(([packed, i]) => ({
       type: "scatter",
       mode: "lines",
       x: time,
@@ -46,7 +40,7 @@ function motionTraces(motion, names, unit, scale, curvesOf) {
       name: label(names[i]),
       legendgroup: names[i],
       showlegend: d === 0,
-      line: { color: limbColours[i], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" },
+      line: { color: limbColours[i % limbColours.length], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" },
       hovertemplate: `%{y:.4g} ${label(unitText(unit))} at %{x:.4g} s<extra>${label(names[i] + ", " + design.name)}</extra>`,
     })),
   );
@@ -72,15 +66,15 @@ function posesAlong(motion, coordinates) {
     x: time,
     y: Array.from(unpack(packed), (value) => value * shownScale(coordinates[c].unit)),
     name: label(coordinates[c].name),
-    yaxis: turns(coordinates[c]) ? "y2" : "y",
-    line: { color: seriesColours[c], width: 2, dash: turns(coordinates[c]) ? "dot" : "solid" },
+    yaxis: isRotation(coordinates[c]) ? "y2" : "y",
+    line: { color: seriesColours[c], width: 2, dash: isRotation(coordinates[c]) ? "dot" : "solid" },
     hovertemplate: `%{y:.4g} ${shownUnit(coordinates[c].unit)} at %{x:.4g} s<extra>${label(coordinates[c].name)}</extra>`,
   }));
 }
 
-/** Lengths on the left, angles on the right, or on the left where there is nothing else. */
+/** Axes for lengths on the left and angles on the right; angles on the left if there are no lengths. */
 function poseAxes(coordinates) {
-  const angles = coordinates.filter(turns),
+  const angles = coordinates.filter(isRotation),
     lengths = angles.length < coordinates.length;
   const right = axis(axisName(angles.length === 1 ? angles[0].name : "angle", "deg"), {
     ...(lengths ? { overlaying: "y", side: "right", showgrid: false } : {}),
@@ -89,7 +83,7 @@ function poseAxes(coordinates) {
     xaxis: axis("time [s]"),
     ...(lengths ? { yaxis: axis("position [mm]") } : {}),
     ...(angles.length ? { yaxis2: right } : {}),
-    showlegend: true, // also of one coordinate
+    showlegend: true, // also for a single coordinate
   };
 }
 
@@ -108,7 +102,7 @@ function motionSummary(motion, joints) {
       ]);
     add("peak speed", summary.peak_speed, unitsOf("speeds"));
     add("peak force", summary.peak_force, unitsOf("forces"));
-    add("root mean square of force", summary.rms_force, unitsOf("forces"));
+    add("RMS force", summary.rms_force, unitsOf("forces"));
     add(
       "peak power",
       summary.peak_power,
@@ -116,51 +110,51 @@ function motionSummary(motion, joints) {
       summary.peak_total_power,
     );
     const all = (unit) => joints.map(() => unit);
-    add("peak torque of the motor", summary.peak_motor_torque, all("N m"));
-    add("root mean square of the motor’s torque", summary.rms_motor_torque, all("N m"));
-    add("peak speed of the motor", summary.peak_motor_speed, all("rad/s"));
+    add("peak motor torque", summary.peak_motor_torque, all("N m"));
+    add("RMS motor torque", summary.rms_motor_torque, all("N m"));
+    add("peak motor speed", summary.peak_motor_speed, all("rad/s"));
     if (summary.energy !== undefined) {
       rows.push([
         name,
-        "energy, braking giving back",
+        "energy with regeneration",
         ...joints.map(() => ""),
-        quantity(beside(summary.energy, summary.energy_drawn), "J", 4),
+        quantity(withoutRounding(summary.energy, summary.energy_drawn), "J", 4),
       ]);
-      rows.push([name, "energy drawn", ...joints.map(() => ""), quantity(summary.energy_drawn, "J", 4)]);
+      rows.push([name, "energy without regeneration", ...joints.map(() => ""), quantity(summary.energy_drawn, "J", 4)]);
     }
   }
   return simpleTable(head, rows);
 }
 
-/** Sentences on the samples that are not feasible. */
-function obstacles(motion) {
+/** One sentence per design that has infeasible samples. */
+function infeasibleSamples(motion) {
   return motion.designs.flatMap(({ name, reasons }) => {
-    const broken = reasons.map((reason, k) => [reason, k]).filter(([reason]) => reason);
-    if (!broken.length) return [];
+    const infeasible = reasons.map((reason, k) => [reason, k]).filter(([reason]) => reason);
+    if (!infeasible.length) return [];
     const at = (k) => digits((motion.duration * k) / (motion.samples - 1), 3) + " s";
     return [
-      `The design “${name}” cannot follow: ${count(broken.length, "sample")} of ${motion.samples} not feasible, first at ${at(broken[0][1])}: ${broken[0][0]}.`,
+      `The design “${name}” cannot follow the motion: ${infeasible.length} of ${count(motion.samples, "sample")} are infeasible, the first at ${at(infeasible[0][1])}: ${infeasible[0][0]}.`,
     ];
   });
 }
 
-function showMotions(study, section) {
-  const { motions, joints, chain, coordinates } = study.motions;
-  section.append(
+function showMotions(study, panel) {
+  const { motions, joints, quantities, coordinates } = study.motions;
+  panel.append(
     element(
       "p",
       "lead",
-      "Exact speeds and accelerations of the joints" +
-        (motions[0].designs.some((d) => d.forces) ? ", and the forces and power that they take" : "") +
-        ". The best design in solid lines, the baseline dashed.",
+      "Positions and exact speeds of the joints" +
+        (motions[0].designs.some((d) => d.forces) ? ", with the drive forces and power" : "") +
+        ". Solid lines: best design; dashed lines: baseline.",
     ),
   );
-  if (study.motions.left_out)
-    section.append(
+  if (study.motions.omitted)
+    panel.append(
       element(
         "p",
         "lead",
-        `The page has the first ${motions.length} of the study's ${motions.length + study.motions.left_out} motions. ` +
+        `The page includes the first ${motions.length} of the study's ${motions.length + study.motions.omitted} motions. ` +
           "“pkmopt trajectory --from " +
           (study.file || "FILE.h5") +
           " --motion NAME --csv NAME.csv” computes each of the others.",
@@ -169,15 +163,15 @@ function showMotions(study, section) {
   const controls = element("div", "controls"),
     grid = element("div", "grid"),
     notes = element("div");
-  section.append(controls, notes, grid);
-  const table = element("div", "panel");
+  panel.append(controls, notes, grid);
+  const table = element("div", "box");
   const plots = [];
-  const motion = () => motions[which.value];
-  const tell = () => {
-    notes.replaceChildren(...obstacles(motion()).map((text) => element("p", "warning", text)));
-    table.replaceChildren(element("h3", "", "In numbers"), motionSummary(motion(), joints));
+  const motion = () => motions[selected.value];
+  const showMotion = () => {
+    notes.replaceChildren(...infeasibleSamples(motion()).map((text) => element("p", "warning", text)));
+    table.replaceChildren(element("h3", "", "Summary"), motionSummary(motion(), joints));
   };
-  const which =
+  const selected =
     motions.length > 1
       ? choice(
           controls,
@@ -185,15 +179,15 @@ function showMotions(study, section) {
           motions.map((m) => m.name),
           0,
           () => {
-            tell();
+            showMotion();
             plots.forEach((plot) => plot.update());
           },
         )
       : { value: 0 };
-  tell();
+  showMotion();
   plots.push(
     addPlot(grid, {
-      title: "The motion" + (motions.length > 1 ? "" : ", " + motions[0].name),
+      title: "Motion" + (motions.length > 1 ? "" : ", " + motions[0].name),
       size: "half",
       height: 360,
       make: () => ({
@@ -221,8 +215,11 @@ function showMotions(study, section) {
       const names = joints.map((joint) => (kind && joint.unit !== kind ? null : joint.name));
       if (names.some(Boolean)) addCurves(title, name, unit, scale, names, (design) => design[key]);
     }
-  for (const [key, title, name, unit, scale] of chainColumns)
-    addCurves(title, name, unit, scale, chain, (design) => design.chain?.[key]);
+  for (const unit of new Set(quantities.map((quantity) => quantity.unit))) {
+    const names = quantities.map((quantity) => (quantity.unit === unit ? quantity.name : null));
+    const [shown, scale] = unit === "rad" ? ["deg", 180 / Math.PI] : [unit, 1];
+    addCurves(`Quantities in ${shown}`, "quantity", shown, scale, names, (design) => design.quantities);
+  }
   plots.push(
     addPlot(grid, {
       title: "Conditioning",

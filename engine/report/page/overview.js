@@ -1,46 +1,47 @@
-// The first screen: what was found in words, the mechanism with its dimensions, and where it can go.
+// Top of the panel "Summary": conclusions in words, drawing of the mechanism with dimensions, plot of the workspace.
 
-/** "the best design", "point 7 of stage 2" */
-function nameOfShown({ columns: [{ name }] }) {
+/** Phrase for the shown design: "the best design", "point 7 of stage 2". */
+function shownDesignPhrase({ columns: [{ name }] }) {
   return name.startsWith("point ") ? name : "the " + name + (name === "compromise" ? "" : " design");
 }
 
-/** What was gained over the baseline. */
-function gainedSentence({ summary, problem }) {
+/** Objective values of the shown design and gains over the baseline. */
+function resultSentence({ summary, problem }) {
   const { table } = summary;
   const rows = (table ? table.rows : []).filter((row) => row.kind === "objective" && row.values[0] !== null);
-  if (summary.verdict) return [summary.verdict.finding + ": " + summary.verdict.sentence + "."];
-  if (!rows.length) return ["Nothing yet: no design has been evaluated."];
+  if (summary.diagnosis) return [summary.diagnosis.finding + ": " + summary.diagnosis.sentence + "."];
+  if (!rows.length) return ["No design has been evaluated yet."];
   const baseline = table.columns.findIndex((column) => column.name === "baseline");
-  const told = rows.filter((row, k) => problem.objectives.some((o) => o.name === row.name));
+  const shown = rows.filter((row, k) => problem.objectives.some((o) => o.name === row.name));
   return [
-    ...told.flatMap((row, k) => [
+    ...shown.flatMap((row, k) => [
       k ? "; " : "",
       rowLabel(row, table.rows) + " ",
       element("b", "", result(row.values[0], row.unit)),
       ...(row.gain
         ? [" (", gainText(row.gain), ")"]
         : baseline >= 0 && row.values[baseline] !== null
-          ? [" beside ", result(row.values[baseline], row.unit)]
+          ? [" (baseline ", result(row.values[baseline], row.unit), ")"]
           : []),
     ]),
-    baseline >= 0 ? ", of " + nameOfShown(table) + " against the baseline." : "; there is no baseline.",
+    baseline >= 0 ? " for " + shownDesignPhrase(table) + ", compared with the baseline." : ". There is no baseline.",
   ];
 }
 
 const byMultiplier = (optimality) =>
   [...optimality.active].sort((a, b) => Math.abs(b.multiplier) - Math.abs(a.multiplier));
 
-/** Active margins and bounds, with what one would gain by moving them where a gradient solver has told. */
-function holdingSentence({ summary, problem, point }) {
+/** Active constraints and bounds, with their multipliers if a gradient solver computed them. */
+function activeSentence({ summary, problem, point }) {
   const { optimality, active, stages } = summary;
   if (point) {
     const { variables } = problem;
-    const at = variables.flatMap((v, i) =>
+    const atBounds = variables.flatMap((v, i) =>
       boundAt(point.design[i], v) ? [`${v.name} (${boundAt(point.design[i], v)})`] : [],
     );
     return [
-      (at.length ? "bounds: " + at.join("; ") + ". " : "no bound. ") + "Margins are known after the command below.",
+      (atBounds.length ? "Active bounds: " + atBounds.join("; ") : "No bound is active") +
+        ". The command below computes the margins of the constraints.",
     ];
   }
   if (optimality?.active.length)
@@ -48,12 +49,12 @@ function holdingSentence({ summary, problem, point }) {
       .slice(0, 4)
       .flatMap((a, k) => [
         k ? "; " : "",
-        `${a.name} (${a.kind}): ` + (k ? "" : "moved out of the way, it gives "),
+        `${a.name} (${a.kind}): ` + (k ? "" : "gain of "),
         rateText(a.multiplier, problem.objectives[0], a.unit),
-        k ? "" : " to " + problem.objectives[0].name,
+        k ? "" : ` in ${problem.objectives[0].name} if relaxed`,
       ])
       .concat(optimality.active.length > 4 ? [`; and ${optimality.active.length - 4} more.`] : ["."]);
-  if (!active) return ["Not known before the study has ended."];
+  if (!active) return ["Unknown until the study has finished."];
   if (!active.length) return ["No bound and no constraint is active."];
   const names = active.map((sentence) => sentence.replace(/ is active,.*/, "").replace(/ (-?[\d.e+-]+ (m|rad))$/, ""));
   const shown = element(
@@ -63,30 +64,30 @@ function holdingSentence({ summary, problem, point }) {
   );
   shown.title = active.join("\n");
   const solved = stages.some((stage) => stage.starts);
-  return [shown, solved || problem.gradients_refused ? "." : ". Multipliers are known after a gradient stage."];
+  return [shown, solved || problem.gradients_unsupported ? "." : ". An nlopt or ipopt stage computes multipliers."];
 }
 
 const isBound = (name) => / bound/.test(name);
 
-/** What to try, the first of what applies. */
+/** The first applicable suggestion of what to try next. */
 function nextSentence(study) {
   const { summary, problem } = study;
   const { optimality, stages } = summary;
-  const file = word(study.file);
+  const file = shellWord(study.file);
   if (study.point)
     return [
-      "For all of its values: ",
+      "Compute all values of this design: ",
       code(`pkmopt evaluate --from ${file} --front ${study.point.p + 1} --stage ${study.point.stage}`),
       ".",
     ];
-  if (summary.verdict)
+  if (summary.diagnosis)
     return [
-      "Loosen what no design kept; the reasons are below, and ",
+      "Relax the constraints that no design satisfies; the reasons are below. ",
       code("pkmopt check"),
-      " looks for contradictions.",
+      " finds contradictory constraints.",
     ];
-  if (summary.state !== "finished") return ["Let it finish: ", code("pkmopt resume " + file), "."];
-  if (summary.touches_box) return ["Enlarge the box of the workspace: feasible poses touch it."];
+  if (summary.state !== "finished") return ["Finish the study: ", code("pkmopt resume " + file), "."];
+  if (summary.touches_box) return ["Enlarge the box of the workspace, because feasible poses touch it."];
   const bounds = optimality
     ? byMultiplier(optimality)
         .filter((a) => isBound(a.kind))
@@ -95,15 +96,15 @@ function nextSentence(study) {
         .filter(isBound)
         .map((sentence) => sentence.replace(/ at its (\w+) bound.*/, " ($1 bound)"));
   if (bounds.length)
-    return ["Widen the bounds the design lies on, as far as it can be built: " + bounds.slice(0, 3).join(", ") + "."];
-  const solvable = !problem.gradients_refused && !stages.some((stage) => stage.starts);
+    return ["Widen the active bounds as far as the design can be built: " + bounds.slice(0, 3).join(", ") + "."];
+  const solvable = !problem.gradients_unsupported && !stages.some((stage) => stage.starts);
   if (study.front && solvable)
-    return ["Refine the trade-off: a stage ", code('optimiser = "nlopt", start = "pareto"'), "."];
+    return ["Refine the Pareto front with a stage ", code('optimiser = "nlopt", start = "pareto"'), "."];
   if (!optimality && problem.objectives.length === 1 && solvable)
     return [
       "Add a gradient stage (",
       code('optimiser = "nlopt", start = "best"'),
-      "): it ends at an optimum and tells what each bound costs.",
+      "): it converges to a local optimum and computes the multipliers of the active bounds.",
     ];
   const variables = new Set(problem.variables.map((variable) => variable.name));
   const nominal = (name) => Math.abs(problem.parameters.find((p) => p.name === name)?.value ?? 0);
@@ -112,27 +113,27 @@ function nextSentence(study) {
     .sort((a, b) => nominal(b.name) * Math.abs(b.as_built) - nominal(a.name) * Math.abs(a.as_built))[0];
   if (fixed)
     return [
-      `Vary ${fixed.name}: of what the study holds fixed it matters most, `,
+      `Vary ${fixed.name}: it has the largest effect of all fixed parameters, `,
       rateText(fixed.as_built, problem.objectives[0], fixed.unit),
       ".",
     ];
-  if (study.front) return ["Choose a design of the trade-off below: a click on a point loads it into this page."];
+  if (study.front) return ["Choose a design on the Pareto front below: click a point to show it on this page."];
   return [
-    "Another seed or mechanism: ",
-    code(`pkmopt run ${word(summary.origin.toml_file || "study.toml")} --seed ${BigInt(summary.origin.seed) + 1n}`),
+    "Try another seed or mechanism: ",
+    code(`pkmopt run ${shellWord(summary.origin.toml_file || "study.toml")} --seed ${BigInt(summary.origin.seed) + 1n}`),
     ".",
   ];
 }
 
 const code = (text) => element("code", "", text);
 
-/** Three lines to decide by. */
-function verdictOf(study) {
-  const list = element("dl", "decision");
+/** Conclusions: result, active constraints, next step. */
+function conclusions(study) {
+  const list = element("dl", "conclusions");
   for (const [title, sentence] of [
-    ["Gained", gainedSentence(study)],
-    ["Held back by", holdingSentence(study)],
-    ["Next", nextSentence(study)],
+    ["Result", resultSentence(study)],
+    ["Active constraints", activeSentence(study)],
+    ["Next step", nextSentence(study)],
   ])
     list.append(element("dt", "", title), element("dd", "", ...sentence));
   return list;
@@ -140,14 +141,14 @@ function verdictOf(study) {
 
 const dimensionText = ({ name, value, unit }) => `${name} ${shownQuantity(value, unit)}`;
 
-/** Of the drawing: those that vary, of a design without a study all; the others would hide them. */
+/** Dimensions to draw: those of the variables, or all if no variable has a dimension. */
 function shownDimensions(study, poses) {
   const vary = new Set((study.problem?.variables ?? []).map((variable) => variable.name));
   const varying = poses.dimensions.filter((d) => vary.has(d.name));
   return varying.length ? varying : poses.dimensions;
 }
 
-/** A line from end to end of each dimension. */
+/** Trace with one line per dimension, between the two link ends. @param axes  [0, 1] or [0, 1, 2] */
 function dimensionTrace(dimensions, poses, pose, axes) {
   const lines = axes.map(() => []);
   for (const { from, to } of dimensions)
@@ -163,44 +164,44 @@ function dimensionTrace(dimensions, poses, pose, axes) {
   };
 }
 
-/** Where a place of the drawing is on the screen, as the camera first stands. */
-function onScreen(place) {
-  if (place.length === 2) return place;
-  const [x, y, z] = place; // the camera looks from (1.1, -1.45, 0.75)
+/** Approximate screen coordinates [right, up] of a point for the initial camera. */
+function onScreen(point) {
+  if (point.length === 2) return point;
+  const [x, y, z] = point; // the camera is at (1.1, -1.45, 0.75), see spaceScene()
   return [0.8 * x + 0.6 * y, 0.92 * z - 0.23 * x + 0.3 * y];
 }
 
-/** Their names and values: outside of the drawing's middle, and on each side one below the other. */
-function dimensionNotes(dimensions, poses, pose, axes) {
-  const crowded = dimensions.length > 5; // then the values are said beside the drawing
-  const notes = dimensions.map((d) => {
+/** Annotations with names and values of the dimensions, stacked left and right of the drawing to avoid overlaps. */
+function dimensionLabels(dimensions, poses, pose, axes) {
+  const namesOnly = dimensions.length > 5; // the values are then in the caption
+  const labels = dimensions.map((d) => {
     const [from, to] = [poses.end(pose, d.from), poses.end(pose, d.to)];
-    const middle = axes.map((c) => (from[c] + to[c]) / 2);
-    const [across, up] = onScreen(middle);
-    return { middle, across, up, text: label(crowded ? d.name : dimensionText(d)) };
+    const midpoint = axes.map((c) => (from[c] + to[c]) / 2);
+    const [across, up] = onScreen(midpoint);
+    return { midpoint, across, up, text: label(namesOnly ? d.name : dimensionText(d)) };
   });
-  const centre = notes.reduce((sum, note) => sum + note.across, 0) / notes.length;
-  const sides = [notes.filter((n) => n.across < centre), notes.filter((n) => n.across >= centre)];
+  const centre = labels.reduce((sum, each) => sum + each.across, 0) / labels.length;
+  const sides = [labels.filter((n) => n.across < centre), labels.filter((n) => n.across >= centre)];
   return sides.flatMap((side, s) =>
     side
       .sort((a, b) => b.up - a.up)
-      .map(({ middle, text }, k) => ({
-        ...Object.fromEntries(middle.map((value, i) => ["xyz"[i], value])),
+      .map(({ midpoint, text }, k) => ({
+        ...Object.fromEntries(midpoint.map((value, i) => ["xyz"[i], value])),
         text,
         ax: s ? 60 : -60,
         ay: 26 * (k - (side.length - 1) / 2),
         arrowcolor: colour("accent"),
         arrowwidth: 1,
         arrowhead: 0,
-        font: { size: crowded ? 12 : 13, color: colour("ink") },
-        bgcolor: faded(colour("panel"), 0.85),
+        font: { size: namesOnly ? 12 : 13, color: colour("ink") },
+        bgcolor: faded(colour("box"), 0.85),
       })),
   );
 }
 
-function drawingPlot(study, grid, poses) {
-  const pose = poses.start;
-  const spans = poses.spanAt(pose);
+function addDrawing(study, grid, poses) {
+  const pose = poses.initial_pose;
+  const ranges = poses.rangesAt(pose);
   const planar = isPlanar(poses);
   const dimensions = shownDimensions(study, poses);
   const drawn = new Set(dimensions.map((d) => d.name));
@@ -209,22 +210,22 @@ function drawingPlot(study, grid, poses) {
     .filter((row) => row.kind === "variable" && !drawn.has(row.name) && row.values[0] !== null)
     .map((row) => `${row.name} ${shownQuantity(row.values[0], row.unit)}`);
   return addPlot(grid, {
-    title: "The mechanism, " + poses.name,
+    title: "Mechanism, " + poses.name,
     caption:
-      "To scale, at a pose amid its workspace." +
+      "To scale, at a pose in the middle of the workspace." +
       (dimensions.length > 5 ? " " + dimensions.map(dimensionText).join(", ") + "." : "") +
       (others.length ? " Not drawn: " + others.join(", ") + "." : ""),
     size: "half",
     height: 520,
-    make: (away) =>
+    make: (distance) =>
       planar
         ? {
-            data: [...flatTraces(poses, pose, null, null, [0, 1]), dimensionTrace(dimensions, poses, pose, [0, 1])],
+            data: [...viewTraces(poses, pose, null, null, [0, 1]), dimensionTrace(dimensions, poses, pose, [0, 1])],
             layout: {
-              annotations: dimensionNotes(dimensions, poses, pose, [0, 1]),
-              xaxis: axis(axisName("x", "mm"), { range: spans[0], zeroline: false, constrain: "domain" }),
+              annotations: dimensionLabels(dimensions, poses, pose, [0, 1]),
+              xaxis: axis(axisName("x", "mm"), { range: ranges[0], zeroline: false, constrain: "domain" }),
               yaxis: axis(axisName("y", "mm"), {
-                range: spans[1],
+                range: ranges[1],
                 zeroline: false,
                 constrain: "domain",
                 scaleanchor: "x",
@@ -233,14 +234,14 @@ function drawingPlot(study, grid, poses) {
             },
           }
         : {
-            data: [...solidTraces(poses, pose, null, null), dimensionTrace(dimensions, poses, pose, [0, 1, 2])].map(
+            data: [...spaceTraces(poses, pose, null, null), dimensionTrace(dimensions, poses, pose, [0, 1, 2])].map(
               (trace) => ({
                 ...trace,
                 showlegend: false,
               }),
             ),
             layout: {
-              scene: { ...roomScene(spans, 1.25 * away), annotations: dimensionNotes(dimensions, poses, pose, [0, 1, 2]) },
+              scene: { ...spaceScene(ranges, 1.25 * distance), annotations: dimensionLabels(dimensions, poses, pose, [0, 1, 2]) },
               uirevision: "camera",
               margin: { l: 0, r: 0, t: 0, b: 0 },
             },
@@ -248,24 +249,24 @@ function drawingPlot(study, grid, poses) {
   });
 }
 
-function reachPlot(study, grid, cells) {
+function addWorkspacePlot(study, grid, cells) {
   const order = drawingOrder(cells.axes),
-    solid = order.length === 3;
-  const field = cells.fields[firstField(cells)];
+    isVolume = order.length === 3;
+  const field = cells.fields[initialField(cells)];
   const range = field && fieldRange([cells], field.name);
   return addPlot(grid, {
-    title: "Where it can go",
+    title: "Workspace",
     caption: "Feasible poses" + (field ? ", coloured by " + fieldTitle(field.name) : "") + ".",
     size: "half",
     height: 520,
-    make: (away) => {
-      if (solid && cells.surface)
+    make: (distance) => {
+      if (isVolume && cells.surface)
         return {
           data: [surfaceTrace(cells, field?.name, range, order)],
-          layout: { scene: workspaceScene([cells], order, away), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+          layout: { scene: workspaceScene([cells], order, distance), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
         };
-      const matrix = cells.cut(field?.name, { across: order[0], up: order[1] }, 0);
-      return cellsPicture([cells], cells, matrix, order[0], order[1], {
+      const matrix = cells.slice(field?.name, { across: order[0], up: order[1] }, 0);
+      return cellsPlot([cells], cells, matrix, order[0], order[1], {
         range: range ?? [0, 1],
         title: field ? fieldTitle(field.name) : "feasible",
         unit: field && field.unit !== "mixed" ? field.unit : "1",
@@ -276,15 +277,15 @@ function reachPlot(study, grid, cells) {
   });
 }
 
-/** Mechanism and workspace side by side, as far as the page has them. */
-function addOverview(study, section) {
+/** Adds the drawing and the workspace plot side by side, as far as the page has their data. */
+function addOverview(study, panel) {
   const drawn = study.mechanism?.designs[0];
   const packed = study.workspace?.designs[0];
   if (!drawn && !packed) return;
   const grid = element("div", "grid overview");
-  section.append(grid);
+  panel.append(grid);
   const plots = [];
-  if (drawn) plots.push(drawingPlot(study, grid, posesOf(drawn)));
-  if (packed) plots.push(reachPlot(study, grid, (packed.cells ??= new Cells(packed))));
-  if (plots.length === 1) plots[0].panel.classList.remove("half");
+  if (drawn) plots.push(addDrawing(study, grid, posesOf(drawn)));
+  if (packed) plots.push(addWorkspacePlot(study, grid, (packed.cells ??= new Cells(packed))));
+  if (plots.length === 1) plots[0].box.classList.remove("half");
 }

@@ -1,7 +1,8 @@
-// Playing along a motion: play and pause, speed, a slider over the time, and a film of one run.
+// Player of a motion: play and pause, speed, time slider, video recording.
 
 const speeds = [0.1, 0.25, 0.5, 1, 2];
 
+/** Adds a button. @param name  accessible name @param pressed  called on a click */
 function button(parent, text, name, pressed) {
   const node = element("button", "", text);
   node.type = "button";
@@ -12,44 +13,44 @@ function button(parent, text, name, pressed) {
 }
 
 /**
- * @param motions  of a design's Poses
- * @param show     (motion, k) shows its k-th pose
- * @param canvas   () the one to film; null: nothing can be filmed now
- * @returns { stop() }, which leaves the picture where it is
+ * @param motions  motions of Poses
+ * @param show     show(motion, k) shows the k-th pose of a motion
+ * @param canvas   canvas() gives the canvas to record, or nothing if there is none
+ * @returns { stop() }, which pauses at the current pose
  */
 function addPlayer(parent, motions, show, canvas) {
   let time = 0,
-    last = null, // of the clock; null while it stands still
-    ended = null; // called at the end of a run
-  const motion = () => motions[which.value];
+    lastTick = null, // time stamp of the last frame [ms]; null while paused
+    ended = null; // called at the end of the motion
+  const motion = () => motions[selected.value];
   const sample = () => Math.round((time / motion().duration) * (motion().count - 1));
   const timeAt = (k) => (motion().duration * k) / (motion().count - 1);
   const stop = () => {
-    last = null;
+    lastTick = null;
     play.textContent = "▶ Play";
     play.setAttribute("aria-label", "play the motion");
   };
-  const step = (clock) => {
-    if (last === null || !play.isConnected) return;
-    time += ((clock - last) / 1000) * speeds[speed.value];
-    last = clock;
+  const step = (tick) => {
+    if (lastTick === null || !play.isConnected) return;
+    time += ((tick - lastTick) / 1000) * speeds[speed.value];
+    lastTick = tick;
     if (time >= motion().duration) {
       time %= motion().duration;
       ended?.();
     }
-    if (sample() !== scrub.value) {
-      scrub.set(sample());
+    if (sample() !== timeSlider.value) {
+      timeSlider.set(sample());
       show(motion(), sample());
     }
     requestAnimationFrame(step);
   };
   const start = () => {
-    last = performance.now();
+    lastTick = performance.now();
     play.textContent = "❚❚ Pause";
     play.setAttribute("aria-label", "pause the motion");
     requestAnimationFrame(step);
   };
-  const which =
+  const selected =
     motions.length > 1
       ? choice(
           parent,
@@ -59,8 +60,8 @@ function addPlayer(parent, motions, show, canvas) {
           () => show(motion(), sample()),
         )
       : { value: 0 };
-  const play = button(parent, "▶ Play", "play the motion", () => (last === null ? start() : stop()));
-  const scrub = slider(
+  const play = button(parent, "▶ Play", "play the motion", () => (lastTick === null ? start() : stop()));
+  const timeSlider = slider(
     parent,
     motions.length > 1 ? "time" : motions[0].name,
     motions[0].count,
@@ -80,15 +81,15 @@ function addPlayer(parent, motions, show, canvas) {
     () => {},
   );
   if (globalThis.MediaRecorder && HTMLCanvasElement.prototype.captureStream)
-    button(parent, "● Record", "record one run of the motion as WebM", ({ target }) => {
-      const filmed = canvas();
-      if (!filmed || target.disabled) return;
-      const recorder = new MediaRecorder(filmed.captureStream(30), { mimeType: "video/webm" }),
-        parts = [];
-      recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
+    button(parent, "● Record", "record the motion as a WebM video", ({ target }) => {
+      const recorded = canvas();
+      if (!recorded || target.disabled) return;
+      const recorder = new MediaRecorder(recorded.captureStream(30), { mimeType: "video/webm" }),
+        chunks = [];
+      recorder.addEventListener("dataavailable", ({ data }) => chunks.push(data));
       recorder.addEventListener("stop", () => {
         const link = element("a");
-        link.href = URL.createObjectURL(new Blob(parts, { type: "video/webm" }));
+        link.href = URL.createObjectURL(new Blob(chunks, { type: "video/webm" }));
         link.download = motion().name.replace(/[^\w-]+/g, "-") + ".webm";
         link.click();
         setTimeout(() => URL.revokeObjectURL(link.href), 60000);

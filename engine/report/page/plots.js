@@ -1,52 +1,53 @@
-// Plots: drawn when they come into view, in the colours of the theme, and drawn again when it changes.
+// Plotly plots: drawn when they come into view, in the colours of the theme, and redrawn when the theme changes.
 
-// Okabe and Ito, told apart by everybody; of eight limbs the last two are beyond them.
+// The colour-blind safe palette of Okabe and Ito (2008), with two more colours for the seventh and eighth limb.
 const limbColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c6d31", "#7f7f7f"];
 const seriesColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
 const fieldColours = "Cividis"; // perceptually uniform
 const timeColours = "Viridis";
 
 const plots = [];
-let plotlyIsThere = false;
+let plotlyLoaded = false;
 
-/** Plotly takes a second to compile: by then the page can be read. */
+/** Compiles Plotly, which takes about a second, after the text of the page has been rendered. */
 function loadPlotly() {
   return new Promise((resolve) =>
     requestAnimationFrame(() =>
       setTimeout(() => {
         document.head.append(element("script", "", document.getElementById("plotly").textContent));
-        plotlyIsThere = true;
-        for (const plot of plots) toBeSeen.observe(plot.node);
+        plotlyLoaded = true;
+        for (const plot of plots) visibility.observe(plot.node);
         resolve();
       }),
     ),
   );
 }
 
-/** Those that came into view are drawn one by one, and the reader may scroll in between. */
-const inTurn = [];
+/** Plots in view that are not drawn yet. They are drawn one at a time, so that the page remains responsive. */
+const queue = [];
 function drawNext() {
-  inTurn.shift()?.draw();
-  if (inTurn.length) setTimeout(drawNext, 50);
+  queue.shift()?.draw();
+  if (queue.length) setTimeout(drawNext, 50);
 }
 
-const toBeSeen = new IntersectionObserver(
+const visibility = new IntersectionObserver(
   (entries) => {
     const seen = entries.filter((entry) => entry.isIntersecting);
-    const idle = !inTurn.length;
-    inTurn.push(...plots.filter((plot) => !plot.drawn && seen.some((entry) => entry.target === plot.node)));
-    if (idle && inTurn.length) setTimeout(drawNext, 50);
+    const idle = !queue.length;
+    queue.push(...plots.filter((plot) => !plot.drawn && seen.some((entry) => entry.target === plot.node)));
+    if (idle && queue.length) setTimeout(drawNext, 50);
   },
   { rootMargin: "400px" },
 );
 
+/** A colour of the theme, see page.css. */
 function colour(name) {
   return getComputedStyle(document.documentElement)
     .getPropertyValue("--" + name)
     .trim();
 }
 
-/** A colour of "#rrggbb" made transparent. */
+/** A colour "#rrggbb" with transparency. */
 function faded(hex, alpha) {
   const part = (i) => parseInt(hex.slice(i, i + 2), 16);
   return `rgba(${part(1)},${part(3)},${part(5)},${alpha})`;
@@ -77,19 +78,20 @@ function layoutOf(more) {
     font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
     margin: { l: 12, r: 12, t: 12, b: 12 },
     hovermode: "closest",
-    hoverlabel: { bgcolor: colour("panel"), bordercolor: colour("line"), font: { color: colour("ink"), size: 13 } },
+    hoverlabel: { bgcolor: colour("box"), bordercolor: colour("line"), font: { color: colour("ink"), size: 13 } },
     legend: { orientation: "h", x: 0, y: 1.02, xanchor: "left", yanchor: "bottom" },
     colorway: seriesColours,
-    modebar: { bgcolor: colour("panel"), color: colour("muted"), activecolor: colour("accent") },
+    modebar: { bgcolor: colour("box"), color: colour("muted"), activecolor: colour("accent") },
     ...more,
   };
 }
 
 /**
- * Adds a panel with a plot to `parent`.
- * @param options  title, caption, size (a class: "half"), height [px], make: (away) => ({ data, layout }), where `away`
- *                 is how much farther a camera has to stand for all to be seen in a panel that is higher than wide
- * @returns { panel, node, update(), .. }; update() draws anew what has been drawn
+ * Adds a box with a plot to `parent`.
+ * @param options  title; caption; size (CSS class "half" or none); height [px]; make(distance) gives { data, layout },
+ *                 where `distance` >= 1 is the factor by which a 3-D camera must move back if the box is taller than
+ *                 wide
+ * @returns { box, node, update(), .. }; update() redraws a plot that has been drawn
  */
 function addPlot(parent, { title, caption, size = "", height = 380, make }) {
   const node = element("div", "plot");
@@ -102,27 +104,27 @@ function addPlot(parent, { title, caption, size = "", height = 380, make }) {
       .join(". ") || "plot",
   );
   node.style.height = height + "px";
-  const panel = element(
+  const box = element(
     "div",
-    "panel " + size,
+    "box " + size,
     title ? element("h3", "", title) : null,
     caption ? element("p", "caption", ...[caption].flat()) : null,
     node,
   );
-  parent.append(panel);
+  parent.append(box);
   const plot = {
-    panel,
+    box,
     node,
     drawn: false,
     draw() {
       if (!plot.drawn) plot.update(true);
     },
-    /** Anew once it is in view. */
-    drawAgain() {
+    /** Redraws the plot when it is in view. */
+    redrawWhenVisible() {
       if (!plot.drawn) return;
       plot.drawn = false;
-      toBeSeen.unobserve(node);
-      toBeSeen.observe(node);
+      visibility.unobserve(node);
+      visibility.observe(node);
     },
     update(first = false) {
       if (!first && !plot.drawn) return;
@@ -136,25 +138,27 @@ function addPlot(parent, { title, caption, size = "", height = 380, make }) {
     },
   };
   plots.push(plot);
-  if (plotlyIsThere) toBeSeen.observe(node);
+  if (plotlyLoaded) visibility.observe(node);
   return plot;
 }
 
-function forgetPlots() {
-  inTurn.length = 0;
+/** Removes all plots. */
+function removePlots() {
+  queue.length = 0;
   for (const plot of plots.splice(0)) {
-    toBeSeen.unobserve(plot.node);
+    visibility.unobserve(plot.node);
     if (plot.drawn) Plotly.purge(plot.node);
   }
 }
 
-/** Draws the plots of a section, or all, whether they are in view or not. */
-function drawPlots(section) {
-  const meant = plots.filter((plot) => !section || plot.node.closest("section").id === section);
-  for (const plot of meant) plot.draw();
-  return Promise.all(meant.map((plot) => plot.done));
+/** Draws the plots of the panel with this id, or all plots if it is undefined, whether or not they are in view. */
+function drawPlots(panelId) {
+  const selected = plots.filter((plot) => !panelId || plot.node.closest("section").id === panelId);
+  for (const plot of selected) plot.draw();
+  return Promise.all(selected.map((plot) => plot.done));
 }
 
+/** Makes a button switch between the light and the dark theme; the default is that of the system. */
 function themeButton(button) {
   const system = matchMedia("(prefers-color-scheme: dark)");
   let chosen = null;
@@ -163,7 +167,7 @@ function themeButton(button) {
     document.documentElement.dataset.theme = dark ? "dark" : "light";
     button.textContent = dark ? "☀ Light" : "☾ Dark";
     button.setAttribute("aria-label", dark ? "light theme" : "dark theme");
-    for (const plot of plots) plot.drawAgain();
+    for (const plot of plots) plot.redrawWhenVisible();
   };
   button.addEventListener("click", () => {
     chosen = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
@@ -171,9 +175,9 @@ function themeButton(button) {
   });
   system.addEventListener("change", show);
   addEventListener("beforeprint", () => {
-    // paper is white
+    // printed pages have the light theme
     document.documentElement.dataset.theme = "light";
-    for (const plot of plots) if (plotlyIsThere) plot.update(true);
+    for (const plot of plots) if (plotlyLoaded) plot.update(true);
   });
   addEventListener("afterprint", show);
   show();

@@ -1,6 +1,7 @@
-// A point of the trade-off in the place of the best design, as far as the page has its workspace, links and motions.
+// Shows a point of the Pareto front instead of the best design, with workspace, links and motions if the page includes
+// them.
 
-/** The p-th point of the f-th front; null where it is the design that the page shows anyway. */
+/** The p-th point of the f-th front; null if it is the best design, which the page shows by default. */
 function chosenPoint(study, f, p) {
   const front = study.front.fronts[f],
     point = front.points[p];
@@ -11,7 +12,7 @@ function chosenPoint(study, f, p) {
 
 const isAt = (study, f, p) => study.point?.f === f && study.point?.p === p;
 
-/** The study with a point of its trade-off where its best design was: first of every list of designs. */
+/** A copy of the study with a point of its front instead of the best design, first in every list of designs. */
 function withPoint(study, point) {
   const { table } = study.summary;
   const { variables, objectives } = study.problem;
@@ -36,18 +37,18 @@ function withPoint(study, point) {
   const shown = {
     ...study,
     point,
-    whole: study,
-    // What is active and what it costs is known of the best design only.
+    original: study,
+    // Active constraints and multipliers are known only for the best design.
     summary: { ...study.summary, table: { columns, rows }, active: undefined, optimality: null },
   };
-  const has = (part) => study.front.designs?.[part]?.designs.find((design) => design.name === point.name);
-  point.missing = study.workspace && !has("workspace");
+  const find = (panelId) => study.front.designs?.[panelId]?.designs.find((design) => design.name === point.name);
+  point.missing = study.workspace && !find("workspace");
   if (point.missing) return shown;
-  for (const part of ["workspace", "mechanism"])
-    if (study[part] && has(part))
-      shown[part] = {
-        ...study[part],
-        designs: [has(part), ...study[part].designs.filter((design) => design.name === "baseline")],
+  for (const panelId of ["workspace", "mechanism"])
+    if (study[panelId] && find(panelId))
+      shown[panelId] = {
+        ...study[panelId],
+        designs: [find(panelId), ...study[panelId].designs.filter((design) => design.name === "baseline")],
       };
   if (study.motions && study.front.designs.motions)
     shown.motions = {
@@ -60,39 +61,39 @@ function withPoint(study, point) {
         ],
       })),
     };
-  shown.coupling = undefined; // of the best design and the baseline only
+  shown.coupling = undefined; // known only for the best design and the baseline
   return shown;
 }
 
-/** The commands that show a point whose workspace the page does not have. */
+/** The command that writes a page for a point whose workspace this page does not include. */
 function pointCommand({ file }, { stage, p, name }) {
-  const point = `--from ${word(file)} --front ${p + 1} --stage ${stage}`;
+  const point = `--from ${shellWord(file)} --front ${p + 1} --stage ${stage}`;
   return `pkmopt workspace ${point} --html ${name.replaceAll(" ", "-")}.html`;
 }
 
-/** What the bar on top says of the design that is shown. */
-function tellChosen(study) {
-  const back = element("button", "", "× back to the " + (study.whole?.summary.table.columns[0].name ?? ""));
+/** Shows the chosen point in the top bar, with a button to return to the best design. */
+function showChosenPoint(study) {
+  const back = element("button", "", "× back to the " + (study.original?.summary.table.columns[0].name ?? ""));
   back.type = "button";
   back.addEventListener("click", () => study.choose(null));
   document.getElementById("chosen").replaceChildren(...(study.point ? [study.point.name + " ", back] : []));
 }
 
-/** The designs that the page has in full, for a keyboard. */
-function pointChoice(controls, study, load) {
+/** Adds a list of the points whose workspace the page includes; it can be used with the keyboard. */
+function addPointList(controls, study, load) {
   const { fronts, designs } = study.front;
-  const whole = study.whole ?? study;
-  const named = (designs?.workspace?.designs ?? []).flatMap(({ name }) => {
+  const original = study.original ?? study;
+  const included = (designs?.workspace?.designs ?? []).flatMap(({ name }) => {
     const [, p, stage] = /^point (\d+) of stage (\d+)$/.exec(name);
     return [{ name, f: fronts.findIndex((front) => front.stage === Number(stage)), p: Number(p) - 1 }];
   });
-  if (!named.length) return;
-  const shown = named.findIndex(({ f, p }) => isAt(study, f, p));
+  if (!included.length) return;
+  const shown = included.findIndex(({ f, p }) => isAt(study, f, p));
   choice(
     controls,
-    "shown in the page",
-    [whole.summary.table.columns[0].name, ...named.map(({ name }) => name)],
+    "shown design",
+    [original.summary.table.columns[0].name, ...included.map(({ name }) => name)],
     study.point && shown < 0 ? -1 : shown + 1,
-    (i) => (i ? load(named[i - 1].f, named[i - 1].p) : study.choose(null)),
+    (i) => (i ? load(included[i - 1].f, included[i - 1].p) : study.choose(null)),
   );
 }

@@ -1,31 +1,31 @@
-// The designs themselves: every column against every other, generation by generation.
+// Panel "Populations": the designs of each generation or solver run in a scatter plot and in parallel coordinates.
 
-/** Columns of the populations: what they are called, and their numbers. */
+/** Columns of the table of designs in displayed units: variables, objectives, margins, outputs. */
 function populationColumns(study) {
-  const { variables, objectives, margins, reports } = study.problem;
+  const { variables, objectives, margins, outputs } = study.problem;
   const named = [
     ...variables.map((v) => ({ ...v, kind: "variable" })),
     ...objectives.map((o) => ({ ...o, kind: "objective" })),
     ...margins.map((m) => ({ ...m, name: m.name + " margin", kind: "margin" })),
-    ...reports.map((r) => ({ ...r, kind: "report" })),
+    ...outputs.map((o) => ({ ...o, kind: "output" })),
   ];
   return named.map((column, i) => {
-    const isResult = column.kind === "objective" || column.kind === "report";
+    const isResult = column.kind === "objective" || column.kind === "output";
     const { unit, scale } = isResult
       ? resultUnit(column.unit)
       : { unit: shownUnit(column.unit), scale: shownScale(column.unit) };
-    const inUnit = (bound) => (Number.isFinite(bound) ? bound * scale : bound);
+    const toDisplayed = (bound) => (Number.isFinite(bound) ? bound * scale : bound);
     return {
       ...column,
       unit,
-      lower: inUnit(column.lower),
-      upper: inUnit(column.upper),
+      lower: toDisplayed(column.lower),
+      upper: toDisplayed(column.upper),
       values: Array.from(unpack(study.populations.columns[i]), (value) => value * scale),
     };
   });
 }
 
-/** All generations shown, stage after stage. */
+/** The stored steps of all stages; a step is a generation or a multistart run of a solver. */
 function populationSteps(study) {
   return study.populations.stages.flatMap((stage) =>
     stage.steps.map((step) => ({
@@ -35,27 +35,29 @@ function populationSteps(study) {
       members: unpack(step.members),
       text:
         (study.populations.stages.length > 1 ? `stage ${stage.stage}, ` : "") +
-        (stage.starts ? `start ${step.number + 1}` : `generation ${step.number}`),
+        (stage.starts ? `run ${step.number + 1}` : `generation ${step.number}`),
     })),
   );
 }
 
+/** Sentence on what the page omits. */
 function thinningText(study) {
   const parts = study.populations.stages.flatMap((stage) => [
-    ...(stage.every > 1
+    ...(stage.stride > 1
       ? [
-          `every ${ordinal(stage.every)} ${stage.starts ? "start" : "generation"} of ${stage.all} of stage ${stage.stage} is shown`,
+          `only every ${ordinal(stage.stride)} of the ${stage.total} ${stage.starts ? "runs" : "generations"} of stage ${stage.stage} is shown`,
         ]
       : []),
     ...(stage.members_thinned
       ? [
-          `at most ${Math.max(...stage.steps.map((g) => unpack(g.members).length))} designs of each ${stage.starts ? "start" : "generation"} of stage ${stage.stage}, evenly chosen`,
+          `at most ${Math.max(...stage.steps.map((g) => unpack(g.members).length))} designs of each ${stage.starts ? "run" : "generation"} of stage ${stage.stage} are shown, at equal intervals`,
         ]
       : []),
   ]);
-  return parts.length ? " To keep the page small, " + parts.join("; ") + "; first and last are always there." : "";
+  return parts.length ? " To keep the page small, " + parts.join("; ") + "; first and last are included." : "";
 }
 
+/** Minimum and maximum of the finite values; [0, 1] if there are none. */
 function rangeOf(values) {
   let low = Infinity,
     high = -Infinity;
@@ -67,78 +69,79 @@ function rangeOf(values) {
   return low <= high ? [low, high] : [0, 1];
 }
 
+/** A range with a margin on both sides. */
 function widened([low, high]) {
-  const room = 0.04 * (high - low) || 0.05 * Math.abs(high) || 1;
-  return [low - room, high + room];
+  const margin = 0.04 * (high - low) || 0.05 * Math.abs(high) || 1;
+  return [low - margin, high + margin];
 }
 
-function showPopulations(study, section) {
+function showPopulations(study, panel) {
   const columns = populationColumns(study),
     steps = populationSteps(study);
   const status = unpack(study.populations.status),
     evaluation = unpack(study.populations.evaluation);
-  const drawable = columns.filter((column) => column.values.some(Number.isFinite));
-  const names = drawable.map((column) => column.name);
+  const finite = columns.filter((column) => column.values.some(Number.isFinite));
+  const names = finite.map((column) => column.name);
   const find = (kind, k, otherwise) => {
-    const found = drawable.indexOf(drawable.filter((column) => column.kind === kind)[k]);
+    const found = finite.indexOf(finite.filter((column) => column.kind === kind)[k]);
     return found < 0 ? otherwise : found;
   };
-  section.append(
+  panel.append(
     element(
       "p",
       "lead",
-      "The designs of a generation, or those that a solver saw on its way from a start: move the slider to see the search close in." +
+      "The designs of one generation, or all designs that one run of a solver evaluated. Move the slider to follow the convergence of the search." +
         thinningText(study),
     ),
   );
   const controls = element("div", "controls");
   const grid = element("div", "grid");
-  section.append(controls, grid);
+  panel.append(controls, grid);
   let plots;
   const redraw = () => plots.forEach((plot) => plot.update());
-  const evolved = steps.findLastIndex((step) => !step.stage.starts);
-  const at = slider(
+  const lastGeneration = steps.findLastIndex((step) => !step.stage.starts);
+  const stepSlider = slider(
     controls,
-    "generation",
+    "generation or run",
     steps.length,
-    evolved < 0 ? steps.length - 1 : evolved,
+    lastGeneration < 0 ? steps.length - 1 : lastGeneration,
     (i) => `${steps[i].text} (${count(steps[i].size, "design")})`,
     redraw,
   );
-  at.node.style.maxWidth = "900px";
-  const x = choice(controls, "across", names, 0, redraw);
-  const y = choice(controls, "up", names, Math.min(1, names.length - 1), redraw);
+  stepSlider.node.style.maxWidth = "900px";
+  const x = choice(controls, "horizontal", names, 0, redraw);
+  const y = choice(controls, "vertical", names, Math.min(1, names.length - 1), redraw);
   const z = choice(controls, "colour", names, find("objective", 0, 0), redraw);
-  // Colours span what the last generations have: what the first ones have is far away, and would leave one colour.
+  // The colour range is that of the second half of the steps: early designs are outliers that would compress it.
   const late = new Set(steps.slice(Math.floor(steps.length / 2)).flatMap((step) => [...step.members]));
   const colourRange = (column) =>
     rangeOf([...late].filter((row) => status[row] === 0).map((row) => column.values[row]));
-  const shown = () => [...steps[at.value].members];
-  const others = Array.from(
+  const shownRows = () => [...steps[stepSlider.value].members];
+  const background = Array.from(
     { length: Math.min(1500, evaluation.length) },
     (_, i, n = Math.min(1500, evaluation.length)) => Math.floor((i * evaluation.length) / n),
   );
 
   const scatter = addPlot(grid, {
     size: "half",
-    title: "Two against each other",
+    title: "Scatter plot",
     height: 460,
     caption:
-      "Filled: feasible. Open: infeasible, rejected before the survey, or failed. Grey: designs of all other generations.",
+      "Filled: feasible. Open: infeasible, rejected before the workspace analysis, or failed. Grey: designs of all generations and runs.",
     make() {
-      const rows = shown(),
-        [cx, cy, cz] = [x, y, z].map((control) => drawable[control.value]);
+      const rows = shownRows(),
+        [cx, cy, cz] = [x, y, z].map((control) => finite[control.value]);
       const [cmin, cmax] = colourRange(cz);
       const text = (row) =>
         `evaluation ${evaluation[row]}<br>` +
-        drawable.map((c) => `${label(c.name)} = ${label(quantity(c.values[row], c.unit))}`).join("<br>");
+        finite.map((c) => `${label(c.name)} = ${label(quantity(c.values[row], c.unit))}`).join("<br>");
       return {
         data: [
           {
             type: "scatter",
             mode: "markers",
-            x: others.map((r) => cx.values[r]),
-            y: others.map((r) => cy.values[r]),
+            x: background.map((r) => cx.values[r]),
+            y: background.map((r) => cy.values[r]),
             hoverinfo: "skip",
             showlegend: false,
             marker: { size: 3, color: colour("muted"), opacity: 0.35 },
@@ -172,14 +175,14 @@ function showPopulations(study, section) {
   });
   const parallel = addPlot(grid, {
     size: "half",
-    title: "All at once",
+    title: "Parallel coordinates",
     height: 460,
-    caption: "One line per design; drag along an axis to keep a part of it.",
+    caption: "One line per design. Drag along an axis to highlight the designs in a range.",
     make() {
-      const rows = shown(),
-        cz = drawable[z.value],
+      const rows = shownRows(),
+        cz = finite[z.value],
         [cmin, cmax] = colourRange(cz);
-      const axes = drawable.filter((c) => c.kind !== "margin" || drawable.length <= 9);
+      const axes = finite.filter((c) => c.kind !== "margin" || finite.length <= 9);
       return {
         data: [
           {

@@ -1,67 +1,74 @@
-// The links of one design at the poses that the file was asked for (engine/report/mechanism_section.cpp). Places are in
-// mm, values of coordinates in SI.
+// Stored poses of one design: every combination of slider positions, then the samples of the motions
+// (engine/report/mechanism_panel.cpp). Positions of link ends are in mm, values of coordinates in SI units.
 
-/** One design at all stored poses. */
+/**
+ * One design at all stored poses. Link ends, joint positions and conditioning are stored only for poses that assemble,
+ * at assembledIndex[pose], which is -1 for the others.
+ */
 class Poses {
   constructor(packed) {
     Object.assign(this, packed);
-    this.drawn = unpack(packed.drawn);
-    this.reason = unpack(packed.reason);
-    this.at = packed.at.map(unpack);
+    this.assembles = unpack(packed.assembles);
+    this.reason_index = unpack(packed.reason_index);
+    this.end_positions = packed.end_positions.map(unpack);
     const scale = shownScale("m");
-    for (const column of this.at) for (let i = 0; i < column.length; ++i) column[i] *= scale;
+    for (const column of this.end_positions) for (let i = 0; i < column.length; ++i) column[i] *= scale;
     this.links = packed.links.map((link) => ({ ...link, radius: link.radius * shownScale("m") }));
     this.motions = packed.motions.map((motion) => ({ ...motion, coordinates: motion.coordinates.map(unpack) }));
-    this.positions = packed.positions.map(unpack);
+    this.joint_positions = packed.joint_positions.map(unpack);
     this.conditioning = unpack(packed.conditioning);
     this.parts = [...new Set(packed.links.map((link) => link.part))];
     this.counts = packed.coordinates.map((c) => c.values.length);
-    this.number = new Int32Array(this.reason.length).fill(-1); // among the drawn ones
+    this.assembledIndex = new Int32Array(this.reason_index.length).fill(-1);
     let count = 0;
-    for (let pose = 0; pose < this.number.length; ++pose) if (this.drawn[pose]) this.number[pose] = count++;
+    for (let pose = 0; pose < this.assembledIndex.length; ++pose)
+      if (this.assembles[pose]) this.assembledIndex[pose] = count++;
   }
-  /** Places of the sliders at a pose, and back. */
-  places(pose) {
-    const places = [];
+  /** Slider positions of a pose. */
+  sliderPositions(pose) {
+    const positions = [];
     for (let c = this.counts.length - 1; c >= 0; pose = Math.floor(pose / this.counts[c--]))
-      places.unshift(pose % this.counts[c]);
-    return places;
+      positions.unshift(pose % this.counts[c]);
+    return positions;
   }
-  pose(places) {
-    return places.reduce((pose, place, c) => pose * this.counts[c] + place, 0);
+  /** Number of the pose at given slider positions. */
+  pose(positions) {
+    return positions.reduce((pose, position, c) => pose * this.counts[c] + position, 0);
   }
-  values(places) {
-    return places.map((place, c) => this.coordinates[c].values[place]);
+  /** Values of the coordinates at given slider positions. */
+  values(positions) {
+    return positions.map((position, c) => this.coordinates[c].values[position]);
   }
-  /** Of the platform in the room, [x, y, z], for values of the coordinates; 0 where it has no such coordinate. */
-  place(values) {
+  /** Position [x, y, z] of the platform for given values of the coordinates; 0 for missing coordinates. */
+  position(values) {
     return ["x", "y", "z"].map(
       (role) => shownScale("m") * (values[this.coordinates.findIndex((c) => c.role === role)] ?? 0),
     );
   }
-  /** Where an end of links is at a pose, [x, y, z]. */
+  /** Position [x, y, z] of a link end at a pose. */
   end(pose, end) {
-    return this.at.map((column) => column[Math.max(this.number[pose], 0) * this.ends + end]);
+    return this.end_positions.map((column) => column[Math.max(this.assembledIndex[pose], 0) * this.end_count + end]);
   }
-  /** The links that can be drawn at a pose: all, or those of the frame where it does not assemble. */
+  /** The links at a pose; only those of the frame if the pose does not assemble. */
   linksAt(pose) {
-    const assembles = this.number[pose] >= 0;
+    const assembles = this.assembledIndex[pose] >= 0;
     return this.links
       .filter((link) => assembles || link.part === "frame")
       .map((link) => ({ ...link, from: this.end(pose, link.from), to: this.end(pose, link.to) }));
   }
-  /** What all poses together span, per axis. */
-  span() {
-    return this.at.map((column) => this.around(column));
+  /** Range [low, high] of the links over all poses, per axis. */
+  ranges() {
+    return this.end_positions.map((column) => this.rangeWithRadius(column));
   }
-  /** What one pose spans. */
-  spanAt(pose) {
-    const first = Math.max(this.number[pose], 0) * this.ends;
-    return this.at.map((column) => this.around(column.subarray(first, first + this.ends)));
+  /** Range [low, high] of the links at one pose, per axis. */
+  rangesAt(pose) {
+    const first = Math.max(this.assembledIndex[pose], 0) * this.end_count;
+    return this.end_positions.map((column) => this.rangeWithRadius(column.subarray(first, first + this.end_count)));
   }
-  around(places) {
+  /** Range of link ends, extended by 1.5 times the largest link radius. */
+  rangeWithRadius(values) {
     const radius = Math.max(...this.links.map((link) => link.radius));
-    const [low, high] = rangeOf(places);
+    const [low, high] = rangeOf(values);
     return [low - 1.5 * radius, high + 1.5 * radius];
   }
 }

@@ -1,4 +1,4 @@
-// What was found: the best design beside the others, what holds it back, where the time went, how to repeat it.
+// Panel "Summary": state of the study, table of designs, active constraints, computing time, reproduction.
 
 function gainText(gain) {
   if (!gain) return "";
@@ -41,21 +41,21 @@ function headline(study) {
   );
 }
 
-/** Nothing where no objective has a value yet. */
+/** Cards with the objective values and the number of evaluations; "" if there are none. */
 function cards(study) {
   const { table, stages } = study.summary;
   const list = element("div", "cards");
   for (const row of table ? table.rows : []) {
     if (row.kind !== "objective") continue;
     const baseline = table.columns.findIndex((column) => column.name === "baseline");
-    const against =
+    const versus =
       baseline >= 0 && row.values[baseline] !== null
-        ? [" beside the baseline's ", result(row.values[baseline], row.unit)]
+        ? ["; baseline: ", result(row.values[baseline], row.unit)]
         : [];
     if (row.values[0] === null) continue;
     const { unit, scale } = resultUnit(row.unit);
     const value = rounded(digits(row.values[0] * scale), row.values[0], row.unit);
-    list.append(card(rowLabel(row, table.rows), value, unit, ...(row.gain ? [gainText(row.gain), ...against] : [row.meaning])));
+    list.append(card(rowLabel(row, table.rows), value, unit, ...(row.gain ? [gainText(row.gain), ...versus] : [row.meaning])));
   }
   if (stages.length)
     list.append(
@@ -69,19 +69,19 @@ function cards(study) {
   return list.children.length ? list : "";
 }
 
-/** A result of voxels is named apart where the same on exact columns stands beside it. */
+/** Name of a table row. A value by voxels is marked "by cells" if the table also has the exact value. */
 const rowLabel = (row, rows) =>
   rows.some((other) => other.kind === row.kind && other.name === row.name + ", exact") ? row.name + ", by cells" : row.name;
 
-const isResult = (row) => row.kind === "objective" || row.kind === "report" || row.kind === "certain";
+const isResult = (row) => row.kind === "objective" || row.kind === "output" || row.kind === "certified";
 const unitOf = (row) => (isResult(row) ? resultUnit(row.unit).unit : shownUnit(row.unit));
 
-/** A margin that has nothing left to give: below the study's own threshold, and not broken beyond rounding. */
+/** A constraint is active if its margin is below the threshold of the study, and not negative beyond rounding. */
 const isActive = (margin) => margin <= 1e-4 && margin > -1e-6;
 
 function tableCell(row, value) {
   if (value === null) return element("td");
-  const scale = isResult(row) ? resultUnit(row.unit).scale : shownScale(row.unit); // the unit has a column
+  const scale = isResult(row) ? resultUnit(row.unit).scale : shownScale(row.unit); // the unit is in a column of its own
   const margin = row.kind === "constraint";
   const node = element(
     "td",
@@ -93,7 +93,7 @@ function tableCell(row, value) {
   return node;
 }
 
-/** Where a variable is at a bound, or, as a baseline may be, beyond it. */
+/** Whether a variable is at a bound, or beyond it (a baseline may be). */
 function boundAt(value, { lower, upper }) {
   const near = 1e-6 * (upper - lower);
   if (value < lower - near) return "below min";
@@ -101,7 +101,7 @@ function boundAt(value, { lower, upper }) {
   return value <= lower + near ? "min" : value >= upper - near ? "max" : "";
 }
 
-/** @param variables  of the problem: a value at a bound is marked */
+/** The table of designs. @param variables  variables of the problem, to mark values at their bounds */
 function designTable({ columns, rows }, variables) {
   const table = element("table");
   const gains = rows.some((row) => row.gain);
@@ -112,9 +112,9 @@ function designTable({ columns, rows }, variables) {
   const titles = {
     variable: "variables",
     objective: "objectives",
-    report: "reports",
-    constraint: "margins of constraints (≥ 0 holds; active: at its bound)",
-    certain: "the workspace’s volume and certain bounds of it",
+    output: "outputs",
+    constraint: "margins of constraints (≥ 0: satisfied; active: at its bound)",
+    certified: "workspace volume with certified bounds",
   };
   let kind = "";
   const body = element("tbody");
@@ -138,14 +138,15 @@ function designTable({ columns, rows }, variables) {
   return element("div", "scroll", table);
 }
 
+/** List of warnings and notes on the study. */
 function remarks(study) {
   const { summary } = study;
   const list = [];
-  if (summary.verdict)
+  if (summary.diagnosis)
     list.push([
       "warning",
-      summary.verdict.finding + ": " + summary.verdict.sentence + ".",
-      ...summary.verdict.reasons.map((reason) => reason.sentence),
+      summary.diagnosis.finding + ": " + summary.diagnosis.sentence + ".",
+      ...summary.diagnosis.reasons.map((reason) => reason.sentence),
     ]);
   const columns = summary.table ? summary.table.columns : [];
   for (const column of columns)
@@ -158,19 +159,18 @@ function remarks(study) {
     list.push([
       "warning",
       "The study is " +
-        (summary.state === "running" ? "still running, or was killed" : "interrupted") +
-        ": this is what its file held when the report was made.",
+        (summary.state === "running" ? "still running, or its process was killed" : "interrupted") +
+        ". The report shows the content of the study file when the report was written.",
     ]);
-  if (summary.evaluations === 0) list.push(["warning", "Nothing has been evaluated yet."]);
+  if (summary.evaluations === 0) list.push(["warning", "No design has been evaluated yet."]);
   if (summary.touches_box)
-    list.push(["warning", "Feasible cells of the best design touch the box; a larger box may hold more workspace."]);
+    list.push(["warning", "Feasible cells of the best design touch the box; enlarge the box."]);
   if (!summary.reproducible)
-    list.push(["warning", "The clock ended a start, so another run with this seed may end elsewhere."]);
+    list.push(["warning", "A solver run reached its time limit, so the study may not be reproducible."]);
   if (summary.unreadable)
     list.push([
       "warning",
-      "This program cannot read the study's text, so what would have to be evaluated again is left out: " +
-        summary.unreadable,
+      "This program cannot read the study's text, so what needs new evaluations is omitted: " + summary.unreadable,
     ]);
   if (summary.failures) list.push(["", summary.failures + "."]);
   for (const note of summary.notes) list.push(["", note]);
@@ -184,15 +184,16 @@ function remarks(study) {
   );
 }
 
+/** A derivative of the objective by a quantity with the given unit. */
 function rateText(value, objective, unit) {
   if (value === null) return "";
-  const { unit: of, scale } = resultUnit(objective.unit),
+  const { unit: objectiveUnit, scale } = resultUnit(objective.unit),
     name = shownUnit(unit);
-  const text = quantity((value / shownScale(unit)) * scale, of) + (name && name !== "1" ? " per " + name : "");
+  const text = quantity((value / shownScale(unit)) * scale, objectiveUnit) + (name && name !== "1" ? " per " + name : "");
   return rounded(text, value, `${objective.unit} per ${unit}`);
 }
 
-/** A table of text; columns that hold numbers are set to the right. */
+/** A table of cells, which are text or elements; columns of numbers are right-aligned. */
 function simpleTable(head, rows) {
   const isText = head.map((_, i) => rows.some((row) => row[i] && !/^[−+\d∞–]/.test(row[i].textContent ?? row[i])));
   const table = element(
@@ -210,153 +211,157 @@ function simpleTable(head, rows) {
   return element("div", "scroll", table);
 }
 
-function holdingBack(study) {
+/** Box with the KKT residual, multipliers and sensitivities of the best design; null if they are unknown. */
+function optimalityBox(study) {
   const { optimality } = study.summary;
-  if (!optimality) return null; // what is active is said above, and in the table
-  const panel = element("div", "panel half stretch", element("h3", "", "What holds the best design back"));
+  if (!optimality) return null; // the conclusions and the table show what is active
+  const box = element("div", "box half stretch", element("h3", "", "Active constraints and sensitivities"));
   const objective = study.problem.objectives[0];
-  panel.append(
+  box.append(
     element(
       "p",
       "caption",
-      "First-order optimality " +
+      "First-order optimality (KKT residual): " +
         digits(optimality.optimality, 2) +
-        ": the gradient that is left once the active ones are allowed for.",
+        ", the relative improvement still possible per full range of a variable, to first order.",
     ),
   );
   if (optimality.active.length)
-    panel.append(
+    box.append(
       simpleTable(
-        ["active", "", "gain if moved"],
+        ["active constraint", "kind", "gain if relaxed"],
         byMultiplier(optimality).map((a) => [a.name, a.kind, rateText(a.multiplier, objective, a.unit)]),
       ),
     );
-  // Of a unit the greatest first; what an optimum leaves of the others is 0.
+  // One table per unit, largest sensitivity first. Sensitivities that vanish at an optimum, up to rounding, are 0.
   const rates = optimality.sensitivities.filter((s) => s.as_built !== 0 || s.reoptimised);
   for (const unit of new Set(rates.map((s) => s.unit))) {
-    const alike = rates.filter((s) => s.unit === unit);
-    const size = Math.max(...alike.map((s) => Math.abs(s.as_built)));
+    const group = rates.filter((s) => s.unit === unit);
+    const size = Math.max(...group.map((s) => Math.abs(s.as_built)));
     const rate = (value) => rateText(Math.abs(value) < 1e-6 * size ? 0 : value, objective, unit);
-    panel.append(
+    box.append(
       simpleTable(
-        ["sensitivity", "as built", "reoptimised"],
-        alike
+        ["parameter", "as built", "reoptimised"],
+        group
           .sort((a, b) => Math.abs(b.as_built) - Math.abs(a.as_built))
           .map((s) => [s.name, rate(s.as_built), s.reoptimised === null ? "varies" : rate(s.reoptimised)]),
       ),
     );
   }
-  return panel;
+  return box;
 }
 
 const outcomeColours = { feasible: "#0072b2", infeasible: "#e69f00", rejected: "#9aa7b5", failed: "#d55e00" };
 
-function timeSpent({ stages, seconds }) {
+/** Box with the wall time and the outcomes of the evaluations of each stage. */
+function timeBox({ stages, seconds }) {
   const bars = element("div", "bars");
   const longest = Math.max(...stages.map((stage) => stage.seconds), 1e-12);
   for (const [i, stage] of stages.entries()) {
     const bar = element("div", "bar");
     for (const [outcome, number] of Object.entries(stage.outcomes)) {
       if (!number) continue;
-      const part = element("i");
-      part.style.width = 100 * (stage.seconds / longest) * (number / stage.evaluations) + "%";
-      part.style.background = outcomeColours[outcome];
-      part.title = count(number, outcome + " evaluation");
-      bar.append(part);
+      const segment = element("i");
+      segment.style.width = 100 * (stage.seconds / longest) * (number / stage.evaluations) + "%";
+      segment.style.background = outcomeColours[outcome];
+      segment.title = count(number, outcome + " evaluation");
+      bar.append(segment);
     }
     bars.append(element("span", "", i + 1 + ". " + stage.optimiser), bar, element("span", "", duration(stage.seconds)));
   }
-  const kinds = Object.keys(outcomeColours).filter((outcome) => stages.some((stage) => stage.outcomes[outcome]));
+  const outcomes = Object.keys(outcomeColours).filter((outcome) => stages.some((stage) => stage.outcomes[outcome]));
   const rows = stages.map((stage, i) => [
     i + 1 + ". " + stage.optimiser,
     stage.evaluations.toLocaleString("en-GB"),
-    ...kinds.map((outcome) => stage.outcomes[outcome].toLocaleString("en-GB")),
+    ...outcomes.map((outcome) => stage.outcomes[outcome].toLocaleString("en-GB")),
     duration(stage.evaluating),
   ]);
-  const ends = stages.map((stage, i) =>
+  const stops = stages.map((stage, i) =>
     element(
       "li",
       "",
       `stage ${i + 1}, ${stage.optimiser}: ` +
-        (stage.starts ? count(stage.starts, "start") : count(stage.generations, "generation")) +
+        (stage.starts ? count(stage.starts, "run") : count(stage.generations, "generation")) +
         (stage.stop ? ", ended: " + stage.stop : ""),
     ),
   );
-  const legend = element("p", "caption", "Bars: wall time, shared by how the evaluations ended: ");
-  for (const outcome of kinds) {
+  const legend = element("p", "caption", "Bars: wall time, divided in proportion to the outcomes of the evaluations: ");
+  for (const outcome of outcomes) {
     const key = element("span", "", "■ ");
     key.style.color = outcomeColours[outcome];
     legend.append(key, outcome + "  ");
   }
   return element(
     "div",
-    "panel half stretch time",
-    element("h3", "", "Where the time went"),
-    element("p", "caption", duration(seconds) + " of wall time in all."),
+    "box half stretch time",
+    element("h3", "", "Computing time"),
+    element("p", "caption", "Total wall time: " + duration(seconds) + "."),
     bars,
     legend,
-    simpleTable(["", "evaluations", ...kinds, "time of all threads"], rows),
-    element("ul", "plain ends", ...ends),
+    simpleTable(["stage", "evaluations", ...outcomes, "total time of all threads"], rows),
+    element("ul", "plain stops", ...stops),
   );
 }
 
-function word(text) {
-  // of a shell
-  const file = text.startsWith("-") ? "./" + text : text; // no option
+/** Quotes a file name for a shell command. */
+function shellWord(text) {
+  const file = text.startsWith("-") ? "./" + text : text; // must not look like an option
   return /^[\w./+-]+$/.test(file) ? file : "'" + file.replaceAll("'", "'\\''") + "'";
 }
 
+/** Text that can be expanded. */
 function details(title, text) {
   return element("details", "", element("summary", "", title), element("pre", "", text));
 }
 
-function howToRepeat(study) {
+/** Box with the commands, version and input that reproduce the study. */
+function reproductionBox(study) {
   const { origin } = study.summary;
   const toml = origin.toml_file || "study.toml";
-  const commands = ["pkmopt run " + word(toml) + " --seed " + origin.seed + " --output " + word(study.file)];
+  const commands = ["pkmopt run " + shellWord(toml) + " --seed " + origin.seed + " --output " + shellWord(study.file)];
   for (const extension of origin.extensions)
-    commands.push("pkmopt resume " + word(study.file) + " --" + extension.limit + " " + extension.value);
-  const panel = element(
+    commands.push("pkmopt resume " + shellWord(study.file) + " --" + extension.limit + " " + extension.value);
+  const box = element(
     "div",
-    "panel repeat",
-    element("h3", "", "How to repeat it"),
+    "box repeat",
+    element("h3", "", "Reproduction"),
     element(
       "p",
       "caption",
       [
         origin.version && "pkmopt " + origin.version,
         origin.revision && "revision " + origin.revision,
-        origin.created && "begun " + origin.created,
+        origin.created && "started " + origin.created,
         origin.updated && "last written " + origin.updated,
       ]
         .filter(Boolean)
-        .join(", ") + ". The same seed gives the same bits, on any number of threads.",
+        .join(", ") + ". The same seed gives bit-identical results on any number of threads.",
     ),
     element("pre", "", commands.join("\n")),
-    details("The study's text, " + toml, origin.toml),
+    details("Study file in TOML: " + toml, origin.toml),
   );
   if (origin.mechanism_toml)
-    panel.append(details("The mechanism's text, " + origin.mechanism_file, origin.mechanism_toml));
-  if (origin.resolved) panel.append(details("The problem with every default spelled out", origin.resolved));
+    box.append(details("Mechanism file: " + origin.mechanism_file, origin.mechanism_toml));
+  if (origin.resolved) box.append(details("Problem with all default values", origin.resolved));
   for (const [i, stage] of study.summary.stages.entries())
     if (stage.options.length)
-      panel.append(details("Options of stage " + (i + 1) + ", " + stage.optimiser, stage.options.join("\n")));
-  return panel;
+      box.append(details("Options of stage " + (i + 1) + ", " + stage.optimiser, stage.options.join("\n")));
+  return box;
 }
 
-function showSummary(study, section) {
+function showSummary(study, panel) {
   const { table, stages } = study.summary;
-  section.append(headline(study), verdictOf(study));
-  addOverview(study, section);
-  section.append(cards(study));
+  panel.append(headline(study), conclusions(study));
+  addOverview(study, panel);
+  panel.append(cards(study));
   const notes = remarks(study);
-  if (notes.length) section.append(element("div", "panel", element("ul", "plain", ...notes)));
+  if (notes.length) panel.append(element("div", "box", element("ul", "plain", ...notes)));
   const grid = element("div", "grid");
   if (notes.length) grid.style.marginTop = "16px";
   if (table)
-    grid.append(element("div", "panel", element("h3", "", "Designs"), designTable(table, study.problem.variables)));
-  const pair = [holdingBack(study), stages.length ? timeSpent(study.summary) : null].filter(Boolean);
+    grid.append(element("div", "box", element("h3", "", "Designs"), designTable(table, study.problem.variables)));
+  const pair = [optimalityBox(study), stages.length ? timeBox(study.summary) : null].filter(Boolean);
   if (pair.length === 1) pair[0].classList.remove("half");
-  grid.append(...pair, howToRepeat(study));
-  section.append(grid);
+  grid.append(...pair, reproductionBox(study));
+  panel.append(grid);
 }

@@ -1,12 +1,13 @@
-// Numbers, units and names as a reader sees them. All that comes from a study file is text: it goes into the page by
-// textContent, and into Plotly's labels through label(), because Plotly reads a little HTML and templates.
+// Formats numbers, units and names for display. Text from study files is untrusted: it must be inserted into the page
+// as textContent, and into Plotly labels through label(), because Plotly interprets some HTML and templates.
 
+/** Escapes text for Plotly. */
 function label(text) {
   const entities = { "&": "&amp;", "<": "&lt;", ">": "&gt;", "%": "&#37;" };
   return String(text).replace(/[&<>%]/g, (c) => entities[c]);
 }
 
-/** Up to `count` significant digits, without trailing zeros; "–" for what does not exist. */
+/** Up to `count` significant digits, without trailing zeros; "–" for missing values. */
 function digits(value, count = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
@@ -20,33 +21,37 @@ function unitText(unit) {
   return unit === "1" || !unit ? "" : unit.replace(/\^2/g, "²").replace(/\^3/g, "³").replace(/ /g, " ");
 }
 
-/** Units that an engineer thinks in; files and commands have SI. */
+/** Display unit of an SI unit: mm and deg. Files and commands use SI. */
 function shownUnit(unit) {
   return { m: "mm", rad: "deg" }[unit] ?? unit;
 }
 function shownScale(unit) {
   return { m: 1000, rad: 180 / Math.PI }[unit] ?? 1;
 }
-/** Of objectives and reports: their rad is seldom an angle (a volume over x, z and theta divided by a size), so it stays. */
+/**
+ * Display unit of objectives and outputs. Here rad is not converted, because it is seldom an angle: a workspace ratio
+ * over x, z and theta, for example, has this unit.
+ */
 function resultUnit(unit) {
   return unit === "rad" ? { unit, scale: 1 } : { unit: shownUnit(unit), scale: shownScale(unit) };
 }
 
-/** A value of SI in the unit that is shown. */
+/** An SI value in its display unit. */
 function shownQuantity(value, unit, count) {
   return quantity(value === null ? null : value * shownScale(unit), shownUnit(unit), count);
 }
 
-/** Text that tells in full, on hover, what it rounds. */
+/** Text that shows the unrounded SI value on hover. */
 function rounded(text, value, unit) {
   const node = element("span", "", text);
   if (Number.isFinite(value)) node.title = String(value) + (unitText(unit) ? " " + unitText(unit) : "");
   return node;
 }
+/** A length, angle or margin. */
 function measured(value, unit, count) {
   return rounded(shownQuantity(value, unit, count), value, unit);
 }
-/** The same of an objective or report. */
+/** A value of an objective or output. */
 function result(value, unit) {
   const shown = resultUnit(unit);
   return rounded(quantity(value === null ? null : value * shown.scale, shown.unit), value, unit);
@@ -57,7 +62,7 @@ function quantity(value, unit, count) {
   return digits(value, count) + (name ? " " + name : "");
 }
 
-/** "x [m]": an axis. */
+/** Axis title "x [m]". */
 function axisName(name, unit) {
   const text = unitText(unit);
   return label(name) + (text ? " [" + label(text) + "]" : "");
@@ -73,6 +78,7 @@ function duration(seconds) {
   return Math.floor(minutes / 60) + " h " + (minutes % 60) + " min";
 }
 
+/** A number with a noun: "1 design", "2 designs". */
 function count(number, one, many = one + "s") {
   return number.toLocaleString("en-GB") + " " + (number === 1 ? one : many);
 }
@@ -83,7 +89,7 @@ function ordinal(number) {
   return number + (tens > 10 && tens < 14 ? "th" : ones === 1 ? "st" : ones === 2 ? "nd" : ones === 3 ? "rd" : "th");
 }
 
-/** A new element with classes and children; strings become text. */
+/** Creates an element with CSS classes and children; strings become text nodes. */
 function element(name, classes = "", ...children) {
   const node = document.createElement(name);
   if (classes) node.className = classes;

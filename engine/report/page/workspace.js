@@ -1,9 +1,13 @@
-// Where the designs can go: surface, cuts, column lengths. Both designs have the same axes and colours.
+// Panel "Workspace": boundary surface, slices and column lengths of the designs, with common axes and colours.
 
+/**
+ * 3-D trace of the boundary surface, coloured by a field if the design has it.
+ * @param order  indices of the axes that are drawn as x, y and z
+ */
 function surfaceTrace(design, field, range, order, more = {}) {
-  const { at, triangles } = design.surface;
+  const { vertices, triangles } = design.surface;
   const values = design.surface.values.get(field);
-  const shown = order.map((k) => Array.from(at[k], (value) => value * shownScale(design.axes[k].unit)));
+  const shown = order.map((k) => Array.from(vertices[k], (value) => value * shownScale(design.axes[k].unit)));
   const info = design.fields.find((f) => f.name === field);
   const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
   const intensity = values && Array.from(values);
@@ -38,10 +42,10 @@ function surfaceTrace(design, field, range, order, more = {}) {
   };
 }
 
-/** @param share  of the longest axis: a short one has room for few numbers */
-function sceneAxis(title, range, share = 1) {
+/** @param relativeLength  relative to the longest axis; a shorter axis gets fewer tick labels */
+function sceneAxis(title, range, relativeLength = 1) {
   return {
-    nticks: Math.max(2, Math.round(8 * share)),
+    nticks: Math.max(2, Math.round(8 * relativeLength)),
     title: { text: title, font: { size: 12 } },
     tickfont: { size: 11 },
     gridcolor: colour("line"),
@@ -53,27 +57,30 @@ function sceneAxis(title, range, share = 1) {
   };
 }
 
-/** Axes of a scene over workspaces, to scale where all are lengths. @param away  as addPlot tells it */
-function workspaceScene(designs, order, away) {
+/**
+ * 3-D scene for workspaces, with equal scales if all axes are lengths.
+ * @param distance  relative distance of the camera, from addPlot()
+ */
+function workspaceScene(designs, order, distance) {
   const axes = order.map((k) => designs[0].axes[k]);
   const ranges = order.map((k) => sharedRange(designs, k));
   const toScale = axes.every((a) => a.unit === "m");
   const extents = ranges.map(([low, high]) => high - low),
-    most = Math.max(...extents);
-  const axisOf = (i) => sceneAxis(axisTitle(axes[i]), ranges[i], toScale ? extents[i] / most : 1);
+    largest = Math.max(...extents);
+  const axisOf = (i) => sceneAxis(axisTitle(axes[i]), ranges[i], toScale ? extents[i] / largest : 1);
   return {
     xaxis: axisOf(0),
     yaxis: axisOf(1),
     zaxis: axisOf(2),
     aspectmode: "manual",
     aspectratio: toScale
-      ? Object.fromEntries(extents.map((e, i) => ["xyz"[i], (1.2 * e) / most]))
+      ? Object.fromEntries(extents.map((e, i) => ["xyz"[i], (1.2 * e) / largest]))
       : { x: 1, y: 1, z: 1 },
-    camera: { eye: { x: 1.6 * away, y: -2.05 * away, z: 1.05 * away }, center: { x: 0, y: 0, z: -0.08 } },
+    camera: { eye: { x: 1.6 * distance, y: -2.05 * distance, z: 1.05 * distance }, center: { x: 0, y: 0, z: -0.08 } },
   };
 }
 
-/** Turning one scene turns the others. */
+/** Rotating one scene rotates the others. */
 function linkCameras(plots) {
   const ready = new Set();
   for (const plot of plots) {
@@ -97,38 +104,38 @@ function linkCameras(plots) {
   }
 }
 
-/** Which field is shown first: the coupling where there is any, else conditioning. */
-function firstField({ fields }) {
+/** Index of the field that is shown first: the maximum DCI if available, otherwise conditioning. */
+function initialField({ fields }) {
   const names = fields.map((field) => field.name);
   return Math.max(0, names.indexOf(names.includes("dci_worst") ? "dci_worst" : "conditioning"));
 }
 
-function showWorkspace(study, section) {
+function showWorkspace(study, panel) {
   const designs = study.workspace.designs.map((packed) => (packed.cells ??= new Cells(packed)));
-  for (const problem of study.workspace.problems) section.append(element("p", "warning", problem));
+  for (const problem of study.workspace.problems) panel.append(element("p", "warning", problem));
   if (!designs.length) return;
   const first = designs[0],
     order = drawingOrder(first.axes),
-    solid = order.length === 3;
-  const places = [
+    isVolume = order.length === 3;
+  const fixedValues = [
     ...new Set(
       designs
-        .filter((d) => d.held.length)
-        .map((d) => d.held.map((held) => `${held.name} = ${shownValue(held.value, held)}, ${held.note}`).join("; ")),
+        .filter((d) => d.fixed.length)
+        .map((d) => d.fixed.map((axis) => `${axis.name} = ${shownValue(axis.value, axis)}, ${axis.note}`).join("; ")),
     ),
   ];
   const volumes = designs.flatMap((d, i) => [i ? ", " : "", d.name + " ", result(d.volume, d.volume_unit)]);
-  section.append(
+  panel.append(
     element(
       "p",
       "lead",
       "Feasible poses" +
-        (places.length ? " at " + places.join("; ") : "") +
-        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their ${solid ? "volume" : "extent"}, counted on these cells: `,
+        (fixedValues.length ? " at " + fixedValues.join("; ") : "") +
+        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. ${["Length", "Area", "Volume"][order.length - 1]} by counting these cells: `,
       ...volumes,
       "." +
         (designs.length > 1
-          ? " The designs have the same axes and colours" + (solid ? ", and turn together." : ".")
+          ? " All designs have the same axes and colours" + (isVolume ? " and rotate together." : ".")
           : ""),
     ),
   );
@@ -136,8 +143,8 @@ function showWorkspace(study, section) {
   const names = first.fields.map((field) => field.name);
   const controls = element("div", "controls"),
     grid = element("div", "grid");
-  section.append(controls, grid);
-  const start = firstField(first);
+  panel.append(controls, grid);
+  const start = initialField(first);
   const field = names.length
     ? choice(
         controls,
@@ -156,34 +163,34 @@ function showWorkspace(study, section) {
   };
   current();
 
-  const surfaces = (solid ? designs : []).map((design) =>
+  const surfaces = (isVolume ? designs : []).map((design) =>
     addPlot(grid, {
       title: design.name[0].toUpperCase() + design.name.slice(1),
       size,
       height: 520,
-      make(away) {
+      make(distance) {
         const info = current();
         return {
           data: [surfaceTrace(design, info.name, fieldRange(designs, info.name), order)],
-          layout: { scene: workspaceScene(designs, order, away), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+          layout: { scene: workspaceScene(designs, order, distance), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
         };
       },
     }),
   );
   linkCameras(surfaces);
 
-  const cutBar = element("div", "controls panel");
-  if (solid) grid.append(cutBar);
-  const cut = cutControls(cutBar, designs, () => cuts.forEach((plot) => plot.update()));
-  const cuts = designs.map((design) =>
+  const sliceBar = element("div", "controls box");
+  if (isVolume) grid.append(sliceBar);
+  const slice = sliceControls(sliceBar, designs, () => slices.forEach((plot) => plot.update()));
+  const slices = designs.map((design) =>
     addPlot(grid, {
-      title: solid ? "Section of " + design.name : design.name[0].toUpperCase() + design.name.slice(1),
+      title: isVolume ? "Slice of " + design.name : design.name[0].toUpperCase() + design.name.slice(1),
       size,
       height: 440,
-      caption: order.length > 1 ? "Cells in colour, contour lines in white." : "At the cells' centres.",
+      caption: order.length > 1 ? "Cells in colour, contour lines in white." : "Values at the centres of the cells.",
       make() {
         const info = current();
-        return cellsPicture(designs, design, design.cut(info.name, cut, cut.layer(design)), cut.across, cut.up, {
+        return cellsPlot(designs, design, design.slice(info.name, slice, slice.layer(design)), slice.across, slice.up, {
           range: fieldRange(designs, info.name),
           title: info.name ? fieldTitle(info.name) : "feasible",
           unit: info.unit === "mixed" ? "1" : info.unit,
@@ -193,8 +200,8 @@ function showWorkspace(study, section) {
       },
     }),
   );
-  const all = [...surfaces, ...cuts];
-  if (order.length < 2) return; // the length is the volume
+  const all = [...surfaces, ...slices];
+  if (order.length < 2) return; // over one coordinate, the length is already given above
   const along = first.axes.findIndex((a) => a.name === study.workspace.column);
   const [across, up] = order.filter((k) => k !== along);
   const lengths = designs.map((design) => {
@@ -204,12 +211,12 @@ function showWorkspace(study, section) {
   const range = [0, Math.max(...lengths.flatMap((matrix) => rangeOf(matrix.flat().filter((v) => v !== null))))];
   designs.forEach((design, d) =>
     addPlot(grid, {
-      title: `Length of the columns along ${first.axes[along].name}, ${design.name}`,
+      title: `Column length along ${first.axes[along].name}, ${design.name}`,
       size,
       height: 440,
-      caption: `How far one can go along this coordinate, the other${solid ? " two" : ""} standing still.`,
+      caption: `Feasible length along this coordinate for fixed values of the other${isVolume ? "s" : ""}.`,
       make: () =>
-        cellsPicture(designs, design, lengths[d], across, up, {
+        cellsPlot(designs, design, lengths[d], across, up, {
           range,
           title: "length",
           unit: shownUnit(first.axes[along].unit),

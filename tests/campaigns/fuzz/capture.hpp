@@ -1,4 +1,4 @@
-// The program inside a fuzzer.
+// Runs the pkmopt program inside a fuzzer and captures its output.
 #pragma once
 
 #include <sstream>
@@ -10,7 +10,7 @@
 
 namespace pkm::fuzz {
 
-/// Takes what is printed while one lives.
+/// Redirects std::cout and std::cerr to strings during its lifetime.
 class Capture {
  public:
   Capture() : cout_(std::cout.rdbuf(out.rdbuf())), cerr_(std::cerr.rdbuf(err.rdbuf())) {}
@@ -26,7 +26,7 @@ class Capture {
   std::streambuf *cout_, *cerr_;
 };
 
-/// Runs the program in this process: it ends with one of its exit codes, and a failure with a sentence.
+/// Runs the program in this process; expects a valid exit code and, on failure, an error message.
 inline void expect_program(std::vector<std::string> arguments, const Catalogues& catalogues) {
   arguments.insert(arguments.begin(), "pkmopt");
   std::vector<char*> argv;
@@ -36,16 +36,16 @@ inline void expect_program(std::vector<std::string> arguments, const Catalogues&
     joined += argument + ' ';
   }
   int code = 0;
-  std::string printed, complaint;
+  std::string printed, error;
   {
     const Capture capture;
     code = program_main(static_cast<int>(argv.size()), argv.data(), catalogues);
     printed = capture.out.str();
-    complaint = capture.err.str();
+    error = capture.err.str();
   }
   expect(code >= 0 && code <= 4, "an exit code of the program");
-  if (code == 1 || code == 2) expect_sentence(complaint, joined);
-  expect_terminal(printed, complaint);
+  if (code == 1 || code == 2) expect_sentence(error, joined);
+  expect_terminal(printed, error);
 }
 
 }  // namespace pkm::fuzz

@@ -1,12 +1,12 @@
-// Input: a byte that chooses a command, then its further arguments, a line each. Commands of one pose are carried out;
-// those that take long or write files are given a file that is not there, so that their arguments are read and no more.
-// The byte may choose the readers of lists, axes and ranges instead.
+// Fuzzer of the command line. Input: one byte that selects a command, then its further arguments, one per line.
+// Commands on a single pose are executed. Commands that take long or write files get a file that does not exist, so
+// that only their arguments are parsed. The byte may also select the parsers of assignments, axes and ranges.
 #include <array>
 #include <sstream>
 
+#include "engine/config/assignments.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/core/error.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/setup/assignments.hpp"
 #include "tests/campaigns/fuzz/capture.hpp"
 
 namespace pkm::fuzz {

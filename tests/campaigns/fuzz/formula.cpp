@@ -1,5 +1,5 @@
-// Input: a formula of five names. The values of its scalars agree, derivatives or not.
-#include "engine/graph/formula.hpp"
+// Fuzzer of formulas. Input: a formula with five names. Its values must be equal for double, Dual4 and Taylor.
+#include "engine/expression/formula.hpp"
 
 #include <array>
 #include <bit>
@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   try {
     const Formula formula(text, {"a", "b", "x", "t", "l_u"});
-    for (const std::size_t used : formula.used()) fuzz::expect(used < 5, "a formula uses names that it was given");
+    for (const std::size_t used : formula.used()) fuzz::expect(used < 5, "a formula uses only the given names");
     for (const auto& point : kPoints) {
       const std::vector<Dual4> duals(point.begin(), point.end());
       const std::vector<Taylor> taylors(point.begin(), point.end());

@@ -1,9 +1,10 @@
-// Input: the text of a mechanism's file. It is read and described, and a few cells of its workspace are counted.
+// Fuzzer of mechanism files. Input: the text of a mechanism file. It is parsed and described, and a few cells of its
+// workspace are evaluated.
 #include <stdexcept>
 
+#include "engine/config/mechanism_file.hpp"
 #include "engine/core/error.hpp"
-#include "engine/setup/mechanism_file.hpp"
-#include "engine/survey/survey_set.hpp"
+#include "engine/workspace/survey_set.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"
 
 namespace pkm::fuzz {
@@ -17,12 +18,12 @@ void count_cells(const Mechanism& mechanism) {
   for (const Parameter& parameter : info.parameters) nominal.push_back(parameter.nominal);
   Survey<double> survey;
   try {
-    const SurveyPlan plan{.method = voxels, .held = {}, .limits = no_limits(info)};
-    survey_once<double>(*prepare_survey(mechanism, plan, {}), nominal, survey);
-  } catch (const std::invalid_argument&) {  // it says no box
+    const WorkspacePlan plan{.method = voxels, .held = {}, .limits = no_limits(info)};
+    evaluate_once<double>(*prepare_workspace(mechanism, plan, {}), nominal, survey);
+  } catch (const std::invalid_argument&) {  // the file defines no box
     return;
   }
-  expect(survey.feasible_cells <= survey.cells, "no more feasible cells than there are");
+  expect(survey.feasible_cells <= survey.cells, "at most as many feasible cells as cells");
 }
 
 }  // namespace

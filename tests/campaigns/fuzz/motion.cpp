@@ -1,7 +1,8 @@
-// Input: the text of a motion, read for every mechanism; its ends and its middle are looked at.
+// Fuzzer of motions. Input: the text of a motion. It is parsed for every mechanism and sampled at both ends and in the
+// middle.
+#include "engine/config/built_in_mechanisms.hpp"
+#include "engine/config/motion_section.hpp"
 #include "engine/core/error.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/setup/motion_section.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -11,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const TomlValue document = parse_toml(text, "motion.toml");
       const auto motion = read_motion(ConfigValue(document, "motion.toml", ""), motion_names(*mechanism));
       fuzz::expect(motion->duration() > 0, "a motion takes time");
-      fuzz::expect(sample(*motion, 3).size() == 3, "as many samples as were asked for");
+      fuzz::expect(sample(*motion, 3).size() == 3, "as many samples as requested");
       is_periodic(*motion, mechanism->info().coordinates);
     } catch (const ConfigError& error) {
       fuzz::expect_sentence(error.what(), text);

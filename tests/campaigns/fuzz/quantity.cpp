@@ -1,4 +1,5 @@
-// Input: a byte that chooses a unit, then the text of a quantity. What is read and written again is the same number.
+// Fuzzer of quantities with units. Input: one byte that selects a unit, then the text of a quantity. A value that is
+// parsed, written and parsed again must have the same bits.
 #include <array>
 #include <bit>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/storage/file_seal.hpp"
+#include "engine/storage/file_header.hpp"
 #include "engine/storage/hdf5_image.hpp"
 #include "engine/storage/schema.hpp"
 #include "engine/storage/study_file.hpp"
@@ -10,7 +10,7 @@
 namespace pkm::fuzz {
 namespace {
 
-/// One element more, like the last, or one less.
+/// Appends a copy of the last element, or removes it.
 template <class T>
 void lengthen_or_shorten(std::vector<T>& list, bool longer) {
   if (longer)
@@ -30,8 +30,8 @@ bool is_row(std::int64_t row, const StageRecord& stage) {
   return row >= 0 && row < static_cast<std::int64_t>(stage.table.size());
 }
 
-/// Gives every array the sizes that the problem says. What other files point to, of rows that are not there, is left
-/// out: it cannot be written.
+/// Resizes every array to the sizes of the problem. References to rows that do not exist are removed, because they
+/// cannot be written.
 void fit(StudyContents& study) {
   for (StageRecord& stage : study.stages) {
     EvaluationTable table(study.problem.shape(stage.table.shape().detail));
@@ -90,12 +90,12 @@ void change(StudyContents& study, std::mt19937& engine) {
 
 }  // namespace
 
-std::string with_other_record(const std::string& file, int schema, std::mt19937& engine) {
+std::string with_mutated_record(const std::string& file, int schema, std::mt19937& engine) {
   try {
-    StudyContents study = parse_study(file, schema);  // refuses what could not be written
+    StudyContents study = parse_study(file, schema);  // throws for files that could not be written again
     change(study, engine);
     fit(study);
-    ImageWriter writer(kSealBytes);
+    ImageWriter writer(kHeaderBytes);
     schema::describe(writer, study);
     std::string changed = writer.finish();
     seal(changed, kStudySchema);

@@ -1,4 +1,5 @@
-// Changes of what a study file records as a whole: sizes agree with one another, though not with the study's text.
+// Mutations of the record of a study file: the sizes of its arrays stay consistent with each other, but not with the
+// text of the study.
 #pragma once
 
 #include <random>
@@ -6,8 +7,9 @@
 
 namespace pkm::fuzz {
 
-/// `file` with one thing more, less or otherwise in its record, sealed; as it is where it cannot be read.
-/// @param schema  of `file`; the result has today's
-std::string with_other_record(const std::string& file, int schema, std::mt19937& engine);
+/// Adds, removes or changes one element of the record of a study file and writes a valid header. Returns the file
+/// unchanged if it cannot be read.
+/// @param schema  schema version of `file`; the result has the current one
+std::string with_mutated_record(const std::string& file, int schema, std::mt19937& engine);
 
 }  // namespace pkm::fuzz

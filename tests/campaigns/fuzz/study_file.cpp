@@ -1,6 +1,6 @@
-// Input: a study file, its seal right, what is behind it changed by the mutator. What is read is shown, listed, written
-// again or, where few evaluations are left of it, resumed: one of these for each input, chosen by its bytes, so that
-// more inputs are tried.
+// Fuzzer of study files (HDF5). Input: a study file with a valid header and contents changed by the mutator. A file
+// that can be read is printed, listed, written again or, if it needs few evaluations, resumed: one of these per input,
+// selected by its hash, so that more inputs are tested.
 #include <hdf5.h>
 #include <unistd.h>
 
@@ -13,8 +13,8 @@
 #include "engine/core/error.hpp"
 #include "engine/report/chosen_design.hpp"
 #include "engine/report/study_tables.hpp"
+#include "engine/runner/records.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/records.hpp"
 #include "experiments/app/program.hpp"
 #include "tests/campaigns/fuzz/capture.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"
@@ -24,14 +24,14 @@
 namespace pkm::fuzz {
 namespace {
 
-constexpr std::int64_t kMostEvaluations = 100;  ///< of a study that is resumed
+constexpr std::int64_t kMaxEvaluations = 100;  ///< larger studies are not resumed
 
 const Catalogues& catalogues() {
   static const Catalogues all = all_catalogues();
   return all;
 }
 
-/// In memory where there is such a folder: each input is a file.
+/// Temporary folder, in memory if possible: each input is written to a file.
 class Folder {
  public:
   Folder() {
@@ -56,7 +56,7 @@ void list(const StudyContents& contents) {
 void write_again(const StudyContents& contents, const std::string& path) {
   write_study(path, contents);
   const std::string difference = first_difference(read_study(path), contents);
-  expect(difference.empty(), "what is written is read again, but: " + difference);
+  expect(difference.empty(), "a written file is read with the same contents, but: " + difference);
 }
 
 void choose_designs(const StudyContents& contents, const Study& study) {
@@ -77,10 +77,10 @@ bool is_short(const Study& study) {
   std::int64_t evaluations = 0;
   for (const Stage& stage : study.stages) {
     const std::int64_t limit = stage.optimiser->evaluation_limit(*study.problem);
-    if (limit > kMostEvaluations) return false;
+    if (limit > kMaxEvaluations) return false;
     evaluations += limit;
   }
-  return evaluations <= kMostEvaluations;
+  return evaluations <= kMaxEvaluations;
 }
 
 void use(const StudyContents& contents, const std::string& path, const std::string& other, std::size_t choice) {
@@ -103,7 +103,7 @@ void use(const StudyContents& contents, const std::string& path, const std::stri
 }  // namespace
 }  // namespace pkm::fuzz
 
-/// HDF5 keeps no freed memory for itself: what it uses after that is seen, and no leak is suspected after each input.
+/// Disables the free lists of HDF5, so that the sanitizer detects use after free and reports no leak after each input.
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   H5set_free_list_limits(0, 0, 0, 0, 0, 0);
   return 0;
@@ -117,7 +117,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(path, std::ios::binary) << bytes;
   try {
     const StudyContents contents = read_study(path);
-    expect(!looks_elsewhere(bytes), "a study that is read holds all that it is made of");
+    expect(!has_external_references(bytes), "a study that is read is self-contained");
     use(contents, path, folder / "again.h5", std::hash<std::string>{}(bytes));
   } catch (const ConfigError& error) {
     expect_sentence(error.what(), "");

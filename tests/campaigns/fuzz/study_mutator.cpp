@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
-#include "engine/storage/file_seal.hpp"
+#include "engine/storage/file_header.hpp"
 #include "tests/campaigns/fuzz/record_mutator.hpp"
 
 namespace pkm::fuzz {
 namespace {
 
-/// Owns one HDF5 id, which may be none: what HDF5 refuses is not changed.
+/// Owns one HDF5 identifier. It may be invalid: operations that HDF5 rejects have no effect.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -34,8 +34,9 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-constexpr hsize_t kMostValues = 1 << 20;  ///< of a dataset whose values are changed
+constexpr hsize_t kMaxBytes = 1 << 20;  ///< larger datasets and attributes are not changed
 
+/// A study file opened as an HDF5 image in memory.
 class Image {
  public:
   explicit Image(const std::string& file) : file_(open(file)) {}
@@ -57,15 +58,16 @@ class Image {
     return all;
   }
 
-  /// With an empty block in front.
+  /// The bytes of the file, after an empty block for the header; empty on failure.
   std::string bytes() const {
     H5Fflush(id(), H5F_SCOPE_GLOBAL);
     const ssize_t size = H5Fget_file_image(id(), nullptr, 0);
     if (size <= 0) return {};
-    std::string all(kSealBytes + static_cast<std::size_t>(size), '\0');
-    H5Fget_file_image(id(), all.data() + kSealBytes, static_cast<std::size_t>(size));
-    if (!starts_hdf5(all, kSealBytes)) all.erase(0, kSealBytes);  // as HDF5's version has it
-    return starts_hdf5(all, kSealBytes) ? all : std::string();
+    std::string all(kHeaderBytes + static_cast<std::size_t>(size), '\0');
+    H5Fget_file_image(id(), all.data() + kHeaderBytes, static_cast<std::size_t>(size));
+    if (!has_hdf5_signature(all, kHeaderBytes))
+      all.erase(0, kHeaderBytes);  // depending on the version of HDF5, the image already contains the user block
+    return has_hdf5_signature(all, kHeaderBytes) ? all : std::string();
   }
 
  private:
@@ -80,6 +82,7 @@ class Image {
   Handle file_;
 };
 
+/// Makes one random change in an HDF5 file.
 class Mutator {
  public:
   Mutator(const Image& image, unsigned seed) : file_(image.id()), engine_(seed), objects_(image.objects()) {
@@ -101,7 +104,7 @@ class Mutator {
         return change_rows(dataset);
       case 6:
       case 7:
-        return make_anew(dataset);
+        return recreate(dataset);
       case 8:
         H5Ldelete(file_, dataset.c_str(), H5P_DEFAULT);
         return;
@@ -127,7 +130,7 @@ class Mutator {
   }
 
   std::int64_t any_integer(std::int64_t now) {
-    constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(), kMost = -(kLeast + 1);
+    constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min(), kMax = -(kMin + 1);
     const auto neighbour = static_cast<std::uint64_t>(now);
     const std::vector<std::int64_t> list = {-1,
                                             0,
@@ -137,8 +140,8 @@ class Mutator {
                                             1 << 16,
                                             std::int64_t{1} << 31,
                                             std::int64_t{1} << 32,
-                                            kLeast,
-                                            kMost,
+                                            kMin,
+                                            kMax,
                                             static_cast<std::int64_t>(neighbour + 1),
                                             static_cast<std::int64_t>(neighbour - 1),
                                             static_cast<std::int64_t>(0 - neighbour)};
@@ -181,7 +184,7 @@ class Mutator {
     return any(list);
   }
 
-  /// Changes up to three of `values` in memory, which are of `type`.
+  /// Changes up to three of `values`, an array of elements of `type`.
   void change_some(std::vector<char>& values, hid_t type) {
     const std::size_t size = H5Tget_size(type);
     if (size == 0 || values.size() < size) return;
@@ -214,7 +217,7 @@ class Mutator {
     const hssize_t count = H5Sget_simple_extent_npoints(space.get());
     const std::size_t size = H5Tget_size(type.get());
     if (!dataset || count <= 0 || H5Tis_variable_str(type.get()) != 0 || size == 0) return;
-    if (static_cast<hsize_t>(count) > kMostValues / size || H5Dget_storage_size(dataset.get()) == 0) return;
+    if (static_cast<hsize_t>(count) > kMaxBytes / size || H5Dget_storage_size(dataset.get()) == 0) return;
     std::vector<char> values(static_cast<std::size_t>(count) * size);
     if (H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return;
     change_some(values, type.get());
@@ -259,8 +262,8 @@ class Mutator {
     return type;
   }
 
-  /// Another dataset of the same name: other type, rank, sizes or storage; of its values only some are there.
-  void make_anew(const std::string& path) {
+  /// Replaces a dataset by one of the same name with another type, rank, size or storage, without its values.
+  void recreate(const std::string& path) {
     std::vector<hsize_t> extent;
     Handle type(-1, H5Tclose);
     {
@@ -349,10 +352,10 @@ class Mutator {
     H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
     if (names.empty()) return;
     const std::string name = any(names);
-    const std::size_t way = below(8);
-    if (way == 0 || way == 1) {
+    const std::size_t choice = below(8);
+    if (choice == 0 || choice == 1) {
       H5Adelete(object.get(), name.c_str());
-      if (way == 0) return;
+      if (choice == 0) return;
       const Handle type = any_type();
       const hsize_t two = 2;
       const Handle space(below(2) == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &two, nullptr), H5Sclose);
@@ -370,23 +373,23 @@ class Mutator {
       return;
     }
     const std::size_t size = H5Tget_size(type.get());
-    if (size == 0 || size > kMostValues) return;
+    if (size == 0 || size > kMaxBytes) return;
     std::vector<char> value(size);
     if (H5Aread(attribute.get(), type.get(), value.data()) < 0) return;
     change_some(value, type.get());
     H5Awrite(attribute.get(), type.get(), value.data());
   }
 
-  /// The study's text, or its mechanism's, so that it and the record disagree: a line less, twice, moved, or another
-  /// number in it.
+  /// Changes one line of the text of the study or of its mechanism, so that it contradicts the record: removes,
+  /// duplicates or moves it, or changes a digit.
   void change_text() {
-    const bool described = H5Lexists(file_, "/mechanism", H5P_DEFAULT) > 0 && below(2) == 0;
-    const char* const path = described ? "/mechanism/toml" : "/toml";
+    const bool mechanism = H5Lexists(file_, "/mechanism", H5P_DEFAULT) > 0 && below(2) == 0;
+    const char* const path = mechanism ? "/mechanism/toml" : "/toml";
     const Handle dataset(H5Dopen2(file_, path, H5P_DEFAULT), H5Dclose);
     const Handle type(H5Dget_type(dataset.get()), H5Tclose), space(H5Dget_space(dataset.get()), H5Sclose);
     const std::size_t size = H5Tget_size(type.get());
     if (!dataset || H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) return;
-    if (size > kMostValues || H5Sget_simple_extent_npoints(space.get()) != 1) return;
+    if (size > kMaxBytes || H5Sget_simple_extent_npoints(space.get()) != 1) return;
     std::string text(size, '\0');
     if (H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return;
     text.resize(std::strlen(text.c_str()));
@@ -434,10 +437,10 @@ class Mutator {
   std::vector<std::string> datasets_;
 };
 
-/// 0: no sealed study.
+/// Schema version of a study file; 0 if its header is invalid.
 int schema_of(const std::string& file) {
   try {
-    return verify_seal(file, "", std::numeric_limits<int>::max());
+    return verify_header(file, "", std::numeric_limits<int>::max());
   } catch (const StorageError&) {
     return 0;
   }
@@ -449,7 +452,7 @@ std::string mutated_study(const std::string& file, unsigned seed) {
   const int schema = schema_of(file);
   if (schema == 0) return file;
   std::mt19937 engine(seed);
-  if (engine() % 4 == 0) return with_other_record(file, schema, engine);
+  if (engine() % 4 == 0) return with_mutated_record(file, schema, engine);
   std::string changed;
   {
     const Image image(file);
@@ -463,22 +466,22 @@ std::string mutated_study(const std::string& file, unsigned seed) {
   return changed;
 }
 
-bool looks_elsewhere(const std::string& file) {
+bool has_external_references(const std::string& file) {
   const Image image(file);
   if (!image) return false;
-  bool elsewhere = false;
-  const auto look = [](hid_t, const char*, const H5L_info_t* info, void* found) -> herr_t {
-    *static_cast<bool*>(found) |= info->type != H5L_TYPE_HARD;
+  bool found = false;
+  const auto visit = [](hid_t, const char*, const H5L_info_t* info, void* result) -> herr_t {
+    *static_cast<bool*>(result) |= info->type != H5L_TYPE_HARD;
     return 0;
   };
-  H5Lvisit(image.id(), H5_INDEX_NAME, H5_ITER_INC, look, &elsewhere);
+  H5Lvisit(image.id(), H5_INDEX_NAME, H5_ITER_INC, visit, &found);
   for (const auto& object : image.objects()) {
     if (object.type != H5O_TYPE_DATASET) continue;
     const Handle dataset(H5Dopen2(image.id(), object.path.c_str(), H5P_DEFAULT), H5Dclose);
     const Handle how(H5Dget_create_plist(dataset.get()), H5Pclose);
-    elsewhere |= H5Pget_external_count(how.get()) > 0 || H5Pget_layout(how.get()) == H5D_VIRTUAL;
+    found |= H5Pget_external_count(how.get()) > 0 || H5Pget_layout(how.get()) == H5D_VIRTUAL;
   }
-  return elsewhere;
+  return found;
 }
 
 }  // namespace pkm::fuzz

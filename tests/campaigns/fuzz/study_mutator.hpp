@@ -1,17 +1,16 @@
-// Changes of a study file behind a right seal.
+// Mutations of the HDF5 contents of a study file, with a valid header.
 #pragma once
 
 #include <string>
 
 namespace pkm::fuzz {
 
-/// Changes one to three things inside a sealed study file - values, sizes, types and storage of datasets, attributes,
-/// names, links, the study's text - and seals it again. What is no sealed study, or cannot be changed, comes back as it
-/// is.
+/// Makes one to three changes in a study file - to values, sizes, types and storage of datasets, attributes, names,
+/// links, or the text of the study - and writes a valid header. Returns the file unchanged if its header is invalid or
+/// if it cannot be changed.
 std::string mutated_study(const std::string& file, unsigned seed);
 
-/// Whether anything in a sealed study lies outside of it or stands for something else: external or virtual storage,
-/// links that are not hard.
-bool looks_elsewhere(const std::string& file);
+/// Whether a study file is not self-contained: external or virtual storage, or links that are not hard links.
+bool has_external_references(const std::string& file);
 
 }  // namespace pkm::fuzz

@@ -1,4 +1,5 @@
-// Input: the text of a study. It is read, its problem made and described; nothing is evaluated.
+// Fuzzer of studies in TOML. Input: the text of a study. It is parsed, and its problem is created and described, but
+// not evaluated.
 #include "engine/core/error.hpp"
 #include "experiments/app/program.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"

@@ -1,4 +1,4 @@
-// A program with mechanisms of your own and nothing else: it has every command that pkmopt has.
+// Example of a program with user-defined mechanisms only; it has all commands of pkmopt.
 #include "experiments/app/program.hpp"
 #include "tests/own_mechanisms/all.hpp"
 

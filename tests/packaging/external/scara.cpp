@@ -1,12 +1,13 @@
-// A mechanism of your own: a SCARA arm, designed by pkmopt for the largest workspace with `scara run scara.toml`.
+// Example of a user-defined mechanism: a SCARA arm with a program that optimises it (`scara run scara.toml`).
 //
-// Two links l_1 and l_2 turn about vertical axes, a lift of stroke h carries the second one's end, where a wrist turns
-// the tool: 3 translations and 1 rotation. For a given sum of the lengths the best arm has equal links.
+// Two links of lengths l_1 and l_2 rotate about vertical axes. The second one carries a vertical prismatic joint of
+// stroke h and a wrist that rotates about the vertical: 3 translational and 1 rotational degrees of freedom. For a
+// given sum of the link lengths the workspace is largest if both links are equally long.
 #include <cmath>
 
 #include "experiments/app/program.hpp"
 
-enum { kL1, kL2, kStroke };  // the parameters' order
+enum { kL1, kL2, kStroke };  // indices of the parameters
 using Parameters = std::span<const double>;
 
 class Scara final : public pkm::Mechanism {
@@ -21,7 +22,8 @@ class Scara final : public pkm::Mechanism {
     info_.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"phi", "rad"}};
     info_.joints = {{"q1", "rad"}, {"q2", "rad"}, {"q3", "m"}, {"q4", "rad"}};
     info_.modes = {"elbow right"};
-    info_.sweeps = {{.swept = {0, 1, 2}, .held = {3}, .column = 2}};  // the wrist turns freely, so phi is held
+    // The workspace is a set of (x, y, z) at a fixed phi, whose value does not matter: the wrist has no limits.
+    info_.sweeps = {{.swept = {0, 1, 2}, .held = {3}, .column = 2}};
   }
   const pkm::MechanismInfo& info() const override { return info_; }
 
@@ -46,7 +48,7 @@ class Scara final : public pkm::Mechanism {
     const double r = p[kL1] + p[kL2];
     return {{{-r, r}, {-r, r}, {0, p[kStroke]}, {-pkm::kPi, pkm::kPi}}};
   }
-  std::optional<double> middle(Parameters, int) const override { return 0; }  // of phi
+  std::optional<double> middle(Parameters, int) const override { return 0; }  // default value of phi
 
  private:
   pkm::MechanismInfo info_;

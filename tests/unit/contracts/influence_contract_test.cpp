@@ -1,7 +1,8 @@
-// Laws of the influence coefficients of every mechanism that has them, along a motion of its nominal design.
+// Contract of influence coefficients (first and second derivatives of the joints with respect to the pose), for every
+// mechanism that provides them, along a motion of its nominal design.
 #include <gtest/gtest.h>
 
-#include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/contracts/mechanism_fixtures.hpp"
 
 namespace pkm {
 namespace {
@@ -11,7 +12,7 @@ class InfluenceContract : public testing::TestWithParam<std::string> {
   void SetUp() override {
     if (!mechanism().velocities()) GTEST_SKIP() << info().name << " has no influence coefficients";
   }
-  const Mechanism& mechanism() const { return *test::mechanism_called(GetParam()); }
+  const Mechanism& mechanism() const { return *test::test_mechanism(GetParam()); }
   const MechanismInfo& info() const { return mechanism().info(); }
   std::size_t joints() const { return info().joints.size(); }
   std::size_t coordinates() const { return info().coordinates.size(); }
@@ -36,7 +37,7 @@ TEST_P(InfluenceContract, FirstOrderIsTheJacobianOfThePose) {
   }
 }
 
-TEST_P(InfluenceContract, SecondOrderIsSymmetricAndEqualsDifferences) {
+TEST_P(InfluenceContract, SecondOrderIsSymmetricAndEqualsFiniteDifferences) {
   constexpr double kStep = 1e-5;
   for (const MotionSample& now : samples()) {
     const Influence<double> q = at(now.pose);
@@ -46,17 +47,17 @@ TEST_P(InfluenceContract, SecondOrderIsSymmetricAndEqualsDifferences) {
         there[c] += by;
         return at(there).G;
       };
-      const auto slope = (moved(kStep) - moved(-kStep)) * (1 / (2 * kStep));
+      const auto expected = (moved(kStep) - moved(-kStep)) * (1 / (2 * kStep));
       for (std::size_t i = 0; i < joints(); ++i)
         for (std::size_t k = 0; k < coordinates(); ++k) {
           EXPECT_EQ(q.H[i](k, c), q.H[i](c, k));
-          EXPECT_NEAR(q.H[i](k, c), slope(i, k), 1e-6 * (1 + std::fabs(slope(i, k))));
+          EXPECT_NEAR(q.H[i](k, c), expected(i, k), 1e-6 * (1 + std::fabs(expected(i, k))));
         }
     }
   }
 }
 
-TEST_P(InfluenceContract, JointsMoveAsTheySay) {
+TEST_P(InfluenceContract, PredictJointSpeedsAndAccelerations) {
   constexpr double kStep = 1e-4;  // [s]
   for (const double time : {0.1, 0.35, 0.62, 0.9}) {
     const MotionSample now = motion()->at(time);
@@ -71,8 +72,8 @@ TEST_P(InfluenceContract, JointsMoveAsTheySay) {
   }
 }
 
-TEST_P(InfluenceContract, ThePlatformMovesBackAsItDid) {
-  if (joints() != coordinates()) GTEST_SKIP() << "drives that are redundant";
+TEST_P(InfluenceContract, InverseCoefficientsRecoverThePlatformMotion) {
+  if (joints() != coordinates()) GTEST_SKIP() << "redundant drives";
   for (const double time : {0.1, 0.35, 0.62, 0.9}) {
     const MotionSample now = motion()->at(time);
     const Influence<double> q = at(now.pose), back = reversed(q);
@@ -86,8 +87,8 @@ TEST_P(InfluenceContract, ThePlatformMovesBackAsItDid) {
 }
 
 TEST_P(InfluenceContract, AreAbsentOutOfReach) {
-  if (inspect(test::far_pose(info())).assembles) GTEST_SKIP() << "nothing is out of reach, but for limits";
-  EXPECT_FALSE(mechanism().velocities()->influence(parameters(), test::far_pose(info()), info().modes[0]));
+  if (inspect(test::unreachable_pose(info())).assembles) GTEST_SKIP() << "without limits every pose is reachable";
+  EXPECT_FALSE(mechanism().velocities()->influence(parameters(), test::unreachable_pose(info()), info().modes[0]));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, InfluenceContract, testing::ValuesIn(test::mechanisms_and_files()),

@@ -1,4 +1,5 @@
-// A mechanism of the catalogue, or a user's, and poses within and without its workspace.
+// Fixture of the suite MechanismContract: a mechanism of the catalogue, of tests/own_mechanisms or from a file, with
+// poses inside and outside its workspace.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,24 +9,24 @@
 #include <vector>
 
 #include "engine/report/workspace_fields.hpp"
-#include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/contracts/mechanism_fixtures.hpp"
 
 namespace pkm {
 
 class MechanismContract : public testing::TestWithParam<std::string> {
  protected:
-  const Mechanism& mechanism() const { return *test::mechanism_called(GetParam()); }
+  const Mechanism& mechanism() const { return *test::test_mechanism(GetParam()); }
   const MechanismInfo& info() const { return mechanism().info(); }
   std::vector<double> parameters() const { return test::nominal(info()); }
 
-  struct Found {
-    std::vector<Pose<double>> inside, outside;  ///< centres of feasible cells and of the others
+  struct CellCentres {
+    std::vector<Pose<double>> inside, outside;  ///< centres of feasible and of infeasible cells
   };
-  /// Some 2700 cells of the usual sweep.
-  Found centres() const {
+  /// About 2700 cells of the default sweep.
+  CellCentres centres() const {
     const auto axes = static_cast<double>(info().sweeps.front().swept.size());
-    const test::Cells cells = test::some_cells(mechanism(), std::lround(std::pow(14, 3 / axes)));
-    Found found;
+    const test::Cells cells = test::sample_cells(mechanism(), std::lround(std::pow(14, 3 / axes)));
+    CellCentres found;
     for (std::size_t i = 0; i < cells.poses.size(); ++i)
       (cells.feasible[i] ? found.inside : found.outside).push_back(cells.poses[i]);
     return found;

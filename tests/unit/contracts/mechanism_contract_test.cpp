@@ -1,5 +1,6 @@
-// Laws that every mechanism of the catalogue obeys, and a user's, as far as it has what they speak of. A new mechanism
-// is tested without a change here.
+// Contract of mechanisms: description, sweeps, kinematics and feasibility, for every mechanism of the catalogue, of
+// tests/own_mechanisms and from files, as far as it supports the tested capability. New mechanisms are tested
+// automatically.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,20 +14,20 @@ namespace pkm {
 namespace {
 
 template <class Axes>
-void expect_named(const Axes& axes, std::size_t most) {
+void expect_valid_axes(const Axes& axes, std::size_t max_size) {
   std::set<std::string> names;
   EXPECT_GE(axes.size(), 1u);
-  EXPECT_LE(axes.size(), most);
+  EXPECT_LE(axes.size(), max_size);
   for (const AxisInfo& axis : axes) {
     EXPECT_TRUE(names.insert(axis.name).second) << axis.name << " twice";
     EXPECT_TRUE(axis.unit == "m" || axis.unit == "rad") << axis.name;
   }
 }
 
-TEST_P(MechanismContract, DescribesItself) {
+TEST_P(MechanismContract, HasDistinctNamesUnitsAndConsistentBounds) {
   for (const std::string& words : {info().name, info().title, info().source}) EXPECT_NE(words, "") << info().name;
-  expect_named(info().coordinates, kMostCoordinates);
-  expect_named(info().joints, kMostJoints);
+  expect_valid_axes(info().coordinates, kMaxCoordinates);
+  expect_valid_axes(info().joints, kMaxJoints);
   ASSERT_FALSE(info().modes.empty());
   std::set<std::string> names;
   for (const Parameter& p : info().parameters) {
@@ -38,8 +39,8 @@ TEST_P(MechanismContract, DescribesItself) {
   }
 }
 
-TEST_P(MechanismContract, SweepsAreFoundByWhatTheySweepOrHold) {
-  std::set<int> all, can_hold;
+TEST_P(MechanismContract, SweepsAreSelectedByTheirSweptOrFixedCoordinates) {
+  std::set<int> all, fixable;
   for (int coordinate = 0; coordinate < std::ssize(info().coordinates); ++coordinate) all.insert(coordinate);
   ASSERT_FALSE(info().sweeps.empty());
   for (const Sweep& sweep : info().sweeps) {
@@ -49,27 +50,27 @@ TEST_P(MechanismContract, SweepsAreFoundByWhatTheySweepOrHold) {
     std::multiset<int> coordinates(sweep.swept.begin(), sweep.swept.end());
     EXPECT_TRUE(coordinates.contains(sweep.column));
     coordinates.insert(sweep.held.begin(), sweep.held.end());
-    EXPECT_EQ(coordinates, std::multiset<int>(all.begin(), all.end()));  // each is swept or held
+    EXPECT_EQ(coordinates, std::multiset<int>(all.begin(), all.end()));  // each coordinate is either swept or fixed
     EXPECT_TRUE(std::ranges::is_sorted(sweep.held));
-    SurveyPlan plan = test::voxels(info(), sweep, 2);
-    std::ranges::reverse(plan.swept);  // their order is the mechanism's
-    EXPECT_EQ(&sweep_of(info(), plan), &sweep) << "another sweeps the same";
+    WorkspacePlan plan = test::voxels(info(), sweep, 2);
+    std::ranges::reverse(plan.swept);  // the order of the plan's coordinates is irrelevant
+    EXPECT_EQ(&sweep_of(info(), plan), &sweep) << "another sweep has the same swept coordinates";
     plan.swept.clear();
-    EXPECT_TRUE(std::ranges::includes(sweep_of(info(), plan).held, sweep.held)) << "it holds something else";
+    EXPECT_TRUE(std::ranges::includes(sweep_of(info(), plan).held, sweep.held)) << "a fixed coordinate is missing";
     EXPECT_NE(volume_unit(info(), plan), "");
     for (const int coordinate : sweep.held) EXPECT_TRUE(mechanism().middle(parameters(), coordinate)) << coordinate;
-    can_hold.insert(sweep.held.begin(), sweep.held.end());
+    fixable.insert(sweep.held.begin(), sweep.held.end());
   }
   for (int coordinate = -1; coordinate <= std::ssize(info().coordinates); ++coordinate) {
-    if (can_hold.contains(coordinate)) continue;
-    for (SurveyPlan& plan : test::plans(mechanism(), info().sweeps.front(), 2)) {
+    if (fixable.contains(coordinate)) continue;
+    for (WorkspacePlan& plan : test::plans(mechanism(), info().sweeps.front(), 2)) {
       plan.held = {{.coordinate = coordinate}};
-      EXPECT_THROW(prepare_survey(mechanism(), plan, {}), std::invalid_argument) << coordinate;
+      EXPECT_THROW(prepare_workspace(mechanism(), plan, {}), std::invalid_argument) << coordinate;
     }
   }
 }
 
-TEST_P(MechanismContract, TakesItsNominalParametersAndRefusesThoseOutOfRange) {
+TEST_P(MechanismContract, AcceptsNominalParametersAndRejectsThoseOutOfRange) {
   EXPECT_FALSE(mechanism().refuse(parameters()));
   for (std::size_t i = 0; i < info().parameters.size(); ++i)
     for (const double wrong : {info().parameters[i].lower - 1, info().parameters[i].upper + 1, std::nan("")}) {
@@ -79,33 +80,34 @@ TEST_P(MechanismContract, TakesItsNominalParametersAndRefusesThoseOutOfRange) {
     }
 }
 
-TEST_P(MechanismContract, NoPoseIsFeasibleOutOfItsReach) {
+TEST_P(MechanismContract, NoPoseIsFeasibleOutsideTheReach) {
   for (const Sweep& sweep : info().sweeps)
-    for (const int held : sweep.held) {
-      const auto reach = mechanism().reach(parameters(), held);
-      const bool whole_turn = reach && info().coordinates[static_cast<std::size_t>(held)].turns() &&
-                              (*reach)[1] - (*reach)[0] >= 2 * std::numbers::pi;
-      if (!reach || whole_turn) continue;
+    for (const int fixed : sweep.held) {
+      const auto reach = mechanism().reach(parameters(), fixed);
+      const bool full_rotation = reach && info().coordinates[static_cast<std::size_t>(fixed)].turns() &&
+                                 (*reach)[1] - (*reach)[0] >= 2 * std::numbers::pi;
+      if (!reach || full_rotation) continue;
       for (Pose<double> pose : centres().inside)
         for (const double value : {(*reach)[0] - 1e-3, (*reach)[1] + 1e-3}) {
-          pose[static_cast<std::size_t>(held)] = value;
+          pose[static_cast<std::size_t>(fixed)] = value;
           EXPECT_FALSE(inspect(pose).feasible) << test::words(info(), pose);
         }
     }
 }
 
-TEST_P(MechanismContract, ReachIsWidestAtCornersOfTheDesigns) {
-  // along each parameter on its own, about its nominal value
-  const auto near = [&](std::size_t i, double share) {
+TEST_P(MechanismContract, ReachIsLargestAtVerticesOfTheParameterBounds) {
+  // Varies one parameter at a time around its nominal value.
+  const auto varied = [&](std::size_t i, double share) {
     const Parameter& p = info().parameters[i];
     return std::clamp(parameters()[i] + 0.1 * share * (std::fabs(parameters()[i]) + 0.01), p.lower, p.upper);
   };
   const int coordinate = info().sweeps[0].held.empty() ? -1 : info().sweeps[0].held[0];
-  if (coordinate < 0 || !mechanism().reach(parameters(), coordinate)) GTEST_SKIP() << "says nothing";
+  if (coordinate < 0 || !mechanism().reach(parameters(), coordinate))
+    GTEST_SKIP() << "the mechanism does not provide the reach";
   for (std::size_t i = 0; i < info().parameters.size(); ++i) {
     const auto at = [&](double share) {
       auto p = parameters();
-      p[i] = near(i, share);
+      p[i] = varied(i, share);
       return *mechanism().reach(p, coordinate);
     };
     const auto low = at(-1), high = at(1);
@@ -116,8 +118,8 @@ TEST_P(MechanismContract, ReachIsWidestAtCornersOfTheDesigns) {
   }
 }
 
-TEST_P(MechanismContract, AssemblesWhereTheVoxelMapSaysAndNowhereElse) {
-  const Found found = centres();
+TEST_P(MechanismContract, PosesAreFeasibleExactlyInTheFeasibleCellsOfTheVoxelMap) {
+  const CellCentres found = centres();
   EXPECT_GT(found.inside.size(), 20u);
   EXPECT_GT(found.outside.size(), 20u);
   for (const auto& pose : found.inside) {
@@ -140,9 +142,9 @@ TEST_P(MechanismContract, MarginsHaveTheSameNamesAtEveryPoseThatAssembles) {
     for (const auto& named : report.margins) all.push_back(named.first);
     return all;
   };
-  const auto expected = names(inspect(test::usual_pose(mechanism())));
+  const auto expected = names(inspect(test::reference_pose(mechanism())));
   EXPECT_FALSE(expected.empty());
-  const Found found = centres();
+  const CellCentres found = centres();
   for (const auto& poses : {found.inside, found.outside})
     for (const auto& pose : poses) {
       const PoseReport report = inspect(pose);
@@ -154,9 +156,10 @@ TEST_P(MechanismContract, MarginsHaveTheSameNamesAtEveryPoseThatAssembles) {
 
 TEST_P(MechanismContract, ForwardOfInverseContainsThePose) {
   if (!mechanism().forward()) GTEST_SKIP() << "no forward kinematics";
-  constexpr double kRoundoff = 1e-7;  // of the square roots near the ends of a stroke
+  constexpr double kRoundoff = 1e-7;  // square roots near the ends of a stroke amplify rounding errors
   const auto poses = centres().inside;
-  const std::size_t step = test::is_of_file(info()) ? poses.size() / 6 + 1 : 1;  // Newton's method takes its time
+  const std::size_t step = test::is_from_file(info()) ? poses.size() / 6 + 1
+                                                      : 1;  // forward kinematics of files, by Newton's method, are slow
   for (std::size_t at = 0; at < poses.size(); at += step) {
     const Pose<double>& pose = poses[at];
     const PoseReport report = inspect(pose);
@@ -167,9 +170,9 @@ TEST_P(MechanismContract, ForwardOfInverseContainsThePose) {
       ASSERT_EQ(mode.pose.size(), pose.size());
       double worst = 0;
       for (std::size_t i = 0; i < pose.size(); ++i) {
-        const double way = mode.pose[i] - pose[i];
-        worst = std::fmax(worst,
-                          std::fabs(info().coordinates[i].turns() ? std::remainder(way, 2 * std::numbers::pi) : way));
+        const double error = mode.pose[i] - pose[i];
+        worst = std::fmax(
+            worst, std::fabs(info().coordinates[i].turns() ? std::remainder(error, 2 * std::numbers::pi) : error));
       }
       contained = contained || worst < kRoundoff;
     }
@@ -178,14 +181,14 @@ TEST_P(MechanismContract, ForwardOfInverseContainsThePose) {
   }
 }
 
-TEST_P(MechanismContract, JacobianEqualsDifferencesOfTheJoints) {
-  if (!inspect(test::usual_pose(mechanism())).J) GTEST_SKIP() << "no Jacobian";
+TEST_P(MechanismContract, JacobianEqualsFiniteDifferencesOfTheJoints) {
+  if (!inspect(test::reference_pose(mechanism())).J) GTEST_SKIP() << "no Jacobian";
   constexpr double kStep = 1e-5;
   int compared = 0;
   for (const auto& pose : centres().inside) {
     const PoseReport here = inspect(pose);
-    // Close to a singularity the third derivative, and with it the error of the differences, grows without bound.
-    if (!here.J || std::ranges::any_of(*here.J, [](double slope) { return std::fabs(slope) > 10; })) continue;
+    // Near a singularity the third derivative is unbounded, and with it the error of the finite differences.
+    if (!here.J || std::ranges::any_of(*here.J, [](double element) { return std::fabs(element) > 10; })) continue;
     ASSERT_EQ(here.J->rows(), info().joints.size());
     ASSERT_EQ(here.J->cols(), info().coordinates.size());
     for (std::size_t c = 0; c < pose.size(); ++c) {

@@ -1,5 +1,5 @@
-// Laws that every objective and constraint of the catalogues obeys with every mechanism that it serves. A new entry is
-// tested without a change here.
+// Contract of objectives and constraints: every entry of the catalogues, with every mechanism that supports it. New
+// entries are tested automatically.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "engine/mechanism/driven.hpp"
 #include "objectives/all.hpp"
 #include "tests/own_mechanisms/three_ropes.hpp"
-#include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/contracts/mechanism_fixtures.hpp"
 
 namespace pkm {
 namespace {
@@ -20,7 +20,7 @@ using test::best_plan;
 using test::nominal;
 using ::testing::HasSubstr;
 
-/// A mechanism that can do nothing beyond being surveyed, with the parameters and coordinates of another.
+/// A mechanism without any optional capability, with the parameters and coordinates of another one.
 class Bare final : public Mechanism {
  public:
   explicit Bare(const Mechanism& of) : info_(of.info()) {
@@ -38,31 +38,31 @@ class Bare final : public Mechanism {
   MechanismInfo info_;
 };
 
-/// Those of the suites, and one with drive trains.
+/// The mechanisms of the contract suites, and one with drive trains.
 MechanismList mechanisms_with_a_driven_one() {
   MechanismList all = test::mechanisms();
-  const auto bare = *std::ranges::find_if(all, [](const auto& m) { return m->info().name == "3crr-r-cru"; });
+  const auto bare = *std::ranges::find_if(all, [](const auto& m) { return m.name() == "3crr-r-cru"; });
   const DriveTrain screw{.ratio = 300, .rotor = 1e-6, .efficiency = 0.9, .coulomb = 1, .viscous = 2};
   all.push_back(with_drive_trains(bare, DriveTrains(4, screw)));
   return all;
 }
 
-/// All pairs of an entry and a mechanism that it serves.
+/// Calls action(entry, mechanism) for all pairs of an entry and a mechanism that supports it.
 template <class List, class Do>
-void for_all_served(const List& entries, const Do& action) {
+void for_all_supported(const List& entries, const Do& action) {
   for (const auto& entry : entries) {
-    int served = 0;
+    int supported = 0;
     for (const auto& mechanism : mechanisms_with_a_driven_one()) {
       SCOPED_TRACE(entry.name + " of " + mechanism->info().name);
       if (entry.refusal(*mechanism)) continue;
-      ++served;
+      ++supported;
       action(entry, *mechanism);
     }
-    EXPECT_GT(served, 0) << entry.name << " serves no mechanism";
+    EXPECT_GT(supported, 0) << entry.name << ": no mechanism supports it";
   }
 }
 
-/// Defaults, and something harmless for what must be given: the first parameter as it is nominally.
+/// Default options; required ones get values that are satisfied by the nominal design.
 Options some_options(const std::vector<OptionSpec>& specs, const MechanismInfo& info, const std::string& expression) {
   Options options = default_options(specs);
   for (const OptionSpec& spec : specs) {
@@ -83,7 +83,7 @@ Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
                       shortest(info.parameters[0].nominal) + " - " + info.parameters[0].name);
 }
 
-double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const SurveyPlan& plan) {
+double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const WorkspacePlan& plan) {
   const Options options = some_options(entry, mechanism.info());
   const auto motions = test::motions(mechanism);
   const EntryContext context{mechanism, plan, options, {}, motions};
@@ -95,9 +95,9 @@ double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const Surv
   return entry.make(context)->value({mechanism, parameters, &survey, scratch});
 }
 
-TEST(ObjectiveContract, IsDescribed) {
-  for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
-    const SurveyPlan p = best_plan(mechanism);
+TEST(ObjectiveContract, HasNameMeaningAndUnit) {
+  for_all_supported(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
+    const WorkspacePlan p = best_plan(mechanism);
     const Options options = some_options(entry, mechanism.info());
     EXPECT_NE(entry.name, "");
     EXPECT_NE(entry.meaning, "");
@@ -107,8 +107,8 @@ TEST(ObjectiveContract, IsDescribed) {
   });
 }
 
-TEST(ObjectiveContract, VoxelsAgreeWithColumnsOrFinerOnesWithinTheGridsError) {
-  for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
+TEST(ObjectiveContract, VoxelsAgreeWithColumnsOrFinerVoxelsToGridAccuracy) {
+  for_all_supported(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
     const double fine = value(entry, mechanism, best_plan(mechanism, 30));
     const double voxels = value(entry, mechanism, test::voxels(mechanism.info(), mechanism.columns() ? 40 : 19));
     EXPECT_TRUE(std::isfinite(fine) && fine != 0);
@@ -117,32 +117,32 @@ TEST(ObjectiveContract, VoxelsAgreeWithColumnsOrFinerOnesWithinTheGridsError) {
 }
 
 TEST(ObjectiveContract, IsDefinedOnAnEmptyWorkspace) {
-  for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
-    for (SurveyPlan& p : test::plans(mechanism, mechanism.info().sweeps.front(), 10)) {
-      p.limits = test::absurd_limits(mechanism, p);
+  for_all_supported(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
+    for (WorkspacePlan& p : test::plans(mechanism, mechanism.info().sweeps.front(), 10)) {
+      p.limits = test::infeasible_limits(mechanism, p);
       EXPECT_TRUE(std::isfinite(value(entry, mechanism, p)));
     }
   });
 }
 
-/// Either the entry serves a bare mechanism too, or it says in one sentence who lacks what.
+/// Either the bare mechanism supports the entry, or the reason names both the entry and the mechanism.
 template <class Entry>
-void expect_both_sides_named(const Entry& entry, const Mechanism& mechanism) {
-  const Refusal refusal = entry.refusal(Bare(mechanism));
+void expect_both_named(const Entry& entry, const Mechanism& mechanism) {
+  const Unsupported refusal = entry.refusal(Bare(mechanism));
   if (!refusal) return;
   EXPECT_THAT(*refusal, HasSubstr(entry.name));
   EXPECT_THAT(*refusal, HasSubstr("bare-machine"));
 }
 
-TEST(ObjectiveContract, RefusalNamesBothSides) {
-  for_all_served(all_objectives(),
-                 [](const auto& entry, const auto& mechanism) { expect_both_sides_named(entry, mechanism); });
+TEST(ObjectiveContract, ReasonNamesTheEntryAndTheUnsupportedMechanism) {
+  for_all_supported(all_objectives(),
+                    [](const auto& entry, const auto& mechanism) { expect_both_named(entry, mechanism); });
   const Bare bare(*all_mechanisms()[0]);
   EXPECT_TRUE(find_named(all_objectives(), "workspace-ratio")->refusal(bare));
   EXPECT_TRUE(find_named(all_objectives(), "conditioning")->refusal(bare));
 }
 
-TEST(ObjectiveContract, NoForcesOfTheDrivesWithoutASquareJacobian) {
+TEST(ObjectiveContract, DynamicsNeedASquareJacobian) {
   const test::ThreeRopes ropes;
   for (const std::string name : {"dci", "dci-uniformity", "inertia-condition", "peak-force", "peak-power"})
     EXPECT_EQ(find_named(all_objectives(), name)->refusal(ropes),
@@ -150,15 +150,15 @@ TEST(ObjectiveContract, NoForcesOfTheDrivesWithoutASquareJacobian) {
                   " needs dynamics, and mechanism three-ropes has 3 joints for 2 coordinates, not as many of both");
 }
 
-TEST(ConstraintContract, RefusalNamesBothSides) {
-  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
-    expect_both_sides_named(entry, mechanism);
+TEST(ConstraintContract, ReasonNamesTheEntryAndTheUnsupportedMechanism) {
+  for_all_supported(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+    expect_both_named(entry, mechanism);
     EXPECT_TRUE(!entry.pose_level() || entry.refusal(Bare(mechanism)));
   });
 }
 
 double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const std::vector<double>& parameters) {
-  const SurveyPlan p = best_plan(mechanism);
+  const WorkspacePlan p = best_plan(mechanism);
   const Options options = some_options(entry, mechanism.info());
   const std::vector<Region> regions = {test::task(mechanism)};
   const std::vector<NamedMotion> motions = test::motions(mechanism);
@@ -166,40 +166,40 @@ double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const st
   return entry.make({mechanism, p, options, regions, motions})->value({mechanism, parameters, nullptr, scratch});
 }
 
-TEST(ConstraintContract, IsDescribed) {
-  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+TEST(ConstraintContract, HasNameMeaningAndUnit) {
+  for_all_supported(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
     EXPECT_NE(entry.name, "");
     EXPECT_NE(entry.meaning, "");
     for (const OptionSpec& option : entry.options(mechanism.info())) EXPECT_NE(option.meaning, "") << option.name;
-    const SurveyPlan p = best_plan(mechanism);
+    const WorkspacePlan p = best_plan(mechanism);
     const Options options = some_options(entry, mechanism.info());
     EXPECT_TRUE(entry.pose_level() || !entry.unit({mechanism, p, options}).empty());
     EXPECT_TRUE(!entry.detail || !entry.detail({mechanism, p, options}).empty());
   });
 }
 
-TEST(ConstraintContract, DesignLevelOnesHoldForSomeDesignsAndFailForOthers) {
-  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+TEST(ConstraintContract, DesignLevelConstraintsAreSatisfiedBySomeDesignsOnly) {
+  for_all_supported(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
     if (entry.pose_level()) return;
-    int holds = 0, violated = 0;
+    int satisfied = 0, violated = 0;
     Stream random(1, 0, 0, Stream::Use::start);
     for (int i = 0; i < 200; ++i) {
       auto design = nominal(mechanism.info());
-      const double share = i / 200.0;  // of the way from the nominal design to 0.4 to 2 times its parameters
+      const double share = i / 200.0;  // amplitude: parameters vary up to 0.4 to 2 times their nominal values
       for (double& p : design) p *= 1 + share * (1.6 * random.u01() - 0.6);
       const double m = margin(entry, mechanism, design);
       ASSERT_TRUE(std::isfinite(m));
-      ++(m >= 0 ? holds : violated);
+      ++(m >= 0 ? satisfied : violated);
     }
-    EXPECT_GT(holds, 0);
+    EXPECT_GT(satisfied, 0);
     EXPECT_GT(violated, 0);
   });
 }
 
-/// Designs of 4ppa-2par made by hand: which side they lie on follows from the equations without a computer.
-TEST(ConstraintContract, SignsOnDesignsMadeByHand) {
+/// Designs of 4ppa-2par whose margins are easily computed by hand from the equations.
+TEST(ConstraintContract, MarginsOfHandComputedDesigns) {
   const Mechanism& machine =
-      **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m->info().name == "4ppa-2par"; });
+      **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m.name() == "4ppa-2par"; });
   const auto with = [&](const std::string& name, double v) {
     auto design = nominal(machine.info());
     for (std::size_t i = 0; i < design.size(); ++i)
@@ -217,27 +217,27 @@ TEST(ConstraintContract, SignsOnDesignsMadeByHand) {
   EXPECT_NEAR(of("linear", with("a", 0.3)), -0.1, 1e-12);
 }
 
-TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
-  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+TEST(ConstraintContract, PoseLevelConstraintsOnlyReduceTheWorkspace) {
+  for_all_supported(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
     if (!entry.pose_level()) return;
     const MechanismInfo& info = mechanism.info();
-    const auto volume = [&](SurveyPlan p, const Options& options) {
+    const auto volume = [&](WorkspacePlan p, const Options& options) {
       p.limits = entry.limits(info, options);
       return test::survey(mechanism, nominal(info), p).volume;
     };
-    const auto uncut = [&](const SurveyPlan& p) { return test::survey(mechanism, nominal(info), p).volume; };
-    std::vector<SurveyPlan> plans;
+    const auto uncut = [&](const WorkspacePlan& p) { return test::survey(mechanism, nominal(info), p).volume; };
+    std::vector<WorkspacePlan> plans;
     for (const Sweep& sweep : test::sweeps(mechanism)) plans.push_back(best_plan(mechanism, sweep, 20));
     const auto specs = entry.options(info);
     EXPECT_TRUE(!specs.empty() || volume(plans[0], {}) < uncut(plans[0]));
     for (const OptionSpec& spec : specs) {
       const LimitInfo* limit = find_named(info.limits, spec.name);
       if (!limit) continue;
-      // Where nothing, or little, is left; a length without a natural end counts up to 1 m.
+      // A value that leaves little or no workspace; at most 1 m for lengths without a natural maximum.
       const auto index = static_cast<std::size_t>(limit - info.limits.data());
-      const double end = std::min(*test::absurd_limits(info).given[index], 1.0);
-      double least_left = 1;  // a limit may cut nothing of a sweep that holds the very coordinate that it bounds
-      for (const SurveyPlan& p : plans) {
+      const double end = std::min(*test::infeasible_limits(info).given[index], 1.0);
+      double smallest_ratio = 1;  // over the sweeps: a limit has no effect in a sweep whose fixed coordinate it bounds
+      for (const WorkspacePlan& p : plans) {
         const double free = uncut(p);
         double before = free;
         for (const double share : {0.25, 0.5, 0.75, 1.0}) {
@@ -247,9 +247,9 @@ TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
           EXPECT_LE(cut, before * (1 + 1e-8)) << spec.name << ", " << share << ", " << volume_unit(info, p);
           before = cut;
         }
-        least_left = std::min(least_left, before / free);
+        smallest_ratio = std::min(smallest_ratio, before / free);
       }
-      EXPECT_LT(least_left, 0.5) << spec.name;
+      EXPECT_LT(smallest_ratio, 0.5) << spec.name;
     }
   });
 }

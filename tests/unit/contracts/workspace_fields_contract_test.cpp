@@ -1,4 +1,5 @@
-// Pictures of workspaces say what surveys say, for every mechanism and each of its sweeps.
+// Contract of workspace fields (the data of pictures and exports): they agree with the workspace analysis, for every
+// mechanism and each of its sweeps; and the isosurface computed from them encloses the feasible cells.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -8,29 +9,31 @@
 #include "engine/math/statistics.hpp"
 #include "engine/problem/pose_options.hpp"
 #include "engine/report/isosurface.hpp"
-#include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/contracts/mechanism_fixtures.hpp"
 #include "tests/unit/report/enclosed_volume.hpp"
 
 namespace pkm {
 namespace {
 
-class WorkspaceFieldsContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
+class WorkspaceFieldsContract : public testing::TestWithParam<MechanismList::value_type> {
  protected:
   const Mechanism& mechanism() const { return *GetParam(); }
   const MechanismInfo& info() const { return mechanism().info(); }
   std::vector<double> parameters() const { return test::nominal(info()); }
   std::vector<Sweep> sweeps() const { return test::sweeps(mechanism()); }
-  /// Of a sweep, 12 x 13 x 14 cells, or as many as it has axes; `finer` times along each.
-  SurveyPlan plan(const Sweep& sweep, std::int64_t finer = 1) const {
-    SurveyPlan plan = test::voxels(info(), sweep, 0);
+  /// Voxel plan of a sweep with 12, 13 and 14 cells along its axes, each multiplied by `finer`.
+  WorkspacePlan plan(const Sweep& sweep, std::int64_t finer = 1) const {
+    WorkspacePlan plan = test::voxels(info(), sweep, 0);
     VoxelOptions& voxels = std::get<VoxelOptions>(plan.method);
     for (std::size_t i = 0; i < sweep.swept.size(); ++i) voxels.cells[i] = finer * (12 + static_cast<std::int64_t>(i));
     return plan;
   }
-  SurveyPlan usual_plan() const { return plan(info().sweeps.front()); }
-  WorkspaceFields fields(const SurveyPlan& plan) const { return workspace_fields(mechanism(), parameters(), plan, ""); }
-  /// A box inside the workspace's hull, on all sides of which feasible cells are cut off.
-  SurveyPlan cut(SurveyPlan plan) const {
+  WorkspacePlan default_plan() const { return plan(info().sweeps.front()); }
+  WorkspaceFields fields(const WorkspacePlan& plan) const {
+    return workspace_fields(mechanism(), parameters(), plan, "");
+  }
+  /// The plan with a box slightly smaller than the bounding box of the feasible cells: each face cuts some off.
+  WorkspacePlan cut(WorkspacePlan plan) const {
     const WorkspaceFields whole = fields(plan);
     const VoxelGrid grid = whole.grid();
     Box& box = std::get<VoxelOptions>(plan.method).box.emplace();
@@ -49,7 +52,7 @@ class WorkspaceFieldsContract : public testing::TestWithParam<std::shared_ptr<co
   }
 };
 
-TEST_P(WorkspaceFieldsContract, FeasibleCellsAreThoseOfTheVoxelMapAndMarginsAgree) {
+TEST_P(WorkspaceFieldsContract, FeasibleCellsEqualTheVoxelMapAndTheSignsOfMargins) {
   for (const Sweep& sweep : sweeps()) {
     SCOPED_TRACE(test::words(info(), sweep));
     const WorkspaceFields found = fields(plan(sweep));
@@ -75,38 +78,38 @@ TEST_P(WorkspaceFieldsContract, FeasibleCellsAreThoseOfTheVoxelMapAndMarginsAgre
   }
 }
 
-TEST_P(WorkspaceFieldsContract, MapsAreHeldAtTheMiddleUnlessThePlanSaysAValue) {
+TEST_P(WorkspaceFieldsContract, FixedCoordinatesHaveDefaultValuesUnlessThePlanGivesValues) {
   for (const Sweep& sweep : sweeps()) {
     SCOPED_TRACE(test::words(info(), sweep));
     if (sweep.held.empty()) continue;
     const WorkspaceFields found = fields(plan(sweep));
-    SurveyPlan said = plan(sweep);
+    WorkspacePlan with_values = plan(sweep);
     for (std::size_t i = 0; i < sweep.held.size(); ++i) {
-      const double middle = *mechanism().middle(parameters(), sweep.held[i]);
-      EXPECT_EQ(found.held[i].lower, middle);
-      said.held[i] = {sweep.held[i], HeldCoordinate::Kind::value, middle};
+      const double value = *mechanism().middle(parameters(), sweep.held[i]);
+      EXPECT_EQ(found.held[i].lower, value);
+      with_values.held[i] = {sweep.held[i], FixedCoordinate::Kind::value, value};
     }
-    EXPECT_EQ(fields(said).field("feasible").values, found.field("feasible").values);
-    EXPECT_NE(fields(said).held_note, found.held_note);
+    EXPECT_EQ(fields(with_values).field("feasible").values, found.field("feasible").values);
+    EXPECT_NE(fields(with_values).fixed_note, found.fixed_note);
   }
 }
 
-TEST_P(WorkspaceFieldsContract, ColumnsArePicturedByVoxels) {
+TEST_P(WorkspaceFieldsContract, ColumnPlansAreSampledByVoxels) {
   if (!mechanism().columns()) GTEST_SKIP() << "no columns";
   const WorkspaceFields found = fields(test::columns(info()));
   for (const WorkspaceAxis& axis : found.axes) EXPECT_EQ(axis.cells, kPictureCells);
   EXPECT_GT(found.volume, 0);
   if (info().sweeps.front().integrates) {
-    SurveyPlan integrated = test::columns(info());
-    integrated.held[0].kind = HeldCoordinate::Kind::integrated;
-    const WorkspaceFields middle = fields(integrated);
-    EXPECT_EQ(middle.held[0].lower, found.held[0].lower);
-    EXPECT_NE(middle.held_note, found.held_note);
-    EXPECT_EQ(middle.volume, found.volume);
+    WorkspacePlan integrated = test::columns(info());
+    integrated.held[0].kind = FixedCoordinate::Kind::integrated;
+    const WorkspaceFields fixed = fields(integrated);
+    EXPECT_EQ(fixed.held[0].lower, found.held[0].lower);
+    EXPECT_NE(fixed.fixed_note, found.fixed_note);
+    EXPECT_EQ(fixed.volume, found.volume);
   }
 }
 
-TEST_P(WorkspaceFieldsContract, ConditioningAndCouplingHaveTheStatisticsOfSurveys) {
+TEST_P(WorkspaceFieldsContract, ConditioningAndCouplingHaveTheMeansOfTheWorkspaceAnalysis) {
   if (info().characteristic_length.empty()) GTEST_SKIP() << "no conditioning";
   const auto mean = [](const std::vector<double>& values) {
     double sum = 0;
@@ -132,15 +135,15 @@ TEST_P(WorkspaceFieldsContract, ConditioningAndCouplingHaveTheStatisticsOfSurvey
     for (std::size_t i = 1; i <= info().joints.size(); ++i) limbs.push_back(std::to_string(i));
     for (const std::string& limb : limbs)
       EXPECT_NEAR(mean(found.field("dci_" + limb).values),
-                  weighted_mean(coupled.weight, field_of(coupled, kCouplingIndex, limb, scratch)), 1e-9)
+                  weighted_mean(coupled.weight, reduced_field(coupled, kCouplingIndex, limb, scratch)), 1e-9)
           << limb;
     EXPECT_NEAR(mean(found.field("inertia_condition").values),
                 weighted_mean(coupled.weight, coupled.of(kInertiaCondition)), 1e-9);
   }
 }
 
-TEST_P(WorkspaceFieldsContract, JointsAreThoseOfTheInverseKinematics) {
-  const WorkspaceFields found = fields(usual_plan());
+TEST_P(WorkspaceFieldsContract, JointsEqualTheInverseKinematics) {
+  const WorkspaceFields found = fields(default_plan());
   for (std::size_t cell = 0; cell < found.cells(); ++cell) {
     if (!(found.field("feasible").values[cell] > 0)) continue;
     const auto report = mechanism().inspect(parameters(), found.pose(cell), info().modes.front(), no_limits(info()));
@@ -150,9 +153,9 @@ TEST_P(WorkspaceFieldsContract, JointsAreThoseOfTheInverseKinematics) {
 }
 
 TEST_P(WorkspaceFieldsContract, BitsDoNotDependOnThreads) {
-  const WorkspaceFields alone = fields(usual_plan());
+  const WorkspaceFields alone = fields(default_plan());
   WorkspaceFields shared;
-  with_team(3, [&] { shared = fields(usual_plan()); });
+  with_team(3, [&] { shared = fields(default_plan()); });
   ASSERT_EQ(shared.fields.size(), alone.fields.size());
   for (std::size_t f = 0; f < alone.fields.size(); ++f)
     for (std::size_t cell = 0; cell < alone.cells(); ++cell) {
@@ -161,13 +164,13 @@ TEST_P(WorkspaceFieldsContract, BitsDoNotDependOnThreads) {
     }
 }
 
-TEST_P(WorkspaceFieldsContract, ParametersOfNoMechanismAreRefused) {
+TEST_P(WorkspaceFieldsContract, InvalidParametersAreRejected) {
   auto wrong = parameters();
   wrong[0] = info().parameters[0].lower - 1;
-  EXPECT_THROW(workspace_fields(mechanism(), wrong, usual_plan(), ""), std::invalid_argument);
+  EXPECT_THROW(workspace_fields(mechanism(), wrong, default_plan(), ""), std::invalid_argument);
 }
 
-/// Every edge lies in two triangles, which run along it in opposite directions.
+/// Expects a closed, consistently oriented surface: every edge belongs to two triangles, with opposite directions.
 void expect_closed(const Isosurface& surface) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> runs;
   for (const auto& [a, b, c] : surface.triangles)
@@ -178,17 +181,17 @@ void expect_closed(const Isosurface& surface) {
   }
 }
 
-TEST_P(WorkspaceFieldsContract, SurfaceIsClosedFacesOutwardsAndEnclosesWhatCellsCount) {
+TEST_P(WorkspaceFieldsContract, SurfaceIsClosedOrientedOutwardsAndEnclosesTheVoxelVolume) {
   const auto [first, last] = std::pair(sweeps().front(), sweeps().back());
-  // Where cells are tested one by one, the first of many is like the others but for the last, of one coordinate.
+  // The generic cell-by-cell evaluator treats all sweeps alike: test the first and the last, of one coordinate.
   for (const Sweep& sweep : mechanism().voxels() ? sweeps() : std::vector<Sweep>{first, last})
     for (const bool is_cut : {false, true}) {
       SCOPED_TRACE(test::words(info(), sweep) + (is_cut ? ", cut by a box" : ""));
-      SurveyPlan fine = plan(sweep, 2);
+      WorkspacePlan fine = plan(sweep, 2);
       if (is_cut) std::get<VoxelOptions>(fine.method).box = cut(plan(sweep)).box();
       const WorkspaceFields found = fields(fine);
       if (sweep.swept.size() < 3) {
-        EXPECT_TRUE(refuse_surface(names_of(found.axes)));
+        EXPECT_TRUE(surface_unsupported(names_of(found.axes)));
         EXPECT_THROW(isosurface(found), std::invalid_argument);
         break;
       }
@@ -200,7 +203,7 @@ TEST_P(WorkspaceFieldsContract, SurfaceIsClosedFacesOutwardsAndEnclosesWhatCells
       ASSERT_GT(surface.triangles.size(), 100u);
       ASSERT_EQ(surface.inside.size(), surface.vertices.size());
       expect_closed(surface);
-      // Cells along the surface count whole or not at all.
+      // The voxel volume counts boundary cells either completely or not at all.
       EXPECT_NEAR(test::enclosed_volume(surface) / found.volume, 1, 0.06);
       const VoxelGrid grid = found.grid();
       std::vector<double> scratch;

@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-TEST(InstructionSet, IsTheWidestUnlessAnotherIsChosen) {
+TEST(InstructionSet, DefaultsToTheWidestAndCanBeSelected) {
   EXPECT_EQ(instruction_set(), widest_instruction_set());
   for (const auto set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
     if (set > widest_instruction_set()) {

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-TEST(Options, DefaultsAreWhatTheSpecsSayAndNothingElse) {
+TEST(Options, DefaultsAreThoseOfTheSpecsOnly) {
   const auto spec = [](const char* name, OptionKind kind, std::optional<OptionValue> initial) {
     OptionSpec made;
     made.name = name;
@@ -35,7 +35,7 @@ TEST(Options, DefaultsAreWhatTheSpecsSayAndNothingElse) {
   EXPECT_THROW(options.number("count"), std::bad_variant_access);
 }
 
-TEST(Options, ValuesReadLikeTheStudyFile) {
+TEST(Options, ValuesAreWrittenInTheSyntaxOfAStudyFile) {
   EXPECT_EQ(to_text(0.1), "0.1");
   EXPECT_EQ(to_text(std::int64_t{-4}), "-4");
   EXPECT_EQ(to_text(false), "false");
@@ -44,7 +44,7 @@ TEST(Options, ValuesReadLikeTheStudyFile) {
   EXPECT_EQ(to_text(NamedNumbers{{"b", -1}, {"a", 1}}), "{ a = 1, b = -1 }");
 }
 
-TEST(Shortest, ReadsBackToTheSameBits) {
+TEST(ShortestDecimal, ReadsBackToTheSameBits) {
   EXPECT_EQ(shortest(0.1), "0.1");
   EXPECT_EQ(shortest(1e-8), "1e-08");
   EXPECT_EQ(shortest(std::numeric_limits<double>::infinity()), "inf");

@@ -1,4 +1,4 @@
-// Long computations that are stopped: by a flag, by a time limit, by a scope around, within a team.
+// Cancellation of long computations: by a flag, by a time limit, by an enclosing scope, and in the threads of a team.
 #include "engine/core/stop.hpp"
 
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ static_assert(!std::is_base_of_v<std::exception, Stopped>);
 
 TEST(CheckStop, DoesNothingWithoutAScope) { check_stop(); }
 
-TEST(StopScope, ThrowsOnceAsked) {
-  bool asked = false;
+TEST(StopScope, ThrowsWhenRequested) {
+  bool requested = false;
   {
-    const StopScope scope([&] { return asked; });
+    const StopScope scope([&] { return requested; });
     check_stop();
-    asked = true;
+    requested = true;
     EXPECT_THROW(check_stop(), Stopped);
   }
   check_stop();
@@ -32,51 +32,51 @@ TEST(StopScope, HasATimeLimit) {
   check_stop();
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_THROW(check_stop(), Stopped);
-  EXPECT_FALSE(scope.is_requested_outside());
+  EXPECT_FALSE(scope.is_requested_by_outer_scope());
 }
 
-TEST(StopScope, IsStoppedByTheOneAround) {
-  bool asked = false;
-  const StopScope outer([&] { return asked; });
+TEST(StopScope, IsStoppedByAnEnclosingScope) {
+  bool requested = false;
+  const StopScope outer([&] { return requested; });
   const StopScope inner(3600);
   check_stop();
-  asked = true;
+  requested = true;
   EXPECT_THROW(check_stop(), Stopped);
-  EXPECT_TRUE(inner.is_requested_outside());
+  EXPECT_TRUE(inner.is_requested_by_outer_scope());
 }
 
-TEST(StopScope, BelongsToItsThread) {
+TEST(StopScope, AppliesToItsThreadOnly) {
   const StopScope scope([] { return true; });
   std::thread([] { check_stop(); }).join();
 }
 
-TEST(StopScope, ReachesTheThreadsOfATeam) {
+TEST(StopScope, AppliesToTheThreadsOfATeam) {
   for (const bool are_long : {false, true}) {
-    std::atomic<bool> asked = false;
+    std::atomic<bool> requested = false;
     std::atomic<int> ended = 0;
     const auto endless = [&](std::size_t, std::size_t) {
       for (int i = 0; i < 3000; ++i) {
         check_stop();
-        if (i == 20) asked = true;
+        if (i == 20) requested = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
       ++ended;
     };
-    const StopScope scope([&] { return asked.load(); });
-    EXPECT_THROW(with_team(4, [&] { are_long ? share_long_pieces(4, endless) : share_pieces(4, endless); }), Stopped);
+    const StopScope scope([&] { return requested.load(); });
+    EXPECT_THROW(with_team(4, [&] { are_long ? parallel_for_nested(4, endless) : parallel_for(4, endless); }), Stopped);
     EXPECT_EQ(ended, 0);
   }
 }
 
-TEST(SlowStep, SaysSoOnce) {
-  int said = 0;
-  const SlowStep slow([&] { ++said; }, 0.03);
+TEST(SlowStepNotice, NotifiesOnce) {
+  int notifications = 0;
+  const SlowStepNotice slow([&] { ++notifications; }, 0.03);
   check_stop();
-  EXPECT_EQ(said, 0);
+  EXPECT_EQ(notifications, 0);
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
   check_stop();
   check_stop();
-  EXPECT_EQ(said, 1);
+  EXPECT_EQ(notifications, 1);
 }
 
 }  // namespace

@@ -13,36 +13,36 @@
 namespace pkm {
 namespace {
 
-TEST(Team, DoesEveryPieceOnce) {
+TEST(Team, ExecutesEveryIterationOnce) {
   for (const int threads : {1, 2, 5})
     with_team(threads, [&] {
       EXPECT_EQ(workers(), static_cast<std::size_t>(threads));
       EXPECT_EQ(has_team(), threads > 1);
-      for (const std::size_t pieces : {0, 1, 2, 3, 1000}) {
+      for (const std::size_t iterations : {0, 1, 2, 3, 1000}) {
         for (int job = 0; job < 200; ++job) {
-          std::vector<int> times(pieces);
-          share_pieces(pieces, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t piece = begin; piece < end; ++piece) ++times[piece];
+          std::vector<int> counts(iterations);
+          parallel_for(iterations, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t iteration = begin; iteration < end; ++iteration) ++counts[iteration];
           });
-          ASSERT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(pieces));
+          ASSERT_EQ(std::count(counts.begin(), counts.end(), 1), static_cast<std::ptrdiff_t>(iterations));
         }
       }
     });
 }
 
-TEST(Team, SizeIsWhatIsAskedFor) {
+TEST(Team, SizeIsTheRequestedNumberOfThreads) {
   EXPECT_EQ(team_size(3), 3);
   EXPECT_GE(team_size(0), 1);
   EXPECT_EQ(team_size(0), team_size(-1));
 }
 
-TEST(Team, GivesTheSameBitsWhateverTheThreads) {
+TEST(Team, ResultsDoNotDependOnTheNumberOfThreads) {
   const auto results = [](int threads) {
     std::vector<double> found(1000);
     with_team(threads, [&] {
       for (int generation = 1; generation <= 20; ++generation) {
         const std::vector<double> before = found;
-        share_pieces(found.size(), [&](std::size_t begin, std::size_t end) {
+        parallel_for(found.size(), [&](std::size_t begin, std::size_t end) {
           for (; begin < end; ++begin) found[begin] = std::sin(before[999 - begin] + static_cast<double>(begin));
         });
       }
@@ -53,7 +53,7 @@ TEST(Team, GivesTheSameBitsWhateverTheThreads) {
   for (const int threads : {2, 3, 7}) EXPECT_EQ(results(threads), alone) << threads << " threads";
 }
 
-TEST(Team, SortsAsOneThreadDoes) {
+TEST(Team, SortsLikeOneThread) {
   for (const int threads : {1, 2, 3, 5})
     with_team(threads, [&] {
       for (const std::size_t count : {0, 1, 9'999, 60'001}) {
@@ -62,46 +62,46 @@ TEST(Team, SortsAsOneThreadDoes) {
         std::vector<std::uint32_t> sorted = numbers;
         const std::size_t first = count / 7;
         std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first), sorted.end());
-        sort_with_team(numbers, first);
+        parallel_sort(numbers, first);
         EXPECT_EQ(numbers, sorted) << threads << " threads, " << count;
       }
     });
 }
 
-TEST(Team, DoesLongPiecesOnceAndWhatTheyShareOut) {
+TEST(Team, ExecutesNestedLoopsOnce) {
   for (const int threads : {1, 2, 5})
     with_team(threads, [&] {
-      for (const std::size_t pieces : {0, 1, 2, 7}) {
-        std::vector<std::vector<int>> times(pieces, std::vector<int>(100));
+      for (const std::size_t iterations : {0, 1, 2, 7}) {
+        std::vector<std::vector<int>> counts(iterations, std::vector<int>(100));
         std::vector<std::atomic<int>> busy(workers());
         std::atomic<int> clashes = 0;
-        share_long_pieces(pieces, [&](std::size_t piece, std::size_t end) {
-          ASSERT_EQ(end, piece + 1);
+        parallel_for_nested(iterations, [&](std::size_t iteration, std::size_t end) {
+          ASSERT_EQ(end, iteration + 1);
           for (int job = 0; job < 50; ++job)
-            share_pieces(100, [&](std::size_t first, std::size_t last, std::size_t worker) {
+            parallel_for(100, [&](std::size_t first, std::size_t last, std::size_t worker) {
               ASSERT_LT(worker, busy.size());
-              for (; first < last; ++first) ++times[piece][first];
+              for (; first < last; ++first) ++counts[iteration][first];
             });
           ASSERT_LT(worker(), busy.size());
           clashes += busy[worker()]++;
           --busy[worker()];
         });
         EXPECT_EQ(clashes, 0);
-        for (const auto& each : times) EXPECT_EQ(std::ranges::count(each, 50), 100);
+        for (const auto& each : counts) EXPECT_EQ(std::ranges::count(each, 50), 100);
         EXPECT_EQ(has_team(), threads > 1);
       }
     });
 }
 
-TEST(Team, ThreadsWithoutALongPieceHelp) {
+TEST(Team, IdleThreadsHelpWithInnerLoops) {
   with_team(2, [] {
     std::atomic<bool> both = false;
-    share_long_pieces(2, [&](std::size_t piece, std::size_t) {
-      if (piece == 0) return;
+    parallel_for_nested(2, [&](std::size_t iteration, std::size_t) {
+      if (iteration == 0) return;
       const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
       while (!both && std::chrono::steady_clock::now() < until) {
         std::vector<std::atomic<int>> done_by(workers());
-        share_pieces(200, [&](std::size_t, std::size_t, std::size_t worker) {
+        parallel_for(200, [&](std::size_t, std::size_t, std::size_t worker) {
           ++done_by[worker];
           std::this_thread::sleep_for(std::chrono::microseconds(50));
         });
@@ -112,24 +112,24 @@ TEST(Team, ThreadsWithoutALongPieceHelp) {
   });
 }
 
-TEST(Team, ThrowsWhatALongPieceThrows) {
+TEST(Team, RethrowsExceptionsOfLongIterations) {
   for (const int threads : {1, 3})
     with_team(threads, [&] {
-      EXPECT_THROW(share_long_pieces(4,
-                                     [](std::size_t piece, std::size_t) {
-                                       if (piece == 2) throw std::invalid_argument("the third");
-                                     }),
+      EXPECT_THROW(parallel_for_nested(4,
+                                       [](std::size_t iteration, std::size_t) {
+                                         if (iteration == 2) throw std::invalid_argument("the third");
+                                       }),
                    std::invalid_argument);
       EXPECT_EQ(workers(), static_cast<std::size_t>(threads));
     });
 }
 
-TEST(Team, GivesPiecesThatRunAtOnceDifferentWorkers) {
+TEST(Team, ConcurrentIterationsHaveDifferentWorkers) {
   with_team(3, [] {
     for (int job = 0; job < 200; ++job) {
       std::vector<std::atomic<int>> busy(3);
       std::atomic<int> clashes = 0;
-      share_pieces(100, [&](std::size_t, std::size_t, std::size_t worker) {
+      parallel_for(100, [&](std::size_t, std::size_t, std::size_t worker) {
         if (busy.at(worker).exchange(1) != 0) ++clashes;
         busy[worker] = 0;
       });
@@ -137,27 +137,27 @@ TEST(Team, GivesPiecesThatRunAtOnceDifferentWorkers) {
     }
   });
   std::size_t alone = 7;
-  share_pieces(1, [&](std::size_t, std::size_t, std::size_t worker) { alone = worker; });
+  parallel_for(1, [&](std::size_t, std::size_t, std::size_t worker) { alone = worker; });
   EXPECT_EQ(alone, 0u);
   EXPECT_EQ(workers(), 1u);
 }
 
-TEST(Team, ThrowsWhatAPieceThrowsOnAnyThread) {
+TEST(Team, RethrowsExceptionsOfAnyThread) {
   with_team(2, [] {
-    std::atomic<int> begun = 0;
-    const auto fail_together = [&](std::size_t, std::size_t) {  // one on each thread
-      ++begun;
-      while (begun < 2) std::this_thread::yield();
-      throw std::runtime_error("a piece");
+    std::atomic<int> started = 0;
+    const auto fail_together = [&](std::size_t, std::size_t) {  // one iteration on each thread
+      ++started;
+      while (started < 2) std::this_thread::yield();
+      throw std::runtime_error("an iteration");
     };
-    EXPECT_THROW(share_pieces(2, fail_together), std::runtime_error);
-    std::atomic<int> after = 0;  // the team goes on, and has forgotten the failure
-    share_pieces(10, [&](std::size_t begin, std::size_t end) { after += static_cast<int>(end - begin); });
+    EXPECT_THROW(parallel_for(2, fail_together), std::runtime_error);
+    std::atomic<int> after = 0;  // the team can be used again after the exception
+    parallel_for(10, [&](std::size_t begin, std::size_t end) { after += static_cast<int>(end - begin); });
     EXPECT_EQ(after, 10);
   });
 }
 
-TEST(Team, ThrowsWhatTheBodyThrows) {
+TEST(Team, RethrowsExceptionsOfTheBody) {
   const auto fail = [] { throw std::runtime_error("the body"); };
   EXPECT_THROW(with_team(2, fail), std::runtime_error);
   EXPECT_FALSE(has_team());
@@ -167,12 +167,12 @@ TEST(Team, ThrowsWhatTheBodyThrows) {
   });
 }
 
-TEST(Team, WakesThreadsThatSleep) {
+TEST(Team, WakesSleepingThreads) {
   with_team(2, [] {
-    for (const int sleep : {0, 5, 400}) {  // [ms]; the last is longer than OpenMP's threads stay awake
+    for (const int sleep : {0, 5, 400}) {  // [ms]; the last is longer than the spin time of OpenMP's threads
       std::this_thread::sleep_for(std::chrono::milliseconds(sleep));
       std::atomic<int> arrived = 0;
-      share_pieces(2, [&](std::size_t, std::size_t) {  // ends only if each piece is on a thread of its own
+      parallel_for(2, [&](std::size_t, std::size_t) {  // terminates only if the iterations run on different threads
         ++arrived;
         while (arrived < 2) std::this_thread::yield();
       });
@@ -181,37 +181,37 @@ TEST(Team, WakesThreadsThatSleep) {
   });
 }
 
-TEST(Team, IsThatOfTheOuterRegionAndNotOfItsPieces) {
+TEST(Team, NestedRegionsUseTheOuterTeamAndIterationsHaveNone) {
   EXPECT_FALSE(has_team());
   std::vector<std::size_t> order;
-  share_pieces(4, [&](std::size_t begin, std::size_t end) { order = {begin, end}; });
+  parallel_for(4, [&](std::size_t begin, std::size_t end) { order = {begin, end}; });
   EXPECT_EQ(order, (std::vector<std::size_t>{0, 4}));
   with_team(3, [&] {
     std::atomic<int> sum = 0, with_a_team = 0;
-    share_pieces(50, [&](std::size_t begin, std::size_t end) {
+    parallel_for(50, [&](std::size_t begin, std::size_t end) {
       with_team(2, [&] {
         if (has_team()) ++with_a_team;
         for (; begin < end; ++begin)
-          share_pieces(10, [&](std::size_t from, std::size_t to) { sum += static_cast<int>(to - from); });
+          parallel_for(10, [&](std::size_t from, std::size_t to) { sum += static_cast<int>(to - from); });
       });
     });
     EXPECT_EQ(sum, 500);
     EXPECT_EQ(with_a_team, 0);
     EXPECT_EQ(workers(), 3u);
     with_team(5, [] { EXPECT_EQ(workers(), 3u); });
-    share_pieces(1, [](std::size_t, std::size_t) { EXPECT_EQ(workers(), 3u); });  // what is within it can be shared out
-    const WithoutTeam alone;
+    parallel_for(1, [](std::size_t, std::size_t) { EXPECT_EQ(workers(), 3u); });  // a single iteration keeps the team
+    const SerialScope alone;
     EXPECT_FALSE(has_team());
   });
   EXPECT_FALSE(has_team());
 }
 
-TEST(Team, OfEachOfSeveralThreadsIsItsOwn) {
+TEST(Team, SeveralThreadsHaveIndependentTeams) {
   std::atomic<int> sum = 0;
   const auto run = [&] {
     with_team(2, [&] {
       for (int job = 0; job < 100; ++job)
-        share_pieces(10, [&](std::size_t begin, std::size_t end) { sum += static_cast<int>(end - begin); });
+        parallel_for(10, [&](std::size_t begin, std::size_t end) { sum += static_cast<int>(end - begin); });
     });
   };
   std::thread other(run);

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-TEST(Unit, ConvertsToTheBitsOfTheNumberInSi) {
+TEST(Unit, ConvertsExactlyToSi) {
   struct Case {
     const char* text;
     const char* unit;
@@ -59,7 +59,7 @@ TEST(Unit, ConvertsToTheBitsOfTheNumberInSi) {
   EXPECT_DOUBLE_EQ(parse_quantity("60 rpm", "rad/s").value(), 2 * kPi);
 }
 
-TEST(Unit, RefusesWhatIsNoQuantityOfTheDimension) {
+TEST(Unit, RejectsInvalidTextAndOtherDimensions) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "m"},       {"mm", "m"},          {"abc", "1"},      {"1 kg", "m"},  {"1 rad", "1"},
       {"1 m", "m^2"},  {"1 m^2", "m^2 rad"}, {"inf", "m"},      {"nan", "m"},   {"-inf m", "m"},
@@ -79,7 +79,7 @@ TEST(Unit, MessagesListTheUnitsOfTheDimension) {
             "a number in rad/s, or text with a unit made of rpm, mrad, rad, deg, °, us, ms, s, min, h");
 }
 
-TEST(Unit, SaysWhatKindAQuantityIsOf) {
+TEST(Unit, DescribesTheDimensionOfAQuantity) {
   EXPECT_EQ(kind_of_quantity("10 deg"), "an angle");
   EXPECT_EQ(kind_of_quantity(" 2e-3 mm"), "a length");
   EXPECT_EQ(kind_of_quantity("5 %"), "a plain number");
@@ -96,7 +96,7 @@ TEST(Unit, DoesNotDependOnTheLocale) {
   std::setlocale(LC_NUMERIC, before.c_str());
 }
 
-TEST(Unit, IntegersAreReadInDecimalOnly) {
+TEST(Unit, IntegersAreParsedInDecimalOnly) {
   EXPECT_EQ(parse_integer("0"), 0);
   EXPECT_EQ(parse_integer("10"), 10);
   EXPECT_EQ(parse_integer("-7"), -7);
@@ -106,21 +106,21 @@ TEST(Unit, IntegersAreReadInDecimalOnly) {
     EXPECT_FALSE(parse_integer(text)) << text;
 }
 
-TEST(Unit, AnglesOfManyTurnsAreNoInput) {
+TEST(Unit, VeryLargeAnglesAreRejected) {
   EXPECT_EQ(angle_hint(1e5, "rad"), "");
   EXPECT_EQ(angle_hint(1e9, "m"), "");
   EXPECT_EQ(angle_hint(-1.1e5, "rad"),
-            "an angle within 1e+05 rad, beyond which digits would be lost; leave whole turns out");
+            "an angle within 1e+05 rad, because larger angles lose digits; subtract whole revolutions");
 }
 
-TEST(Unit, KnowsWhichAreSi) {
+TEST(Unit, RecognisesSiUnits) {
   for (const char* unit : {"1", "m", "m^2 rad", "kg m^2", "N m/rad", "1/s", "J", "W", "m rad"})
     EXPECT_TRUE(is_si_unit(unit)) << unit;
   for (const char* unit : {"", "mm", "deg", "%", "rpm", "kN", "g", "m^", "m rad EUR", "2", " "})
     EXPECT_FALSE(is_si_unit(unit)) << unit;
 }
 
-TEST(Unit, WritesNumbersWithTheirUnit) {
+TEST(Unit, FormatsNumbersWithTheirUnit) {
   EXPECT_EQ(with_unit(0.1, "m"), "0.1 m");
   EXPECT_EQ(with_unit(0.1, "1"), "0.1");
   EXPECT_EQ(with_unit(3, ""), "3");

@@ -1,4 +1,4 @@
-// Newton's and Euler's equations of small mechanisms that can be solved by hand.
+// Newton-Euler equations of small mechanisms with known solutions.
 #include "engine/dynamics/newton_euler.hpp"
 
 #include <gmock/gmock.h>
@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-#include "tests/unit/dynamics/square_closure.hpp"
+#include "tests/unit/dynamics/square_system.hpp"
 
 namespace pkm {
 namespace {
@@ -23,17 +23,17 @@ RigidBody body(const std::string& name, double mass, const Vec& centre) {
   return b;
 }
 
-/// A door of 2 kg, its centre 0.5 m off a hinge line along z; one hinge on it, or two 1 m apart.
-NewtonEuler door(bool both_hinges_hold) {
+/// A door of 2 kg whose centre of mass is 0.5 m from the hinge axis z, with one hinge or two hinges 1 m apart.
+NewtonEuler door(bool two_hinges) {
   NewtonEuler system;
   system.bodies = {body("door", 2, Vec{{0.5, 0, 0}})};
   system.joints = {{"top", Vec{{0, 0, 0.5}}, 0, {}, {kX, kY}, {}}};
-  if (both_hinges_hold) system.joints.push_back({"bottom", Vec{{0, 0, -0.5}}, 0, {}, {kX, kY}, {}});
+  if (two_hinges) system.joints.push_back({"bottom", Vec{{0, 0, -0.5}}, 0, {}, {kX, kY}, {}});
   return system;
 }
 
-TEST(NewtonEuler, OneHingeLeavesTheTurningUnbalanced) {
-  // 6 equations, 5 unknowns: whether they hold depends on the moment about z
+TEST(NewtonEuler, OneHingeDoesNotBalanceTheMomentAboutItsAxis) {
+  // 6 equations, 5 unknowns: the moment about z is not balanced by the hinge
   const NewtonEuler system = door(false);
   const LinearEquations e = equations(system);
   EXPECT_EQ(e.A.rows(), 6);
@@ -42,8 +42,8 @@ TEST(NewtonEuler, OneHingeLeavesTheTurningUnbalanced) {
   EXPECT_THAT(reactions(system).reason, ::testing::HasSubstr("6 equations of rank 5"));
 }
 
-TEST(NewtonEuler, APendulumsHingeCarriesWeightAndCentripetalForce) {
-  // A rod on a drive: its centre 0.4 m from the hinge at the origin, along x, turning about z.
+TEST(NewtonEuler, RotatingRod) {
+  // A driven rod along x that rotates about z; its centre of mass is 0.4 m from the joint at the origin.
   NewtonEuler system;
   RigidBody rod = body("rod", 3, Vec{{0.4, 0, 0}});
   rod.omega = kZ * 2.0;
@@ -64,7 +64,7 @@ TEST(NewtonEuler, APendulumsHingeCarriesWeightAndCentripetalForce) {
   EXPECT_NEAR(found.drive_forces[2], -3 * 1.6 - 7 + 0.25, 1e-13);
 }
 
-TEST(NewtonEuler, SpinningAboutNoPrincipalAxisNeedsAGyroscopicMoment) {
+TEST(NewtonEuler, RotationAboutANonPrincipalAxisNeedsAMoment) {
   NewtonEuler system;
   RigidBody rotor = body("rotor", 1, Vec{});
   rotor.inertia(0, 2) = rotor.inertia(2, 0) = 0.02;
@@ -76,7 +76,8 @@ TEST(NewtonEuler, SpinningAboutNoPrincipalAxisNeedsAGyroscopicMoment) {
   EXPECT_NEAR(reactions(system).joints[0].couple[0].value(), 0, 1e-13);
 }
 
-/// Two bodies in a row along x, welded to each other, the first one to a wall.
+/// Two bodies along x, welded to each other; the first one is fixed to a wall.
+/// @param at_wall  couples that the wall transmits
 NewtonEuler beam(std::vector<Vec> at_wall) {
   NewtonEuler system;
   system.bodies = {body("first", 1, Vec{{0.5, 0, 0}}), body("second", 1, Vec{{1.5, 0, 0}})};
@@ -84,7 +85,7 @@ NewtonEuler beam(std::vector<Vec> at_wall) {
   return system;
 }
 
-TEST(NewtonEuler, JointsActOnBothBodies) {
+TEST(NewtonEuler, JointForcesActOnBothBodies) {
   const Reactions found = reactions(beam({kX, kY, kZ}));
   EXPECT_EQ(found.equations, 12);
   EXPECT_EQ(found.rank, 12);
@@ -94,24 +95,24 @@ TEST(NewtonEuler, JointsActOnBothBodies) {
   EXPECT_NEAR(found.joints[1].couple[1].value(), 0.5 * kGravity, 1e-13);
 }
 
-TEST(NewtonEuler, CouplesThatAJointHoldsTwiceAreDeterminedByTheirSumAlone) {
+TEST(NewtonEuler, OnlyTheSumOfParallelCouplesIsDetermined) {
   NewtonEuler system = beam({kX, kY, kZ, kX});
   system.bodies[1].moment = kX * 3.0;
   const Reactions found = reactions(system);
   ASSERT_EQ(found.reason, "");
   EXPECT_EQ(found.unknowns, 13);
   EXPECT_NEAR(found.joints[0].couple[0].value(), -3, 1e-13);
-  const LeastNorm least = least_norm(system);
+  const MinNormSolution least = min_norm_solution(system);
   EXPECT_EQ(least.null_space.cols(), 1);
   EXPECT_NEAR(least.x[3], -1.5, 1e-13);
   EXPECT_NEAR(least.x[6], -1.5, 1e-13);
-  const Eigen::VectorXd closed = test::square_closure(system, [](const Joint&, std::size_t k) { return k == 3; });
-  EXPECT_NEAR(closed[3], -3, 1e-13);
-  EXPECT_EQ(closed[6], 0);
+  const Eigen::VectorXd square = test::solve_square_system(system, [](const Joint&, std::size_t k) { return k == 3; });
+  EXPECT_NEAR(square[3], -3, 1e-13);
+  EXPECT_EQ(square[6], 0);
 }
 
-TEST(NewtonEuler, ForcesThatTwoHingesShareAreReportedAsSuch) {
-  // Two hinges on one line share the force along it: none, rather than one of many.
+TEST(NewtonEuler, ForcesSharedByTwoHingesAreUndetermined) {
+  // Two hinges on one axis share the force along it: no component, rather than an arbitrary one.
   NewtonEuler system = door(true);
   system.joints[1].couples.push_back(kZ);
   const Reactions found = reactions(system);
@@ -119,39 +120,15 @@ TEST(NewtonEuler, ForcesThatTwoHingesShareAreReportedAsSuch) {
   ASSERT_EQ(found.reason, "");
   for (const JointReaction& hinge : found.joints) {
     EXPECT_FALSE(hinge.force[2]);
-    // the weight's moment, half a metre from the line: in pairs of forces or of couples
+    // the moment of the weight, 0.5 m from the axis, can be balanced by forces or by couples
     EXPECT_FALSE(hinge.force[0]);
     EXPECT_FALSE(hinge.couple[1]);
   }
 }
 
-TEST(NewtonEuler, ASquareClosureNeedsAsManyUnknownsAsEquations) {
+TEST(NewtonEuler, SquareSystemNeedsAsManyUnknownsAsEquations) {
   const auto none = [](const Joint&, std::size_t) { return false; };
-  EXPECT_THROW(test::square_closure(door(false), none), std::logic_error);
-}
-
-TEST(NewtonEuler, BodiesUniteByParallelAxes) {
-  PlacedBody<4> a{"a", kX, {}}, b{"b", kX * -1.0, {}};
-  a.body.mass = 1;
-  b.body.mass = 3;
-  a.body.inertia = b.body.inertia = Matrix<double, 3, 3>::identity();
-  for (std::size_t k = 0; k < 3; ++k) a.body.J_v(k, k) = b.body.J_v(k, k) = 1;
-  a.body.J_v(1, 3) = 1;  // both turn about z with the fourth coordinate
-  b.body.J_v(1, 3) = -1;
-  a.body.J_omega(2, 3) = b.body.J_omega(2, 3) = 1;
-  const PlacedBody<4> both = unite("both", a, b);
-  EXPECT_EQ(both.body.mass, 4);
-  EXPECT_EQ(both.centre[0], -0.5);
-  EXPECT_EQ(both.body.J_v(1, 3), -0.5);
-  EXPECT_EQ(both.body.inertia(0, 0), 2);
-  EXPECT_EQ(both.body.inertia(1, 1), 2 + 1 * 2.25 + 3 * 0.25);
-  // the same equations of motion as the two
-  PoseDynamics<double, 4> apart, together;
-  const Vector<double, 4> velocity{{1, 2, 3, 4}};
-  add_body(apart, a.body, velocity);
-  add_body(apart, b.body, velocity);
-  add_body(together, both.body, velocity);
-  for (std::size_t k = 0; k < 16; ++k) EXPECT_NEAR(apart.M_X.m[k], together.M_X.m[k], 1e-14);
+  EXPECT_THROW(test::solve_square_system(door(false), none), std::logic_error);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
-// Forward dynamics over time: energy, reversal, inverse dynamics there and back, reasons to stop.
+// Simulation: energy balance, time reversal, order of convergence, agreement with inverse dynamics, reasons to stop.
 #include "engine/dynamics/simulation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/mechanism/drive_along.hpp"
-#include "engine/motion/motions.hpp"
-#include "tests/unit/mechanisms/crr_cru/golden.hpp"
+#include "engine/motion/motion_factories.hpp"
+#include "tests/unit/accelerators/crr_cru/golden.hpp"
 
 namespace pkm::testing::crr {
 namespace {
@@ -42,24 +42,24 @@ TEST(Simulation, ConservesEnergy) {
   }
 }
 
-/// The work of the weight depends on the ends of the way alone: the same along the straight line between them.
-TEST(Simulation, TheWorkOfTheWeightIsAPotential) {
+/// The work of gravity depends on the end points only: it equals the integral along the straight line between them.
+TEST(Simulation, WorkOfGravityIsIndependentOfThePath) {
   for (const std::string& name : both()) {
     const SimulationSetup setup = setup_of(name, {0.5, 0, 8, -0.2}, 0.2, 1e-3);
     const SimulationState last = simulate(setup, kPose, kVelocity).states.back();
     const X way = last.pose - kPose;
     double work = 0;
-    constexpr int kPieces = 200;
-    for (int k = 0; k < kPieces; ++k)
-      for (const double root : {-1.0, 1.0}) {  // Gauss' rule of two points
-        const X x = kPose + way * ((k + 0.5 + root / (2 * std::sqrt(3.0))) / kPieces);
-        work -= dot(setup.dynamics({x, kAtRest}).G_X, way) / (2 * kPieces);
+    constexpr int kSubintervals = 200;
+    for (int k = 0; k < kSubintervals; ++k)
+      for (const double root : {-1.0, 1.0}) {  // two-point Gauss quadrature
+        const X x = kPose + way * ((k + 0.5 + root / (2 * std::sqrt(3.0))) / kSubintervals);
+        work -= dot(setup.dynamics({x, kAtRest}).G_X, way) / (2 * kSubintervals);
       }
     EXPECT_NEAR(last.work_of_weight, work, 1e-9 * std::fabs(work));
   }
 }
 
-TEST(Simulation, ReturnsWhenTimeRunsBackwards) {
+TEST(Simulation, ReturnsToTheInitialStateBackwardsInTime) {
   for (const std::string& name : both()) {
     const SimulationSetup setup = setup_of(name, {0.5, 0, 8, -0.2}, 0.2, 1e-3);
     const SimulationState there = simulate(setup, kPose, kVelocity).states.back();
@@ -86,8 +86,8 @@ TEST(Simulation, HasOrderSix) {
   EXPECT_NEAR(std::log2(coarse_error / fine_error), 6, 0.7);
 }
 
-/// The forces that a motion needs, found by inverse dynamics, make the simulation follow the motion.
-TEST(Simulation, FollowsTheMotionWhoseForcesItIsGiven) {
+/// With the forces that inverse dynamics computes for a motion, the simulation reproduces the motion.
+TEST(Simulation, ReproducesTheMotionOfInverseDynamics) {
   PickAndPlace cycle;
   cycle.start = {0.06, 0.17, 0.2, -0.4};
   cycle.axes = space_axes(mechanism("3crr-r-cru").info().coordinates);
@@ -99,7 +99,7 @@ TEST(Simulation, FollowsTheMotionWhoseForcesItIsGiven) {
     const Mechanism& m = mechanism(name);
     SimulationSetup setup = setup_of(name, kNone, motion->duration(), 1e-3);
     const std::vector<double> p = nominal();
-    setup.tolerance = 1e-6;  // the forces have corners in time where pieces of the motion begin
+    setup.tolerance = 1e-6;  // the forces are not smooth where parts of the motion begin
     setup.forces = [&](double time) {
       const MotionSample at = motion->at(time);
       X tau;
@@ -116,7 +116,7 @@ TEST(Simulation, FollowsTheMotionWhoseForcesItIsGiven) {
   }
 }
 
-TEST(Simulation, RestsWhereTheForcesCarryTheWeight) {
+TEST(Simulation, RestsIfTheForcesBalanceGravity) {
   SimulationSetup setup = setup_of("3crr-r-cru", kNone, 0.05, 1e-2);
   const MotionSample at{0, kPose, kAtRest, kAtRest, {}};
   DriveScratch<double> scratch;
@@ -128,16 +128,16 @@ TEST(Simulation, RestsWhereTheForcesCarryTheWeight) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.states.back().pose[i], kPose[i], 1e-12);
 }
 
-TEST(Simulation, SaysWhyItStops) {
+TEST(Simulation, ReportsWhyItStops) {
   const SimulationSetup falls = setup_of("3crr-r-cru", kNone, 2, 1e-3);
   const Simulation run = simulate(falls, kPose, kAtRest);
   EXPECT_THAT(run.stopped, HasSubstr("at t = 0."));
   EXPECT_LT(run.states.back().time, 0.5);
   EXPECT_GT(run.states.size(), 50u);
   SimulationSetup limited = falls;
-  limited.refuse = [](const pkm::Pose<double>& pose) { return pose[2] < 0.2 ? std::string("the floor is met") : ""; };
-  EXPECT_THAT(simulate(limited, kPose, kAtRest).stopped, HasSubstr("s the floor is met"));
-  EXPECT_EQ(simulate(falls, {2, 2, 2, 0}, kAtRest).stopped, "at t = 0 s the mechanism leaves its reach");
+  limited.refuse = [](const pkm::Pose<double>& pose) { return pose[2] < 0.2 ? std::string("the floor is hit") : ""; };
+  EXPECT_THAT(simulate(limited, kPose, kAtRest).stopped, HasSubstr("s the floor is hit"));
+  EXPECT_EQ(simulate(falls, {2, 2, 2, 0}, kAtRest).stopped, "at t = 0 s the pose is out of reach");
   const Simulation coarse = simulate(setup_of("3crr-r-cru", {20, 20, 20, 20}, 2, 0.5), kPose, kVelocity);
   EXPECT_NE(coarse.stopped, "");
 }

@@ -1,4 +1,4 @@
-// The derivative scalar: every function against differences, values bit by bit, and the ends of ranges.
+// Dual numbers: derivatives of every function against finite differences, values bit by bit, and limits of domains.
 #include "engine/math/dual.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace pkm::testing {
 namespace {
 
-/// A generic function of two variables over a range where it is smooth.
+/// Tests a function template of two variables on a range where it is smooth.
 template <class F>
 void expect_exact(const char* name, const F& f, double lower, double upper) {
   Stream random(1, 0, 0, Stream::Use::start);
@@ -27,7 +27,7 @@ void expect_exact(const char* name, const F& f, double lower, double upper) {
   }
 }
 
-TEST(Dual, EveryOperationIsExactAndKeepsTheValuesBits) {
+TEST(Dual, DerivativesAreExactAndValuesBitIdentical) {
   expect_exact(
       "sums", [](auto x, auto y) { return -(x + y) - (y - x * 2.5) + 3.0 - (1.5 + x) - 0.5 * y; }, -2, 2);
   expect_exact(
@@ -56,7 +56,7 @@ TEST(Dual, EveryOperationIsExactAndKeepsTheValuesBits) {
       "exp and log", [](auto x, auto y) { return exp(x) * log(y + 3.0); }, -2, 2);
 }
 
-TEST(Dual, SelectionsFollowTheValue) {
+TEST(Dual, MinMaxAndClampSelectByValue) {
   const Dual4 x = Dual4::variable(0.3, 0), y = Dual4::variable(0.7, 1);
   EXPECT_EQ(min(x, y).v[0], 1);
   EXPECT_EQ(max(x, y).v[1], 1);
@@ -64,7 +64,7 @@ TEST(Dual, SelectionsFollowTheValue) {
   EXPECT_EQ(clamp(x, Dual4(0.0), Dual4(0.5)).v[0], 1);
 }
 
-TEST(Dual, SlopesAreZeroWhereTheyWouldBeInfinite) {
+TEST(Dual, InfiniteDerivativesAreReplacedByZero) {
   const auto expect_zero = [](const Dual4& x) {
     for (int i = 0; i < 4; ++i) EXPECT_EQ(x.v[i], 0);
   };
@@ -73,8 +73,8 @@ TEST(Dual, SlopesAreZeroWhereTheyWouldBeInfinite) {
     expect_zero(acos(Dual4::variable(sign, 0)));
     expect_zero(acos(Dual4(sign)));
   }
-  expect_zero(root_or_zero(Dual4::variable(0.0, 0)));
-  expect_zero(root_or_zero(Dual4::variable(-1.0, 0)));
+  expect_zero(sqrt_or_zero(Dual4::variable(0.0, 0)));
+  expect_zero(sqrt_or_zero(Dual4::variable(-1.0, 0)));
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ std::uint64_t pair(std::uint64_t first, std::uint64_t second) {
   return hash.value();
 }
 
-/// Whoever adds up hashes of pairs can tell (1, a) and (2, b) from (1, b) and (2, a).
-TEST(Hash, SumsOfPairsDiffer) {
+/// The sum of the hashes of (1, a) and (2, b) differs from that of (1, b) and (2, a).
+TEST(Hash, SumsOfHashesOfPairsDiffer) {
   std::set<std::uint64_t> sums;
   constexpr std::uint64_t kLabels = 40, kHigh = std::uint64_t{4} << 28U;
   for (std::uint64_t a = 0; a < kLabels; ++a)

@@ -1,4 +1,4 @@
-// Fronts with areas and volumes known by hand, by inclusion and exclusion, and from pagmo; what must change no bit.
+// Hypervolumes of fronts against values calculated by hand, by inclusion-exclusion and by pagmo, and invariances.
 #include "engine/math/hypervolume.hpp"
 
 #include <cmath>
@@ -24,8 +24,8 @@ double hypervolume_of(const std::vector<double>& points, const std::vector<doubl
   return hypervolume(points, reference.size(), reference);
 }
 
-/// Boxes counted with alternating sign over all subsets of points, for fronts of a few points.
-double by_inclusion_and_exclusion(const std::vector<double>& points, const std::vector<double>& reference) {
+/// Inclusion-exclusion principle over all subsets of the points; for fronts of a few points.
+double by_inclusion_exclusion(const std::vector<double>& points, const std::vector<double>& reference) {
   const std::size_t objectives = reference.size(), count = points.size() / objectives;
   double sum = 0;
   for (std::uint32_t subset = 1; subset < 1u << count; ++subset) {
@@ -43,7 +43,7 @@ double by_inclusion_and_exclusion(const std::vector<double>& points, const std::
   return sum;
 }
 
-/// The rows in an order drawn at random.
+/// The points in random order.
 std::vector<double> shuffled(const std::vector<double>& points, std::size_t objectives, std::uint64_t seed) {
   std::vector<double> result = points;
   Stream stream(seed, 0, 0, Stream::Use::selection);
@@ -55,7 +55,7 @@ std::vector<double> shuffled(const std::vector<double>& points, std::size_t obje
   return result;
 }
 
-TEST(Hypervolume, OfAFewBoxes) {
+TEST(Hypervolume, EqualsValuesCalculatedByHand) {
   EXPECT_EQ(hypervolume_of({}, {4, 4}), 0);
   EXPECT_EQ(hypervolume_of({1, 2}, {4, 4}), 6);
   EXPECT_EQ(hypervolume_of({1, 3, 2, 2, 3, 1}, {4, 4}), 6);
@@ -66,27 +66,27 @@ TEST(Hypervolume, OfAFewBoxes) {
   EXPECT_EQ(hypervolume_of({0, 0, 1, 0, 1, 0, 1, 0, 0}, {2, 2, 2}), 8 - 1);
 }
 
-TEST(Hypervolume, CountsNothingThatIsNotBetterThanTheReferenceInEveryObjective) {
+TEST(Hypervolume, IgnoresPointsNotBetterThanTheReferencePoint) {
   EXPECT_EQ(hypervolume_of({1, 4, 4, 1, 5, 0}, {4, 4}), 0);
   EXPECT_EQ(hypervolume_of({1, 3, 0, 4, 3, 1, 9, -9}, {4, 4}), hypervolume_of({1, 3, 3, 1}, {4, 4}));
   EXPECT_EQ(hypervolume_of({1, 1, 1, 0, 0, 2, 0, 2, 0, 3, 0, 0}, {2, 2, 2}), 1);
 }
 
-TEST(Hypervolume, CountsNothingThatIsNotFinite) {
+TEST(Hypervolume, IgnoresPointsThatAreNotFinite) {
   EXPECT_EQ(hypervolume_of({1, 2, kNaN, 0, 0, kNaN, 0, -kInfinity, -kInfinity, 0, kInfinity, 0}, {4, 4}), 6);
   EXPECT_EQ(hypervolume_of({1, 2, 3, 0, kNaN, 0, 0, 0, -kInfinity}, {4, 4, 4}), 6);
 }
 
-TEST(Hypervolume, EqualsInclusionAndExclusion) {
+TEST(Hypervolume, EqualsInclusionExclusion) {
   for (const std::size_t objectives : {2, 3})
     for (const char* shape : {"sphere", "plane", "cloud"})
       for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         std::vector<double> points = random_front(shape, 9, objectives, seed);
         if (seed % 2 == 0)  // ties in single coordinates, equal and dominated points
           for (double& value : points) value = std::round(4 * value) / 4;
-        for (const double corner : {1.1, 0.8}) {
-          const std::vector<double> reference(objectives, corner);
-          EXPECT_NEAR(hypervolume_of(points, reference), by_inclusion_and_exclusion(points, reference), 1e-13)
+        for (const double bound : {1.1, 0.8}) {
+          const std::vector<double> reference(objectives, bound);
+          EXPECT_NEAR(hypervolume_of(points, reference), by_inclusion_exclusion(points, reference), 1e-13)
               << objectives << " objectives, " << shape << ", seed " << seed;
         }
       }
@@ -105,7 +105,7 @@ TEST(Hypervolume, DependsNeitherOnOrderNorOnRepeatedOrDominatedPoints) {
     }
 }
 
-TEST(Hypervolume, GrowsWithEveryPointThatNoneDominates) {
+TEST(Hypervolume, IncreasesWithEveryNonDominatedPoint) {
   for (const std::size_t objectives : {2, 3}) {
     const std::vector<double> points = random_front("sphere", 100, objectives);
     double known = 0;
@@ -117,7 +117,7 @@ TEST(Hypervolume, GrowsWithEveryPointThatNoneDominates) {
   }
 }
 
-TEST(Hypervolume, OfTwoObjectivesIsThatOfThreeWithOneConstant) {
+TEST(Hypervolume, IsConsistentBetweenTwoAndThreeObjectives) {
   const std::vector<double> flat = random_front("cloud", 300, 2);
   for (const std::size_t constant : {0, 1, 2}) {
     std::vector<double> points;
@@ -132,7 +132,7 @@ TEST(Hypervolume, OfTwoObjectivesIsThatOfThreeWithOneConstant) {
   }
 }
 
-TEST(Hypervolume, EqualsThatOfPagmo) {
+TEST(Hypervolume, EqualsPagmo) {
   const auto data = nlohmann::json::parse(std::ifstream(PKM_TEST_DATA "/hypervolumes.json"));
   ASSERT_EQ(data.size(), 18u);
   for (const auto& entry : data) {
@@ -144,7 +144,7 @@ TEST(Hypervolume, EqualsThatOfPagmo) {
   }
 }
 
-TEST(Hypervolume, SaysWhatItTakes) {
+TEST(Hypervolume, RejectsInvalidArguments) {
   const auto message = [](std::vector<double> reference) -> std::string {
     try {
       hypervolume_of({}, reference);
@@ -153,10 +153,10 @@ TEST(Hypervolume, SaysWhatItTakes) {
     }
     return "";
   };
-  EXPECT_EQ(message({1}), "hypervolume takes 2 or 3 objectives, not 1");
-  EXPECT_EQ(message({1, 1, 1, 1}), "hypervolume takes 2 or 3 objectives, not 4");
-  EXPECT_EQ(message({1, kNaN}), "hypervolume takes a finite reference point");
-  EXPECT_EQ(message({1, 1, kInfinity}), "hypervolume takes a finite reference point");
+  EXPECT_EQ(message({1}), "hypervolume: found 1 objectives; expected 2 or 3");
+  EXPECT_EQ(message({1, 1, 1, 1}), "hypervolume: found 4 objectives; expected 2 or 3");
+  EXPECT_EQ(message({1, kNaN}), "hypervolume: the reference point is not finite");
+  EXPECT_EQ(message({1, 1, kInfinity}), "hypervolume: the reference point is not finite");
 }
 
 }  // namespace

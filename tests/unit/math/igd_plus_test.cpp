@@ -1,4 +1,4 @@
-// Distances known by hand, and what the indicator must not depend on.
+// IGD+ against values calculated by hand, and its invariances.
 #include "engine/math/igd_plus.hpp"
 
 #include <algorithm>
@@ -18,16 +18,16 @@ double distance(const std::vector<double>& points, const std::vector<double>& fr
   return igd_plus(points, extents.size(), front, extents);
 }
 
-TEST(IgdPlus, OfPointsKnownByHand) {
+TEST(IgdPlus, EqualsValuesCalculatedByHand) {
   EXPECT_EQ(distance({4, 6}, {1, 2}, {1, 1}), 5);
   EXPECT_EQ(distance({7, 6}, {1, 2}, {2, 1}), 5);
-  EXPECT_EQ(distance({4, 0}, {1, 2}, {1, 1}), 3) << "what is better than the front counts nothing";
+  EXPECT_EQ(distance({4, 0}, {1, 2}, {1, 1}), 3) << "being better than the front has distance 0";
   EXPECT_EQ(distance({0, 3, 3, 0}, {0, 2, 2, 0}, {1, 1}), 1);
   EXPECT_EQ(distance({0, 2}, {0, 2, 2, 0}, {1, 1}), 1) << "the mean of 0 and 2";
   EXPECT_EQ(distance({3, 4, 12}, {0, 0, 0}, {1, 1, 1}), 13);
 }
 
-TEST(IgdPlus, OfAFrontToItselfIsZeroAndStaysSoWithAnyPointMore) {
+TEST(IgdPlus, IsZeroIfThePointsIncludeTheFront) {
   std::vector<double> points = random_front("sphere", 50, 3);
   const std::vector<double> front = points;
   EXPECT_EQ(distance(points, front, {1, 2, 3}), 0);
@@ -35,7 +35,7 @@ TEST(IgdPlus, OfAFrontToItselfIsZeroAndStaysSoWithAnyPointMore) {
   EXPECT_EQ(distance(points, front, {1, 2, 3}), 0);
 }
 
-TEST(IgdPlus, FallsWithBetterPointsAndIgnoresTheirOrder) {
+TEST(IgdPlus, DecreasesWithBetterPointsAndIgnoresTheirOrder) {
   const std::vector<double> front = random_front("sphere", 200, 2);
   std::vector<double> points, reversed;
   double known = std::numeric_limits<double>::infinity();

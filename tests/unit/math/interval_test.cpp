@@ -8,16 +8,16 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/graph/formula.hpp"
-#include "engine/graph/operation.hpp"
+#include "engine/expression/formula.hpp"
+#include "engine/expression/operation.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr double kMost = std::numeric_limits<double>::max();
+constexpr double kMax = std::numeric_limits<double>::max();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(Interval, GoesOutwardToTheNextNumber) {
+TEST(Interval, BoundsAreWidenedToTheNextDouble) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 100000; ++i) {
     const double x = std::bit_cast<double>(random());
@@ -25,41 +25,41 @@ TEST(Interval, GoesOutwardToTheNextNumber) {
     EXPECT_EQ(next_up(x), std::nextafter(x, kInfinity));
     EXPECT_EQ(next_down(x), std::nextafter(x, -kInfinity));
   }
-  for (const double x : {0.0, -0.0, 5e-324, -5e-324, kMost, -kMost}) {
+  for (const double x : {0.0, -0.0, 5e-324, -5e-324, kMax, -kMax}) {
     EXPECT_EQ(next_up(x), std::nextafter(x, kInfinity));
     EXPECT_EQ(next_down(x), std::nextafter(x, -kInfinity));
   }
-  EXPECT_EQ(next_down(kInfinity), kMost);  // what overflowed was a number
-  EXPECT_EQ(next_up(-kInfinity), -kMost);
+  EXPECT_EQ(next_down(kInfinity), kMax);  // an overflow came from a finite number
+  EXPECT_EQ(next_up(-kInfinity), -kMax);
   EXPECT_EQ(next_up(kInfinity), kInfinity);
 }
 
-TEST(Interval, IsExactWhereNothingIsRounded) {
+TEST(Interval, IsExactIfNothingIsRounded) {
   EXPECT_TRUE((Interval(3, 4) - Interval(3)).holds(0));
   EXPECT_EQ((Interval(0) * Interval(-5, 7)).upper, 0);
-  EXPECT_EQ((Interval(0) * Interval::everything(Regularity::defined)).lower, 0);
+  EXPECT_EQ((Interval(0) * Interval::everything(Decoration::defined)).lower, 0);
   EXPECT_EQ(sqrt(Interval(0)).upper, 0);
   EXPECT_EQ(square(Interval(-2, 1)).lower, 0);
 }
 
-TEST(Interval, OverflowKeepsWhatIsSure) {
-  const Interval large(1e308, kMost), sum = large + large, product = large * large;
-  EXPECT_EQ(sum.lower, kMost);
+TEST(Interval, OverflowKeepsValidBounds) {
+  const Interval large(1e308, kMax), sum = large + large, product = large * large;
+  EXPECT_EQ(sum.lower, kMax);
   EXPECT_EQ(sum.upper, kInfinity);
-  EXPECT_EQ(product.lower, kMost);
+  EXPECT_EQ(product.lower, kMax);
   EXPECT_FALSE((sum - sum).is_empty());
   EXPECT_TRUE((sum - sum).holds(0));
   EXPECT_TRUE((Interval(1) / sum).holds(0));
 }
 
-TEST(Interval, SaysWhereItIsUndefined) {
-  const Interval part = sqrt(Interval(-1, 4));
-  EXPECT_FALSE(part.is_defined());
-  EXPECT_FALSE((part + Interval(1)).surely_holds());
-  EXPECT_GE(part.upper, 2);
+TEST(Interval, DecorationShowsUndefinedArguments) {
+  const Interval enclosure = sqrt(Interval(-1, 4));
+  EXPECT_FALSE(enclosure.is_defined());
+  EXPECT_FALSE((enclosure + Interval(1)).is_certified_satisfied());
+  EXPECT_GE(enclosure.upper, 2);
   EXPECT_TRUE(sqrt(Interval(-2, -1)).is_empty());
   EXPECT_TRUE((sqrt(Interval(-2, -1)) * Interval(0)).is_empty());
-  EXPECT_TRUE(sqrt(Interval(-2, -1)).surely_fails());
+  EXPECT_TRUE(sqrt(Interval(-2, -1)).is_certified_violated());
   EXPECT_FALSE((Interval(1) / Interval(-1, 1)).is_defined());
   EXPECT_EQ((Interval(1) / Interval(0, 1)).upper, kInfinity);
   EXPECT_GT((Interval(1) / Interval(0, 1)).lower, 0.99);
@@ -71,7 +71,7 @@ TEST(Interval, SaysWhereItIsUndefined) {
   EXPECT_TRUE(min(Interval(1), sqrt(Interval(-1))).is_empty());
 }
 
-TEST(Interval, SaysWhereItJumps) {
+TEST(Interval, DecorationShowsDiscontinuities) {
   EXPECT_TRUE(atan2(Interval(1, 2), Interval(-1, 1)).is_continuous());
   EXPECT_FALSE(atan2(Interval(-1, 1), Interval(-2, -1)).is_continuous());
   EXPECT_TRUE(atan2(Interval(-1, 1), Interval(1, 2)).is_continuous());
@@ -84,8 +84,8 @@ TEST(Interval, SaysWhereItJumps) {
   EXPECT_EQ(less(Interval(0, 1), Interval(2)).lower, 1);
 }
 
-/// Formulas that take every operation, over intervals and at numbers in them.
-TEST(Interval, OfAFormulaHoldsItsValues) {
+/// Formulas with every operation, evaluated on boxes and at random points in them.
+TEST(Interval, OfAFormulaContainsItsValues) {
   const std::vector<std::string> names = {"x", "y", "z"};
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);

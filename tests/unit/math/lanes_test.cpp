@@ -14,7 +14,7 @@
 namespace pkm {
 namespace {
 
-using L = Lanes<2>;  // what the baseline takes, as this file is compiled for it
+using L = Lanes<2>;  // the width of the baseline instruction set, for which this file is compiled
 using Eight = std::array<double, kLanes>;
 
 constexpr Eight kX = {-3.7, -1, -0.25, 0, 0.1, 1, 2.5, 1e15 + 0.5};
@@ -32,19 +32,19 @@ Eight values(const L& x) {
   return r;
 }
 
-TEST(Lanes, ComputeWhatDoublesDo) {
+TEST(Lanes, EqualDoubleArithmetic) {
   const L x = L::load(kX.data()), y = L::load(kY.data());
   EXPECT_EQ(values(x + y * 2.0), each([](double a, double b) { return a + b * 2.0; }));
   EXPECT_EQ(values(1.0 - x / y), each([](double a, double b) { return 1.0 - a / b; }));
   EXPECT_EQ(values(-x), each([](double a, double) { return -a; }));
   EXPECT_EQ(values(magnitude(x)), each([](double a, double) { return std::fabs(a); }));
   EXPECT_EQ(values(sqrt(y * y)), each([](double, double b) { return std::sqrt(b * b); }));
-  EXPECT_EQ(values(root_or_zero(x)), each([](double a, double) { return a > 0 ? std::sqrt(a) : 0; }));
+  EXPECT_EQ(values(sqrt_or_zero(x)), each([](double a, double) { return a > 0 ? std::sqrt(a) : 0; }));
   EXPECT_EQ(values(floor(x)), each([](double a, double) { return std::floor(a); }));
   EXPECT_EQ(values(ceil(x)), each([](double a, double) { return std::ceil(a); }));
 }
 
-TEST(Lanes, SelectByMasks) {
+TEST(Lanes, AreSelectedByMasks) {
   const L x = L::load(kX.data()), y = L::load(kY.data());
   EXPECT_EQ(values(select((x < y) & (x > -2.0), x, y)),
             each([](double a, double b) { return a < b && a > -2.0 ? a : b; }));
@@ -54,7 +54,7 @@ TEST(Lanes, SelectByMasks) {
   EXPECT_EQ(values(greater(x, y)), each([](double a, double b) { return a > b ? a : b; }));
 }
 
-TEST(Lanes, ExponentialHasTheBitsOfThePortableOne) {
+TEST(Lanes, ExponentialIsBitIdenticalToPortableExp) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const auto compare = [](const Eight& x) {
     const Eight found = values(exp(L::load(x.data())));
@@ -71,7 +71,7 @@ TEST(Lanes, ExponentialHasTheBitsOfThePortableOne) {
   }
 }
 
-TEST(Lanes, FindTheLeastAndTheGreatest) {
+TEST(Lanes, MinimumAndMaximumOverTheLanes) {
   EXPECT_EQ(least(L::load(kX.data())), -3.7);
   EXPECT_EQ(greatest(L::load(kY.data())), 7);
 }

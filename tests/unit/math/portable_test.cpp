@@ -1,4 +1,4 @@
-// Our elementary functions against long double, and their known bits: the same on every processor.
+// The portable elementary functions against long double, and reference results that must be bit-identical everywhere.
 #include "engine/math/portable.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ double ulps(double found, long double exact) {
   return static_cast<double>(std::fabs(static_cast<long double>(found) - exact) / unit);
 }
 
-TEST(Portable, ErrorsStayWithinTheStatedUnits) {
+TEST(Portable, ErrorsStayWithinTheStatedBounds) {
   Uniform draw(1);
   double sine = 0, cosine = 0, arcs = 0, exponential = 0, logarithm = 0;
   for (int i = 0; i < 200'000; ++i) {
@@ -39,7 +39,7 @@ TEST(Portable, ErrorsStayWithinTheStatedUnits) {
   EXPECT_LT(logarithm, 1.5);
 }
 
-TEST(Portable, EdgesOfTheirRanges) {
+TEST(Portable, LimitsOfTheirDomains) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(portable::sin(0), 0);
   EXPECT_EQ(portable::cos(0), 1);
@@ -57,14 +57,14 @@ TEST(Portable, EdgesOfTheirRanges) {
   EXPECT_TRUE(std::isnan(portable::log(-1)));
   EXPECT_EQ(portable::pow(0, 0.5), 0);
   EXPECT_NEAR(portable::pow(2, 0.5), std::sqrt(2.0), 1e-15);
-  for (const double none : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
-    EXPECT_TRUE(std::isnan(portable::sin(none))) << none;
-    EXPECT_TRUE(std::isnan(portable::cos(none))) << none;
+  for (const double invalid : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
+    EXPECT_TRUE(std::isnan(portable::sin(invalid))) << invalid;
+    EXPECT_TRUE(std::isnan(portable::cos(invalid))) << invalid;
   }
 }
 
-// A change of these bits changes what a seed leads to: then kAlgorithms has to be raised.
-TEST(Portable, KnownBits) {
+// If these results change, so do the results of all seeds: then increase kAlgorithms.
+TEST(Portable, ReferenceResults) {
   EXPECT_EQ(portable::sin(1), 0x1.aed548f090ceep-1);
   EXPECT_EQ(portable::cos(1), 0x1.14a280fb5068cp-1);
   EXPECT_EQ(portable::exp(1), 0x1.5bf0a8b14576ap+1);

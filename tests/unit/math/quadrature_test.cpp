@@ -1,4 +1,5 @@
-// Rules against integrals with closed forms; pieces with root-like ends; derivatives through moving ends.
+// Quadrature against closed-form integrals, with square-root singularities at endpoints and derivatives with respect to
+// endpoints; statistics of samples.
 #include "engine/math/quadrature.hpp"
 
 #include <gtest/gtest.h>
@@ -20,8 +21,9 @@ TEST(Quadrature, GaussRulesAreExactForPolynomials) {
   }
 }
 
-TEST(Quadrature, EachNestedRuleIsExactToItsDegree) {
-  const auto exact_to = [](const NestedRule& rule, const auto& weight) {  // even powers of 2 x - 1: odd ones are 0
+TEST(Quadrature, NestedRulesHaveTheStatedDegrees) {
+  // Degree of exactness, from the integrals of even powers of 2 x - 1; those of odd powers are 0.
+  const auto exact_to = [](const NestedRule& rule, const auto& weight) {
     int degree = 0;
     for (double error = 0; error < 1e-14; degree += 2) {
       error = -1.0 / (degree + 1);
@@ -39,24 +41,24 @@ TEST(Quadrature, EachNestedRuleIsExactToItsDegree) {
   EXPECT_EQ(exact_to(patterson, patterson.level[1].weight), 23);
 }
 
-TEST(Quadrature, AsksForNoMoreNodesThanItTakes) {
-  std::vector<QuadraturePart<double>> scratch;
-  const auto wave = [&](double length) {
+TEST(Quadrature, UsesTheFewestNodesThatReachTheTolerance) {
+  std::vector<QuadratureCell<double>> scratch;
+  const auto integral = [&](double length) {
     return integrate<double>([](double x) { return portable::exp(x); }, {{0, length}}, 1e-10, 0, scratch,
                              {.rule = patterson_rule()});
   };
-  EXPECT_EQ(wave(0.1).evaluations, 7);
-  EXPECT_EQ(wave(4).evaluations, 15);
-  EXPECT_GT(wave(40).evaluations, 15);
+  EXPECT_EQ(integral(0.1).evaluations, 7);
+  EXPECT_EQ(integral(4).evaluations, 15);
+  EXPECT_GT(integral(40).evaluations, 15);
   for (const double length : {0.1, 4.0, 40.0}) {
     const double exact = portable::exp(length) - 1;
-    EXPECT_NEAR(wave(length).value, exact, 1e-10 * exact);
-    EXPECT_LE(wave(length).error, 1e-10 * exact);
+    EXPECT_NEAR(integral(length).value, exact, 1e-10 * exact);
+    EXPECT_LE(integral(length).error, 1e-10 * exact);
   }
 }
 
-TEST(Quadrature, RootLikeEndsBecomeSmooth) {
-  std::vector<QuadraturePart<double>> scratch;
+TEST(Quadrature, SquareRootSingularitiesAreRemoved) {
+  std::vector<QuadratureCell<double>> scratch;
   const auto half_disc = [](double x) { return std::sqrt(std::fmax(0.0, 1 - x * x)); };
   const auto mapped = integrate<double>(half_disc, {{-1, 1, true, true}}, 1e-12, 0, scratch);
   EXPECT_NEAR(mapped.value, kPi / 2, 1e-12);
@@ -64,8 +66,8 @@ TEST(Quadrature, RootLikeEndsBecomeSmooth) {
   EXPECT_LT(3 * mapped.evaluations, plain.evaluations);
 }
 
-TEST(Quadrature, AKinkIsFoundByHalving) {
-  std::vector<QuadraturePart<double>> scratch;
+TEST(Quadrature, KinksAreResolvedByBisection) {
+  std::vector<QuadratureCell<double>> scratch;
   for (const NestedRule* rule : {&kronrod_rule(), &patterson_rule()}) {
     const auto result =
         integrate<double>([](double x) { return std::fabs(x - 0.3); }, {{0, 1}}, 1e-8, 0, scratch, {.rule = *rule});
@@ -74,9 +76,9 @@ TEST(Quadrature, AKinkIsFoundByHalving) {
   }
 }
 
-TEST(Quadrature, HalvingStopsAtTheFloorOfRounding) {
-  std::vector<QuadraturePart<double>> scratch;
-  const auto noisy = [](double x) { return ((1e4 + x * x) - 1e4 - x * x) + 1e-9; };  // rounding of 1e-12
+TEST(Quadrature, BisectionStopsAtRoundingErrors) {
+  std::vector<QuadratureCell<double>> scratch;
+  const auto noisy = [](double x) { return ((1e4 + x * x) - 1e4 - x * x) + 1e-9; };  // rounding errors of 1e-12
   const auto endless = integrate<double>(noisy, {{0, 1}}, 1e-8, 0, scratch);
   const auto result = integrate<double>(noisy, {{0, 1}}, 1e-8, 1e-10, scratch);
   EXPECT_EQ(result.evaluations, 15);
@@ -84,12 +86,12 @@ TEST(Quadrature, HalvingStopsAtTheFloorOfRounding) {
   EXPECT_NEAR(result.value, 1e-9, 1e-11);
 }
 
-TEST(Quadrature, DerivativesMoveWithTheEnds) {
+TEST(Quadrature, EndpointsContributeToDerivatives) {
   using Scalar = Dual<1>;
   const Scalar end = Scalar::variable(0.7, 0);
-  std::vector<QuadraturePart<Scalar>> scratch;
+  std::vector<QuadratureCell<Scalar>> scratch;
   // integral of sqrt(end - x) over [0, end] is (2/3) end^(3/2); its derivative is sqrt(end)
-  const auto result = integrate<Scalar>([&](const Scalar& x) { return root_or_zero(Scalar(end - x)); },
+  const auto result = integrate<Scalar>([&](const Scalar& x) { return sqrt_or_zero(Scalar(end - x)); },
                                         {{Scalar(0.0), end, false, true}}, 1e-12, 0, scratch);
   EXPECT_NEAR(result.value.a, 2.0 / 3 * std::pow(0.7, 1.5), 1e-13);
   EXPECT_NEAR(result.value.v[0], std::sqrt(0.7), 1e-12);
@@ -99,31 +101,31 @@ TEST(Quadrature, DerivativesMoveWithTheEnds) {
   EXPECT_NEAR(sum.value.v[0], 0, 1e-14);
 }
 
-TEST(Statistics, OfWeightedSamplesAndOfNone) {
+TEST(Statistics, OfWeightedSamplesAndOfNoSamples) {
   EXPECT_EQ(weighted_mean<double>({1, 3}, {2, 6}), 5);
   EXPECT_EQ(least<double>({0.3, 0.1, 0.2}), 0.1);
   EXPECT_EQ(weighted_mean<double>({}, {}), 0);
   EXPECT_EQ(least<double>({}), 0);
-  EXPECT_EQ(soft_least<double>({}, {}, 100), 0);
+  EXPECT_EQ(soft_min<double>({}, {}, 100), 0);
 }
 
-TEST(Statistics, SoftLeastLiesAboveTheLeastAndTendsToIt) {
+TEST(Statistics, SoftMinimumIsAboveTheMinimumAndConvergesToIt) {
   const std::vector<double> weight = {0.5, 2, 1, 0.1}, field = {0.31, 0.3, 0.8, 0.55};
   double before = weighted_mean(weight, field);
   for (const double sharpness : {1.0, 10.0, 100.0, 1e3, 1e4, 1e5}) {
-    const double soft = soft_least(weight, field, sharpness);
+    const double soft = soft_min(weight, field, sharpness);
     EXPECT_GT(soft, 0.3);
     EXPECT_LT(soft, before);
-    // the least sample alone: 0.3 - ln(2/3.6) / sharpness, and the others push it down
+    // Upper bound: the contribution of the minimum alone, 0.3 - ln(2/3.6) / sharpness; the other samples reduce it.
     EXPECT_LE(soft, 0.3 + std::log(3.6 / 2) / sharpness * (1 + 1e-12)) << sharpness;
     before = soft;
   }
   EXPECT_NEAR(before, 0.3, 1e-5);
-  EXPECT_NEAR(soft_least<double>({1, 7}, {0.25, 0.25}, 50), 0.25, 1e-15);                      // all equal
-  EXPECT_NEAR(soft_least<double>({1, 1}, {0.1, 1e6}, 200), 0.1 + std::log(2.0) / 200, 1e-15);  // nothing overflows
+  EXPECT_NEAR(soft_min<double>({1, 7}, {0.25, 0.25}, 50), 0.25, 1e-15);                      // all equal
+  EXPECT_NEAR(soft_min<double>({1, 1}, {0.1, 1e6}, 200), 0.1 + std::log(2.0) / 200, 1e-15);  // no overflow
 }
 
-TEST(Statistics, SoftLeastHasTheDerivativesOfItself) {
+TEST(Statistics, SoftMinimumDerivativesEqualFiniteDifferences) {
   const std::vector<double> weight = {0.5, 2, 1, 0.1}, field = {0.31, 0.3, 0.32, 0.55};
   const double sharpness = 40;
   for (int i = 0; i < 4; ++i) {
@@ -131,16 +133,16 @@ TEST(Statistics, SoftLeastHasTheDerivativesOfItself) {
     std::vector<Dual4> w(weight.begin(), weight.end()), f(field.begin(), field.end());
     w[at].v[0] = 1;
     f[at].v[1] = 1;
-    const Dual4 soft = soft_least(w, f, sharpness);
-    EXPECT_EQ(soft.a, soft_least(weight, field, sharpness));
+    const Dual4 soft = soft_min(w, f, sharpness);
+    EXPECT_EQ(soft.a, soft_min(weight, field, sharpness));
     constexpr double kStep = 1e-5;
-    const auto slope = [&](std::vector<double> low_w, std::vector<double> low_f, double dw, double df) {
+    const auto difference = [&](std::vector<double> low_w, std::vector<double> low_f, double dw, double df) {
       auto high_w = low_w, high_f = low_f;
       low_w[at] -= dw, high_w[at] += dw, low_f[at] -= df, high_f[at] += df;
-      return (soft_least(high_w, high_f, sharpness) - soft_least(low_w, low_f, sharpness)) / (2 * kStep);
+      return (soft_min(high_w, high_f, sharpness) - soft_min(low_w, low_f, sharpness)) / (2 * kStep);
     };
-    EXPECT_NEAR(soft.v[0], slope(weight, field, kStep, 0), 1e-9);
-    EXPECT_NEAR(soft.v[1], slope(weight, field, 0, kStep), 1e-7);
+    EXPECT_NEAR(soft.v[0], difference(weight, field, kStep, 0), 1e-9);
+    EXPECT_NEAR(soft.v[1], difference(weight, field, 0, kStep), 1e-7);
   }
 }
 

@@ -1,4 +1,4 @@
-// Points from a fixed generator, for hypervolumes.
+// Random points with a fixed seed, for tests of performance indicators.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,9 @@
 
 namespace pkm::test {
 
-/// Rows of `objectives` numbers in [0, 1], the same bits everywhere.
-/// @param shape  "sphere": on the unit sphere, "plane": with sum 1, "cloud": anywhere, so that most are dominated
+/// Random points, row-major, `objectives` numbers in [0, 1] each; bit-identical on every machine.
+/// @param shape  "sphere": on the unit sphere, "plane": on the plane with sum 1, "cloud": in the unit cube,
+///               so that most are dominated
 inline std::vector<double> random_front(const std::string& shape, std::size_t count, std::size_t objectives,
                                         std::uint64_t seed = 1) {
   std::vector<double> points;
@@ -28,7 +29,7 @@ inline std::vector<double> random_front(const std::string& shape, std::size_t co
   return points;
 }
 
-/// A reference point that every point of a random front is better than.
+/// A reference point that every point of a random front dominates.
 inline std::vector<double> front_reference(std::size_t objectives) { return std::vector<double>(objectives, 1.1); }
 
 }  // namespace pkm::test

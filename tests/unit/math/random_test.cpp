@@ -17,7 +17,7 @@ TEST(Random, PhiloxKnownAnswers) {  // from Random123's known-answer file
             (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
 }
 
-TEST(Random, StreamIsPhiloxOfItsKey) {
+TEST(Random, StreamIsPhiloxWithItsKeyAndCounter) {
   Stream stream(0x0000000700000005, 11, 13, Stream::Use::variation);
   for (std::uint32_t block = 0; block < 6; ++block) {
     const auto words = philox({block, static_cast<std::uint32_t>(Stream::Use::variation), 13, 11}, {5, 7});
@@ -25,7 +25,7 @@ TEST(Random, StreamIsPhiloxOfItsKey) {
   }
 }
 
-TEST(Random, EveryPartOfTheKeyMatters) {
+TEST(Random, StreamsOfDifferentKeysDiffer) {
   std::set<double> firsts;
   for (const std::uint64_t seed : {1ull, 2ull, 1ull << 32})
     for (const std::uint32_t generation : {0u, 1u})
@@ -68,7 +68,7 @@ TEST(Random, NormalNumbersHaveTheRightMoments) {
   EXPECT_NEAR(beyond / static_cast<double>(n), 0.05, 5 * std::sqrt(0.05 * 0.95 / n));
 }
 
-TEST(Random, BelowIsEvenAndInRange) {
+TEST(Random, BelowIsUniform) {
   Stream stream(1, 0, 0, Stream::Use::selection);
   std::array<int, 7> counts{};
   for (int i = 0; i < 70000; ++i) ++counts.at(stream.below(7));
@@ -76,7 +76,7 @@ TEST(Random, BelowIsEvenAndInRange) {
   EXPECT_EQ(stream.below(1), 0u);
 }
 
-TEST(Random, ChanceKeepsItsEnds) {
+TEST(Random, ChanceHasTheGivenProbability) {
   Stream stream(1, 0, 0, Stream::Use::selection);
   int hits = 0;
   for (int i = 0; i < 10000; ++i) {

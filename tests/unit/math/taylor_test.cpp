@@ -1,9 +1,9 @@
-// Formulas of time: first and second derivatives against differences, values against double.
+// Formulas of time: first and second derivatives against finite differences, values against double.
 #include "engine/math/taylor.hpp"
 
 #include <gtest/gtest.h>
 
-#include "engine/graph/formula.hpp"
+#include "engine/expression/formula.hpp"
 
 namespace pkm {
 namespace {
@@ -39,12 +39,13 @@ const std::vector<std::string>& texts() {
   return list;
 }
 
-TEST(Taylor, DerivativesOfFormulasEqualDifferences) {
+TEST(Taylor, DerivativesOfFormulasEqualFiniteDifferences) {
   for (const std::string& text : texts()) {
     const Formula formula(text, {"t"});
     for (const double t : {0.21, 0.5, 0.83, 1.4}) {
       SCOPED_TRACE(text + " at " + std::to_string(t));
-      // Sixth-order differences: errors of about (h = 0.005)^6 against roundings of 1e-16/h^2.
+      // Sixth-order finite differences with h = 0.005: truncation error of about h^6, rounding error of about
+      // 1e-16/h^2.
       const auto f = [&](double k) { return plain(formula, t + 0.005 * k); };
       const double first = (45 * (f(1) - f(-1)) - 9 * (f(2) - f(-2)) + (f(3) - f(-3))) / (60 * 0.005);
       const double second =
@@ -57,7 +58,7 @@ TEST(Taylor, DerivativesOfFormulasEqualDifferences) {
   }
 }
 
-/// Derivatives that a closed form gives to the last digits.
+/// Derivatives against closed forms.
 TEST(Taylor, DerivativesAreExact) {
   const double t = 0.7, s = portable::sin(3 * t), c = portable::cos(3 * t);
   const auto expect = [&](const std::string& text, double d, double dd) {
@@ -78,8 +79,8 @@ TEST(Taylor, DerivativesAreExact) {
   expect("t^t", std::pow(t, t) * (1 + std::log(t)), std::pow(t, t) * ((1 + std::log(t)) * (1 + std::log(t)) + 1 / t));
 }
 
-/// An exponent that varies and is whole at this very time.
-TEST(Taylor, WholeExponentsThatVary) {
+/// A varying exponent whose value is an integer at this time.
+TEST(Taylor, VaryingExponentsWithIntegerValue) {
   const Taylor found = at(Formula("3^(2*t)", {"t"}), 1.0);
   const double rate = 2 * std::log(3.0);
   EXPECT_EQ(found.a, 9);

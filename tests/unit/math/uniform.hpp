@@ -1,4 +1,4 @@
-// Uniform random numbers, the same on every platform.
+// Uniformly distributed random numbers, identical on every platform.
 #pragma once
 
 #include <random>

@@ -1,5 +1,5 @@
-// Laws of every kind of motion: derivatives, ends, durations.
-#include "engine/motion/motions.hpp"
+// All kinds of motions: derivatives, end points, durations, interval enclosures.
+#include "engine/motion/motion_factories.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ using X = Pose<double>;
 const std::vector<AxisInfo> kCoordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"phi", "rad"}};
 const X kStart{0.03, 0.17, 0.2, -0.5};
 
-PickAndPlace handling(double overlap, TimeLaw law = TimeLaw::quintic) {
+PickAndPlace pick_and_place_cycle(double overlap, TimeLaw law = TimeLaw::quintic) {
   PickAndPlace cycle;
   cycle.axes = space_axes(kCoordinates);
   cycle.start = kStart;
@@ -28,18 +28,18 @@ PickAndPlace handling(double overlap, TimeLaw law = TimeLaw::quintic) {
 
 std::vector<NamedMotion> every_kind() {
   const auto formula = [](const char* text) { return Formula(text, time_name()); };
-  PickAndPlace whole = handling(0.06);
+  PickAndPlace whole = pick_and_place_cycle(0.06);
   whole.back = true;
   whole.wait = 0.1;
   const std::vector<Move> moves = {{0.2, {{0.1, 0.2, 0.2, 0.3}}, 0.4}, {0, {{0.1, 0.2, 0.25, 0.3}}, 0.1}};
   return {{"quintic", point_to_point(kStart, moves, 0.05, TimeLaw::quintic)},
           {"cycloid", point_to_point(kStart, moves, 0.05, TimeLaw::cycloid)},
           {"oscillation", oscillation(space_axes(kCoordinates), kStart, 0.01, 1.0, 2.0)},
-          {"half", pick_and_place(handling(0))},
-          {"half, cycloid", pick_and_place(handling(0.05, TimeLaw::cycloid))},
+          {"half", pick_and_place(pick_and_place_cycle(0))},
+          {"half, cycloid", pick_and_place(pick_and_place_cycle(0.05, TimeLaw::cycloid))},
           {"whole", pick_and_place(whole)},
           {"formulas",
-           formulas_of_time({formula("0.2 - 0.010*t"), formula("0.1*sin(t)"), formula("0.2"), formula("t^2")}, 2)}};
+           motion_from_formulas({formula("0.2 - 0.010*t"), formula("0.1*sin(t)"), formula("0.2"), formula("t^2")}, 2)}};
 }
 
 TEST(Motions, VelocityAndAccelerationAreTheDerivatives) {
@@ -47,7 +47,7 @@ TEST(Motions, VelocityAndAccelerationAreTheDerivatives) {
     SCOPED_TRACE(name);
     const double T = motion->duration(), h = 1e-5;
     for (int k = 1; k < 40; ++k) {
-      const double t = T * k / 40 + 1e-3 * T;  // off the corners
+      const double t = T * k / 40 + 1e-3 * T;  // not where the acceleration is discontinuous
       const MotionSample at = motion->at(t), before = motion->at(t - h), after = motion->at(t + h);
       EXPECT_EQ(at.time, t);
       for (std::size_t i = 0; i < 4; ++i) {
@@ -58,21 +58,22 @@ TEST(Motions, VelocityAndAccelerationAreTheDerivatives) {
   }
 }
 
-/// The formulas over an interval of times hold every sample in it, and are as narrow as it is short.
-TEST(Motions, FormulasOfTheTimeHoldEverySample) {
+/// The graph evaluated over a time interval encloses every sample in it, and the width of the enclosure is proportional
+/// to that of the interval.
+TEST(Motions, GraphEnclosesEverySample) {
   for (const auto& [name, motion] : every_kind()) {
     SCOPED_TRACE(name);
-    graph::Graph graph;
+    expression::Graph graph;
     std::vector<Interval> inputs = {Interval(7.0)};
     TimeGraph to(graph, inputs);
-    const std::vector<graph::Node> pose = motion->write(to);
+    const std::vector<expression::Node> pose = motion->write(to);
     ASSERT_EQ(pose.size(), 4u);
-    const graph::Program program(graph, pose);
+    const expression::Program program(graph, pose);
     const double T = motion->duration();
     std::vector<Interval> registers;
-    for (const int pieces : {7, 1000}) {
-      for (int k = 0; k < pieces; ++k) {
-        const double from = T * k / pieces, end = T * (k + 1) / pieces;
+    for (const int intervals : {7, 1000}) {
+      for (int k = 0; k < intervals; ++k) {
+        const double from = T * k / intervals, end = T * (k + 1) / intervals;
         inputs[to.position] = {from, end};
         program.run_all<Interval>(inputs, registers);
         for (const double t : {from, 0.7 * from + 0.3 * end, end})
@@ -81,7 +82,7 @@ TEST(Motions, FormulasOfTheTimeHoldEverySample) {
             const double sample = motion->at(std::min(t, T)).pose[i];
             EXPECT_LE(at.lower, sample + 1e-12) << t;
             EXPECT_GE(at.upper, sample - 1e-12) << t;
-            EXPECT_LE(at.width(), 40.0 / pieces) << t;
+            EXPECT_LE(at.width(), 40.0 / intervals) << t;
             EXPECT_TRUE(at.is_defined());
           }
       }
@@ -100,7 +101,7 @@ TEST(Motions, SamplesIncludeBothEnds) {
   }
 }
 
-TEST(Motions, MovesRestAtTheirPointsAndPause) {
+TEST(Motions, PointToPointRestsAtItsPoints) {
   const auto motion = every_kind()[0].motion;  // waits 0.2, moves 0.4, moves 0.1, waits 0.05
   EXPECT_DOUBLE_EQ(motion->duration(), 0.75);
   const auto expect_rest = [&](double t, const X& pose) {
@@ -118,10 +119,10 @@ TEST(Motions, MovesRestAtTheirPointsAndPause) {
   EXPECT_EQ(motion->at(motion->duration()).pose, (X{0.1, 0.2, 0.25, 0.3}));
 }
 
-TEST(Motions, TimesFollowFromPeakAccelerations) {
+TEST(Motions, DurationFollowsFromPeakRates) {
   for (const TimeLaw law : {TimeLaw::quintic, TimeLaw::cycloid}) {
     const X to = kStart + X{0.03, -0.04, 0, 0.2};
-    const double T = time_within(law, kCoordinates, kStart, to, {.acceleration = 3});
+    const double T = min_move_duration(law, kCoordinates, kStart, to, {.acceleration = 3});
     const auto motion = point_to_point(kStart, {{0, to, T}}, 0, law);
     double peak = 0, speed = 0;
     for (const MotionSample& at : sample(*motion, 100'001)) {
@@ -130,18 +131,19 @@ TEST(Motions, TimesFollowFromPeakAccelerations) {
     }
     EXPECT_NEAR(peak, 3, 1e-8);
     EXPECT_NEAR(speed, (law == TimeLaw::quintic ? 1.875 : 2.0) * 0.05 / T, 1e-12);
-    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, {.acceleration = 3, .speed = speed / 2}), 2 * T, 1e-12);
-    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, {.angular_speed = 0.1}), peak_speed(law) * 2, 1e-12);
-    // The turn asks for more time than the way.
-    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, {.acceleration = 3, .angular_acceleration = 0.1}),
+    EXPECT_NEAR(min_move_duration(law, kCoordinates, kStart, to, {.acceleration = 3, .speed = speed / 2}), 2 * T,
+                1e-12);
+    EXPECT_NEAR(min_move_duration(law, kCoordinates, kStart, to, {.angular_speed = 0.1}), peak_speed(law) * 2, 1e-12);
+    // the rotation needs more time than the translation
+    EXPECT_NEAR(min_move_duration(law, kCoordinates, kStart, to, {.acceleration = 3, .angular_acceleration = 0.1}),
                 std::sqrt(peak_acceleration(law) * 0.2 / 0.1), 1e-12);
   }
-  // Section 11 of the model's document: T = sqrt(10 S/(sqrt(3) a)).
-  EXPECT_NEAR(time_of_move(TimeLaw::quintic, 0.0906, 3), std::sqrt(10 * 0.0906 / (std::sqrt(3.0) * 3)), 1e-15);
+  // T = sqrt(10 S/(sqrt(3) a)).
+  EXPECT_NEAR(move_duration(TimeLaw::quintic, 0.0906, 3), std::sqrt(10 * 0.0906 / (std::sqrt(3.0) * 3)), 1e-15);
 }
 
-TEST(Motions, TheHandlingCycle) {
-  const auto half = pick_and_place(handling(0.06));
+TEST(Motions, PickAndPlaceCycle) {
+  const auto half = pick_and_place(pick_and_place_cycle(0.06));
   EXPECT_NEAR(half->duration(), 0.12 - 0.06 + 0.4 - 0.06 + 0.12, 1e-15);
   const MotionSample end = half->at(half->duration());
   const auto [s, c] = sincos(0.6);
@@ -150,12 +152,12 @@ TEST(Motions, TheHandlingCycle) {
   EXPECT_NEAR(end.pose[2], kStart[2], 1e-15);
   EXPECT_NEAR(end.pose[3], kStart[3] + 1, 1e-15);
   EXPECT_NEAR(half->at(half->duration() / 2).pose[2], kStart[2] + 0.025, 1e-15);
-  // Without overlap it stops at the corners.
-  const auto stops = pick_and_place(handling(0));
+  // without overlap it stops at the corners
+  const auto stops = pick_and_place(pick_and_place_cycle(0));
   for (const double corner : {0.12, 0.52})
     for (const double v : stops->at(corner).velocity) EXPECT_NEAR(v, 0, 1e-12);
-  // The way back takes the same path the other way round.
-  PickAndPlace cycle = handling(0.06);
+  // the way back follows the same path in reverse
+  PickAndPlace cycle = pick_and_place_cycle(0.06);
   cycle.back = true;
   const auto whole = pick_and_place(cycle);
   EXPECT_DOUBLE_EQ(whole->duration(), 2 * half->duration());
@@ -164,15 +166,15 @@ TEST(Motions, TheHandlingCycle) {
       EXPECT_NEAR(whole->at(whole->duration() - t).pose[i], whole->at(t).pose[i], 1e-14);
 }
 
-TEST(Motions, OfOtherCoordinates) {
-  // A planar platform whose turn comes first: the cycle's reach and turn find their coordinates by name and unit.
+TEST(Motions, WorkWithOtherCoordinates) {
+  // a planar platform whose rotation is the first coordinate: axes are found by name and unit
   const std::vector<AxisInfo> planar = {{"phi", "rad"}, {"y", "m"}, {"x", "m"}};
   const SpaceAxes axes = space_axes(planar);
   EXPECT_EQ(axes.turn, 0u);
   EXPECT_EQ(axes.x, 2u);
   EXPECT_EQ(axes.y, 1u);
   EXPECT_EQ(axes.z, std::nullopt);
-  PickAndPlace cycle = handling(0.06);
+  PickAndPlace cycle = pick_and_place_cycle(0.06);
   cycle.axes = axes;
   cycle.start = {0.1, 0.2, 0.3};
   cycle.lift = 0;
@@ -182,17 +184,18 @@ TEST(Motions, OfOtherCoordinates) {
   EXPECT_NEAR(end.pose[0], 1.1, 1e-15);
   EXPECT_NEAR(end.pose[1], 0.2 + 0.305 * s, 1e-15);
   EXPECT_NEAR(end.pose[2], 0.3 + 0.305 * c, 1e-15);
-  // Two angles: each keeps its own peak.
+  // two angles: the limits apply to each of them
   const std::vector<AxisInfo> angles = {{"alpha", "rad"}, {"beta", "rad"}};
-  EXPECT_EQ(time_within(TimeLaw::quintic, angles, {0, 0}, {0.1, -0.3}, {.acceleration = 1, .angular_acceleration = 2}),
-            std::fmax(time_of_move(TimeLaw::quintic, 0.1, 2), time_of_move(TimeLaw::quintic, -0.3, 2)));
+  EXPECT_EQ(
+      min_move_duration(TimeLaw::quintic, angles, {0, 0}, {0.1, -0.3}, {.acceleration = 1, .angular_acceleration = 2}),
+      std::fmax(move_duration(TimeLaw::quintic, 0.1, 2), move_duration(TimeLaw::quintic, -0.3, 2)));
 }
 
-TEST(Motions, WhichOnesEndAsTheyBegin) {
+TEST(Motions, PeriodicMotionsAreRecognised) {
   for (const auto& [name, motion] : every_kind())
     EXPECT_EQ(is_periodic(*motion, kCoordinates), name == "oscillation" || name == "whole") << name;
   const auto formula = [](const char* text) { return Formula(text, time_name()); };
-  const auto turn = formulas_of_time({formula("0"), formula("cos(2*pi*t)"), formula("0"), formula("2*pi*t")}, 1);
+  const auto turn = motion_from_formulas({formula("0"), formula("cos(2*pi*t)"), formula("0"), formula("2*pi*t")}, 1);
   EXPECT_TRUE(is_periodic(*turn, kCoordinates)) << "a full turn";
 }
 

@@ -1,4 +1,4 @@
-// Dominance as its definition has it, to compare with.
+// Pareto dominance by its definition, as a reference for tests.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Small problems with known optima, for the tests of optimisers and evaluators.
+// Small problems with known optima, for tests of optimisers and evaluators.
 #pragma once
 
 #include <cmath>
@@ -14,8 +14,9 @@
 
 namespace pkm::test {
 
-/// A problem made of one generic function: it fills the objectives and the margins, or it fills the margins and returns
-/// the only objective. Functions of doubles only, or of more than four variables, make problems without derivatives.
+/// A problem defined by one generic function, which sets objectives and constraint values, or sets the constraint
+/// values and returns the only objective. It has derivatives if the function accepts Dual4 and there are at most four
+/// variables.
 class FunctionProblem final : public Problem {
  public:
   template <class S>
@@ -26,7 +27,7 @@ class FunctionProblem final : public Problem {
                   F function)
       : space_(std::move(variables)), function_(function) {
     if constexpr (std::is_invocable_v<F, std::span<const Dual4>, std::span<Dual4>, std::span<Dual4>>)
-      if (space_.dimension() <= 4) slopes_ = function;
+      if (space_.dimension() <= 4) derivatives_ = function;
     for (std::size_t i = 0; i < directions.size(); ++i)
       objectives_.push_back({"f" + std::to_string(i), "1", "", directions[i]});
     for (std::size_t i = 0; i < margins; ++i) margins_.push_back({"g" + std::to_string(i), "1", ""});
@@ -41,7 +42,7 @@ class FunctionProblem final : public Problem {
   const DesignSpace& space() const override { return space_; }
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
   const std::vector<MarginInfo>& margins() const override { return margins_; }
-  const std::vector<ReportInfo>& reports() const override { return reports_; }
+  const std::vector<OutputInfo>& reports() const override { return reports_; }
 
   void evaluate(std::span<const double> design, Scratch&, EvaluationSlot result) const override {
     function_(design, result.objectives, result.margins);
@@ -52,21 +53,21 @@ class FunctionProblem final : public Problem {
     std::vector<Dual4> x, values(objectives_.size() + margins_.size());
     for (std::size_t i = 0; i < design.size(); ++i) x.push_back(Dual4::variable(design[i], static_cast<int>(i)));
     const std::span<Dual4> all(values);
-    slopes_(x, all.first(objectives_.size()), all.subspan(objectives_.size()));
+    derivatives_(x, all.first(objectives_.size()), all.subspan(objectives_.size()));
     std::size_t at = 0;
     for (const Dual4& value : values) {
       result.slopes[at++] = value.a;
       for (std::size_t i = 0; i < design.size(); ++i) result.slopes[at++] = value.v[static_cast<int>(i)];
     }
   }
-  Refusal no_derivatives() const override { return slopes_ ? Refusal() : "the function has none"; }
+  Unsupported no_derivatives() const override { return derivatives_ ? Unsupported() : "the function has none"; }
 
-  /// The same with the only objective twice, without derivatives: a trade-off that shrinks to the optimum.
-  FunctionProblem twice() const {
+  /// The same problem with its only objective duplicated, without derivatives: the Pareto front is the optimum.
+  FunctionProblem with_duplicate_objective() const {
     FunctionProblem problem = *this;
     problem.objectives_.push_back(objectives_[0]);
     problem.objectives_.back().name = "again";
-    problem.slopes_ = nullptr;
+    problem.derivatives_ = nullptr;
     problem.function_ = [once = function_](std::span<const double> x, std::span<double> f, std::span<double> g) {
       once(x, f.first(1), g);
       f[1] = f[0];
@@ -77,10 +78,10 @@ class FunctionProblem final : public Problem {
  private:
   DesignSpace space_;
   Function<double> function_;
-  Function<Dual4> slopes_;
+  Function<Dual4> derivatives_;
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;
-  std::vector<ReportInfo> reports_;
+  std::vector<OutputInfo> reports_;
 };
 
 inline std::vector<Variable> box(std::size_t dimension, double lower, double upper, double step = 0) {
@@ -98,8 +99,9 @@ inline FunctionProblem sphere(std::size_t dimension, double step = 0) {
           }};
 }
 
-/// Maximum 1 in the corner (0, 1, 1, 1), with curvature and products: the shape of a bound-limited design problem.
-inline FunctionProblem corner() {
+/// Maximum 1 at the corner (0, 1, 1, 1): non-linear with products, like a design problem whose optimum is at the
+/// bounds.
+inline FunctionProblem corner_optimum() {
   return {box(4, 0, 1), 0,
           [](auto x, auto) {
             return (1.0 - 0.8 * x[0]) * (0.4 + 0.6 * x[1]) * (0.5 + 0.7 * x[2] - 0.2 * x[2] * x[2]) *
@@ -108,7 +110,7 @@ inline FunctionProblem corner() {
           Direction::maximise};
 }
 
-/// Welded beam (Deb 2000): four variables, optimum 1.724852 where four constraints are active.
+/// Welded beam (Deb 2000): four variables, optimum 1.724852 with four active constraints.
 inline FunctionProblem welded_beam() {
   return {{{"h", "1", 0.1, 2, 0}, {"l", "1", 0.1, 10, 0}, {"t", "1", 0.1, 10, 0}, {"b", "1", 0.1, 2, 0}},
           5,
@@ -130,7 +132,7 @@ inline FunctionProblem welded_beam() {
           }};
 }
 
-/// Nothing is feasible; the violation is least, 0.5, at x = (1, 1).
+/// No design is feasible; the minimum violation is 0.5 at x = (1, 1).
 inline FunctionProblem infeasible_everywhere() {
   return {box(2, 0, 4), 1, [](auto x, auto g) {
             g[0] = -0.5 - (x[0] - 1.0) * (x[0] - 1.0) - (x[1] - 1.0) * (x[1] - 1.0);
@@ -138,7 +140,7 @@ inline FunctionProblem infeasible_everywhere() {
           }};
 }
 
-/// NaN on half of the box, where the objective would be best; minimum 1 at (0, 0.5) on the other half.
+/// NaN on one half of the box, towards which the objective decreases; minimum 1 at (0, 0.5) on the other half.
 inline FunctionProblem partly_undefined() {
   return {box(2, -1, 1), 0, [](auto x, auto) {
             const auto hole = value_of(x[0]) < 0 ? std::numeric_limits<double>::quiet_NaN() : 0.0;

@@ -1,4 +1,4 @@
-// Runs one optimiser on one problem and keeps what it reported.
+// Runs one optimiser on one problem and records its reports.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class Recorder final : public Monitor {
   std::vector<std::int64_t> numbers, best_rows;
   std::vector<std::size_t> first_rows, sizes;
   std::vector<std::vector<std::int64_t>> populations;
-  std::vector<StartOutcome> starts;  ///< that had ended at the last report
+  std::vector<StartOutcome> starts;  ///< finished starts at the last report
   std::vector<std::string> warnings;
   std::vector<Front> fronts;  ///< several objectives
 
@@ -52,7 +52,7 @@ inline const OptimiserEntry& entry(const std::string& name) {
   throw std::invalid_argument("no optimiser " + name);
 }
 
-/// Defaults and `changes`.
+/// Creates an optimiser with default options except `changes`.
 inline std::unique_ptr<Optimiser> make(const OptimiserEntry& e, const Problem& problem,
                                        const std::vector<std::pair<std::string, OptionValue>>& changes = {}) {
   Options options = default_options(e.options);
@@ -71,7 +71,7 @@ inline Outcome run(const Optimiser& optimiser, const Problem& problem, std::uint
   return outcome;
 }
 
-/// Goes on with a stage that was stopped: its rows are served, and the starts that had ended are not run again.
+/// Resumes a stopped stage: its rows are replayed, and its finished starts are not run again.
 inline Outcome resume(const Optimiser& optimiser, const Problem& problem, std::uint64_t seed, const Outcome& stopped,
                       std::int64_t last = std::numeric_limits<std::int64_t>::max(),
                       const std::vector<std::vector<double>>& starts = {}) {
@@ -81,7 +81,7 @@ inline Outcome resume(const Optimiser& optimiser, const Problem& problem, std::u
   for (const auto& design : starts) input.starts.push_back({design, "given"});
   input.recorded = &stopped.table;
   input.recorded_starts = stopped.recorder.starts;
-  input.recorded_ahead = stopped.result.ahead;
+  input.recorded_unmerged_starts = stopped.result.ahead;
   outcome.result = optimiser.minimise(input, outcome.table);
   return outcome;
 }
@@ -100,7 +100,7 @@ inline bool same_bits(const Front& a, const Front& b) {
          same(a.spread, b.spread) && same(a.igd_plus, b.igd_plus);
 }
 
-/// Equal designs, results and order, bit for bit (not the times).
+/// True if designs, results and their order are bit-identical; times may differ.
 inline bool same_bits(const EvaluationTable& a, const EvaluationTable& b) {
   const auto same = [](const auto& x, const auto& y) {
     return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);

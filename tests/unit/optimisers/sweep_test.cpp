@@ -6,7 +6,7 @@
 namespace pkm::test {
 namespace {
 
-TEST(Sweep, MovesOneVariableAtATimeAroundTheStart) {
+TEST(Sweep, VariesOneVariableAtATimeAroundTheStart) {
   const auto problem = sphere(2);
   const auto optimiser = make(entry("sweep"), problem, {{"points", std::int64_t{3}}});
   const Outcome outcome = run(*optimiser, problem, 1, 100, nullptr, {{0.25, 2.0}});
@@ -18,7 +18,7 @@ TEST(Sweep, MovesOneVariableAtATimeAroundTheStart) {
   EXPECT_EQ(optimiser->evaluation_limit(problem), 7);
 }
 
-TEST(Sweep, WithoutAStartTheCentreIsTheMiddle) {
+TEST(Sweep, WithoutAStartTheCentreOfTheSpaceIsUsed) {
   const auto problem = sphere(2);
   EXPECT_EQ(run(*make(entry("sweep"), problem), problem, 1, 0).table.designs, (std::vector<double>{1, 1}));
 }
@@ -38,20 +38,20 @@ TEST(Sweep, FullFactorialHasEveryCombinationInBoundedGenerations) {
   EXPECT_EQ(optimiser->evaluation_limit(problem), 2197);
 }
 
-TEST(Sweep, ALatticeHasNoMoreValuesThanItsPoints) {
+TEST(Sweep, VariablesWithAStepHaveNoDuplicateValues) {
   const auto problem = sphere(1, 4);  // -5, -1, 3, 7
   const Outcome outcome = run(*make(entry("sweep"), problem), problem, 1, 100, nullptr, {{3.0}});
   EXPECT_EQ(outcome.table.designs, (std::vector<double>{3, -5, -1, 3, 7}));
 }
 
-TEST(Sweep, RefusesTooManyCombinations) {
+TEST(Sweep, RejectsTooManyCombinations) {
   const auto problem = sphere(6);
   try {
     make(entry("sweep"), problem, {{"design", std::string("full-factorial")}, {"points", std::int64_t{100}}});
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
-                 "points = 100 for 6 variables makes 1e+12 designs; a full-factorial sweep may have 1e+08.");
+                 "points = 100 with 6 variables gives 1e+12 designs; a full-factorial sweep has at most 1e+08");
   }
 }
 

@@ -1,40 +1,40 @@
-// The problem of a study beyond what the contract suites and the optimisers' tests see of it.
+// Derivatives of a design problem; other aspects are covered by the contract suites and the tests of the optimisers.
 #include "engine/problem/design_problem.hpp"
 
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "engine/mechanisms/all.hpp"
-#include "tests/unit/contracts/nominal.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
+#include "tests/unit/contracts/mechanism_fixtures.hpp"
 
 namespace pkm {
 namespace {
 
-/// Parameter 0 is the only variable and the objective; its stand-in has the given slope.
-DesignProblem with_slope(double slope) {
+/// Parameter 0 is the only variable and the objective; the smooth approximation has the given derivative.
+DesignProblem with_derivative(double derivative) {
   ProblemParts parts;
   parts.mechanism = all_mechanisms().front();
   const Parameter& p = parts.mechanism->info().parameters[0];
   parts.parameters = test::nominal(parts.mechanism->info());
   parts.space = DesignSpace({{p.name, p.unit, p.lower, p.upper}});
   parts.varies = {0};
-  parts.plan = SurveyPlan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(parts.mechanism->info())};
+  parts.plan = WorkspacePlan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(parts.mechanism->info())};
   parts.objectives.push_back({.name = "first",
                               .unit = p.unit,
                               .meaning = p.meaning,
                               .direction = Direction::minimise,
                               .quantity = make_quantity([](const auto& design) { return design.parameters[0]; },
-                                                        [slope](const auto& design) {
-                                                          auto stand_in = design.parameters[0] * 2.0;
-                                                          stand_in.v[0] = slope;
-                                                          return stand_in;
+                                                        [derivative](const auto& design) {
+                                                          auto approximation = design.parameters[0] * 2.0;
+                                                          approximation.v[0] = derivative;
+                                                          return approximation;
                                                         })});
   return DesignProblem(parts);
 }
 
-TEST(DesignProblem, ValuesAreTheQuantitysAndSlopesTheStandInsOwn) {
-  const DesignProblem problem = with_slope(3);
+TEST(DesignProblem, StoresExactValuesAndDerivativesOfTheSmoothApproximation) {
+  const DesignProblem problem = with_derivative(3);
   Scratch scratch;
   EvaluationTable table(problem.shape(Detail::derivatives));
   table.extend(1);
@@ -44,9 +44,9 @@ TEST(DesignProblem, ValuesAreTheQuantitysAndSlopesTheStandInsOwn) {
   EXPECT_EQ(table.slopes, (std::vector{1.0, 3.0}));
 }
 
-TEST(DesignProblem, ASlopeThatIsNoNumberFailsTheDesignThatAskedForIt) {
-  for (const double slope : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    const DesignProblem problem = with_slope(slope);
+TEST(DesignProblem, NonFiniteDerivativeFailsAnEvaluationWithDerivatives) {
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    const DesignProblem problem = with_derivative(value);
     for (const Detail detail : {Detail::complete, Detail::derivatives}) {
       Scratch scratch;
       EvaluationTable table(problem.shape(detail));

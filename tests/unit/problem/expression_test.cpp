@@ -1,17 +1,17 @@
-// Expressions against the built-in entries that they spell out, values and slopes; when they are computed; what of
-// their options is refused.
+// Expressions compared with the equivalent built-in entries: values and derivatives; order of evaluation, demanded
+// fields, bounds and units.
 #include "engine/problem/expression.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "constraints/all.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
+#include "engine/config/study.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/setup/study.hpp"
-#include "engine/survey/pose_quantities.hpp"
+#include "engine/workspace/pose_quantities.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm {
@@ -19,13 +19,13 @@ namespace {
 
 using ::testing::ElementsAre;
 
-const std::string kMachine =
+const std::string kMechanism =
     "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\n"
     "a = { min = 0.15, max = 0.95 }\nb = { min = 0.6, max = 1.5 }\nl_u = { min = 0.4, max = 1.2 }\n"
     "l_d = { min = 0.4, max = 1.2 }\nL0 = { min = 1, max = 4 }\nR_u = { min = 0.005, max = 0.02 }\n";
 const std::string kStage = "[[stage]]\noptimiser = \"ga\"\n";
 
-/// Each built-in entry, and the same as an expression.
+/// Built-in entries, each followed by an equivalent expression.
 const std::string kPairs = R"toml(
 [[objective]]
 type = "workspace-ratio"
@@ -88,12 +88,12 @@ Study read(const std::string& text) {
   return read_study_toml(text, "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
 }
 
-/// alpha_min follows from R_u and d_u, so that a threshold has derivatives.
+/// Study of the pairs. alpha_min is derived from R_u and d_u, so that one threshold has derivatives.
 Study pairs(const std::string& method) {
   const std::string limits =
       "limits = { h_min = 0.06, beta_max = 1.3, sin_par_min = 0.1, cos_theta_min = 0.1 }\n"
       "[[constraint]]\ntype = \"interference\"\n";
-  return read(kMachine + "[workspace]\n" + method + "\n" + limits + kPairs + "[[stage]]\noptimiser = \"sweep\"\n");
+  return read(kMechanism + "[workspace]\n" + method + "\n" + limits + kPairs + "[[stage]]\noptimiser = \"sweep\"\n");
 }
 
 std::vector<double> some_design(const DesignProblem& problem, Stream& random) {
@@ -103,7 +103,7 @@ std::vector<double> some_design(const DesignProblem& problem, Stream& random) {
   return design;
 }
 
-/// Pairs of positions of what is to be equal: built-in, expression.
+/// Names of equal quantities: built-in entry, expression.
 const std::pair<const char*, const char*> kEqual[] = {{"workspace-ratio", "ratio"},
                                                       {"workspace-ratio", "ratio-by-size"},
                                                       {"conditioning", "mean"},
@@ -113,7 +113,7 @@ const std::pair<const char*, const char*> kEqual[] = {{"workspace-ratio", "ratio
                                                       {"linear", "sum"},
                                                       {"workspace-volume", "large"}};
 
-/// Names of objectives, then of margins.
+/// Names of the objectives, then of the margins.
 std::vector<std::string> names(const DesignProblem& problem) {
   auto all = names_of(problem.objectives());
   for (const auto& name : names_of(problem.margins())) all.push_back(name);
@@ -125,7 +125,7 @@ std::size_t index(const std::vector<std::string>& list, const std::string& name)
   return static_cast<std::size_t>(found - list.begin());
 }
 
-TEST(Expression, EqualsTheEntryThatItSpellsOut) {
+TEST(Expression, EqualsTheEquivalentBuiltInEntry) {
   for (const std::string method : {"method = \"voxels\"", "method = \"columns\""}) {
     const Study study = pairs(method);
     const DesignProblem& problem = *study.problem;
@@ -146,7 +146,7 @@ TEST(Expression, EqualsTheEntryThatItSpellsOut) {
   }
 }
 
-TEST(Expression, SlopesEqualThoseOfTheEntryThatItSpellsOut) {
+TEST(Expression, DerivativesEqualThoseOfTheEquivalentBuiltInEntry) {
   const Study study = pairs("method = \"columns\"");
   const DesignProblem& problem = *study.problem;
   const auto all = names(problem);
@@ -154,29 +154,29 @@ TEST(Expression, SlopesEqualThoseOfTheEntryThatItSpellsOut) {
   std::vector<std::size_t> by(parameters);
   for (std::size_t i = 0; i < parameters; ++i) by[i] = i;
   Stream random(2, 0, 0, Stream::Use::start);
-  int slopes_of_threshold = 0;
+  int threshold_derivatives = 0;
   for (int i = 0; i < 20; ++i) {
-    const auto slopes = problem.slopes(problem.parameters(some_design(problem, random)), by);
+    const auto derivatives = problem.slopes(problem.parameters(some_design(problem, random)), by);
     for (const auto& [built_in, expression] : kEqual)
       for (std::size_t k = 0; k < width; ++k) {
-        const double expected = slopes[width * index(all, built_in) + k];
+        const double expected = derivatives[width * index(all, built_in) + k];
         ASSERT_TRUE(std::isfinite(expected)) << built_in;
-        EXPECT_NEAR(slopes[width * index(all, expression) + k], expected, 1e-12 * (1 + std::fabs(expected)))
-            << expression << " by " << k;
+        EXPECT_NEAR(derivatives[width * index(all, expression) + k], expected, 1e-12 * (1 + std::fabs(expected)))
+            << expression << ", derivative " << k;
       }
-    slopes_of_threshold += slopes[width * index(all, "rail") + 1 + 6] != 0;  // by R_u
+    threshold_derivatives += derivatives[width * index(all, "rail") + 1 + 6] != 0;  // with respect to R_u
   }
-  EXPECT_EQ(slopes_of_threshold, 20);
+  EXPECT_EQ(threshold_derivatives, 20);
 }
 
-TEST(Expression, IsComputedBeforeTheSurveyWhereItCanBe) {
+TEST(Expression, IsEvaluatedBeforeTheWorkspaceAnalysisIfPossible) {
   const Study study =
-      read(kMachine + "[[objective]]\ntype = \"workspace-volume\"\n" + kStage +
+      read(kMechanism + "[[objective]]\ntype = \"workspace-volume\"\n" + kStage +
            "[[constraint]]\ntype = \"expression\"\nname = \"late\"\nexpression = \"volume - b\"\n"
            "[[constraint]]\ntype = \"expression\"\nname = \"early\"\nexpression = \"size - b * beta_max\"\n");
   const ProblemParts& parts = study.problem->parts();
   EXPECT_THAT(names_of(parts.design_margins), ElementsAre("early"));
-  EXPECT_THAT(names_of(parts.survey_margins), ElementsAre("late"));
+  EXPECT_THAT(names_of(parts.workspace_margins), ElementsAre("late"));
   EvaluationTable table(study.problem->shape());
   table.extend(1);
   const std::vector<double> design = {0.2, 0.8, 0.2, 0.2, 2.5, 0.01};  // size = 0.32 pi < 0.8 * pi / 2
@@ -187,9 +187,9 @@ TEST(Expression, IsComputedBeforeTheSurveyWhereItCanBe) {
   EXPECT_TRUE(std::isnan(table.margins[1]) && std::isnan(table.objectives[0]));
 }
 
-TEST(Expression, DemandsWhatItNames) {
+TEST(Expression, DemandsTheFieldsThatItUses) {
   const auto demand = [](const std::string& more) {
-    return read(kMachine + "[[objective]]\ntype = \"workspace-volume\"\n" + kStage + more).problem->parts().demand;
+    return read(kMechanism + "[[objective]]\ntype = \"workspace-volume\"\n" + kStage + more).problem->parts().demand;
   };
   const std::string report = "[[report]]\ntype = \"expression\"\n",
                     constraint = "[[constraint]]\ntype = \"expression\"\n";
@@ -202,8 +202,8 @@ TEST(Expression, DemandsWhatItNames) {
             0.05);
 }
 
-TEST(Expression, CharacteristicLengthIsThatOfTheBuiltInEntry) {
-  const Study study = read(kMachine + kStage +
+TEST(Expression, CharacteristicLengthActsAsInTheBuiltInEntry) {
+  const Study study = read(kMechanism + kStage +
                            "[[objective]]\ntype = \"conditioning\"\ncharacteristic_length = 0.3\n"
                            "[[report]]\ntype = \"expression\"\nexpression = \"conditioning_mean\"\n"
                            "characteristic_length = 0.3\n");
@@ -212,10 +212,10 @@ TEST(Expression, CharacteristicLengthIsThatOfTheBuiltInEntry) {
   EXPECT_EQ(report.reports[0], report.objectives[0]);
 }
 
-TEST(Expression, WhatIsNoNumberFailsTheEvaluation) {
+TEST(Expression, NonFiniteValueFailsTheEvaluation) {
   for (const std::string where : {"[[objective]]\n", "[[constraint]]\n"})
     for (const std::string text : {"1 / (volume - volume)", "sqrt(-volume)", "log(a - a)"}) {
-      const Study study = read(kMachine + "[[stage]]\noptimiser = \"sweep\"\n" + where +
+      const Study study = read(kMechanism + "[[stage]]\noptimiser = \"sweep\"\n" + where +
                                "type = \"expression\"\nexpression = \"" + text + "\"\n");
       const DesignReport report = study.problem->report(study.problem->parts().parameters);
       EXPECT_EQ(report.status, Status::failed) << where << text;
@@ -223,9 +223,9 @@ TEST(Expression, WhatIsNoNumberFailsTheEvaluation) {
     }
 }
 
-TEST(Expression, IsMaximisedUnlessToldOtherwise) {
+TEST(Expression, IsMaximisedByDefault) {
   const Study study =
-      read(kMachine + "[[stage]]\noptimiser = \"sweep\"\n" +
+      read(kMechanism + "[[stage]]\noptimiser = \"sweep\"\n" +
            "[[objective]]\ntype = \"expression\"\nexpression = \"a\"\nunit = \"m\"\n"
            "[[objective]]\ntype = \"expression\"\nname = \"small\"\nexpression = \"\"\"size\n  / b\"\"\"\n"
            "direction = \"minimise\"\n");
@@ -238,9 +238,9 @@ TEST(Expression, IsMaximisedUnlessToldOtherwise) {
   EXPECT_EQ(objectives[1].meaning, "size / b");
 }
 
-TEST(Expression, BoundsOfAConstraint) {
+TEST(Expression, ConstraintBoundsDefineTheMargin) {
   const Study study =
-      read(kMachine + kStage + "[[objective]]\ntype = \"workspace-volume\"\n" +
+      read(kMechanism + kStage + "[[objective]]\ntype = \"workspace-volume\"\n" +
            "[[constraint]]\ntype = \"expression\"\nname = \"c1\"\nexpression = \"b\"\nunit = \"m\"\nmin = \"500 mm\"\n"
            "[[constraint]]\ntype = \"expression\"\nname = \"c2\"\nexpression = \"b\"\nunit = \"m\"\nmax = \"1 m\"\n"
            "[[constraint]]\ntype = \"expression\"\nname = \"c3\"\nexpression = \"b\"\n"
@@ -257,7 +257,7 @@ TEST(Expression, BoundsOfAConstraint) {
   EXPECT_EQ(margins[3].meaning, "volume <= 2");
 }
 
-TEST(Expression, OfAMechanismWithoutAJacobianKnowsNoConditioning) {
+TEST(Expression, ConditioningIsUnknownForAMechanismWithoutAJacobian) {
   const auto known = [&](const Mechanism& mechanism) { return names_of(expression_names(mechanism, {})); };
   EXPECT_THAT(known(*all_mechanisms()[0]),
               ::testing::IsSupersetOf({"size", "volume", "conditioning_mean", "conditioning_min"}));

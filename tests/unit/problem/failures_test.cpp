@@ -1,10 +1,10 @@
-// Reasons of failed evaluations, counted.
+// Statistics of failed evaluations by reason.
 #include "engine/problem/failures.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/setup/real_studies.hpp"
+#include "tests/unit/config/real_studies.hpp"
 
 namespace pkm {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::read_real;
 
-/// Fails where a < 0.25 by an objective, where b > 0.9 by a constraint.
+/// The objective fails for a < 0.25, the constraint for b > 0.9.
 Study study() {
   return read_real(R"text([mechanism]
 type = "4ppa-2par"
@@ -49,17 +49,17 @@ TEST(Failures, AreCountedByReason) {
   const Study of = study();
   const EvaluationTable table =
       evaluated(of, {{0.3, 0.85}, {0.2, 0.85}, {0.21, 0.85}, {0.3, 0.95}, {0.22, 0.85}, {0.2, 0.96}});
-  const Failures found = failures_in({&table, &table}, of.problem.get());
+  const Failures found = collect_failures({&table, &table}, of.problem.get());
   EXPECT_EQ(found.evaluations, 12u);
   EXPECT_EQ(found.failed, 10u);
   EXPECT_EQ(found.examined, 10u);
-  ASSERT_EQ(found.reasons.size(), 1u) << "neither quantity says more than that it is not finite";
+  ASSERT_EQ(found.reasons.size(), 1u) << "both quantities only report that the value is not finite";
   EXPECT_EQ(found.reasons[0].count, 10u);
   EXPECT_EQ(failures_text(found),
             "10 of 12 evaluations failed: 10 because, for example, an objective or a margin is not a finite number");
 }
 
-TEST(Failures, ReasonsThatDifferInNumbersAreOne) {
+TEST(Failures, ReasonsThatDifferOnlyInNumbersAreMerged) {
   const Study of = read_real(R"([mechanism]
 type = "3crr-r-cru"
 [variables]
@@ -77,7 +77,7 @@ motion = "turn"
 optimiser = "ga"
 )");
   const EvaluationTable table = evaluated(of, {{0.02, 0.02}, {0.03, 0.03}, {0.17, 0.225}, {0.04, 0.04}});
-  const Failures found = failures_in({&table}, of.problem.get());
+  const Failures found = collect_failures({&table}, of.problem.get());
   ASSERT_EQ(found.failed, 3u);
   ASSERT_EQ(found.reasons.size(), 1u);
   EXPECT_EQ(found.reasons[0].count, 3u);
@@ -85,16 +85,17 @@ optimiser = "ga"
               HasSubstr("peak-force: the motion turn leaves the reach of the mechanism at t = "));
 }
 
-TEST(Failures, ManyAreSampled) {
+TEST(Failures, AtMost64AreExamined) {
   const Study of = study();
   EvaluationTable table = evaluated(of, std::vector<std::pair<double, double>>(100, {0.2, 0.85}));
-  EXPECT_EQ(failures_in({&table}, of.problem.get()).examined, 64u);
-  EXPECT_THAT(failures_text(failures_in({&table}, of.problem.get())),
+  EXPECT_EQ(collect_failures({&table}, of.problem.get()).examined, 64u);
+  EXPECT_THAT(failures_text(collect_failures({&table}, of.problem.get())),
               HasSubstr("100 of 100 evaluations failed, of which 64 were examined: 64 because"));
   for (float& seconds : table.seconds) seconds = 0.6F;
-  EXPECT_EQ(failures_in({&table}, of.problem.get()).examined, 2u) << "slow evaluations are not repeated for long";
-  EXPECT_EQ(failures_text(failures_in({&table}, nullptr)), "100 of 100 evaluations failed");
-  EXPECT_EQ(failures_text(failures_in({}, nullptr)), "");
+  EXPECT_EQ(collect_failures({&table}, of.problem.get()).examined, 2u)
+      << "slow evaluations are repeated for one second only";
+  EXPECT_EQ(failures_text(collect_failures({&table}, nullptr)), "100 of 100 evaluations failed");
+  EXPECT_EQ(failures_text(collect_failures({}, nullptr)), "");
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "constraints/all.hpp"
-#include "engine/mechanisms/all.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "objectives/all.hpp"
 
@@ -19,8 +19,8 @@ Study study(const std::string& baseline = "[baseline]\na = 0.22\n") {
   return read_study_toml(text, "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
 }
 
-/// Two stages of two generations with two designs each: a = 0.11, 0.12, .. 0.18; the population of the second
-/// generation holds a design of the first.
+/// Two stages of two generations with two designs each: a = 0.11, 0.12, .. 0.18. The population of the second
+/// generation contains a design of the first one.
 StudyContents contents() {
   StudyContents c;
   c.name = "made up";
@@ -41,62 +41,62 @@ StudyContents contents() {
   return c;
 }
 
-double a_of(const DesignChoice& choice) { return chosen_design(contents(), study(), choice).parameters[0]; }
+double chosen_a(const DesignChoice& choice) { return chosen_design(contents(), study(), choice).parameters[0]; }
 
-TEST(ChosenDesign, IsTheBestUnlessAnotherIsNamed) {
-  EXPECT_NEAR(a_of({}), 0.18, 1e-12);
-  EXPECT_NEAR(a_of({.baseline = true}), 0.22, 1e-12);
-  EXPECT_NEAR(a_of({.generation = 0, .individual = 2, .stage = 1}), 0.12, 1e-12);
-  EXPECT_NEAR(a_of({.generation = 1, .individual = 1, .stage = 1}), 0.14, 1e-12);
-  EXPECT_NEAR(a_of({.generation = 1, .individual = 2}), 0.16, 1e-12);  // of the last stage
-  EXPECT_NEAR(a_of({.front = 1}), 0.13, 1e-12);                        // of the only stage that has one
-  EXPECT_NEAR(a_of({.front = 2, .stage = 1}), 0.12, 1e-12);
+TEST(ChosenDesign, SelectsTheBestDesignByDefault) {
+  EXPECT_NEAR(chosen_a({}), 0.18, 1e-12);
+  EXPECT_NEAR(chosen_a({.baseline = true}), 0.22, 1e-12);
+  EXPECT_NEAR(chosen_a({.generation = 0, .individual = 2, .stage = 1}), 0.12, 1e-12);
+  EXPECT_NEAR(chosen_a({.generation = 1, .individual = 1, .stage = 1}), 0.14, 1e-12);
+  EXPECT_NEAR(chosen_a({.generation = 1, .individual = 2}), 0.16, 1e-12);  // last stage that has the generation
+  EXPECT_NEAR(chosen_a({.front = 1}), 0.13, 1e-12);                        // only stage with a front
+  EXPECT_NEAR(chosen_a({.front = 2, .stage = 1}), 0.12, 1e-12);
   const ChosenDesign design = chosen_design(contents(), study(), {.generation = 1, .individual = 2});
   EXPECT_EQ(design.words, "individual 2 of generation 1 of stage 2");
   EXPECT_EQ(design.file_name, "stage-2-generation-1-individual-2");
   EXPECT_EQ(design.parameters.size(), study().problem->parts().parameters.size());
 }
 
-std::string refusal(const DesignChoice& choice, const StudyContents& file = contents(), const Study& of = study()) {
+std::string error_of(const DesignChoice& choice, const StudyContents& file = contents(), const Study& from = study()) {
   try {
-    chosen_design(file, of, choice);
+    chosen_design(file, from, choice);
   } catch (const ConfigError& error) {
     return error.what();
   }
   return "";
 }
 
-TEST(ChosenDesign, RefusalsNameWhatThereIs) {
-  EXPECT_EQ(refusal({.generation = 2, .individual = 1}),
+TEST(ChosenDesign, ErrorsListTheValidValues) {
+  EXPECT_EQ(error_of({.generation = 2, .individual = 1}),
             "--generation: found 2; expected a generation of stage 2, 0 to 1");
-  EXPECT_EQ(refusal({.generation = -1, .individual = 1}),
+  EXPECT_EQ(error_of({.generation = -1, .individual = 1}),
             "--generation: found -1; expected a generation of stage 2, 0 to 1");
-  EXPECT_EQ(refusal({.generation = 1, .individual = 3}),
+  EXPECT_EQ(error_of({.generation = 1, .individual = 3}),
             "--individual: found 3; expected an individual of generation 1, 1 to 2");
-  EXPECT_EQ(refusal({.generation = 1, .individual = 0}),
+  EXPECT_EQ(error_of({.generation = 1, .individual = 0}),
             "--individual: found 0; expected an individual of generation 1, 1 to 2");
-  EXPECT_EQ(refusal({.generation = 1, .individual = 1, .stage = 3}),
+  EXPECT_EQ(error_of({.generation = 1, .individual = 1, .stage = 3}),
             "--stage: found 3; expected a stage with a generation: 1, 2");
-  EXPECT_EQ(refusal({.front = 3}), "--front: found 3; expected a point of the front of stage 1, 1 to 2");
-  EXPECT_EQ(refusal({.front = 1, .stage = 2}), "--stage: found 2; expected a stage with a front: 1");
-  EXPECT_EQ(refusal({.baseline = true}, contents(), study("")),
-            "--baseline: found study made up; expected a study with a [baseline]: this one has none");
+  EXPECT_EQ(error_of({.front = 3}), "--front: found 3; expected a point of the front of stage 1, 1 to 2");
+  EXPECT_EQ(error_of({.front = 1, .stage = 2}), "--stage: found 2; expected a stage with a front: 1");
+  EXPECT_EQ(error_of({.baseline = true}, contents(), study("")),
+            "--baseline: study made up has no [baseline]; expected a study that has one");
   StudyContents empty = contents();
   empty.stages.clear();
   empty.best = {};
-  EXPECT_THAT(refusal({}, empty), HasSubstr("found no best design in study made up"));
-  EXPECT_THAT(refusal({.front = 1}, empty), HasSubstr("a study file that holds a front: this one has none"));
-  EXPECT_THAT(refusal({.generation = 0, .individual = 1}, empty), HasSubstr("holds a generation: this one has none"));
+  EXPECT_THAT(error_of({}, empty), HasSubstr("study made up has no best design yet"));
+  EXPECT_THAT(error_of({.front = 1}, empty), HasSubstr("has no front; expected a study that has one"));
+  EXPECT_THAT(error_of({.generation = 0, .individual = 1}, empty),
+              HasSubstr("has no generation; expected a study that has one"));
 }
 
-TEST(ChosenDesign, RefusesContradictions) {
-  EXPECT_THAT(refusal({.baseline = true, .front = 1}), HasSubstr("--baseline: found another design beside it"));
-  EXPECT_THAT(refusal({.generation = 1, .individual = 1, .front = 1}),
-              HasSubstr("--front: found another design beside it"));
-  EXPECT_THAT(refusal({.generation = 1}), HasSubstr("--generation: found no --individual"));
-  EXPECT_THAT(refusal({.individual = 1}), HasSubstr("--individual: found no --generation"));
-  EXPECT_THAT(refusal({.stage = 1}), HasSubstr("--stage: found no --front or --generation"));
-  EXPECT_THAT(refusal({.baseline = true, .stage = 1}), HasSubstr("--stage: found no --front or --generation"));
+TEST(ChosenDesign, RejectsAmbiguousAndIncompleteChoices) {
+  EXPECT_THAT(error_of({.baseline = true, .front = 1}), HasSubstr("--baseline: two designs selected"));
+  EXPECT_THAT(error_of({.generation = 1, .individual = 1, .front = 1}), HasSubstr("--front: two designs selected"));
+  EXPECT_THAT(error_of({.generation = 1}), HasSubstr("--generation: incomplete"));
+  EXPECT_THAT(error_of({.individual = 1}), HasSubstr("--individual: incomplete"));
+  EXPECT_THAT(error_of({.stage = 1}), HasSubstr("--stage: --front or --generation is missing"));
+  EXPECT_THAT(error_of({.baseline = true, .stage = 1}), HasSubstr("--stage: --front or --generation is missing"));
 }
 
 }  // namespace

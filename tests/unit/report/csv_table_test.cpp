@@ -8,8 +8,8 @@
 namespace pkm {
 namespace {
 
-TEST(CsvTable, QuotesWhatWouldBreakARow) {
-  CsvTable table({"plain", "with, comma", header("a", "m"), header("ratio", "1")});
+TEST(CsvTable, QuotesSeparatorsQuotesAndLineBreaks) {
+  CsvTable table({"plain", "with, comma", column_header("a", "m"), column_header("ratio", "1")});
   table.begin_row();
   table.add("say \"no\"");
   table.add(std::string("two\nlines"));
@@ -18,7 +18,7 @@ TEST(CsvTable, QuotesWhatWouldBreakARow) {
   EXPECT_EQ(table.text(), "plain,\"with, comma\",a [m],ratio\n\"say \"\"no\"\"\",\"two\nlines\",0.1,-7\n");
 }
 
-TEST(CsvTable, TextIsNoFormulaInASpreadsheet) {
+TEST(CsvTable, PrefixesTextThatASpreadsheetWouldExecute) {
   CsvTable table({"=1+1", "-7"});
   table.row(std::string("@SUM(A1)"), std::string("-cmd|' /C calc'!A0"));
   table.row(std::string("+1.5e3"), std::string("+x"));
@@ -27,7 +27,7 @@ TEST(CsvTable, TextIsNoFormulaInASpreadsheet) {
   EXPECT_EQ(table.text(), "'=1+1,-7\n'@SUM(A1),'-cmd|' /C calc'!A0\n+1.5e3,'+x\n'\t=1,\"'=a,\"\"b\"\"\"\n-7.5,-3\n");
 }
 
-TEST(CsvTable, NumbersReadBackWithTheirBits) {
+TEST(CsvTable, NumbersAreWrittenWithFullPrecision) {
   for (const double value : {1.0 / 3, 5e-324, 1.7976931348623157e308, -2.5e-7}) {
     CsvTable table({"x"});
     table.begin_row();
@@ -36,7 +36,7 @@ TEST(CsvTable, NumbersReadBackWithTheirBits) {
   }
 }
 
-TEST(CsvTable, LeavesACellEmptyForWhatDoesNotExist) {
+TEST(CsvTable, WritesEmptyCellsForMissingValues) {
   CsvTable table({"a", "b", "c", "d", "e"});
   table.begin_row();
   table.add(std::nan(""));

@@ -1,11 +1,11 @@
-// The volume that a surface encloses.
+// Volume enclosed by a triangulated surface, by the divergence theorem.
 #pragma once
 
 #include "engine/report/isosurface.hpp"
 
 namespace pkm::test {
 
-/// In the product of the axes' units; > 0 where the triangles are counter-clockwise seen from outside.
+/// In the product of the axes' units; positive if the triangles are counter-clockwise seen from outside.
 inline double enclosed_volume(const Isosurface& surface) {
   double sixfold = 0;
   for (const auto& [a, b, c] : surface.triangles) {

@@ -1,4 +1,4 @@
-// The tables of a study hold what the study holds.
+// CSV tables of a study: agreement with the study file.
 #include "engine/report/study_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using Lines = std::vector<std::vector<std::string>>;
 
-/// Cells of a table without quotes.
+/// Cells of a table, which must not contain quoted cells.
 Lines lines_of(const std::vector<NamedTable>& tables, const std::string& name) {
   Lines lines;
   for (const NamedTable& table : tables) {
@@ -28,14 +28,14 @@ Lines lines_of(const std::vector<NamedTable>& tables, const std::string& name) {
   return lines;
 }
 
-/// What a cell says; an empty one is NaN.
+/// Value of a cell; NaN if it is empty.
 double value(const std::string& cell) { return cell.empty() ? std::nan("") : std::strtod(cell.c_str(), nullptr); }
 
-void expect_same(double cell, double number) {
+void expect_equal(double cell, double number) {
   EXPECT_TRUE(cell == number || (std::isnan(cell) && std::isnan(number))) << cell << " is not " << number;
 }
 
-TEST(StudyTables, EveryEvaluationIsThereInFullPrecision) {
+TEST(StudyTables, EvaluationsAreCompleteWithFullPrecision) {
   const StudyContents study = test::sample_study();
   const Lines lines = lines_of(study_tables(study), "evaluations.csv");
   ASSERT_EQ(lines.size(), 1 + 12 + 0 + 6u);
@@ -52,32 +52,32 @@ TEST(StudyTables, EveryEvaluationIsThereInFullPrecision) {
       EXPECT_EQ(cells[1], std::to_string(row));
       EXPECT_EQ(cells[2], std::to_string(s == 0 ? row / 4 : row));
       EXPECT_EQ(cells[3], words(table.status[row]));
-      expect_same(value(cells[4]), table.design(row)[0]);
-      expect_same(value(cells[5]), table.design(row)[1]);
-      expect_same(value(cells[6]), table.objective_row(row)[0]);
-      expect_same(value(cells[7]), table.margin_row(row)[0]);
-      expect_same(value(cells[8]), table.margin_row(row)[1]);
-      expect_same(value(cells[9]), table.report_row(row)[0]);
+      expect_equal(value(cells[4]), table.design(row)[0]);
+      expect_equal(value(cells[5]), table.design(row)[1]);
+      expect_equal(value(cells[6]), table.objective_row(row)[0]);
+      expect_equal(value(cells[7]), table.margin_row(row)[0]);
+      expect_equal(value(cells[8]), table.margin_row(row)[1]);
+      expect_equal(value(cells[9]), table.output_row(row)[0]);
     }
   }
 }
 
-TEST(StudyTables, GenerationsAndPopulationsPointAtEvaluations) {
+TEST(StudyTables, GenerationsAndPopulationsReferToEvaluations) {
   const StudyContents study = test::sample_study();
   const Lines generations = lines_of(study_tables(study), "generations.csv");
   ASSERT_EQ(generations.size(), 1 + 3 + 6u);
   EXPECT_EQ(generations[2][1], "1");
-  EXPECT_EQ(generations[2][2], "8");  // evaluations by its end
+  EXPECT_EQ(generations[2][2], "8");  // evaluations up to its end
   EXPECT_EQ(generations[2][3], "4");
-  expect_same(value(generations[2][4]), study.stages[0].table.objective_row(4)[0]);
-  expect_same(value(generations[2][8]), 0.5);  // hypervolume
-  EXPECT_EQ(generations[4].back(), "");        // of a stage without a front
+  expect_equal(value(generations[2][4]), study.stages[0].table.objective_row(4)[0]);
+  expect_equal(value(generations[2][8]), 0.5);  // hypervolume
+  EXPECT_EQ(generations[4].back(), "");         // the stage has no front
   const Lines populations = lines_of(study_tables(study), "populations.csv");
   ASSERT_EQ(populations.size(), 1 + 12 + 6u);
   EXPECT_EQ(populations[6], (std::vector<std::string>{"1", "1", "2", "5"}));
 }
 
-TEST(StudyTables, BestDesignStandsBesideTheBaseline) {
+TEST(StudyTables, BestTableHasBestDesignAndBaseline) {
   const Lines lines = lines_of(study_tables(test::sample_study()), "best.csv");
   ASSERT_FALSE(lines.empty());
   EXPECT_EQ(lines[0], (std::vector<std::string>{"kind", "name", "unit", "best", "baseline", "best_exact"}));
@@ -89,18 +89,18 @@ TEST(StudyTables, BestDesignStandsBesideTheBaseline) {
   EXPECT_EQ(lines[9], (std::vector<std::string>{"status", "status", "", "feasible", "failed", "feasible"}));
 }
 
-TEST(StudyTables, BeforeItsEndAStudyHasTheBestSoFar) {
+TEST(StudyTables, UnfinishedStudyHasTheBestDesignSoFar) {
   StudyContents study = test::sample_study();
   study.final.reset();
   const Lines lines = lines_of(study_tables(study), "best.csv");
   ASSERT_FALSE(lines.empty());
   EXPECT_EQ(lines[0], (std::vector<std::string>{"kind", "name", "unit", "best"}));
-  expect_same(value(lines[1][3]), study.stages[0].table.design(8)[0]);
-  expect_same(value(lines[3][3]), 2.5);
-  expect_same(value(lines[4][3]), study.stages[0].table.objective_row(8)[0]);
+  expect_equal(value(lines[1][3]), study.stages[0].table.design(8)[0]);
+  expect_equal(value(lines[3][3]), 2.5);
+  expect_equal(value(lines[4][3]), study.stages[0].table.objective_row(8)[0]);
 }
 
-TEST(StudyTables, FrontsAreListedWithKneesAndCompromise) {
+TEST(StudyTables, FrontTableHasKneesAndCompromise) {
   const StudyContents study = test::sample_study();
   const Lines lines = lines_of(study_tables(study), "front.csv");
   ASSERT_EQ(lines.size(), 1 + 3u);
@@ -110,12 +110,12 @@ TEST(StudyTables, FrontsAreListedWithKneesAndCompromise) {
     EXPECT_EQ(lines[1 + point][1], std::to_string(point + 1));
     EXPECT_EQ(lines[1 + point][2], std::to_string(row));
     compromises += lines[1 + point][4] == "1";
-    expect_same(value(lines[1 + point][6]), study.stages[0].table.design(static_cast<std::size_t>(row))[0]);
+    expect_equal(value(lines[1 + point][6]), study.stages[0].table.design(static_cast<std::size_t>(row))[0]);
   }
   EXPECT_EQ(compromises, 1);
 }
 
-TEST(StudyTables, WithoutEvaluationsOnlyHeadersAreLeft) {
+TEST(StudyTables, TablesWithoutEvaluationsHaveOnlyHeaders) {
   StudyContents study = test::sample_study();
   study.stages.clear();
   study.final.reset();

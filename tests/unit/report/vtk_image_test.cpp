@@ -1,4 +1,4 @@
-// What VTK's own reader finds in our images.
+// VTKHDF images, read back with the readers of VTK and h5py.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,13 +13,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// 2 x 3 x 4 cells; values count the cells.
+/// 2 x 3 x 4 cells; the margin of a cell is its number divided by 3.
 WorkspaceFields sample() {
   WorkspaceFields fields;
   fields.axes = {{0, "x", "m", -1, 1, 2}, {2, "z", "m", 0, 3, 3}, {3, "theta", "rad", -0.5, 1.5, 4}};
   fields.held = {{1, "y", "m", 1.25, 1.25, 0}};
-  fields.held_note = {"the middle"};
-  fields.fields = {{"feasible", "1", "1 or 0", {}}, {"margin", "m", "least margin", {}}};
+  fields.fixed_note = {"default value"};
+  fields.fields = {{"feasible", "1", "1 or 0", {}}, {"margin", "m", "minimum margin", {}}};
   for (int cell = 0; cell < 24; ++cell) {
     fields.fields[0].values.push_back(cell % 2);
     fields.fields[1].values.push_back(cell == 5 ? test::odd_nan() : cell / 3.0);
@@ -35,7 +35,7 @@ void write(const std::string& path, const WorkspaceFields& fields) {
   write_vtk_image(path, fields, info, std::array{0.25}, "made up", Existing::refused);
 }
 
-TEST(VtkImage, IsReadByVtk) {
+TEST(VtkImage, VtkReadsGridAndFields) {
   if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOHDF' 2>/dev/null") != 0)
     GTEST_SKIP() << "python3-vtk9 is missing";
   const test::Folder folder;
@@ -43,16 +43,16 @@ TEST(VtkImage, IsReadByVtk) {
   write(folder / "image.vtkhdf", fields);
   std::string expected = "dimensions 2 3 4\nspacing 1.0 1.0 0.5\norigin -0.5 0.5 -0.25\n";
   for (const WorkspaceField& field : fields.fields) {
-    std::vector<double> turned;
+    std::vector<double> reordered;
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t j = 0; j < 3; ++j)
-        for (std::size_t i = 0; i < 2; ++i) turned.push_back(field.values[(i * 3 + j) * 4 + k]);
-    expected += field.name + test::bits(turned) + "\n";
+        for (std::size_t i = 0; i < 2; ++i) reordered.push_back(field.values[(i * 3 + j) * 4 + k]);
+    expected += field.name + test::bits(reordered) + "\n";
   }
   EXPECT_EQ(test::python_output("read_vtk.py", "'" + folder / "image.vtkhdf" + "'"), expected);
 }
 
-TEST(VtkImage, SaysUnitsToH5py) {
+TEST(VtkImage, H5pyReadsUnitsAndMetadata) {
   if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "python3-h5py is missing";
   const test::Folder folder;
   write(folder / "image.vtkhdf", sample());
@@ -65,7 +65,7 @@ TEST(VtkImage, SaysUnitsToH5py) {
             "(4, 3, 2) m b'ImageData' ['x [m]', 'z [m]', 'theta [rad]'] 1.25 0.75 0.25 made up\n");
 }
 
-TEST(VtkImage, ThatCannotBeWrittenLeavesWhatWasThere) {
+TEST(VtkImage, FailedWriteKeepsTheExistingFile) {
   const test::Folder folder;
   WorkspaceFields wrong = sample();
   wrong.fields[1].values.pop_back();
@@ -74,7 +74,7 @@ TEST(VtkImage, ThatCannotBeWrittenLeavesWhatWasThere) {
               HasSubstr("image.vtkhdf: cannot be written (margin: has 23 values for 24 cells)"));
   EXPECT_EQ(test::slurp(folder / "image.vtkhdf"), "old");
   EXPECT_THAT(test::storage_error([&] { write(folder / "none/image.vtkhdf", sample()); }),
-              HasSubstr("its folder does not take a new file"));
+              HasSubstr("because no file can be created in its folder"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Checkpoints keep to their share of the run time, on a clock that the tests move.
+// Tests of CheckpointClock with a simulated clock: checkpoints take at most their share of the run time.
 #include "engine/storage/checkpoint_clock.hpp"
 
 #include <gtest/gtest.h>
@@ -8,17 +8,19 @@
 namespace pkm {
 namespace {
 
+/// A simulated clock.
 struct Time {
   double now = 100;
   CheckpointClock clock(std::optional<double> every = {}) {
     return CheckpointClock(every, [this] { return now; });
   }
+  /// A write that takes the given time.
   auto spend(double seconds) {
     return [this, seconds] { now += seconds; };
   }
 };
 
-TEST(CheckpointClock, WaitsFiftyTimesTheCostOfTheFirstWrite) {
+TEST(CheckpointClock, WaitsFiftyTimesTheDurationOfTheFirstWrite) {
   Time time;
   CheckpointClock clock = time.clock();
   clock.first(time.spend(0.25));
@@ -27,10 +29,10 @@ TEST(CheckpointClock, WaitsFiftyTimesTheCostOfTheFirstWrite) {
   EXPECT_FALSE(clock.due());
   time.now += 0.5;
   EXPECT_TRUE(clock.due());
-  EXPECT_EQ(clock.share(), 0);  // the first write does not count
+  EXPECT_EQ(clock.share(), 0);  // the first write is excluded
 }
 
-TEST(CheckpointClock, CostlierCheckpointsBecomeRarer) {
+TEST(CheckpointClock, SlowerCheckpointsAreLessFrequent) {
   Time time;
   CheckpointClock clock = time.clock();
   clock.first(time.spend(0.25));
@@ -42,7 +44,7 @@ TEST(CheckpointClock, CostlierCheckpointsBecomeRarer) {
   EXPECT_TRUE(clock.due());
 }
 
-TEST(CheckpointClock, KeepsToTwoPerCentWhileTheFileGrows) {
+TEST(CheckpointClock, TakesTwoPerCentWhileTheFileGrows) {
   Time time;
   CheckpointClock clock = time.clock();
   clock.first(time.spend(0.005));
@@ -54,11 +56,11 @@ TEST(CheckpointClock, KeepsToTwoPerCentWhileTheFileGrows) {
     ++written;
   }
   EXPECT_LE(clock.share(), 0.0205);
-  EXPECT_GE(clock.share(), 0.018);  // and uses what it may, or more work than needed would be lost
+  EXPECT_GE(clock.share(), 0.018);  // fewer checkpoints would risk losing more work than necessary
   EXPECT_GT(written, 20);
 }
 
-TEST(CheckpointClock, DoesNotCatchUpAfterALongPause) {
+TEST(CheckpointClock, WritesOneCheckpointAfterALongPause) {
   Time time;
   CheckpointClock clock = time.clock();
   clock.first(time.spend(0.25));
@@ -69,7 +71,7 @@ TEST(CheckpointClock, DoesNotCatchUpAfterALongPause) {
   EXPECT_FALSE(clock.due());
 }
 
-TEST(CheckpointClock, FixedPeriod) {
+TEST(CheckpointClock, UsesAFixedPeriodIfGiven) {
   Time time;
   CheckpointClock clock = time.clock(2.0);
   clock.first(time.spend(0.5));
@@ -83,7 +85,7 @@ TEST(CheckpointClock, FixedPeriod) {
   EXPECT_TRUE(clock.due());
 }
 
-TEST(CheckpointClock, PeriodZeroIsEveryTime) {
+TEST(CheckpointClock, PeriodZeroIsAlwaysDue) {
   Time time;
   CheckpointClock clock = time.clock(0.0);
   clock.first(time.spend(1));
@@ -92,13 +94,13 @@ TEST(CheckpointClock, PeriodZeroIsEveryTime) {
   EXPECT_TRUE(clock.due());
 }
 
-TEST(CheckpointClock, PassesErrorsOn) {
+TEST(CheckpointClock, PassesExceptionsOfTheWriteOn) {
   Time time;
   CheckpointClock clock = time.clock();
   EXPECT_THROW(clock.checkpoint([] { throw std::runtime_error("full"); }), std::runtime_error);
 }
 
-TEST(CheckpointClock, RunsOnTheSystemsClockByDefault) {
+TEST(CheckpointClock, UsesTheSystemClockByDefault) {
   CheckpointClock clock(3600.0);
   clock.first([] {});
   EXPECT_FALSE(clock.due());

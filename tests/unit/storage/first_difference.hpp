@@ -1,4 +1,5 @@
-// Compares what a resumed run must repeat bit for bit, and names the first place in the file that differs.
+// Compares two studies bit by bit, except for items that may differ between two runs, and names the first path in the
+// study file at which they differ.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +14,19 @@
 
 namespace pkm::test {
 
-/// Times, machine, program and the TOML file's place: what another run need not repeat.
-inline bool must_repeat(std::string_view path) {
-  static constexpr std::string_view kOnce[] = {
+/// @return false for items that may differ between two runs: times, machine, program version, file names and notes
+inline bool is_reproducible(std::string_view path) {
+  static constexpr std::string_view kRunSpecific[] = {
       "/@toml_file", "/@reproducible", "/@program_version", "/@program_revision", "/@machine", "/@created", "/@updated",
       "/@seconds",   "/notes",         "/mechanism@file"};
   return !path.ends_with("/evaluations/seconds") && !path.ends_with("/generations/seconds") &&
-         std::ranges::find(kOnce, path) == std::end(kOnce);
+         std::ranges::find(kRunSpecific, path) == std::end(kRunSpecific);
 }
 
 using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::uint64_t>,
                             std::vector<std::uint8_t>, std::vector<std::string>>;
 
+/// An attribute or dataset.
 struct Item {
   std::string path;
   std::vector<std::string> columns;
@@ -32,7 +34,7 @@ struct Item {
   Values values;
 };
 
-/// Collects what has to repeat, in the order of the schema.
+/// Archive (see schema.hpp) that collects all reproducible items, in the order of the schema.
 class Collector {
  public:
   static constexpr bool kReads = false;
@@ -49,7 +51,7 @@ class Collector {
   void array(const Leaf& leaf, const std::vector<T>& values, const Extent& extent) {
     std::size_t width = 1;
     for (std::size_t i = 1; i < extent.size(); ++i) width *= extent[i];
-    // The only floats are times.
+    // Datasets of floats contain times only.
     if constexpr (!std::is_same_v<T, float>) add({leaf.path, leaf.columns, width, values});
   }
 
@@ -57,12 +59,12 @@ class Collector {
 
  private:
   void add(Item item) {
-    if (must_repeat(item.path)) items.push_back(std::move(item));
+    if (is_reproducible(item.path)) items.push_back(std::move(item));
   }
 };
 
 template <class T>
-bool same(const T& a, const T& b) {
+bool same_bits(const T& a, const T& b) {
   if constexpr (std::is_same_v<T, double>)
     return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
   else
@@ -70,7 +72,7 @@ bool same(const T& a, const T& b) {
 }
 
 template <class T>
-std::string show(const T& value) {
+std::string value_text(const T& value) {
   if constexpr (std::is_same_v<T, double>)
     return shortest(value);
   else if constexpr (std::is_same_v<T, std::string>)
@@ -79,17 +81,20 @@ std::string show(const T& value) {
     return std::to_string(value);
 }
 
-inline std::string place(const Item& item, std::size_t index, std::size_t count) {
+/// Path of an element: "/stages/1/evaluations/margin[0].rail-length".
+inline std::string element_path(const Item& item, std::size_t index, std::size_t count) {
   if (count == 1) return item.path;
   std::string text = item.path + "[" + std::to_string(index / item.width) + "]";
   if (item.columns.size() == item.width) text += "." + item.columns[index % item.width];
   return text;
 }
 
+/// @return a sentence on the first difference; "" if there is none
 template <class T>
 std::string compare(const Item& item, const std::vector<T>& a, const std::vector<T>& b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    if (!same(a[i], b[i])) return place(item, i, a.size()) + ": " + show(a[i]) + " against " + show(b[i]);
+    if (!same_bits(a[i], b[i]))
+      return element_path(item, i, a.size()) + ": " + value_text(a[i]) + " against " + value_text(b[i]);
   if (a.size() != b.size())
     return item.path + ": " + std::to_string(a.size()) + " against " + std::to_string(b.size()) + " values";
   return "";
@@ -99,7 +104,7 @@ std::string compare(const Item& item, const std::vector<T>& a, const std::vector
 
 namespace pkm {
 
-/// "" when equal, otherwise one line with the first difference: its place in the file and both values.
+/// @return one line with the first difference: its path in the file and both values; "" if the studies are equal
 inline std::string first_difference(const StudyContents& a, const StudyContents& b) {
   test::Collector from_a, from_b;
   schema::describe(from_a, a);

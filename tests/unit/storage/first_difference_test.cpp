@@ -1,4 +1,5 @@
-// The comparison behind "a resumed study equals the straight one" has to see everything that counts, and nothing else.
+// Tests of first_difference(), which compares studies in tests of resuming: it detects every difference in results, and
+// ignores times, machine and program version.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,13 +10,14 @@
 namespace pkm {
 namespace {
 
+/// The first difference between the sample study and a copy of it after the change.
 std::string difference_after(void (*change)(StudyContents&)) {
   StudyContents changed = test::sample_study();
   change(changed);
   return first_difference(test::sample_study(), changed);
 }
 
-TEST(FirstDifference, NoneBetweenEqualStudies) {
+TEST(FirstDifference, IsEmptyForEqualStudies) {
   EXPECT_EQ(first_difference(test::sample_study(), test::sample_study()), "");
 }
 
@@ -30,7 +32,7 @@ TEST(FirstDifference, IgnoresTimesMachineAndProgram) {
             "");
 }
 
-TEST(FirstDifference, NamesPlaceAndValues) {
+TEST(FirstDifference, NamesPathAndBothValues) {
   EXPECT_EQ(difference_after([](StudyContents& s) { s.seed = 5; }), "/@seed: 18364758544493064720 against 5");
   EXPECT_EQ(difference_after([](StudyContents& s) { s.state = StudyState::finished; }),
             "/@state: 'interrupted' against 'finished'");
@@ -45,7 +47,7 @@ TEST(FirstDifference, NamesPlaceAndValues) {
             "/final/map/feasible[0]: 1 against 0");
 }
 
-TEST(FirstDifference, SeesTheLastBit) {
+TEST(FirstDifference, DetectsASingleBit) {
   EXPECT_EQ(difference_after([](StudyContents& s) { s.stages[0].table.margins[0] = 0.0; }),
             "/stages/1/evaluations/margin[0].workspace-shape: -0 against 0");
   EXPECT_EQ(difference_after([](StudyContents& s) { s.stages[0].table.objectives[1] = std::nan(""); }),
@@ -57,7 +59,7 @@ TEST(FirstDifference, SeesTheLastBit) {
             "");
 }
 
-TEST(FirstDifference, SeesWhatOnlyOneHas) {
+TEST(FirstDifference, DetectsMissingItems) {
   EXPECT_EQ(difference_after([](StudyContents& s) { s.extensions.pop_back(); }),
             "/extensions/stage: 2 against 1 values");
   EXPECT_EQ(difference_after([](StudyContents& s) { s.stages.pop_back(); }), "/stages@count: 3 against 2");

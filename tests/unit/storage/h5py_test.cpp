@@ -1,11 +1,11 @@
-// Our writer against a trusted reader, and our reader against a trusted writer: two equal mistakes of ours would
-// cancel.
+// Compares writer and reader with h5py: h5py reads files that pkmopt has written, and pkmopt reads files that h5py has
+// written. Without an independent program, equal errors in writer and reader would cancel.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
-#include "engine/storage/file_seal.hpp"
+#include "engine/storage/file_header.hpp"
 #include "engine/storage/study_file.hpp"
 #include "tests/unit/storage/first_difference.hpp"
 #include "tests/unit/storage/python_output.hpp"
@@ -23,10 +23,11 @@ class H5py : public testing::Test {
     if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "python3-h5py is missing";
     write_study(path_, test::sample_study());
   }
-  std::string python(const std::string& command, const std::string& more = "") const {
-    return test::python_output("read_study.py", command + " '" + path_ + "' " + more);
+  std::string python(const std::string& command, const std::string& arguments = "") const {
+    return test::python_output("read_study.py", command + " '" + path_ + "' " + arguments);
   }
-  void seal_again() const {
+  /// Updates the header of the file, so that its checksum is correct again.
+  void update_header() const {
     std::string bytes = test::slurp(path_);
     seal(bytes, kStudySchema);
     test::spill(path_, bytes);
@@ -36,7 +37,7 @@ class H5py : public testing::Test {
   std::string path_ = folder_ / "s.h5";
 };
 
-TEST_F(H5py, ReadsTheSameBits) {
+TEST_F(H5py, ReadsIdenticalBits) {
   const StudyContents study = test::sample_study();
   const EvaluationTable& table = study.stages[0].table;
   EXPECT_EQ(python("values"), "design (12, 2)" + bits(table.designs) +              //
@@ -55,12 +56,12 @@ lower [0.1, 0.35]
 best True
 map (1, 2, 3) ['x', 'z', 'theta']
 )" + "toml " + std::to_string(study.toml.size() - 2) +
-                                  "\n");  // two letters take two bytes
+                                  "\n");  // in UTF-8 two characters take two bytes
 }
 
 TEST_F(H5py, FindsUnitDescriptionAndLayoutEverywhere) { EXPECT_THAT(python("labels"), HasSubstr(" datasets\n")); }
 
-TEST_F(H5py, FindsTheNamesOfMoreColumnsThanAnAttributeHolds) {
+TEST_F(H5py, FindsColumnNamesThatDoNotFitIntoAnAttribute) {
   for (const std::size_t count : {4000u, 4001u, 5000u}) {
     StudyContents study = test::sample_study();
     study.problem.margins.clear();
@@ -78,74 +79,74 @@ TEST_F(H5py, FindsTheNamesOfMoreColumnsThanAnAttributeHolds) {
   }
 }
 
-TEST_F(H5py, RunsTheSnippetsOfTheDocumentation) {
+TEST_F(H5py, RunsTheExamplesOfTheDocumentation) {
   EXPECT_THAT(python("snippets", "'" + std::string(PKM_TEST_DATA) + "/../../engine/storage/README.md'"),
               testing::EndsWith("\n4 snippets\n"));
 }
 
-TEST_F(H5py, OpensEmptyStudies) {
+TEST_F(H5py, ReadsEmptyStudies) {
   write_study(path_, StudyContents{});
   EXPECT_THAT(python("labels"), HasSubstr(" datasets\n"));
 }
 
-TEST_F(H5py, ChangesAreNoticed) {
+TEST_F(H5py, ChangesAreDetectedByTheChecksum) {
   ASSERT_EQ(python("remove", "/toml"), "");
   EXPECT_THAT(test::storage_error([&] { read_study(path_); }), HasSubstr("its checksum differs"));
 }
 
-TEST_F(H5py, WritesWhatWeRead) {
+TEST_F(H5py, WritesFilesThatPkmoptReads) {
   ASSERT_EQ(python("contiguous"), "");
-  seal_again();
+  update_header();
   EXPECT_EQ(first_difference(read_study(path_), test::sample_study()), "");
 }
 
-TEST_F(H5py, AMissingPartIsNamed) {
+TEST_F(H5py, ErrorNamesAMissingDataset) {
   ASSERT_EQ(python("remove", "/stages/1/evaluations/margin"), "");
-  seal_again();
+  update_header();
   EXPECT_THAT(test::storage_error([&] { read_study(path_); }),
-              testing::StartsWith(path_ + ": not laid out as schema 5 says (/stages/1/evaluations/margin: "));
+              testing::StartsWith(path_ + ": does not conform to schema 5 (/stages/1/evaluations/margin: "));
 }
 
-TEST_F(H5py, AnIndexThatPointsNowhereIsNamed) {
+TEST_F(H5py, ErrorNamesAnIndexOutOfRange) {
   ASSERT_EQ(python("put", "/stages/1/generations/population 5 12"), "");
-  seal_again();
+  update_header();
   EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-            path_ + ": not laid out as schema 5 says (/stages/1: population holds what is no row of evaluations)");
+            path_ + ": does not conform to schema 5 (/stages/1: generations: population: row index out of range)");
 }
 
-TEST_F(H5py, AFrontThatPointsNowhereIsNamed) {
+TEST_F(H5py, ErrorNamesAFrontIndexOutOfRange) {
   ASSERT_EQ(python("put", "/stages/1/front/row 1 12"), "");
-  seal_again();
+  update_header();
   EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-            path_ + ": not laid out as schema 5 says (/stages/1: the front holds what is no row of evaluations)");
+            path_ + ": does not conform to schema 5 (/stages/1: front: row index out of range)");
 }
 
-TEST_F(H5py, APartOfAnotherSizeIsNamed) {
+TEST_F(H5py, ErrorNamesADatasetOfWrongSize) {
   ASSERT_EQ(python("shorten", "/stages/1/evaluations/seconds"), "");
-  seal_again();
+  update_header();
   EXPECT_EQ(
       test::storage_error([&] { read_study(path_); }),
-      path_ + ": not laid out as schema 5 says (/stages/1/evaluations/seconds: has 11 values, but 12 are expected)");
+      path_ + ": does not conform to schema 5 (/stages/1/evaluations/seconds: has 11 values, but 12 are expected)");
 }
 
-TEST_F(H5py, WhatPkmoptNeverWritesIsRefused) {
+TEST_F(H5py, EverythingThatPkmoptNeverWritesIsRejected) {
   const std::string rows = "/stages/1/evaluations/objective: ";
-  for (const auto& [kind, reason] : {std::pair<std::string, std::string>{"soft", rows + "is a link to another place"},
-                                     {"link", rows + "is a link to another place"},
-                                     {"unread", "/best/design: is a link to another place"},
+  for (const auto& [kind, reason] : {std::pair<std::string, std::string>{"soft", rows + "is a soft or external link"},
+                                     {"link", rows + "is a soft or external link"},
+                                     {"unread", "/best/design: is a soft or external link"},
                                      {"external", rows + "has its values in another file"},
-                                     {"virtual", rows + "is a view of other datasets"},
-                                     {"filter", rows + "is packed by a filter that pkmopt does not use"},
+                                     {"virtual", rows + "is a virtual dataset"},
+                                     {"filter", rows + "is compressed by a filter that pkmopt does not use"},
                                      {"type", rows + "has values of another type"},
-                                     {"huge", rows + "is larger than the values that the file holds"},
-                                     {"count", "/stages@count: is 4294967296, but it has 3 stages"},
-                                     {"variable", "/problem/parameters: two parameters have one variable"},
-                                     {"cells", "/final/best: has more feasible cells than cells, or fewer than 0"}}) {
+                                     {"huge", rows + "declares more values than the file contains"},
+                                     {"count", "/stages@count: is 4294967296, but the group has 3 stages"},
+                                     {"variable", "/problem/parameters: two parameters have the same variable"},
+                                     {"cells", "/final/best: feasible_cells is negative or larger than cells"}}) {
     write_study(path_, test::sample_study());
     ASSERT_EQ(python("forge", kind), "") << kind;
-    seal_again();
+    update_header();
     EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-              path_ + ": not laid out as schema 5 says (" + reason + ")")
+              path_ + ": does not conform to schema 5 (" + reason + ")")
         << kind;
   }
 }

@@ -1,4 +1,5 @@
-// Study files of earlier schemas are read as they were.
+// Tests of reading study files of earlier schemas.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,9 +9,9 @@
 namespace pkm {
 namespace {
 
-TEST(StudyFile, OldFilesStillOpen) {
-  // Written once by write_study when schema 1 was fixed: sample_study() with a short TOML text. Never to be replaced,
-  // so the values stand here and not in sample_study.hpp.
+TEST(StudyFile, FilesOfSchemaOneAreReadable) {
+  // The file was written by write_study() when schema 1 was released, from sample_study() with a short TOML text. It
+  // must never be replaced. The expected values are stated here, because sample_study.hpp may change.
   const StudyContents study = read_study(PKM_TEST_DATA "/schema-1.h5");
   EXPECT_EQ(study.name, "Größe, 4PPa-2PaR <b>");
   EXPECT_EQ(study.toml, "[study]\nname = \"Größe\"\n");
@@ -33,7 +34,7 @@ TEST(StudyFile, OldFilesStillOpen) {
   ASSERT_EQ(stage.table.size(), 12u);
   EXPECT_EQ(stage.table.design(0)[0], 3.9 * 0.1 * 0.9);
   EXPECT_EQ(stage.table.status[3], Status::failed);
-  EXPECT_TRUE(std::isnan(stage.table.report_row(4)[0]));
+  EXPECT_TRUE(std::isnan(stage.table.output_row(4)[0]));
   EXPECT_THAT(stage.generations.population_of(1), testing::ElementsAre(4, 5, 6, 7));
   EXPECT_EQ(study.best.row, 8);
   ASSERT_TRUE(study.final && study.final->best && study.final->map);
@@ -42,14 +43,14 @@ TEST(StudyFile, OldFilesStillOpen) {
   EXPECT_THAT(study.final->active, testing::ElementsAre("a at its upper bound", "rail-length"));
 }
 
-TEST(StudyFile, FilesOfSchemaTwoStillOpen) {
-  // Written once by write_study when schema 2 was fixed, as schema-1.h5 was. Never to be replaced.
+TEST(StudyFile, FilesOfSchemaTwoAreReadable) {
+  // Written when schema 2 was released, like schema-1.h5; must never be replaced.
   const StudyContents study = read_study(PKM_TEST_DATA "/schema-2.h5");
   ASSERT_EQ(study.stages.size(), 3u);
   const StageRecord& stage = study.stages[2];
   EXPECT_EQ(stage.optimiser, "ipopt");
   ASSERT_EQ(stage.table.shape(), (EvaluationShape{2, 1, 2, 1, Detail::derivatives}));
-  EXPECT_EQ(stage.table.slope_row(0)[0], 3.9 * 0.25 * 0.75);
+  EXPECT_EQ(stage.table.derivative_row(0)[0], 3.9 * 0.25 * 0.75);
   ASSERT_EQ(stage.starts.size(), 2u);
   EXPECT_EQ(stage.starts[0].message, "optimal solution found");
   EXPECT_EQ(stage.starts[1].end_row, 2);
@@ -59,8 +60,8 @@ TEST(StudyFile, FilesOfSchemaTwoStillOpen) {
   EXPECT_THAT(study.notes, testing::ElementsAre("stage 3: start 1 began anew."));
 }
 
-TEST(StudyFile, FilesOfSchemaThreeStillOpen) {
-  // Written once by write_study when schema 3 was fixed, as schema-1.h5 was. Never to be replaced.
+TEST(StudyFile, FilesOfSchemaThreeAreReadable) {
+  // Written when schema 3 was released, like schema-1.h5; must never be replaced.
   const StudyContents study = read_study(PKM_TEST_DATA "/schema-3.h5");
   ASSERT_EQ(study.stages.size(), 3u);
   ASSERT_TRUE(study.stages[0].front);

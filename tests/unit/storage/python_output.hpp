@@ -1,4 +1,4 @@
-// Python as a trusted reader of our files.
+// Runs Python scripts that read files with independent libraries (h5py, VTK), and formats numbers for comparison.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@
 
 namespace pkm::test {
 
-/// What a command prints, errors included.
+/// @return standard output and standard error of a shell command
 inline std::string output_of(const std::string& command) {
   std::string text;
   FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
@@ -19,12 +19,12 @@ inline std::string output_of(const std::string& command) {
   return text;
 }
 
-/// The same of a script of tests/python.
+/// @return the output of a script in tests/python
 inline std::string python_output(const std::string& script, const std::string& arguments) {
   return output_of("/usr/bin/python3 '" + std::string(PKM_TEST_DATA) + "/../python/" + script + "' " + arguments);
 }
 
-/// The bits of numbers, in hexadecimal, a space before each.
+/// @return the bits of the numbers in hexadecimal, each preceded by a space
 inline std::string bits(const std::vector<double>& values) {
   std::string text;
   char word[20];

@@ -1,4 +1,4 @@
-// Every file that is written: nothing is overwritten that should not be, and nothing beside it is touched.
+// Tests of write_file() and check_outputs(): nothing is overwritten by accident, and no other file is modified.
 #include "engine/storage/safe_file.hpp"
 
 #include <gmock/gmock.h>
@@ -34,18 +34,18 @@ std::string config_error(const std::vector<std::string>& outputs, const std::vec
   return "";
 }
 
-TEST(SafeFile, RefusesANameThatGoesOnAfterNul) {
+TEST(SafeFile, RejectsANameWithANulCharacter) {
   const Folder folder;
   const std::string precious = folder / "precious.txt", name = precious + std::string("\0.h5", 4);
   spill(precious, "precious");
   EXPECT_EQ(storage_error([&] { write_file(name, "new", Existing::replaced); }),
-            precious + ": the file's name goes on after a NUL, which no file name can hold");
+            precious + ": the file name contains a NUL character after this point");
   EXPECT_EQ(storage_error([&] { check_outputs({name}, {}, Existing::replaced); }),
-            precious + ": the file's name goes on after a NUL, which no file name can hold");
+            precious + ": the file name contains a NUL character after this point");
   EXPECT_EQ(slurp(precious), "precious");
 }
 
-TEST(SafeFile, TouchesNothingBesideIt) {
+TEST(SafeFile, ModifiesNoOtherFile) {
   const Folder folder;
   const std::string path = folder / "table.csv";
   spill(folder / "victim", "precious");
@@ -56,7 +56,7 @@ TEST(SafeFile, TouchesNothingBesideIt) {
   EXPECT_THAT(folder.names(), testing::ElementsAre("table.csv", "table.csv.part", "victim"));
 }
 
-TEST(SafeFile, WritersAtOnceLeaveACompleteFileOfOneOfThem) {
+TEST(SafeFile, ConcurrentWritersLeaveACompleteFile) {
   const Folder folder;
   const std::string path = folder / "table.csv";
   const auto write = [&](char c) {
@@ -70,7 +70,7 @@ TEST(SafeFile, WritersAtOnceLeaveACompleteFileOfOneOfThem) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"table.csv"});
 }
 
-TEST(SafeFile, OverwritesOnlyWhenAsked) {
+TEST(SafeFile, OverwritesOnlyOnRequest) {
   const Folder folder;
   const std::string path = folder / "table.csv";
   spill(path, "old");
@@ -85,7 +85,7 @@ TEST(SafeFile, OverwritesOnlyWhenAsked) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"table.csv"});
 }
 
-TEST(SafeFile, OfSeveralWritersOfANewFileOneWins) {
+TEST(SafeFile, OfConcurrentWritersOfANewFileOneSucceeds) {
   const Folder folder;
   for (int i = 0; i < 30; ++i) {
     const std::string path = folder / std::to_string(i);
@@ -98,7 +98,7 @@ TEST(SafeFile, OfSeveralWritersOfANewFileOneWins) {
   }
 }
 
-TEST(SafeFile, KeepsPermissions) {
+TEST(SafeFile, RetainsPermissions) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   const mode_t mask = ::umask(022);
@@ -112,7 +112,7 @@ TEST(SafeFile, KeepsPermissions) {
   ::umask(mask);
 }
 
-TEST(SafeFile, AnOutputIsNoInput) {
+TEST(SafeFile, AnOutputMustNotBeAnInputOrAnotherOutput) {
   const Folder folder;
   const std::string study = folder / "study.toml", link = folder / "link";
   spill(study, "[study]");
@@ -123,7 +123,7 @@ TEST(SafeFile, AnOutputIsNoInput) {
   }
   EXPECT_EQ(config_error({folder / "f.csv"}, {study}), "");
   EXPECT_EQ(config_error({folder / "f.csv", folder / "./f.csv"}, {}),
-            folder / "./f.csv" + ": is the name of two outputs");
+            folder / "./f.csv" + ": is given for two outputs");
   EXPECT_EQ(config_error({"", ""}, {study}), "");
 }
 

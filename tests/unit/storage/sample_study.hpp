@@ -1,4 +1,4 @@
-// A study with something of everything, for the tests of engine/storage.
+// A sample study that contains every kind of item, and temporary folders, for tests of study files.
 #pragma once
 
 #include <unistd.h>
@@ -17,10 +17,11 @@
 
 namespace pkm::test {
 
-/// A NaN with a payload: it has to come back with the same bits.
+/// A NaN with a payload, whose bits must be preserved.
 inline double odd_nan() { return std::bit_cast<double>(std::uint64_t{0x7ff8dead00c0ffee}); }
 
-/// Generations of `population` designs each; values follow a rule, so that every one is different.
+/// A stage with generations of `population` designs each. The values are iterates of the logistic map, so that all
+/// differ.
 inline StageRecord sample_stage(const EvaluationShape& shape, std::int64_t generations, std::int64_t population) {
   StageRecord stage;
   stage.optimiser = "ga";
@@ -96,7 +97,7 @@ inline StudyContents sample_study() {
   study.stages[0].stop = "generation limit";
   study.stages[0].best_row = 8;
   study.stages[0].front = FrontRecord{{4, 0, 8}, {0.25}, {odd_nan(), 0.5, 0.75}, {0.1, 0.2, 0.3}, {3, 2, 1}};
-  study.stages.push_back(sample_stage(study.problem.shape(), 0, 0));  // begun, nothing evaluated
+  study.stages.push_back(sample_stage(study.problem.shape(), 0, 0));  // started, without evaluations
   study.stages[1].optimiser = "nlopt";
   study.stages[1].options.clear();
   study.stages.push_back(sample_stage(study.problem.shape(Detail::derivatives), 6, 1));
@@ -126,7 +127,7 @@ inline StudyContents sample_study() {
   return study;
 }
 
-/// A folder of its own for each test, removed with everything in it.
+/// A temporary folder, removed with its contents at the end of the test.
 class Folder {
  public:
   Folder() {
@@ -138,7 +139,7 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
   const std::string& path() const { return path_; }
-  /// Of all that is in it, in alphabetical order.
+  /// Names of the entries, in alphabetical order.
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
@@ -150,16 +151,18 @@ class Folder {
   std::string path_;
 };
 
+/// @return the bytes of a file
 inline std::string slurp(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// Writes bytes to a file, replacing its contents.
 inline void spill(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
-/// What a StorageError says; "" when nothing was thrown.
+/// @return the message of the StorageError that `action` throws; "" if it throws none
 template <class F>
 std::string storage_error(F&& action) {
   try {

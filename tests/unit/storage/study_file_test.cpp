@@ -1,4 +1,4 @@
-// What is written is read back.
+// Tests of write_study() and read_study(): everything that is written is read back unchanged.
 #include "engine/storage/study_file.hpp"
 
 #include <gmock/gmock.h>
@@ -25,14 +25,14 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-TEST(StudyFile, KeepsEverything) {
+TEST(StudyFile, StoresEverything) {
   const Folder folder;
   const StudyContents written = test::sample_study();
   write_study(folder / "s.h5", written);
   const StudyContents read = read_study(folder / "s.h5");
 
   EXPECT_EQ(first_difference(written, read), "");
-  // What first_difference leaves out, and a sample of the rest without its help.
+  // Items that first_difference() ignores, and a sample of the others, checked independently of it.
   EXPECT_EQ(read.toml, written.toml);
   EXPECT_EQ(read.toml_file, "wide.toml");
   ASSERT_TRUE(read.description);
@@ -94,7 +94,7 @@ TEST(StudyFile, KeepsEverything) {
   EXPECT_EQ(read.final->map->voxels.cells[2], 3);
 }
 
-TEST(StudyFile, KeepsAnEmptyStudy) {
+TEST(StudyFile, StoresAnEmptyStudy) {
   const Folder folder;
   write_study(folder / "s.h5", StudyContents{});
   const StudyContents read = read_study(folder / "s.h5");
@@ -105,7 +105,7 @@ TEST(StudyFile, KeepsAnEmptyStudy) {
   EXPECT_FALSE(read.final);
 }
 
-TEST(StudyFile, KeepsAStudyWithoutMarginsAndReports) {
+TEST(StudyFile, StoresAStudyWithoutMarginsAndReports) {
   const Folder folder;
   StudyContents study = test::sample_study();
   study.problem.margins.clear();
@@ -120,27 +120,27 @@ TEST(StudyFile, KeepsAStudyWithoutMarginsAndReports) {
   EXPECT_EQ(read.stages[0].table.margin_row(3).size(), 0u);
 }
 
-TEST(StudyFile, StartsMustFollowOneAnother) {
+TEST(StudyFile, RowsOfStartsMustBeContiguous) {
   const Folder folder;
   StudyContents study = test::sample_study();
   study.stages[2].starts[1].first_row = 3;
   EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
-              HasSubstr("/stages/3: starts do not follow one another within evaluations"));
+              HasSubstr("/stages/3: starts: rows overlap, leave a gap or exceed the evaluations"));
   study = test::sample_study();
   study.stages[2].starts[0].end_row = 2;
   EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
-              HasSubstr("/stages/3: a start's end is not among its rows"));
+              HasSubstr("/stages/3: starts: end_row out of range"));
   study = test::sample_study();
   study.stages[2].ahead[0].number = 1;
   EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
-              HasSubstr("/stages/3: a start ahead of the others is one of them, or has no evaluations"));
+              HasSubstr("/stages/3: ahead: a start is also in starts, or has no evaluations"));
   study = test::sample_study();
   study.stages[2].ahead[1].outcome->end_row = 2;
   EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
-              HasSubstr("/stages/3: the end of a start ahead of the others is not among its rows"));
+              HasSubstr("/stages/3: ahead: row index out of range"));
 }
 
-TEST(StudyFile, KeepsPopulationsOfDifferentSizes) {
+TEST(StudyFile, StoresPopulationsOfDifferentSizes) {
   const Folder folder;
   StudyContents study = test::sample_study();
   GenerationRecords& generations = study.stages[0].generations;
@@ -160,7 +160,7 @@ TEST(StudyFile, EqualContentsGiveEqualBytes) {
   EXPECT_EQ(slurp(folder / "a.h5"), slurp(folder / "b.h5"));
 }
 
-TEST(StudyFile, LeavesNothingBeside) {
+TEST(StudyFile, LeavesNoTemporaryFiles) {
   const Folder folder;
   write_study(folder / "s.h5", test::sample_study());
   write_study(folder / "s.h5", StudyContents{});
@@ -170,7 +170,7 @@ TEST(StudyFile, LeavesNothingBeside) {
   EXPECT_EQ(read_study(folder / "s.h5").name, "");
 }
 
-TEST(StudyFile, IsReadWithoutWritePermission) {
+TEST(StudyFile, IsReadableWithoutWritePermission) {
   const Folder folder;
   write_study(folder / "s.h5", test::sample_study());
   ASSERT_EQ(::chmod((folder / "s.h5").c_str(), 0444), 0);

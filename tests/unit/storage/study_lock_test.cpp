@@ -1,4 +1,4 @@
-// One process per study, whatever happened to the one before.
+// Tests of StudyLock: only one process can lock a study, and a killed process does not block it.
 #include "engine/storage/study_lock.hpp"
 
 #include <gmock/gmock.h>
@@ -19,15 +19,16 @@ namespace {
 using test::Folder;
 using test::storage_error;
 
-/// A child process that holds the lock until it is killed.
+/// Starts a child process that locks the study until it is killed.
+/// @return its process id, once it holds the lock; -1 if it does not
 pid_t start_holder(const std::string& path) {
   int ends[2];
   if (::pipe(ends) != 0) return -1;
   const pid_t child = ::fork();
   if (child == 0) {
     const StudyLock lock(path);
-    const bool told = ::write(ends[1], "x", 1) == 1;
-    while (told) ::pause();
+    const bool reported = ::write(ends[1], "x", 1) == 1;
+    while (reported) ::pause();
     ::_exit(1);
   }
   ::close(ends[1]);
@@ -42,7 +43,7 @@ void kill_hard(pid_t child) {
   ::waitpid(child, nullptr, 0);
 }
 
-TEST(StudyLock, NamesTheProcessThatHoldsIt) {
+TEST(StudyLock, ErrorNamesTheProcessThatHoldsTheLock) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   const pid_t child = start_holder(path);
@@ -53,7 +54,7 @@ TEST(StudyLock, NamesTheProcessThatHoldsIt) {
   EXPECT_THAT(error, testing::EndsWith(" (it holds " + path + ".lock)"));
 }
 
-TEST(StudyLock, OfAKilledProcessBlocksNobody) {
+TEST(StudyLock, OfAKilledProcessBlocksNoOtherProcess) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   const pid_t child = start_holder(path);
@@ -64,7 +65,7 @@ TEST(StudyLock, OfAKilledProcessBlocksNobody) {
   EXPECT_THAT(test::slurp(path + ".lock"), testing::StartsWith("pkmopt-lock " + std::to_string(::getpid())));
 }
 
-TEST(StudyLock, IsHeldOnceAndRemovedAtItsEnd) {
+TEST(StudyLock, CanBeOwnedOnlyOnceAndIsRemovedAtItsEnd) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   for (int i = 0; i < 3; ++i) {
@@ -74,29 +75,29 @@ TEST(StudyLock, IsHeldOnceAndRemovedAtItsEnd) {
   EXPECT_FALSE(std::filesystem::exists(path + ".lock"));
 }
 
-TEST(StudyLock, OfAnotherStudyIsAnotherLock) {
+TEST(StudyLock, OfAnotherStudyIsIndependent) {
   const Folder folder;
   const StudyLock a(folder / "a.h5"), b(folder / "b.h5");
   EXPECT_TRUE(std::filesystem::exists(folder / "a.h5.lock"));
   EXPECT_TRUE(std::filesystem::exists(folder / "b.h5.lock"));
 }
 
-TEST(StudyLock, NeverHasTwoHoldersWhileLocksComeAndGo) {
-  // Four processes take and drop the lock as fast as they can. A holder creates a file exclusively; two holders at once
-  // would meet there.
+TEST(StudyLock, NeverHasTwoHoldersUnderContention) {
+  // Four processes lock and unlock the study as fast as they can. A holder creates a folder, which fails if there are
+  // two holders at once.
   const Folder folder;
   const std::string path = folder / "s.h5", token = folder / "token";
   std::vector<pid_t> children;
   for (int i = 0; i < 4; ++i) {
     const pid_t child = ::fork();
     if (child == 0) {
-      int held = 0;
-      while (held < 200) {
+      int acquisitions = 0;
+      while (acquisitions < 200) {
         std::optional<StudyLock> lock;
         if (!storage_error([&] { lock.emplace(path); }).empty()) continue;
         if (::mkdir(token.c_str(), 0777) != 0) ::_exit(1);
         ::rmdir(token.c_str());
-        ++held;
+        ++acquisitions;
       }
       ::_exit(0);
     }
@@ -109,12 +110,12 @@ TEST(StudyLock, NeverHasTwoHoldersWhileLocksComeAndGo) {
   }
 }
 
-TEST(StudyLock, NeedsAFolderThatTakesIt) {
+TEST(StudyLock, NeedsAWritableFolder) {
   EXPECT_EQ(storage_error([] { const StudyLock lock("/proc/s.h5"); }),
             "/proc/s.h5: the lock file /proc/s.h5.lock cannot be created (No such file or directory)");
 }
 
-TEST(StudyLock, CanBeSwitchedOff) {
+TEST(StudyLock, CanBeDisabled) {
   const Folder folder;
   ::setenv("PKMOPT_LOCK", "off", 1);
   {
@@ -124,7 +125,7 @@ TEST(StudyLock, CanBeSwitchedOff) {
   ::unsetenv("PKMOPT_LOCK");
 }
 
-TEST(StudyLock, IsNotSwitchedOffByHdf5sVariable) {
+TEST(StudyLock, IsNotDisabledByTheVariableOfHdf5) {
   const Folder folder;
   ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
   {
@@ -135,36 +136,36 @@ TEST(StudyLock, IsNotSwitchedOffByHdf5sVariable) {
   ::unsetenv("HDF5_USE_FILE_LOCKING");
 }
 
-TEST(StudyLock, TouchesNoFileOfAnotherProgram) {
+TEST(StudyLock, LeavesFilesOfOtherProgramsUnchanged) {
   const Folder folder;
   const std::string path = folder / "poetry", lock_file = folder / "poetry.lock", victim = folder / "victim";
-  const std::string refusal = path + ": cannot be locked: " + lock_file +
-                              " is no lock of pkmopt and is left alone; give the study another name";
-  const auto expect_refused = [&](const char* what) {
-    EXPECT_EQ(storage_error([&] { const StudyLock lock(path); }), refusal) << what;
+  const std::string error = path + ": cannot be locked: " + lock_file +
+                            " is not a lock file of pkmopt and is left unchanged; give the study another name";
+  const auto expect_error = [&](const char* what) {
+    EXPECT_EQ(storage_error([&] { const StudyLock lock(path); }), error) << what;
   };
   test::spill(lock_file, "[[package]]\nname = \"numpy\"\n");
-  expect_refused("a file of another program");
+  expect_error("a file of another program");
   EXPECT_EQ(test::slurp(lock_file), "[[package]]\nname = \"numpy\"\n");
 
   test::spill(victim, "");
   std::filesystem::remove(lock_file);
   std::filesystem::create_hard_link(victim, lock_file);
-  expect_refused("another name of a file");
+  expect_error("another name of a file");
   std::filesystem::remove(lock_file);
   std::filesystem::create_symlink("victim", lock_file);
-  expect_refused("a link");
+  expect_error("a link");
   EXPECT_EQ(std::filesystem::file_size(victim), 0u);
   std::filesystem::remove(lock_file);
   std::filesystem::create_symlink("nothing", lock_file);
-  expect_refused("a link to nothing");
+  expect_error("a link to nothing");
   EXPECT_FALSE(std::filesystem::exists(folder / "nothing"));
   std::filesystem::remove(lock_file);
   ASSERT_EQ(::mkfifo(lock_file.c_str(), 0666), 0);
-  expect_refused("a pipe");
+  expect_error("a pipe");
 }
 
-TEST(StudyLock, OfAFullDiskIsEmptyAndOurs) {
+TEST(StudyLock, AcceptsALockFileTruncatedByAFullDisk) {
   const Folder folder;
   for (const char* left : {"", "pkmo"}) {
     test::spill(folder / "s.h5.lock", left);
@@ -172,20 +173,20 @@ TEST(StudyLock, OfAFullDiskIsEmptyAndOurs) {
   }
 }
 
-TEST(StudyLock, KnowsThatItWasTakenAway) {
+TEST(StudyLock, DetectsThatTheLockFileWasRemoved) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   std::optional<StudyLock> first(std::in_place, path);
-  EXPECT_TRUE(first->held());
+  EXPECT_TRUE(first->owns_lock());
   std::filesystem::remove(path + ".lock");
-  EXPECT_FALSE(first->held());
+  EXPECT_FALSE(first->owns_lock());
   const StudyLock second(path);
-  EXPECT_FALSE(first->held());
-  first.reset();  // and leaves the second's lock where it is
-  EXPECT_TRUE(second.held());
+  EXPECT_FALSE(first->owns_lock());
+  first.reset();  // does not remove the lock file of `second`
+  EXPECT_TRUE(second.owns_lock());
 }
 
-TEST(StudyLock, IsSharedByAllNamesOfAStudy) {
+TEST(StudyLock, IsSharedByAllPathsToAStudy) {
   const Folder folder;
   std::filesystem::create_directory(folder / "there");
   std::filesystem::create_symlink("there/s.h5", folder / "link.h5");

@@ -1,4 +1,5 @@
-// A disk that is full or read-only: one sentence, and the study as it was.
+// Tests of failing writes (full disk, read-only folder, killed process): the error is reported in one sentence and the
+// previous study file is intact.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -19,7 +20,8 @@ using test::Folder;
 using test::slurp;
 using test::storage_error;
 
-/// Runs `action` in a child process with files limited to `bytes`; its StorageError comes back.
+/// Runs `action` in a child process whose files are limited to `bytes`.
+/// @return the message of its StorageError; "" if there is none
 template <class F>
 std::string error_under_limit(rlim_t bytes, F action) {
   int ends[2];
@@ -42,7 +44,7 @@ std::string error_under_limit(rlim_t bytes, F action) {
   return text;
 }
 
-TEST(WriteFailure, FullDiskKeepsTheLastCheckpoint) {
+TEST(WriteFailure, LastCheckpointSurvivesAFullDisk) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   write_study(path, StudyContents{});
@@ -51,26 +53,26 @@ TEST(WriteFailure, FullDiskKeepsTheLastCheckpoint) {
   larger.stages.push_back(test::sample_stage(larger.problem.shape(), 50, 20));
   for (const rlim_t limit : {rlim_t{0}, rlim_t{1}, rlim_t{512}, rlim_t{4096}, rlim_t{30000}}) {
     EXPECT_EQ(error_under_limit(limit, [&] { write_study(path, larger); }),
-              path + ": cannot be written, the previous state is kept (File too large)");
+              path + ": cannot be written; any previous file is unchanged (File too large)");
     EXPECT_EQ(slurp(path), before);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"s.h5"});
   }
-  write_study(path, larger);  // and goes on when there is room again
+  write_study(path, larger);  // succeeds when there is space again
   EXPECT_EQ(first_difference(read_study(path), larger), "");
 }
 
-TEST(WriteFailure, FolderThatTakesNoFile) {
-  // The tests may run as root, whom permissions do not stop; /proc takes no file from anyone.
+TEST(WriteFailure, FolderInWhichNoFileCanBeCreated) {
+  // The tests may run as root, to whom permissions do not apply; in /proc no user can create a file.
   EXPECT_EQ(storage_error([] { write_study("/proc/s.h5", StudyContents{}); }),
-            "/proc/s.h5: cannot be written, its folder does not take a new file (No such file or directory)");
+            "/proc/s.h5: cannot be written, because no file can be created in its folder (No such file or directory)");
   const Folder folder;
   test::spill(folder / "file", "a file, not a folder");
   const std::string path = folder / "file/s.h5";
   EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }),
-            path + ": cannot be written, its folder does not take a new file (Not a directory)");
+            path + ": cannot be written, because no file can be created in its folder (Not a directory)");
 }
 
-TEST(WriteFailure, NameOfAFolder) {
+TEST(WriteFailure, TargetIsAFolder) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   std::filesystem::create_directory(path);
@@ -78,22 +80,22 @@ TEST(WriteFailure, NameOfAFolder) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"s.h5"});
 }
 
-TEST(WriteFailure, NameOfADevice) {
+TEST(WriteFailure, TargetIsADevice) {
   const Folder folder;
   const std::string path = folder / "s.h5";
-  ASSERT_EQ(::mkfifo(path.c_str(), 0666), 0);  // stands for a device, which only root may make
-  const std::string refusal = path + ": is no regular file and is not replaced";
-  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }), refusal);
+  ASSERT_EQ(::mkfifo(path.c_str(), 0666), 0);  // in place of a device, which only root can create
+  const std::string error = path + ": is not a regular file and is not replaced";
+  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }), error);
   EXPECT_TRUE(std::filesystem::is_fifo(path));
   std::filesystem::create_symlink("s.h5", folder / "link.h5");
   EXPECT_EQ(storage_error([&] { write_study(folder / "link.h5", StudyContents{}); }),
-            folder / "link.h5" + ": is no regular file and is not replaced");
+            folder / "link.h5" + ": is not a regular file and is not replaced");
 }
 
-TEST(WriteFailure, SymbolicLinksStayAndTheirTargetIsReplaced) {
+TEST(WriteFailure, SymbolicLinksRemainAndTheirTargetIsReplaced) {
   const Folder folder;
   std::filesystem::create_directory(folder / "there");
-  std::filesystem::create_symlink("there/s.h5", folder / "link.h5");  // points to nothing yet
+  std::filesystem::create_symlink("there/s.h5", folder / "link.h5");  // the target does not exist yet
   std::filesystem::create_symlink(folder / "link.h5", folder / "second.h5");
   StudyContents study;
   for (study.seed = 5; study.seed < 7; ++study.seed) {
@@ -104,7 +106,7 @@ TEST(WriteFailure, SymbolicLinksStayAndTheirTargetIsReplaced) {
   }
 }
 
-TEST(WriteFailure, SymbolicLinksInACircle) {
+TEST(WriteFailure, CircularSymbolicLinks) {
   const Folder folder;
   std::filesystem::create_symlink("b.h5", folder / "a.h5");
   std::filesystem::create_symlink("a.h5", folder / "b.h5");
@@ -112,13 +114,13 @@ TEST(WriteFailure, SymbolicLinksInACircle) {
             folder / "a.h5" + ": cannot be opened (Too many levels of symbolic links)");
 }
 
-TEST(WriteFailure, WhatNobodyCouldReadIsNotWritten) {
+TEST(WriteFailure, InconsistentContentsAreNotWritten) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   StudyContents study = test::sample_study();
   study.stages[0].generations.population[5] = 12;
   EXPECT_EQ(storage_error([&] { write_study(path, study); }),
-            path + ": cannot be written (/stages/1: population holds what is no row of evaluations)");
+            path + ": cannot be written (/stages/1: generations: population: row index out of range)");
   study = test::sample_study();
   study.stages[0].table.designs.pop_back();
   EXPECT_EQ(storage_error([&] { write_study(path, study); }),
@@ -126,12 +128,12 @@ TEST(WriteFailure, WhatNobodyCouldReadIsNotWritten) {
   study = test::sample_study();
   study.stages[0].generations.best_row.push_back(3);
   EXPECT_EQ(storage_error([&] { write_study(path, study); }),
-            path + ": cannot be written (/stages/1: generations have arrays of different lengths)");
+            path + ": cannot be written (/stages/1: generations: arrays of different lengths)");
   study = test::sample_study();
   study.final.emplace().best.emplace();
   study.best = {};
   EXPECT_EQ(storage_error([&] { write_study(path, study); }),
-            path + ": cannot be written (/best: there is none, but in /final there is one)");
+            path + ": cannot be written (/best: row is -1, but /final/best exists)");
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
@@ -153,7 +155,7 @@ TEST(WriteFailure, KilledWriterLeavesACompleteFile) {
     read.seed = study.seed;
     EXPECT_EQ(first_difference(read, study), "");
   }
-  write_study(path, study);  // what a killed writer left beside it is no obstacle
+  write_study(path, study);  // temporary files of killed writers do not interfere
 }
 
 }  // namespace

@@ -15,35 +15,35 @@ double best_of(const Outcome& outcome) {
   return outcome.table.objectives[static_cast<std::size_t>(outcome.result.best_row)];
 }
 
-// Evaluations until a feasible design reaches `target` (minimised).
+// Number of evaluations until a feasible design reaches `target` (minimised).
 std::size_t evaluations_to(const Outcome& outcome, double target) {
   for (std::size_t row = 0; row < outcome.table.size(); ++row)
     if (outcome.table.status[row] == Status::feasible && outcome.table.objectives[row] <= target) return row + 1;
   return outcome.table.size() + 1;
 }
 
-const Changes kPaper = {{"population", std::int64_t{20}},
-                        {"selection", std::string("linear-ranking")},
-                        {"crossover", std::string("scattered")},
-                        {"crossover_probability", 0.7},
-                        {"mutation", std::string("uniform")},
-                        {"mutation_probability", 0.002},
-                        {"replacement", std::string("generational")},
-                        {"unique", false}};
+const Changes kPaperOptions = {{"population", std::int64_t{20}},
+                               {"selection", std::string("linear-ranking")},
+                               {"crossover", std::string("scattered")},
+                               {"crossover_probability", 0.7},
+                               {"mutation", std::string("uniform")},
+                               {"mutation_probability", 0.002},
+                               {"replacement", std::string("generational")},
+                               {"unique", false}};
 
 TEST(GeneticAlgorithm, FindsACornerExactlyWithDefaults) {
-  const auto problem = corner();
+  const auto problem = corner_optimum();
   const auto optimiser = make(entry("ga"), problem);
-  std::vector<std::size_t> needed;
+  std::vector<std::size_t> evaluations;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Outcome outcome = run(*optimiser, problem, seed);
     EXPECT_NEAR(best_of(outcome), 1.0, 1e-12) << "seed " << seed;
     std::size_t row = 0;
     while (row < outcome.table.size() && outcome.table.objectives[row] < 1 - 1e-4) ++row;
-    needed.push_back(row + 1);
+    evaluations.push_back(row + 1);
   }
-  std::nth_element(needed.begin(), needed.begin() + 10, needed.end());
-  EXPECT_LE(needed[10], 98u);  // what CMA-ES takes on a problem of this shape
+  std::nth_element(evaluations.begin(), evaluations.begin() + 10, evaluations.end());
+  EXPECT_LE(evaluations[10], 98u);  // CMA-ES needs as many on a similar problem
 }
 
 TEST(GeneticAlgorithm, SolvesASmoothFunctionFromEverySeed) {
@@ -63,7 +63,7 @@ TEST(GeneticAlgorithm, SolvesActiveConstraintsFromEverySeed) {
     EXPECT_LE(evaluations_to(run(*optimiser, problem, seed), 1.724852 * 1.001), 8000u) << "seed " << seed;
 }
 
-TEST(GeneticAlgorithm, EveryOperatorImprovesOnItsStart) {
+TEST(GeneticAlgorithm, EveryOperatorImprovesTheInitialPopulation) {
   const auto problem = sphere(4);
   for (const std::string option : {"selection", "crossover", "mutation", "start", "replacement"}) {
     const auto& specs = entry("ga").options;
@@ -79,7 +79,7 @@ TEST(GeneticAlgorithm, EveryOperatorImprovesOnItsStart) {
 }
 
 TEST(GeneticAlgorithm, EvaluatesNoDesignTwice) {
-  const auto problem = corner();
+  const auto problem = corner_optimum();
   for (const bool unique : {true, false}) {
     const Outcome outcome = run(*make(entry("ga"), problem, {{"unique", unique}}), problem);
     std::set<std::vector<double>> designs;
@@ -90,21 +90,21 @@ TEST(GeneticAlgorithm, EvaluatesNoDesignTwice) {
   }
 }
 
-TEST(GeneticAlgorithm, PaperOperatorsCopyParentsAndStallShort) {
-  const auto problem = corner();
-  const auto optimiser = make(entry("ga"), problem, kPaper);
-  std::vector<double> ends;
+TEST(GeneticAlgorithm, PaperOperatorsReuseParentsAndStallBeforeTheOptimum) {
+  const auto problem = corner_optimum();
+  const auto optimiser = make(entry("ga"), problem, kPaperOptions);
+  std::vector<double> optima;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Outcome outcome = run(*optimiser, problem, seed);
     EXPECT_EQ(outcome.result.reason, StopReason::generations);
     EXPECT_EQ(outcome.recorder.numbers.back(), 100);
-    EXPECT_LT(outcome.table.size(), 800u);  // copies are not evaluated again
+    EXPECT_LT(outcome.table.size(), 800u);  // children equal to a parent are not evaluated again
     for (const auto& population : outcome.recorder.populations) EXPECT_EQ(population.size(), 20u);
-    ends.push_back(best_of(outcome));
+    optima.push_back(best_of(outcome));
   }
-  std::nth_element(ends.begin(), ends.begin() + 10, ends.end());
-  EXPECT_LT(ends[10], 0.999);
-  EXPECT_GT(ends[10], 0.8);
+  std::nth_element(optima.begin(), optima.begin() + 10, optima.end());
+  EXPECT_LT(optima[10], 0.999);
+  EXPECT_GT(optima[10], 0.8);
 }
 
 TEST(GeneticAlgorithm, ElitesSurviveGenerationalReplacement) {
@@ -117,7 +117,7 @@ TEST(GeneticAlgorithm, ElitesSurviveGenerationalReplacement) {
   EXPECT_EQ(outcome.table.size(), 20u + 100 * 18);
 }
 
-TEST(GeneticAlgorithm, BeginsFromGivenDesignsMovedIntoTheSpace) {
+TEST(GeneticAlgorithm, StartsFromGivenDesignsProjectedOntoTheSpace) {
   const auto problem = sphere(2, 0.5);
   const Outcome outcome = run(*make(entry("ga"), problem), problem, 1, 0, nullptr, {{0.6, 9.0}, {-5.0, 1.24}});
   EXPECT_EQ(outcome.table.designs[0], 0.5);
@@ -127,10 +127,10 @@ TEST(GeneticAlgorithm, BeginsFromGivenDesignsMovedIntoTheSpace) {
   EXPECT_EQ(outcome.table.size(), 20u);
 }
 
-TEST(GeneticAlgorithm, AMoreDistantLimitOnlyContinues) {
+TEST(GeneticAlgorithm, AHigherLimitContinuesTheSameRun) {
   const auto problem = welded_beam();
   const Outcome longer = run(*make(entry("ga"), problem), problem);
-  // 57 evaluations end within generation 2; its first children are those of the longer run.
+  // The limit of 57 evaluations is reached in generation 2, whose first children equal those of the longer run.
   for (const Changes& changes :
        {Changes{{"generations", std::int64_t{7}}}, Changes{{"evaluations", std::int64_t{57}}}}) {
     const Outcome shorter = run(*make(entry("ga"), problem, changes), problem);
@@ -142,18 +142,24 @@ TEST(GeneticAlgorithm, AMoreDistantLimitOnlyContinues) {
   }
 }
 
-TEST(GeneticAlgorithm, StopsForTheReasonAskedFor) {
+TEST(GeneticAlgorithm, ReportsTheStopReason) {
   const auto problem = sphere(4);
-  const auto ends = [&](const Changes& changes) { return run(*make(entry("ga"), problem, changes), problem); };
-  EXPECT_EQ(ends({{"generations", std::int64_t{3}}}).result.reason, StopReason::generations);
-  const Outcome counted = ends({{"evaluations", std::int64_t{57}}});
+  const auto run_with = [&](const Changes& changes) { return run(*make(entry("ga"), problem, changes), problem); };
+  EXPECT_EQ(run_with({{"generations", std::int64_t{3}}}).result.reason, StopReason::generations);
+  const Outcome counted = run_with({{"evaluations", std::int64_t{57}}});
   EXPECT_EQ(counted.result.reason, StopReason::evaluations);
   EXPECT_EQ(counted.table.size(), 57u);
-  const Outcome reached = ends({{"target", 0.01}});
+  for (const char* name : {"ga", "nsga2"}) {  // fewer evaluations than the population
+    const Outcome part = run(*make(entry(name), problem, {{"evaluations", std::int64_t{5}}}), problem);
+    EXPECT_EQ(part.result.reason, StopReason::evaluations) << name;
+    EXPECT_EQ(part.table.size(), 5u) << name;
+  }
+  const Outcome reached = run_with({{"target", 0.01}});
   EXPECT_EQ(reached.result.reason, StopReason::target);
   EXPECT_LE(best_of(reached), 0.01);
   EXPECT_LT(reached.table.size(), 900u);
-  const Outcome stalled = ends({{"stall", std::int64_t{8}}, {"tolerance", 0.5}, {"generations", std::int64_t{5000}}});
+  const Outcome stalled =
+      run_with({{"stall", std::int64_t{8}}, {"tolerance", 0.5}, {"generations", std::int64_t{5000}}});
   EXPECT_EQ(stalled.result.reason, StopReason::stall);
   EXPECT_LT(stalled.recorder.numbers.back(), 5000);
   const auto few = sphere(2, 6);  // nine designs
@@ -162,25 +168,25 @@ TEST(GeneticAlgorithm, StopsForTheReasonAskedFor) {
   EXPECT_EQ(all.table.size(), 9u);
 }
 
-TEST(GeneticAlgorithm, TargetFollowsTheDirection) {
-  const auto problem = corner();
+TEST(GeneticAlgorithm, TargetRespectsTheDirection) {
+  const auto problem = corner_optimum();
   const Outcome outcome = run(*make(entry("ga"), problem, {{"target", 0.9}}), problem);
   EXPECT_EQ(outcome.result.reason, StopReason::target);
   EXPECT_GE(best_of(outcome), 0.9);
   EXPECT_LT(outcome.table.size(), 300u);
 }
 
-TEST(GeneticAlgorithm, RefusesAnEliteThatFillsThePopulation) {
+TEST(GeneticAlgorithm, RejectsAnEliteAsLargeAsThePopulation) {
   const auto problem = sphere(2);
   try {
     make(entry("ga"), problem, {{"elite", std::int64_t{20}}});
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "elite = 20 must be less than population = 20.");
+    EXPECT_STREQ(error.what(), "elite = 20 is too large; expected less than population = 20");
   }
 }
 
-TEST(GeneticAlgorithm, PopulationGrowsWithTheVariables) {
+TEST(GeneticAlgorithm, DefaultPopulationGrowsWithTheNumberOfVariables) {
   EXPECT_EQ(run(*make(entry("ga"), sphere(10)), sphere(10), 1, 0).table.size(), 50u);
   EXPECT_EQ(run(*make(entry("ga"), sphere(3)), sphere(3), 1, 0).table.size(), 20u);
 }

@@ -1,4 +1,4 @@
-// The trade-offs that nsga2 finds on problems whose fronts are known.
+// Pareto fronts found by nsga2 on problems whose fronts are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include "engine/optimisers/dominance.hpp"
 #include "engine/problem/front.hpp"
 #include "tests/unit/optimisers/known_problems.hpp"
+#include "tests/unit/optimisers/multi_objective_problems.hpp"
 #include "tests/unit/optimisers/stage.hpp"
-#include "tests/unit/optimisers/trade_off_problems.hpp"
 
 namespace pkm::test {
 namespace {
@@ -23,16 +23,16 @@ Outcome run_nsga2(const Problem& problem, std::int64_t population, std::int64_t 
   return run(*make(entry("nsga2"), problem, changes), problem, seed);
 }
 
-double volume_of(const TradeOff& known, const Outcome& outcome, const std::vector<std::int64_t>& rows) {
+double hypervolume_of(const FrontProblem& known, const Outcome& outcome, const std::vector<std::int64_t>& rows) {
   const Scores scores = scores_of(known.problem.objectives(), outcome.table, rows);
   return hypervolume(scores.values, known.objectives(), reference_point(known));
 }
 
-double true_volume(const TradeOff& known) {
+double true_hypervolume(const FrontProblem& known) {
   return hypervolume(known.front, known.objectives(), reference_point(known));
 }
 
-TEST(Nsga2, ALargePopulationByATeamHasTheSameBits) {
+TEST(Nsga2, LargePopulationsAreBitIdenticalWithSeveralThreads) {
   for (const char* name : {"ga", "nsga2"}) {
     const FunctionProblem problem({{"x", "1", 0, 1}, {"y", "1", 0, 1}},
                                   std::vector(name == std::string("ga") ? 1 : 2, Direction::minimise), 1,
@@ -49,27 +49,27 @@ TEST(Nsga2, ALargePopulationByATeamHasTheSameBits) {
   }
 }
 
-TEST(Nsga2, FindsTheFrontsOfTheUsualProblems) {
-  for (const TradeOff& known : zdt_problems()) {
-    std::vector<double> shares;
+TEST(Nsga2, FindsTheFrontsOfTheZdtProblems) {
+  for (const FrontProblem& known : zdt_problems()) {
+    std::vector<double> ratios;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Outcome outcome = run_nsga2(known.problem, 100, 250, seed);
-      shares.push_back(volume_of(known, outcome, outcome.recorder.populations.back()) / true_volume(known));
+      ratios.push_back(hypervolume_of(known, outcome, outcome.recorder.populations.back()) / true_hypervolume(known));
     }
-    std::sort(shares.begin(), shares.end());
-    EXPECT_GT(shares[1], 0.99) << known.name;
+    std::sort(ratios.begin(), ratios.end());
+    EXPECT_GT(ratios[1], 0.99) << known.name;
   }
 }
 
 TEST(Nsga2, FindsTheFrontOfThreeObjectives) {
-  const TradeOff known = dtlz2();
+  const FrontProblem known = dtlz2();
   const Outcome outcome = run_nsga2(known.problem, 100, 100, 1);
-  EXPECT_GT(volume_of(known, outcome, outcome.recorder.populations.back()) / true_volume(known), 0.93);
+  EXPECT_GT(hypervolume_of(known, outcome, outcome.recorder.populations.back()) / true_hypervolume(known), 0.93);
   EXPECT_LT(outcome.recorder.fronts.back().spread, 0.35);
 }
 
 TEST(Nsga2, EveryArchivedDesignOfConstrainedProblemsIsFeasible) {
-  for (const TradeOff& known : {bnh(), srn(), tnk(), osy()}) {
+  for (const FrontProblem& known : {bnh(), srn(), tnk(), osy()}) {
     const Outcome outcome = run_nsga2(known.problem, 100, 100, 2);
     ASSERT_TRUE(outcome.result.front) << known.name;
     for (const std::int64_t row : outcome.result.front->rows) {
@@ -77,19 +77,19 @@ TEST(Nsga2, EveryArchivedDesignOfConstrainedProblemsIsFeasible) {
       EXPECT_EQ(outcome.table.status[r], Status::feasible);
       EXPECT_EQ(violation(outcome.table.margin_row(r)), 0);
     }
-    EXPECT_GT(volume_of(known, outcome, outcome.result.front->rows) / true_volume(known), 0.9) << known.name;
+    EXPECT_GT(hypervolume_of(known, outcome, outcome.result.front->rows) / true_hypervolume(known), 0.9) << known.name;
   }
 }
 
-TEST(Nsga2, TheArchiveIsWhatNoEvaluationDominates) {
-  const TradeOff known = tnk();
+TEST(Nsga2, TheArchiveHoldsAllNonDominatedEvaluations) {
+  const FrontProblem known = tnk();
   const Outcome outcome = run_nsga2(known.problem, 40, 30, 3);
   std::vector<std::int64_t> feasible;
   for (std::size_t row = 0; row < outcome.table.size(); ++row)
     if (outcome.table.status[row] == Status::feasible) feasible.push_back(static_cast<std::int64_t>(row));
   const Scores scores = scores_of(known.problem.objectives(), outcome.table, feasible);
   std::vector<std::uint32_t> front;
-  sort_fronts(scores, front);
+  non_dominated_sort(scores, front);
   std::vector<std::int64_t> expected;
   for (std::size_t i = 0; i < feasible.size(); ++i)
     if (front[i] == 0) expected.push_back(feasible[i]);
@@ -98,8 +98,8 @@ TEST(Nsga2, TheArchiveIsWhatNoEvaluationDominates) {
   EXPECT_EQ(archived, expected);
 }
 
-TEST(Nsga2, HypervolumeNeverFallsAndStallingStops) {
-  const TradeOff known = zdt_problems()[0];
+TEST(Nsga2, HypervolumeNeverDecreasesAndStallStops) {
+  const FrontProblem known = zdt_problems()[0];
   const Outcome outcome = run_nsga2(known.problem, 40, 2000, 1, {{"stall", std::int64_t{10}}, {"tolerance", 1e-3}});
   EXPECT_EQ(outcome.result.reason, StopReason::stall);
   const auto& fronts = outcome.recorder.fronts;
@@ -108,15 +108,15 @@ TEST(Nsga2, HypervolumeNeverFallsAndStallingStops) {
   EXPECT_LT(fronts.back().hypervolume / fronts[fronts.size() - 11].hypervolume, 1 + 1e-3);
 }
 
-TEST(Nsga2, AnArchiveWithALimitKeepsToIt) {
-  const TradeOff known = zdt_problems()[0];
+TEST(Nsga2, TheArchiveRespectsItsMaximumSize) {
+  const FrontProblem known = zdt_problems()[0];
   const Outcome outcome = run_nsga2(known.problem, 40, 60, 1, {{"archive", std::int64_t{25}}});
   for (const Front& front : outcome.recorder.fronts) EXPECT_LE(front.rows.size(), 25u);
   EXPECT_EQ(outcome.result.front->rows.size(), 25u);
 }
 
-TEST(Nsga2, ReportsTheDistanceToAFrontThatIsGiven) {
-  const TradeOff known = zdt_problems()[1];
+TEST(Nsga2, ReportsTheDistanceToAGivenFront) {
+  const FrontProblem known = zdt_problems()[1];
   std::vector<NamedNumbers> front;
   for (std::size_t i = 0; i < known.front.size(); i += 2)
     front.push_back({{"f0", known.front[i]}, {"f1", known.front[i + 1]}});
@@ -126,14 +126,13 @@ TEST(Nsga2, ReportsTheDistanceToAFrontThatIsGiven) {
 }
 
 TEST(Nsga2, HandlesManyObjectives) {
-  const FunctionProblem corners(box(4, 0, 1), std::vector<Direction>(5, Direction::maximise), 0,
-                                [](auto x, auto f, auto) {
-                                  for (std::size_t k = 0; k < 4; ++k) f[k] = 1.0 * x[k];
-                                  f[4] = 4.0 - (x[0] + x[1] + x[2] + x[3]);
-                                });
-  const Outcome outcome = run_nsga2(corners, 40, 10, 1);
+  const FunctionProblem cube(box(4, 0, 1), std::vector<Direction>(5, Direction::maximise), 0, [](auto x, auto f, auto) {
+    for (std::size_t k = 0; k < 4; ++k) f[k] = 1.0 * x[k];
+    f[4] = 4.0 - (x[0] + x[1] + x[2] + x[3]);
+  });
+  const Outcome outcome = run_nsga2(cube, 40, 10, 1);
   EXPECT_TRUE(std::isnan(outcome.recorder.fronts.back().hypervolume));
-  EXPECT_EQ(outcome.result.front->rows.size(), outcome.table.size());  // all of the cube is a trade-off
+  EXPECT_EQ(outcome.result.front->rows.size(), outcome.table.size());  // every design of the cube is Pareto optimal
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
-// Selection, crossover, mutation, start designs and the memory of known designs, each by itself.
+// Unit tests of selection, crossover, mutation, initial sampling and the hash set of designs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "engine/optimisers/evolutionary/known_designs.hpp"
+#include "engine/optimisers/evolutionary/design_hash_set.hpp"
 #include "engine/optimisers/evolutionary/operators.hpp"
-#include "engine/optimisers/start.hpp"
+#include "engine/optimisers/sampling.hpp"
 
 namespace pkm {
 namespace {
@@ -29,7 +29,7 @@ TEST(Selection, UniversalSamplingDrawsEachMemberItsExpectedNumberOfTimes) {
   }
 }
 
-TEST(Selection, TournamentPrefersTheBetterByItsSize) {
+TEST(Selection, LargerTournamentsPreferBetterMembers) {
   for (const std::int64_t size : {1, 2, 4}) {
     std::vector<std::uint32_t> parents(20000);
     Stream stream(3, 1, 0, Stream::Use::selection);
@@ -40,26 +40,26 @@ TEST(Selection, TournamentPrefersTheBetterByItsSize) {
   }
 }
 
-const std::vector<double> kTwo = {0.2, 3.0, 0.6, 7.0};  // two designs of two variables
+const std::vector<double> kTwoDesigns = {0.2, 3.0, 0.6, 7.0};  // two designs with two variables
 
 TEST(Crossover, ScatteredTakesEachVariableFromEitherParent) {
   std::set<std::vector<double>> children;
   for (std::uint32_t i = 0; i < 100; ++i) {
     std::vector<double> child(2);
     Stream stream(1, 0, i, Stream::Use::variation);
-    cross({Crossover::Kind::scattered, 15}, {kTwo, 2}, 0, 1, stream, child);
+    recombine({Crossover::Kind::scattered, 15}, {kTwoDesigns, 2}, 0, 1, stream, child);
     children.insert(child);
   }
   EXPECT_EQ(children, (std::set<std::vector<double>>{{0.2, 3}, {0.2, 7}, {0.6, 3}, {0.6, 7}}));
 }
 
-TEST(Crossover, SimulatedBinaryStaysNearerWithALargerIndex) {
+TEST(Crossover, SimulatedBinaryStepsShrinkWithTheDistributionIndex) {
   const auto mean_step = [](double eta) {
     double sum = 0;
     for (std::uint32_t i = 0; i < 4000; ++i) {
       std::vector<double> child(2);
       Stream stream(1, 0, i, Stream::Use::variation);
-      cross({Crossover::Kind::sbx, eta}, {kTwo, 2}, 0, 1, stream, child);
+      recombine({Crossover::Kind::sbx, eta}, {kTwoDesigns, 2}, 0, 1, stream, child);
       sum += std::min(std::fabs(child[0] - 0.2), std::fabs(child[0] - 0.6));
     }
     return sum / 4000;
@@ -68,49 +68,49 @@ TEST(Crossover, SimulatedBinaryStaysNearerWithALargerIndex) {
   EXPECT_GT(mean_step(20), 0);
 }
 
-TEST(Crossover, BlendCoversTheWidenedIntervalEvenly) {
-  double least = 1, most = 0, sum = 0;
+TEST(Crossover, BlendIsUniformOnTheExtendedInterval) {
+  double minimum = 1, maximum = 0, sum = 0;
   for (std::uint32_t i = 0; i < 4000; ++i) {
     std::vector<double> child(2);
     Stream stream(1, 0, i, Stream::Use::variation);
-    cross({Crossover::Kind::blend, 15}, {kTwo, 2}, 0, 1, stream, child);
-    least = std::min(least, child[0]);
-    most = std::max(most, child[0]);
+    recombine({Crossover::Kind::blend, 15}, {kTwoDesigns, 2}, 0, 1, stream, child);
+    minimum = std::min(minimum, child[0]);
+    maximum = std::max(maximum, child[0]);
     sum += child[0];
   }
-  EXPECT_NEAR(least, 0.0, 2e-3);
-  EXPECT_NEAR(most, 0.8, 2e-3);
+  EXPECT_NEAR(minimum, 0.0, 2e-3);
+  EXPECT_NEAR(maximum, 0.8, 2e-3);
   EXPECT_NEAR(sum / 4000, 0.4, 0.015);
 }
 
-TEST(Crossover, DifferentialScalesAndShiftsWithThePopulation) {
+TEST(Crossover, DifferentialIsInvariantUnderScalingAndTranslation) {
   const std::vector<double> designs = {0.25, 1, 0.5, -2, -1, 0.75, 2, 4, 0.125, -3};
   std::vector<double> moved = designs;
   for (double& x : moved) x = 4 * x + 8;
   for (std::uint32_t i = 0; i < 50; ++i) {
     std::vector<double> child(2), image(2);
     Stream a(1, 0, i, Stream::Use::variation), b(1, 0, i, Stream::Use::variation);
-    cross({}, {designs, 2}, i % 5, 0, a, child);
-    cross({}, {moved, 2}, i % 5, 0, b, image);
+    recombine({}, {designs, 2}, i % 5, 0, a, child);
+    recombine({}, {moved, 2}, i % 5, 0, b, image);
     for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(image[k], 4 * child[k] + 8, 1e-12);
   }
 }
 
-TEST(Crossover, DifferentialLeavesACollapsedPopulationWhereItIs) {
+TEST(Crossover, DifferentialDoesNotMoveACollapsedPopulation) {
   const std::vector<double> designs = {0.25, 1, 0.25, 1, 0.25, 1};
   std::vector<double> child(2);
   Stream stream(1, 0, 0, Stream::Use::variation);
-  cross({}, {designs, 2}, 1, 2, stream, child);
+  recombine({}, {designs, 2}, 1, 2, stream, child);
   EXPECT_EQ(child, (std::vector<double>{0.25, 1}));
 }
 
-TEST(Mutation, StepsHaveTheStatedSize) {
+TEST(Mutation, StepsHaveTheDocumentedDeviation) {
   const Variable variable{"x", "m", 10, 30, 0};
   const auto deviation = [&](Mutation mutation) {
     double sum = 0;
     for (std::uint32_t i = 0; i < 20000; ++i) {
       Stream stream(1, 0, i, Stream::Use::variation);
-      const double step = mutated(mutation, variable, 20, stream) - 20;
+      const double step = mutate(mutation, variable, 20, stream) - 20;
       sum += step * step;
     }
     return std::sqrt(sum / 20000);
@@ -119,51 +119,51 @@ TEST(Mutation, StepsHaveTheStatedSize) {
   EXPECT_NEAR(deviation({Mutation::Kind::uniform, 0.1, 20}), 20 / std::sqrt(12.0), 0.1);
   // The mean of 10^(-8u) is 1 / (8 ln 10).
   EXPECT_NEAR(deviation({Mutation::Kind::multiscale, 0.3, 20}), 6 / std::sqrt(8 * std::log(10.0)), 0.06);
-  // Polynomial: the step's share of the range has variance 2 / ((eta + 2)(eta + 3)).
+  // Polynomial: the step divided by the range has the variance 2 / ((eta + 2)(eta + 3)).
   EXPECT_NEAR(deviation({Mutation::Kind::polynomial, 0.3, 20}), 20 * std::sqrt(2.0 / (22 * 23)), 0.03);
 }
 
-TEST(Start, EveryVariableIsCoveredEvenly) {
-  const std::size_t count = 64, dimension = 25;  // beyond the Sobol table too
+TEST(Sampling, EachStratumOfEachVariableHasOnePoint) {
+  const std::size_t count = 64, dimension = 25;  // more than the dimensions of the Sobol table
   for (const Start start : {Start::sobol, Start::latin_hypercube}) {
-    const auto points = start_points(start, count, dimension, 11);
+    const auto points = unit_cube_samples(start, count, dimension, 11);
     for (std::size_t variable = 0; variable < dimension; ++variable) {
-      std::set<int> slices;
-      for (std::size_t i = 0; i < count; ++i) slices.insert(static_cast<int>(points[i * dimension + variable] * 64));
-      EXPECT_EQ(slices.size(), count) << "variable " << variable;
+      std::set<int> strata;
+      for (std::size_t i = 0; i < count; ++i) strata.insert(static_cast<int>(points[i * dimension + variable] * 64));
+      EXPECT_EQ(strata.size(), count) << "variable " << variable;
     }
   }
 }
 
-TEST(Start, SobolCoversPairsOfVariablesEvenly) {
-  const auto points = start_points(Start::sobol, 64, 2, 5);  // a (0, 6, 2)-net: one point in each of 8 x 8 squares
+TEST(Sampling, SobolPointsFormANetInTwoVariables) {
+  const auto points = unit_cube_samples(Start::sobol, 64, 2, 5);  // a (0, 6, 2)-net: one point in each of 8 x 8 squares
   std::set<int> squares;
   for (std::size_t i = 0; i < 64; ++i)
     squares.insert(static_cast<int>(points[2 * i] * 8) * 8 + static_cast<int>(points[2 * i + 1] * 8));
   EXPECT_EQ(squares.size(), 64u);
 }
 
-TEST(Start, SeedsDiffer) {
+TEST(Sampling, DifferentSeedsGiveDifferentPoints) {
   for (const Start start : {Start::sobol, Start::latin_hypercube, Start::random}) {
-    EXPECT_NE(start_points(start, 20, 4, 1), start_points(start, 20, 4, 2));
-    EXPECT_EQ(start_points(start, 20, 4, 1), start_points(start, 20, 4, 1));
-    for (const double u : start_points(start, 500, 4, 3)) EXPECT_TRUE(u >= 0 && u < 1);
+    EXPECT_NE(unit_cube_samples(start, 20, 4, 1), unit_cube_samples(start, 20, 4, 2));
+    EXPECT_EQ(unit_cube_samples(start, 20, 4, 1), unit_cube_samples(start, 20, 4, 1));
+    for (const double u : unit_cube_samples(start, 500, 4, 3)) EXPECT_TRUE(u >= 0 && u < 1);
   }
 }
 
-TEST(KnownDesigns, FindsWhatWasInsertedAndNothingElse) {
+TEST(DesignHashSet, FindsInsertedDesignsOnly) {
   EvaluationTable table({2, 1, 0, 0});
-  KnownDesigns known;
+  DesignHashSet designs;
   for (std::size_t i = 0; i < 5000; ++i) {
     const std::vector<double> design = {static_cast<double>(i % 100), static_cast<double>(i / 100) * 0.1};
-    EXPECT_EQ(known.find(table, design), -1);
+    EXPECT_EQ(designs.find(table, design), -1);
     const std::size_t row = table.extend(1);
     std::copy(design.begin(), design.end(), table.design(row).begin());
-    known.insert(table, row);
+    designs.insert(table, row);
   }
   for (std::size_t row = 0; row < table.size(); ++row)
-    EXPECT_EQ(known.find(table, std::as_const(table).design(row)), static_cast<std::int64_t>(row));
-  EXPECT_EQ(known.find(table, std::vector<double>{3, std::nextafter(0.1, 1)}), -1);
+    EXPECT_EQ(designs.find(table, std::as_const(table).design(row)), static_cast<std::int64_t>(row));
+  EXPECT_EQ(designs.find(table, std::vector<double>{3, std::nextafter(0.1, 1)}), -1);
 }
 
 }  // namespace

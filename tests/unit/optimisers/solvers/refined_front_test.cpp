@@ -1,12 +1,12 @@
-// Solver stages that begin on a front: each end dominates its start or equals it, and lies on the true front.
+// Solver stages that start from a front: each result dominates its start or equals it, and lies on the true front.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ostream>
 
+#include "tests/unit/optimisers/multi_objective_problems.hpp"
 #include "tests/unit/optimisers/stage.hpp"
-#include "tests/unit/optimisers/trade_off_problems.hpp"
 
 namespace pkm::test {
 namespace {
@@ -15,8 +15,8 @@ struct Case {
   std::string optimiser, algorithm, scalarisation;
 };
 
-/// Least square of the distance from (0, 0, 0), greatest negative one from (1, 0, 0), with x2 at least 0.2 x0: on the
-/// front x1 = 0 and x2 = 0.2 x0.
+/// Minimises the squared distance from (0, 0, 0) and maximises the negative squared distance from (1, 0, 0), subject to
+/// x2 >= 0.2 x0. On the front x1 = 0 and x2 = 0.2 x0.
 FunctionProblem two_directions() {
   return {box(3, -0.5, 1.5), {Direction::minimise, Direction::maximise}, 1, [](auto x, auto f, auto g) {
             f[0] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
@@ -36,7 +36,7 @@ Outcome refine(const Problem& problem, const Case& c, const std::vector<std::vec
   Outcome outcome{EvaluationTable(problem.shape(optimiser->detail())), Recorder(), {}};
   StageInput input{problem, serial, outcome.recorder, 1};
   for (const auto& design : starts) input.starts.push_back({design, "given"});
-  input.known_front = {{1, 1}, {2, problem.objectives()[1].direction == Direction::maximise ? -3.0 : 3.0}};
+  input.previous_front = {{1, 1}, {2, problem.objectives()[1].direction == Direction::maximise ? -3.0 : 3.0}};
   outcome.result = optimiser->minimise(input, outcome.table);
   return outcome;
 }
@@ -45,9 +45,9 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.optimiser << ' ' << c
 
 class RefinedFront : public ::testing::TestWithParam<Case> {};
 
-TEST_P(RefinedFront, EndsDominateTheirStartsAndAreOptimal) {
+TEST_P(RefinedFront, ResultsDominateTheirStartsAndAreOptimal) {
   const FunctionProblem problem = two_directions();
-  const bool slopes = GetParam().algorithm != "isres";
+  const bool has_derivatives = GetParam().algorithm != "isres";
   const Outcome outcome = refine(problem, GetParam(), kStarts);
   ASSERT_EQ(outcome.result.starts.size(), kStarts.size());
   for (const StartOutcome& start : outcome.result.starts) {
@@ -57,7 +57,7 @@ TEST_P(RefinedFront, EndsDominateTheirStartsAndAreOptimal) {
     EXPECT_EQ(outcome.table.status[row], Status::feasible);
     EXPECT_LE(to[0], from[0]);
     EXPECT_GE(to[1], from[1]);
-    if (slopes) {
+    if (has_derivatives) {
       const auto x = std::as_const(outcome.table).design(row);
       EXPECT_NEAR(x[1], 0, 1e-5);
       EXPECT_NEAR(x[2], 0.2 * x[0], 1e-9);
@@ -69,7 +69,7 @@ TEST_P(RefinedFront, EndsDominateTheirStartsAndAreOptimal) {
   }
 }
 
-TEST_P(RefinedFront, KeepsTheNonDominatedEndsAsAFront) {
+TEST_P(RefinedFront, FrontConsistsOfTheNonDominatedResults) {
   const FunctionProblem problem = two_directions();
   const Outcome outcome = refine(problem, GetParam(), kStarts);
   ASSERT_TRUE(outcome.result.front);
@@ -87,7 +87,7 @@ TEST_P(RefinedFront, KeepsTheNonDominatedEndsAsAFront) {
   EXPECT_TRUE(std::ranges::find(front.rows, outcome.result.best_row) != front.rows.end());
 }
 
-TEST_P(RefinedFront, AnInfeasibleStartEndsFeasible) {
+TEST_P(RefinedFront, AnInfeasibleStartBecomesFeasible) {
   const FunctionProblem problem = two_directions();
   const Outcome outcome = refine(problem, GetParam(), {{0.5, 0.1, -0.3}});
   EXPECT_EQ(outcome.table.status[0], Status::infeasible);
@@ -106,8 +106,8 @@ INSTANTIATE_TEST_SUITE_P(All, RefinedFront,
                                            Case{"nlopt", "isres", "achievement"}),
                          kName);
 
-TEST(RefinedFrontOf, AStartThatCannotBeEvaluatedEndsThere) {
-  const FunctionProblem problem(box(1, -1, 1), kBothLeast, 0, [](auto x, auto f, auto) {
+TEST(RefinedFrontStart, FailsIfItCannotBeEvaluated) {
+  const FunctionProblem problem(box(1, -1, 1), kMinimiseBoth, 0, [](auto x, auto f, auto) {
     f[0] = x[0] * x[0] + 0.0 * sqrt(x[0]);
     f[1] = 1.0 - x[0];
   });
@@ -118,9 +118,9 @@ TEST(RefinedFrontOf, AStartThatCannotBeEvaluatedEndsThere) {
   EXPECT_EQ(outcome.result.front->rows.size(), 1u);
 }
 
-TEST(RefinedFrontOf, AnInfeasibleStartMayPayForFeasibility) {
-  // Least x0 and least x1 with x0 + x1 >= 1.5: from the origin both must grow.
-  const FunctionProblem problem(box(2, 0, 2), kBothLeast, 1, [](auto x, auto f, auto g) {
+TEST(RefinedFrontStart, MayWorsenObjectivesToBecomeFeasible) {
+  // Minimises x0 and x1 subject to x0 + x1 >= 1.5: from the origin, both must increase.
+  const FunctionProblem problem(box(2, 0, 2), kMinimiseBoth, 1, [](auto x, auto f, auto g) {
     f[0] = x[0] * 1.0;
     f[1] = x[1] * 1.0;
     g[0] = x[0] + x[1] - 1.5;
@@ -133,9 +133,9 @@ TEST(RefinedFrontOf, AnInfeasibleStartMayPayForFeasibility) {
   }
 }
 
-TEST(RefinedFrontOf, EpsilonConstraintGainsInTheObjectiveNamed) {
+TEST(RefinedFrontStart, ImprovesTheNamedObjectiveOfTheEpsilonConstraint) {
   const FunctionProblem problem = two_directions();
-  const auto gain = [&](const char* name) {
+  const auto improvement = [&](const char* name) {
     const auto optimiser = make(entry("ipopt"), problem,
                                 {{"start", std::string("pareto")},
                                  {"scalarisation", std::string("epsilon-constraint")},
@@ -148,8 +148,8 @@ TEST(RefinedFrontOf, EpsilonConstraintGainsInTheObjectiveNamed) {
     const auto start = outcome.table.objective_row(0);
     return std::array{start[0] - end[0], end[1] - start[1]};
   };
-  const auto first = gain("f0"), second = gain("f1");
-  EXPECT_NEAR(first[1], 0, 1e-9);  // the other one keeps what it has
+  const auto first = improvement("f0"), second = improvement("f1");
+  EXPECT_NEAR(first[1], 0, 1e-9);  // the other objective stays constant
   EXPECT_NEAR(second[0], 0, 1e-9);
   EXPECT_GT(first[0], 0.05);
   EXPECT_GT(second[1], 0.05);

@@ -1,4 +1,4 @@
-// Solver stages on problems whose optimum is known.
+// Helper functions for tests of solver stages.
 #pragma once
 
 #include <string>
@@ -21,6 +21,7 @@ inline Outcome solve(const std::string& optimiser, const Problem& problem, const
   return run(*make(entry(optimiser), problem, changes), problem, seed, 1 << 30, nullptr, starts);
 }
 
+/// A start design of the welded beam.
 inline const std::vector<double> kBeam = {0.5, 3, 9, 0.5};
 
 }  // namespace pkm::test

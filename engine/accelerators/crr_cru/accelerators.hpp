@@ -1,0 +1,14 @@
+// (3CRR/R)&CRU and Quadrupteron: closed forms in place of the generic engine.
+#pragma once
+
+#include <string>
+
+#include "engine/accelerators/crr_cru/model.hpp"
+#include "engine/mechanism/accelerators.hpp"
+
+namespace pkm::crr_cru {
+
+/// @param mass_model  "table" or "geometry", which decides what the parameters are
+Accelerators accelerators(Platform platform, const std::string& mass_model);
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,51 @@
+// (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. Why: README.md, "The yaw".
+#pragma once
+
+#include "engine/accelerators/crr_cru/model.hpp"
+#include "engine/geometry/conditioning.hpp"
+
+namespace pkm::crr_cru {
+
+template <class S>
+struct Yaw {
+  S a_s, a_c, a_0;  ///< [m]
+  S R;              ///< hypot(a_s, a_c) [m]
+};
+
+template <class S>
+Yaw<S> yaw(const Geometry<S>& g) {
+  const S along = g.r * g.cos_beta[1], across = g.r * g.sin_beta[1];
+  if (g.platform == Platform::jointed) return {g.l, S(0.0), -across, g.l};
+  const S a_s = g.l - along;
+  return {a_s, -across, S(0.0), sqrt_or_zero(S(a_s * a_s + across * across))};
+}
+
+/// delta, in (-pi, pi].
+template <class S>
+S offset(const Yaw<S>& y) {
+  return atan2(y.a_c, y.a_s);
+}
+
+/// kappa_p = det J / R = cos(phi + delta), in [-1, 1]: 0 at a parallel singularity, > 0 on the nominal branch.
+template <class S>
+S parallel_index(const Yaw<S>& y, const S& sin_phi, const S& cos_phi) {
+  return (y.a_s * cos_phi - y.a_c * sin_phi) / y.R;
+}
+
+/// The length that the phi column is divided by, unless a study gives one: l, or l + r [m].
+template <class S>
+S characteristic_length(const Geometry<S>& g) {
+  return g.platform == Platform::jointed ? g.l : S(g.l + g.r);
+}
+
+/// Inverse condition number of J with the phi column divided by `length` [m]. z stands alone in J: its singular value
+/// is 1, and x, y, phi are left.
+template <class S>
+S conditioning(const std::array<Arm<S>, 4>& arm, const S& length) {
+  const S one(1.0), zero(0.0);
+  const S turn_1 = turning(arm[0])[0] / length, turn_2 = turning(arm[1])[1] / length;
+  return inverse_condition(
+      Rows3<S>{{{one, zero, turn_1}, {zero, one, turn_2}, {zero, one, arm[3].to_joint[0] / length}}}, one);
+}
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,287 @@
+#include "engine/accelerators/four_ppa_two_par/accelerators.hpp"
+
+#include <stdexcept>
+
+#include "engine/accelerators/four_ppa_two_par/clear_volume.hpp"
+#include "engine/accelerators/four_ppa_two_par/voxels.hpp"
+#include "engine/workspace/grid_surveyor.hpp"
+#include "engine/workspace/with_slopes.hpp"
+
+namespace pkm::four_ppa_two_par {
+namespace {
+
+template <class S>
+S plane(const Geometry<S>& g, const FixedCoordinate& held) {
+  return held.kind == FixedCoordinate::Kind::value ? S(held.value) : middle_plane(g);
+}
+
+template <class S>
+S gamma(const Geometry<S>& g, const Demand& demand) {
+  return demand.characteristic_length ? S(g.a / (2 * *demand.characteristic_length)) : S(1.0);  // default L_c = a/2
+}
+
+constexpr int kY = 1;  ///< the coordinate that surveys hold
+
+/// The only mode whose poses are surveyed.
+constexpr const char* kSurveyedMode = "lower,lower";
+
+template <class S>
+SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
+  SampleContents<S> c{.conditioning = demand.has(kConditioning),
+                      .poses = demand.poses,
+                      .inertia = demand.needs_inertia(),
+                      .gamma = gamma(geometry(parameters), demand),
+                      .masses = {}};
+  if (c.inertia) {
+    c.masses = masses(parameters);
+    std::ranges::copy(demand.rotors, c.masses.rotors.begin());
+  }
+  return c;
+}
+
+class ColumnEvaluator final : public WithGradients<ColumnEvaluator> {
+ public:
+  ColumnEvaluator(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand)
+      : limits_(plan.limits),
+        held_(how_fixed(plan, kY)),
+        columns_(columns),
+        demand_(demand),
+        inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
+        theta_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {}
+
+  const GradientEvaluator* slopes() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
+  std::string why_no_gradients() const override {
+    return "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
+           "such surveys have no derivatives; take an optimiser without gradients, or keep the sliders apart by h_min";
+  }
+
+ private:
+  friend WithGradients<ColumnEvaluator>;
+  static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
+
+  template <class S>
+  void run(std::span<const S> parameters, Scratch& room, Survey<S>& survey) const {
+    survey.clear(demand_.fields);
+    ColumnScratch<S>& scratch = room.get<ColumnScratch<S>>();
+    const Geometry<S> g = geometry(parameters);
+    Limits<S> l = limits(g, limits_);
+    std::optional<ClearanceTest> clearance;
+    if constexpr (std::is_same_v<S, double>) clearance = take_clearance(g, l);
+    const ClearanceTest* const test = clearance ? &*clearance : nullptr;
+    const S y = plane(g, held_);
+    const Frame<S> f = frame(g, l, y);
+    const bool over_y = held_.kind == FixedCoordinate::Kind::integrated;
+    take_volume(volume_of(f, test, over_y, scratch), survey);
+    if (!demand_.needs_samples()) return;
+    const SampleContents<S> wanted = contents(parameters, demand_);
+    if (!over_y) {
+      sample(f, wanted, value_of(y) > value_of(S(g.L0 - y)) ? Planes::far : Planes::near, S(1.0), theta_rule_,
+             inner_rule_, test, scratch, survey);
+      return;
+    }
+    const Piece<S> half{l.h_min, g.L0 * 0.5, true, false};
+    if (!(value_of(half.upper) > value_of(half.lower))) return;
+    // Over y every node has eight poses: samples that tell them apart make do with a coarser rule.
+    static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);
+    const GaussRule &inner = wanted.told_apart() ? coarse : inner_rule_,
+                    &outer = wanted.told_apart() ? coarse : theta_rule_;
+    visit_nodes(half, inner, [&](const S& at, const S& jacobian, double weight) {
+      sample(frame(g, l, at), wanted, Planes::both, S(jacobian * weight), outer, inner, test, scratch, survey);
+    });
+  }
+
+  template <class S>
+  Integral<S> volume_of(const Frame<S>& f, const ClearanceTest* test, bool over_y, ColumnScratch<S>& scratch) const {
+    if constexpr (std::is_same_v<S, double>) {
+      if (test)
+        return columns_.nodes[1] > 0 ? clear_volume_by_rule(f, *test, theta_rule_, inner_rule_, scratch)
+                                     : clear_volume(f, *test, over_y, columns_.tolerance, scratch);
+    }
+    return over_y                  ? volume_over_y(f.g, f.l, columns_.tolerance, scratch)
+           : columns_.nodes[1] > 0 ? fixed_rule(f, scratch)
+                                   : plane_volume(f, columns_.tolerance, scratch);
+  }
+
+  /// The volume by the study's own number of theta nodes per piece; no error is estimated.
+  template <class S>
+  Integral<S> fixed_rule(const Frame<S>& f, ColumnScratch<S>& scratch) const {
+    find_pieces(f, scratch.breaks, scratch.pieces);
+    Integral<S> result;
+    visit_nodes(scratch.pieces, theta_rule_, [&](const S& theta, const S& jacobian, double weight) {
+      const auto [s, c] = sincos(theta);
+      result.value += (2 * weight) * jacobian * area(f, section(f, s, c));
+      ++result.evaluations;
+    });
+    return result;
+  }
+
+  LimitSpec limits_;
+  FixedCoordinate held_;
+  ColumnOptions columns_;
+  Demand demand_;
+  GaussRule inner_rule_, theta_rule_;
+};
+
+class OfVoxels final : public GridEvaluator<OfVoxels> {
+ public:
+  OfVoxels(const WorkspacePlan& plan, const VoxelOptions& voxels, const Demand& demand)
+      : GridEvaluator(demand),
+        limits_(plan.limits),
+        held_(how_fixed(plan, kY)),
+        voxels_(voxels),
+        demand_(demand),
+        counter_(voxels.cells, voxels.box ? (*voxels.box)[2] : kTheta) {}
+
+ private:
+  friend GridEvaluator;
+  static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
+  using Rooms = GridRooms<std::vector<FixedCells>, VoxelWorker>;
+
+  struct GriddedPlanes : Gridded {
+    Geometry<double> g;
+    Limits<double> l;
+    std::optional<ClearanceTest> test;
+    const std::vector<FixedCells>& all_y;  ///< where y is integrated over
+    double y;                              ///< else
+    SampleContents<double> wanted;
+
+    VoxelPlane operator[](std::size_t number) const {
+      return {.g = g,
+              .l = l,
+              .test = test ? &*test : nullptr,
+              .y = all_y.empty() ? y : all_y[0].centre(static_cast<std::int64_t>(number)),
+              .grid = grid};
+    }
+  };
+
+  GriddedPlanes start(std::span<const double> parameters, Rooms& rooms) const {
+    const Geometry<double> g = geometry(parameters);
+    Limits<double> l = limits(g, limits_);
+    auto test = take_clearance(g, l);
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
+    rooms.common.clear();
+    if (held_.kind == FixedCoordinate::Kind::integrated)
+      rooms.common.push_back({kY, 0, g.L0 / static_cast<double>(held_.cells), held_.cells});
+    GriddedPlanes planes{{grid, 0, rooms.common},
+                         g,
+                         l,
+                         std::move(test),
+                         rooms.common,
+                         plane(g, held_),
+                         demand_.needs_samples() ? contents(parameters, demand_) : SampleContents<double>{}};
+    const Halves most = planes.grids == 1 ? halves(planes, planes[0]) : counter_.whole();
+    planes.pieces = counts(planes) ? counter_.pieces(most) : counter_.blocks(most);
+    return planes;
+  }
+  /// Nothing is asked of single cells.
+  bool counts(const GriddedPlanes& planes) const { return !planes.test && !demand_.needs_samples(); }
+  /// What is found of a plane: conditioning is the same at mirrored poses, so that one stands for all of them, unless
+  /// they are told apart.
+  Halves halves(const GriddedPlanes& planes, const VoxelPlane& at) const {
+    return planes.test || planes.wanted.told_apart() ? counter_.whole() : counter_.halves(at);
+  }
+
+  void find(const GriddedPlanes& planes, std::size_t number, std::size_t piece, VoxelWorker& own,
+            Survey<double>& to) const {
+    const VoxelPlane at = planes[number];
+    const Halves part = halves(planes, at);
+    if (counts(planes)) return counter_.count(at, part, piece, to);
+    const Sampled<double> samples(to);
+    counter_.visit_block(at, piece, part, own.columns, [&](const CellRun& run) {
+      const int images = part.images(run.first[0], run.first[2]);
+      count_cells(at.grid, run, to, images);
+      if (demand_.needs_samples()) sample(at, planes.wanted, run, planes.cell_volume * images, own, samples);
+    });
+  }
+  template <class Visit>
+  void visit_cells(const GriddedPlanes& planes, Rooms& rooms, const Visit& visit) const {
+    for (std::size_t block = 0; block < counter_.blocks(counter_.whole()); ++block)
+      counter_.visit_block(planes[0], block, counter_.whole(), rooms.of[0].columns,
+                           [&](const CellRun& run) { for_each_cell(run, visit); });
+  }
+
+  void sample(const VoxelPlane& at, const SampleContents<double>& wanted, const CellRun& run, double weight,
+              VoxelWorker& own, const Sampled<double>& to) const {
+    const Geometry<double>& g = at.g;
+    const VoxelGrid& grid = at.grid;
+    const auto& [i, first, k] = run.first;
+    const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
+    const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
+    const std::array<double, 2> sigma = {sqrt_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
+                                         sqrt_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
+    ColumnConditioning<double>& poses = own.poses;
+    poses.clear();
+    for (std::int64_t j = first; j < run.end; ++j) {
+      const double z = grid.centre(1, j) + g.d;
+      poses.add(z + sigma[0], z + sigma[1]);
+    }
+    if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
+    for (std::int64_t j = first; j < run.end; ++j) {
+      const auto n = static_cast<std::size_t>(j - first);
+      if (wanted.inertia)
+        inertia_values(joint_inertia(g, wanted.masses, s, c, x_j, sigma, {poses.z_c[0][n], poses.z_c[1][n]}), to.survey,
+                       own.inertia);
+      add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
+                 wanted.conditioning ? poses.index[n] : 0, own.inertia, false, to);
+    }
+  }
+
+  LimitSpec limits_;
+  FixedCoordinate held_;
+  VoxelOptions voxels_;
+  Demand demand_;
+  VoxelCounter counter_;
+};
+
+/// Samples stand for mirrored poses, where the two sliders of a rail change places.
+bool has_unequal_rotors(const std::vector<double>& rotors) {
+  return !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]);
+}
+
+bool serves(const WorkspacePlan& plan, const Demand& demand) {
+  return sweeps(plan, {0, 2, 3}) && (demand.mode.empty() || demand.mode == kSurveyedMode) &&
+         !(demand.needs_inertia() && has_unequal_rotors(demand.rotors)) &&
+         !(asks_clearance(plan, kClearanceMin) && !plan.limits.obstacles.empty());
+}
+
+bool is_over_y(const WorkspacePlan& plan) { return how_fixed(plan, kY).kind == FixedCoordinate::Kind::integrated; }
+
+class Columns final : public ColumnAccelerator {
+ public:
+  bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand) const override {
+    return four_ppa_two_par::serves(plan, demand) && !columns.box && !(is_over_y(plan) && columns.nodes[0] > 0);
+  }
+  std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
+                                                    const Demand& demand) const override {
+    return std::make_unique<ColumnEvaluator>(plan, columns, demand);
+  }
+};
+
+class Voxels final : public VoxelAccelerator {
+ public:
+  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const Demand& demand) const override {
+    return four_ppa_two_par::serves(plan, demand);
+  }
+  std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
+                                                const Demand& demand) const override {
+    if (is_over_y(plan) && how_fixed(plan, kY).cells < 1)
+      throw std::invalid_argument("voxels integrated over y need a number of cells for y");
+    return std::make_unique<OfVoxels>(plan, voxels, demand);
+  }
+};
+
+class Forward final : public ForwardKinematics {
+ public:
+  std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
+                                       const AxisVector<double>& joints) const override {
+    return forward(geometry(parameters), joints);
+  }
+};
+
+}  // namespace
+
+Accelerators accelerators() {
+  return {std::make_shared<Columns>(), std::make_shared<Voxels>(), std::make_shared<Forward>()};
+}
+
+}  // namespace pkm::four_ppa_two_par

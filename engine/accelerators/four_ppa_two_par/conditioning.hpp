@@ -1,0 +1,76 @@
+// 4PPa-2PaR: conditioning of a pose of the lower mode, without forming the 4 x 4 Jacobian.
+//
+// Turning the joint speeds by the orthogonal map (q1+q2+q3+q4)/2, (q3+q4-q1-q2)/2, (q2-q1)/sqrt2, (q4-q3)/sqrt2 keeps
+// the singular values of J and splits off y: the first row becomes (0, 2, 0, 0). What is left is 3 x 3 in (x, z, theta
+// L_c).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "engine/core/instruction_set.hpp"
+#include "engine/geometry/conditioning.hpp"
+#include "engine/math/lanes.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+/// What the poses of one column have in common.
+template <class S>
+struct ColumnPoses {
+  S l_u, gamma;  ///< gamma = a / (2 L_c)
+  S sin_theta, cos_theta;
+  std::array<S, 2> x, sigma;  ///< of the two limbs [m], lower branch
+};
+
+/// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length, 0 where J_q or G
+/// is singular. S may be lanes.
+template <class S, class T>
+[[gnu::always_inline]] inline S conditioning(const ColumnPoses<T>& column, const std::array<S, 2>& z_c) {
+  constexpr double kRoot2 = 1.41421356237309504880;
+  Rows3<S> m;  // columns x, z, theta
+  m[0] = {S(0.0), S(0.0), S(column.gamma * column.cos_theta * 2.0)};
+  for (std::size_t j = 0; j < 2; ++j) {
+    const S h = sqrt_or_zero(S((column.l_u - z_c[j]) * (column.l_u + z_c[j])));
+    const S below = h * column.sigma[j];  // k_j = h sigma / (-z_c l_d)
+    const S hanging = select(value_of(z_c[j]) < 0.0, S(z_c[j] * -kRoot2 / below), S(0.0));  // (sqrt2 / k_j) / l_d
+    const S scale = select(value_of(below) > 0.0, hanging, S(0.0));
+    const double sign = j == 0 ? 1 : -1;
+    m[j + 1] = {S(scale * column.x[j]), S(scale * column.sigma[j] * -sign),
+                S(scale * column.x[j] * column.gamma * column.sin_theta * sign)};
+  }
+  return inverse_condition(m, S(4.0));  // the whole matrix is diag(2) and this 3 x 3
+}
+
+/// The same for `count` poses, kLanes at a time; arrays have room for a multiple of kLanes.
+template <InstructionSet set>
+void conditioning_of_poses(const ColumnPoses<double>& column, const double* z_c1, const double* z_c2, std::size_t count,
+                           double* result);
+
+/// Heights of poses of one column, and their conditioning.
+template <class S>
+struct ColumnConditioning {
+  std::array<std::vector<S>, 2> z_c;
+  std::vector<S> index;
+
+  void clear() { z_c[0].clear(), z_c[1].clear(); }
+  void add(const S& z_c1, const S& z_c2) { z_c[0].push_back(z_c1), z_c[1].push_back(z_c2); }
+  std::size_t size() const { return z_c[0].size(); }
+  void compute(const ColumnPoses<S>& column) {
+    const std::size_t count = size();
+    index.resize(count);
+    for (std::size_t i = 0; i < count; ++i) index[i] = conditioning<S>(column, {z_c[0][i], z_c[1][i]});
+  }
+};
+template <>
+inline void ColumnConditioning<double>::compute(const ColumnPoses<double>& column) {
+  const std::size_t count = size(), room = (count + kLanes - 1) / kLanes * kLanes;
+  index.resize(room);
+  for (auto& list : z_c) list.resize(room, list.empty() ? 0 : list.back());
+  with_instruction_set([&]<InstructionSet set>() {
+    conditioning_of_poses<set>(column, z_c[0].data(), z_c[1].data(), count, index.data());
+  });
+  for (auto& list : z_c) list.resize(count);
+}
+
+}  // namespace pkm::four_ppa_two_par

@@ -1,0 +1,59 @@
+// 4PPa-2PaR: masses and inertias that follow the geometry. README.md, Masses, has the table.
+#pragma once
+
+#include <span>
+
+#include "engine/accelerators/four_ppa_two_par/model.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+/// Order of the parameters that follow the lengths.
+enum MassIndex {
+  kLambdaU = kParameters,
+  kLambdaD,
+  kLambdaS,
+  kLambdaP,
+  kJoints,  ///< m_c
+  kKappa,
+  kKappaP,
+  kPayload,        ///< m_p
+  kPayloadOffset,  ///< c_p
+  kAllParameters
+};
+
+template <class S>
+struct Masses {
+  S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< one of each [kg]
+  S I_upper, I_lower;              ///< of a bar about its middle, across the bar [kg m^2]
+  S I_platform;                    ///< about its centre and z [kg m^2]
+  S c_payload;                     ///< [m]
+  std::array<double, 4> rotors{};  ///< inertia of drive trains at the sliders [kg], in M_q alone
+};
+
+/// Throws std::domain_error with a sentence when a link's mass or inertia is not positive.
+void check_positive(const Masses<double>& b);
+
+/// Throws std::domain_error with a sentence when a link's mass or inertia is not positive.
+/// @param p  all parameters
+template <class S>
+Masses<S> masses(std::span<const S> p) {
+  const Geometry<S> g = geometry(p);
+  Masses<S> b;
+  b.slider = p[kLambdaS] * (g.d_0 * 2.0 + g.d_u);
+  b.upper_bar = p[kLambdaU] * g.l_u;
+  b.lower_bar = p[kLambdaD] * g.l_d;
+  b.upper_connector = p[kLambdaU] * g.d_u + p[kLambdaD] * g.d_d + p[kJoints];
+  b.lower_connector = p[kLambdaD] * max(g.d, g.d_d) + p[kJoints];
+  b.platform = p[kLambdaP] * g.a;
+  b.payload = p[kPayload];
+  b.I_upper = p[kKappa] * b.upper_bar * g.l_u * g.l_u * (1.0 / 12);
+  b.I_lower = p[kKappa] * b.lower_bar * g.l_d * g.l_d * (1.0 / 12);
+  b.I_platform = p[kKappaP] * b.platform * g.a * g.a * (1.0 / 12);
+  b.c_payload = p[kPayloadOffset];
+  const auto v = [](const S& x) { return value_of(x); };
+  check_positive({v(b.slider), v(b.upper_bar), v(b.lower_bar), v(b.upper_connector), v(b.lower_connector),
+                  v(b.platform), v(b.payload), v(b.I_upper), v(b.I_lower), v(b.I_platform), v(b.c_payload)});
+  return b;
+}
+
+}  // namespace pkm::four_ppa_two_par

@@ -1,0 +1,128 @@
+// 4PPa-2PaR: geometry, limits and kinematics of one pose. Frames and names: README.md.
+//
+// Source: "Kinematics analysis and optimal design of a 3T1R parallel mechanism", equation numbers are that paper's.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/geometry/pose.hpp"
+#include "engine/math/scalar.hpp"
+#include "engine/mechanism/plan.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+template <class S>
+using Pose = SchoenfliesPose<S>;
+
+/// Order of the parameters.
+enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kRp, kRs, kParameters };
+
+/// Order of the pose-level limits.
+enum LimitIndex { kAlphaMin, kBetaMin, kBetaMax, kHMin, kSinParMin, kCosThetaMin, kClearanceMin, kLimits };
+
+/// Lengths [m], names as in the paper; kAll has them in the order of the parameters.
+template <class S>
+struct Geometry {
+  S a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s;
+
+  using G = Geometry;
+  static constexpr std::array<S G::*, kParameters> kAll = {&G::a,   &G::b,   &G::l_u, &G::l_d, &G::d,   &G::L0, &G::R_u,
+                                                           &G::R_d, &G::d_u, &G::d_d, &G::d_0, &G::R_p, &G::R_s};
+};
+
+template <class S>
+Geometry<S> geometry(std::span<const S> p) {
+  Geometry<S> g;
+  for (std::size_t i = 0; i < g.kAll.size(); ++i) g.*g.kAll[i] = p[i];
+  return g;
+}
+
+/// The plane y that surveys are on where their plan names no other [m].
+template <class S>
+S middle_plane(const Geometry<S>& g) {
+  return g.L0 * 0.5;
+}
+
+/// Pose-level thresholds in the form in which the tests use them.
+template <class S>
+struct Limits {
+  S sin_alpha_min, cos_alpha_min;
+  S sin_beta_min, cos_beta_min;
+  S sin_beta_max, cos_beta_max;
+  S h_min;               ///< [m]
+  S sin_par_min;         ///< sin(phi), the least sin(beta_1 + beta_2)
+  S sin_half, cos_half;  ///< of phi/2
+  S cos_theta_min;
+  std::optional<double> clearance_min;  ///< [m]; none: no capsule is looked at
+
+  using L = Limits;
+  static constexpr std::array<S L::*, 11> kAll = {
+      &L::sin_alpha_min, &L::cos_alpha_min, &L::sin_beta_min, &L::cos_beta_min, &L::sin_beta_max, &L::cos_beta_max,
+      &L::h_min,         &L::sin_par_min,   &L::sin_half,     &L::cos_half,     &L::cos_theta_min};
+};
+
+/// A Geometry or Limits for another scalar, in which they do not move with the design.
+template <class To, template <class> class Values, class From>
+Values<To> constant(const Values<From>& from) {
+  Values<To> to{};
+  for (std::size_t i = 0; i < to.kAll.size(); ++i) to.*to.kAll[i] = To(value_of(from.*from.kAll[i]));
+  return to;
+}
+
+/// Thresholds given by the study, or derived from the bars' and sliders' sizes (eqs 17 and 19).
+template <class S>
+Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
+  const auto given = [&](int i) { return sincos(S(spec.given[static_cast<std::size_t>(i)].value_or(0))); };
+  const auto of_sine = [](const S& sine) {
+    return SinCosOf<S>{sine, sqrt_or_zero(S((S(1.0) - sine) * (S(1.0) + sine)))};
+  };
+  const auto alpha = spec.derived[kAlphaMin] ? of_sine(S(2.0 * g.R_u / g.d_u)) : given(kAlphaMin);   // eq 17
+  const auto beta_low = spec.derived[kBetaMin] ? of_sine(S(2.0 * g.R_d / g.d_d)) : given(kBetaMin);  // eq 17
+  const auto beta_high = spec.given[kBetaMax] ? given(kBetaMax) : SinCosOf<S>{S(1.0), S(0.0)};
+  const double sin_phi = spec.given[kSinParMin].value_or(0), cos_phi = std::sqrt((1 - sin_phi) * (1 + sin_phi));
+  const double cos_half = std::sqrt(0.5 * (1 + cos_phi));
+  return {.sin_alpha_min = alpha.sin,
+          .cos_alpha_min = alpha.cos,
+          .sin_beta_min = beta_low.sin,
+          .cos_beta_min = beta_low.cos,
+          .sin_beta_max = beta_high.sin,
+          .cos_beta_max = beta_high.cos,
+          .h_min = spec.derived[kHMin] ? S(g.d_0 + g.d_u * 0.5) : S(spec.given[kHMin].value_or(0)),  // eq 19
+          .sin_par_min = S(sin_phi),
+          .sin_half = S(0.5 * sin_phi / cos_half),
+          .cos_half = S(cos_half),
+          .cos_theta_min = S(spec.given[kCosThetaMin].value_or(0)),
+          .clearance_min = spec.given[kClearanceMin]};
+}
+
+/// Branch of a limb: lower when the platform hangs below C_j.
+enum class Branch { lower, upper };
+using WorkingMode = std::array<Branch, 2>;
+inline constexpr WorkingMode kLowerMode = {Branch::lower, Branch::lower};
+
+/// Position of the limbs at a pose. Exists where x_j is in [0, l_d] and |z_cj| <= l_u.
+template <class S>
+struct Limbs {
+  std::array<S, 2> x, y, sigma, z_c, h;  ///< [m]
+};
+
+/// Puts limb j where it is at a pose; where it does not reach, roots are 0.
+template <class S>
+[[gnu::always_inline]] inline void place_limb(const Geometry<S>& g, const S& x, const S& y, const S& z,
+                                              const SinCosOf<S>& theta, Branch branch, std::size_t j, Limbs<S>& limb) {
+  const S shift = g.a * theta.sin * 0.5, half = g.a * theta.cos * 0.5;
+  limb.x[j] = j == 0 ? S(x - half) : S(g.b - x - half);
+  limb.y[j] = j == 0 ? S(y - shift) : S(y + shift);
+  limb.sigma[j] = sqrt_or_zero(S((g.l_d - limb.x[j]) * (g.l_d + limb.x[j])));
+  limb.z_c[j] = branch == Branch::lower ? S(z + g.d + limb.sigma[j]) : S(z + g.d - limb.sigma[j]);
+  limb.h[j] = sqrt_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
+}
+
+/// Every assembly mode (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its rail, both circle
+/// intersections. Up to 16; those with both C_j below the rails come first.
+std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& q);
+
+}  // namespace pkm::four_ppa_two_par

@@ -1,0 +1,62 @@
+// Hybrid robot: what bounds its poses.
+//
+// What bounds them are parameters of the design: strokes, ranges of the joints, what is kept from singularities. A
+// study can set tau_s, tau_p and tau_c as limits, too, which then hold instead of the design's own.
+// Measures of singularity: README.md.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/accelerators/hybrid/model.hpp"
+#include "engine/mechanism/plan.hpp"
+
+namespace pkm::hybrid {
+
+/// Order of the pose-level limits that a study may set.
+enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
+
+/// Thresholds in the form in which the tests use them.
+template <class S>
+struct Limits {
+  std::array<S, 4> s_min, s_max;  ///< [m]
+  S z_clear, beta_min, beta_max;  ///< [m], [rad]
+  S tau_s, tau_p, tau_c;
+  SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< of the greatest angles
+  S lam_max, mu_max;                     ///< [rad]
+  S gap, lw_min, lw_max;                 ///< [m]
+};
+
+template <class S>
+Limits<S> limits(std::span<const S> p, const LimitSpec& spec) {
+  const auto given = [&](LimitIndex limit, const S& own) { return spec.given[limit] ? S(*spec.given[limit]) : own; };
+  const auto four = [&](std::size_t first) {
+    return std::array<S, 4>{p[first], p[first + 1], p[first + 2], p[first + 3]};
+  };
+  return {.s_min = four(kSMin),
+          .s_max = four(kSMax),
+          .z_clear = p[kZClear],
+          .beta_min = p[kBetaMin],
+          .beta_max = p[kBetaMax],
+          .tau_s = given(kTauSLimit, p[kTauS]),
+          .tau_p = given(kTauPLimit, p[kTauP]),
+          .tau_c = given(kTauCLimit, p[kTauC]),
+          .psiA = sincos(p[kPsiAMax]),
+          .psiC = sincos(p[kPsiCMax]),
+          .lam = sincos(p[kLamMax]),
+          .mu = sincos(p[kMuMax]),
+          .phi = sincos(p[kPhiMax]),
+          .lam_max = p[kLamMax],
+          .mu_max = p[kMuMax],
+          .gap = p[kGap],
+          .lw_min = p[kLwMin],
+          .lw_max = p[kLwMax]};
+}
+
+/// The sign of sin(lambda) at beta = 0, the side of the constraint singularity on which the robot stays.
+template <class S>
+double home_side(const Geometry<S>& g) {
+  return value_of(g.d) < value_of(g.e) ? -1 : 1;
+}
+
+}  // namespace pkm::hybrid

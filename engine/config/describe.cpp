@@ -1,0 +1,239 @@
+// The text of `pkmopt check`.
+
+#include <sstream>
+
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/core/printable.hpp"
+#include "engine/core/text_table.hpp"
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+using Row = std::vector<std::string>;
+
+/// Behind what a study gives or leaves out: whether it is what it would be without.
+const char* mark(bool is_default) { return is_default ? "(default)" : ""; }
+
+void write_parameters(std::ostream& out, const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const auto& known = parts.mechanism->info().parameters;
+  std::vector<Row> varying, fixed;
+  for (std::size_t v = 0; v < parts.varies.size(); ++v) {
+    const std::size_t i = parts.varies[v];
+    const Variable& variable = parts.space[v];
+    std::string bounds = format_range(variable.lower, variable.upper, variable.unit);
+    if (variable.step > 0) bounds += " in steps of " + with_degrees(variable.step, variable.unit);
+    std::string base;
+    if (study.baseline) {
+      const double value = (*study.baseline)[i];
+      base = "baseline " + with_degrees(value, variable.unit);
+      if (value < variable.lower || value > variable.upper) base += " (outside the bounds)";
+    }
+    varying.push_back({variable.name, bounds, base, known[i].meaning});
+  }
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (contains(parts.varies, i)) continue;
+    const double value = parts.parameters[i];
+    std::string note = mark(value == known[i].nominal);
+    if (study.baseline && (*study.baseline)[i] != value)
+      note += (note.empty() ? "" : " ") + ("baseline " + with_degrees((*study.baseline)[i], known[i].unit));
+    fixed.push_back({known[i].name, with_degrees(value, known[i].unit), note, known[i].meaning});
+  }
+  out << format_titled_table("variables", varying);
+  out << format_titled_table("fixed parameters", fixed);
+}
+
+/// How a coordinate is held.
+std::string held_text(const FixedCoordinate& held, const std::string& unit) {
+  using Kind = FixedCoordinate::Kind;
+  if (held.kind == Kind::middle) return "middle of each design";
+  if (held.kind == Kind::integrated) return "integrated over its range";
+  if (held.kind == Kind::value) return with_degrees(held.value, unit);
+  return join_of(held.values, [&unit](double value) { return with_degrees(value, unit); });
+}
+
+std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& plan) {
+  const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
+  const Sweep& sweep = sweep_of(info, plan);
+  WorkspacePlan usual = plan;
+  set_usual(info, usual);
+  bool usual_cells = true;
+  std::vector<std::string> swept, cells, nodes, box;
+  for (std::size_t k = 0; k < sweep.swept.size(); ++k) {
+    const AxisInfo axis = coordinate(sweep.swept[k]);
+    swept.push_back(axis.name);
+    if (plan.voxels()) {
+      cells.push_back(axis.name + " = " + std::to_string(plan.voxels()->cells[k]));
+      usual_cells = usual_cells && plan.voxels()->cells[k] == usual.voxels()->cells[k];
+    }
+    if (plan.columns() && sweep.swept[k] != sweep.column)
+      nodes.push_back(axis.name + " = " + std::to_string(plan.columns()->nodes[nodes.size()]));
+    if (const auto& given = plan.box())
+      box.push_back(axis.name + " = " + format_range((*given)[k][0], (*given)[k][1], axis.unit));
+  }
+  for (std::size_t k = 0; k < plan.held.size(); ++k) {
+    const FixedCoordinate& held = plan.held[k];
+    if (held.cells == 0) continue;
+    cells.push_back(coordinate(held.coordinate).name + " = " + std::to_string(held.cells));
+    usual_cells = usual_cells && held.cells == usual.held[k].cells;
+  }
+  std::vector<Row> rows = {{"method", plan.voxels() ? "voxels" : "columns", mark(!plan.voxels())}};
+  const bool usual_sweep = &sweep == info.sweeps.data();
+  if (!usual_sweep) rows.push_back({"sweep", join(swept)});
+  if (plan.voxels()) rows.push_back({"cells", join(cells), mark(usual_cells)});
+  if (plan.voxels() || !box.empty())
+    rows.push_back({"box", box.empty() ? "derived from each design" : join(box), mark(box.empty())});
+  if (const ColumnOptions* const columns = plan.columns()) {
+    if (columns->nodes[0] > 0)
+      rows.push_back({"nodes", join(nodes) + " per piece"});
+    else
+      rows.push_back({"tolerance", shortest(columns->tolerance) + " relative",
+                      mark(columns->tolerance == usual.columns()->tolerance)});
+    if (columns->certain) rows.push_back({"certain", "within bounds of the gap " + shortest(*columns->certain)});
+  }
+  for (const int i : sweep.held) {
+    const FixedCoordinate held = how_fixed(plan, i);
+    rows.push_back(
+        {coordinate(i).name, held_text(held, coordinate(i).unit), mark(held.kind == FixedCoordinate::Kind::middle)});
+  }
+  return rows;
+}
+
+std::vector<Row> limit_rows(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const auto& known = parts.mechanism->info().limits;
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto& limit = known[i];
+    const char* const cuts_nothing = "(default: cuts nothing)";
+    std::string value = with_degrees(limit.inactive, limit.unit), origin = cuts_nothing;
+    if (const Parameter* own = find_named(parts.mechanism->info().parameters, limit.name)) {
+      value = "the parameter";
+      origin = "(default: " + own->name + " of the design)";
+    }
+    if (!study.limit_origins[i].empty()) {
+      const std::optional<double>& given = parts.plan.limits.given[i];
+      const bool is_default = given && *given == limit.inactive && origin == cuts_nothing;
+      value = given ? with_degrees(*given, limit.unit) : limit.derivation;
+      origin = "from " + study.limit_origins[i] + (is_default ? std::string(" ") + cuts_nothing : "");
+    }
+    rows.push_back({limit.name, value, origin, limit.meaning});
+  }
+  return rows;
+}
+
+std::vector<Row> obstacle_rows(const Obstacles& obstacles) {
+  const auto triple = [](const Point3<double>& p) {
+    return "(" + shortest(p[0]) + ", " + shortest(p[1]) + ", " + shortest(p[2]) + ") m";
+  };
+  std::vector<Row> rows;
+  for (const Obstacle& obstacle : obstacles) {
+    if (const auto* const box = std::get_if<SolidBox>(&obstacle.shape)) {
+      const auto& h = box->half;
+      rows.push_back(
+          {obstacle.name, "box", "centre " + triple(box->centre), "sizes " + triple({2 * h[0], 2 * h[1], 2 * h[2]})});
+      continue;
+    }
+    const auto& [axis, radius] = std::get<Capsule<double>>(obstacle.shape);
+    const bool is_sphere = axis.from == axis.to;
+    rows.push_back({obstacle.name, is_sphere ? "sphere" : "capsule",
+                    is_sphere ? "centre " + triple(axis.from) : triple(axis.from) + " to " + triple(axis.to),
+                    "radius " + with_unit(radius, "m")});
+  }
+  return rows;
+}
+
+void write_options(std::ostream& out, const std::vector<OptionSpec>& specs, const Options& options) {
+  std::vector<Row> rows;
+  for (const auto& spec : specs) {
+    const auto value = options.values().find(spec.name);
+    if (value == options.values().end()) {
+      rows.push_back({"  " + spec.name, "not set", "(default)"});
+      continue;
+    }
+    const std::string unit = spec.kind == OptionKind::number && spec.unit != "1" ? " " + spec.unit : "";
+    const bool initial = spec.initial && *spec.initial == value->second;
+    rows.push_back({"  " + spec.name, to_text(value->second) + unit, mark(initial)});
+  }
+  out << aligned(rows);
+}
+
+void write_entries(std::ostream& out, const std::string& title, const std::vector<StudyEntry>& entries) {
+  out << '\n' << title << (entries.empty() ? ": none" : "") << '\n';
+  for (const auto& entry : entries) {
+    out << "  " << printable(entry.name) << (entry.name == entry.type ? "" : " (" + entry.type + ")") << ": "
+        << entry.role << '\n';
+    write_options(out, entry.specs, entry.options);
+  }
+}
+
+}  // namespace
+
+std::string describe(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const MechanismInfo& info = parts.mechanism->info();
+  std::ostringstream out;
+  Study bare;
+  bare.file_name = study.file_name;
+  const std::string described = study.description ? "from " + study.description->file_name : "";
+  std::vector<Row> head = {{"study", study.name, mark(study.name + ".h5" == bare.output_file())},
+                           {"file", study.file_name},
+                           {"seed", std::to_string(study.seed), mark(study.seed == bare.seed)},
+                           {"output", study.output_file(), mark(study.output_file() == bare.output_file())},
+                           {"mechanism", info.name + ": " + info.title, described}};
+  if (!study.changes.empty()) head.push_back({"changed", "by " + join(study.changes, " ")});
+  out << aligned(head);
+  write_parameters(out, study);
+  if (const DriveTrains* const trains = parts.mechanism->drive_trains()) {
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < trains->size(); ++i) {
+      const DriveTrain& train = (*trains)[i];
+      const AxisInfo& joint = info.joints[i];
+      rows.push_back({joint.name, "motor turns " + with_unit(train.ratio, joint.turns() ? "1" : "rad/m") + " as fast",
+                      "reflected inertia " + with_unit(train.reflected(), joint.turns() ? "kg m^2" : "kg"),
+                      "efficiency " + shortest(train.efficiency)});
+    }
+    out << format_titled_table("drive trains", rows);
+  }
+  out << format_titled_table("workspace", survey_rows(info, parts.plan));
+  for (const Region& region : parts.regions)
+    out << format_titled_table("region " + region.name, survey_rows(info, region.plan));
+  std::vector<Row> motions;
+  for (const NamedMotion& named : study.motions)
+    motions.push_back(
+        {named.name, "takes " + with_unit(named.motion->duration(), "s"),
+         contains(study.unfollowed_motions, named.name) ? "may leave limits of a pose (follow = false)" : ""});
+  if (!motions.empty()) out << format_titled_table("motions", motions);
+  if (const Obstacles& obstacles = parts.plan.limits.obstacles; !obstacles.empty())
+    out << format_titled_table("obstacles, of which all links that move keep clear", obstacle_rows(obstacles));
+  out << format_titled_table("limits of a pose", limit_rows(study));
+  write_entries(out, "objectives", study.objectives);
+  write_entries(out, "constraints", study.constraints);
+  write_entries(out, "reports", study.reports);
+  out << "\nstages\n";
+  for (std::size_t i = 0; i < study.stages.size(); ++i) {
+    const Stage& stage = study.stages[i];
+    out << "  " << i + 1 << ". " << stage.entry->name << ": " << stage.entry->meaning << '\n';
+    write_options(out, stage.specs, stage.options);
+  }
+  std::string round = "best design as it is";
+  if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
+  std::vector<Row> run = {{"checkpoint",
+                           study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
+                                                  : "adapts: at most 2 % of the run time",
+                           mark(!study.checkpoint_every)},
+                          {"final", round, mark(!study.round)}};
+  if (parts.plan.voxels() && parts.mechanism->columns())
+    run.push_back({"exact",
+                   study.exact_seconds > 0
+                       ? "exact values of final designs, at most " + with_unit(study.exact_seconds, "s")
+                       : "no exact values of final designs",
+                   mark(study.exact_seconds == Study().exact_seconds)});
+  out << format_titled_table("run", run);
+  for (const auto& warning : study.warnings) out << "\nwarning: " << warning << '\n';
+  return out.str();
+}
+
+}  // namespace pkm

@@ -1,0 +1,199 @@
+// The text of `pkmopt check` of a mechanism's file.
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include <Eigen/SVD>
+
+#include "engine/config/mechanism_file.hpp"
+#include "engine/config/mechanism_mobility.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/core/options.hpp"
+#include "engine/core/text_table.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/problem/no_conditioning.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::int64_t kNominalCells = 16;  ///< per swept coordinate, of the grid in which a nominal pose is looked for
+
+std::string names_text(const std::vector<std::string>& names, std::size_t most = 8) {
+  const std::vector<std::string> first(names.begin(),
+                                       names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())));
+  return join(first) + (names.size() > most ? ", .. (" + std::to_string(names.size()) + " in all)" : "");
+}
+
+/// The poses of a coarse grid over the usual sweep's box.
+std::vector<Pose<double>> grid_of_poses(const Mechanism& mechanism, std::span<const double> parameters) {
+  const MechanismInfo& info = mechanism.info();
+  const auto ranges = mechanism.ranges(parameters);
+  if (!ranges) return {};
+  const Sweep& sweep = info.sweeps.front();
+  Pose<double> pose(info.coordinates.size());
+  for (const int held : sweep.held) {
+    const auto middle = mechanism.middle(parameters, held);
+    if (!middle) return {};
+    pose[static_cast<std::size_t>(held)] = *middle;
+  }
+  std::vector<Pose<double>> poses = {pose};
+  for (const int coordinate : sweep.swept) {
+    const auto at = static_cast<std::size_t>(coordinate);
+    std::vector<Pose<double>> next;
+    for (Pose<double> each : poses)
+      for (std::int64_t k = 0; k < kNominalCells; ++k) {
+        const auto [lower, upper] = (*ranges)[at];
+        each[at] = lower + (static_cast<double>(k) + 0.5) / static_cast<double>(kNominalCells) * (upper - lower);
+        next.push_back(each);
+      }
+    poses = std::move(next);
+  }
+  return poses;
+}
+
+/// The feasible pose nearest to the middle of all feasible ones; else the margins that no pose keeps.
+void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span<const double> parameters) {
+  const MechanismInfo& info = mechanism.info();
+  const std::vector<Pose<double>> poses = grid_of_poses(mechanism, parameters);
+  const LimitSpec limits = no_limits(info);
+  std::vector<Pose<double>> feasible;
+  std::set<std::string> kept;
+  NamedValues margins;
+  for (const Pose<double>& pose : poses) {
+    const PoseReport report = mechanism.inspect(parameters, pose, info.modes.front(), limits);
+    if (report.feasible) feasible.push_back(pose);
+    for (const auto& [name, margin] : report.margins)
+      if (margin >= 0) kept.insert(name);
+    margins = report.margins;
+  }
+  out << "\nnominal pose, of the default parameters in working mode " << info.modes.front() << '\n';
+  if (poses.empty()) {
+    out << "  none: [survey] gives no box for all swept coordinates, and no place to hold the others\n";
+    return;
+  }
+  if (feasible.empty()) {
+    std::vector<std::string> never;
+    for (const auto& [name, margin] : margins)
+      if (!kept.contains(name)) never.push_back(name);
+    out << "  none of " << poses.size() << " poses in the survey's box is feasible; "
+        << (never.empty() ? "each margin is kept somewhere, all of them nowhere" : "never kept: " + names_text(never))
+        << '\n';
+    return;
+  }
+  Pose<double> middle(info.coordinates.size());
+  for (const Pose<double>& pose : feasible) middle = middle + pose * (1 / static_cast<double>(feasible.size()));
+  const auto distance = [&](const Pose<double>& pose) {
+    const Pose<double> way = pose - middle;
+    return dot(way, way);
+  };
+  const Pose<double>& nominal = *std::ranges::min_element(feasible, {}, distance);
+  const PoseReport report = mechanism.inspect(parameters, nominal, info.modes.front(), limits);
+  std::vector<std::string> at, joints;
+  for (std::size_t i = 0; i < nominal.size(); ++i)
+    at.push_back(info.coordinates[i].name + " = " + with_degrees(nominal[i], info.coordinates[i].unit));
+  for (std::size_t i = 0; i < info.joints.size(); ++i)
+    joints.push_back(info.joints[i].name + " = " + with_degrees((*report.joints)[i], info.joints[i].unit));
+  out << "  " << join(at) << "\n  " << join(joints) << '\n';
+  if (!report.J) {
+    out << "  singular: the joints do not follow from the pose's rates\n";
+    return;
+  }
+  Eigen::MatrixXd J(report.J->rows(), report.J->cols());
+  for (Eigen::Index i = 0; i < J.rows(); ++i)
+    for (Eigen::Index j = 0; j < J.cols(); ++j)
+      J(i, j) = (*report.J)(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+  const auto rank = static_cast<std::size_t>(J.jacobiSvd().setThreshold(1e-9).rank());
+  out << "  mobility: " << mobility_text(mechanism, parameters, nominal, rank) << '\n';
+}
+
+/// What is wrong with the masses of the default design; "": nothing.
+std::string why_no_masses(const Mechanism& mechanism) {
+  std::vector<double> nominal;
+  for (const Parameter& p : mechanism.info().parameters) nominal.push_back(p.nominal);
+  try {
+    mechanism.dynamics()->equations(std::span<const double>(nominal), mechanism.info().modes.front(), {}, {});
+  } catch (const std::domain_error& reason) {
+    return std::string("not with the default parameters: ") + reason.what();
+  }
+  return "";
+}
+
+void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_links_clear) {
+  std::vector<std::vector<std::string>> can, cannot;
+  const auto tell = [&](bool has, const char* what, const std::string& how, const std::string& why) {
+    (has ? can : cannot).push_back({what, has ? how : why});
+  };
+  tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
+  tell(mechanism.columns(), "exact workspace by columns",
+       "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
+  tell(mechanism.bounds(), "certain bounds of the workspace", "pkmopt certify, by intervals", "");
+  const Unsupported undefined = no_conditioning(mechanism.info());
+  tell(!undefined, "conditioning", "", undefined.value_or(""));
+  tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
+  tell(mechanism.forward(), "forward kinematics", "Newton's method from many poses: it need not find every assembly",
+       "as many joints as coordinates are needed");
+  tell(mechanism.size(), "workspace-ratio", "", "[platform] size is missing");
+  tell(mechanism.design_tests(), "tests of the design", "", "there is no [[design]]");
+  tell(keeps_links_clear, "clearance of links",
+       "constraint clearance or limit clearance_min: of poses, voxels, task-workspace, motions; not columns or bounds",
+       "there are no two links, of limbs with a radius or by [[link]], that could meet");
+  tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
+  const Unsupported no_forces = no_joint_forces(mechanism);
+  tell(!no_forces, "forces and coupling", no_forces ? "" : why_no_masses(mechanism), no_forces.value_or(""));
+  tell(mechanism.reactions(), "forces in the joints", "pkmopt dynamics and trajectory --reactions",
+       mechanism.why_no_reactions());
+  out << format_titled_table("available", can);
+  out << format_titled_table("not available, and why", cannot);
+}
+
+}  // namespace
+
+std::string describe_mechanism(const Mechanism& mechanism) {
+  const MechanismInfo& info = mechanism.info();
+  std::ostringstream out;
+  out << "mechanism  " << info.name << (info.title.empty() ? "" : ": " + info.title) << '\n';
+  if (!info.source.empty()) out << "source     " << info.source << '\n';
+
+  std::vector<std::vector<std::string>> parameters, coordinates, joints, limits;
+  std::vector<double> nominal;
+  for (const Parameter& p : info.parameters) {
+    parameters.push_back({p.name, with_degrees(p.nominal, p.unit), format_range(p.lower, p.upper, p.unit), p.meaning});
+    nominal.push_back(p.nominal);
+  }
+  const auto ranges = mechanism.ranges(nominal);
+  for (std::size_t i = 0; i < info.coordinates.size(); ++i) {
+    const AxisInfo& axis = info.coordinates[i];
+    const auto swept =
+        std::ranges::find(info.sweeps.front().swept, static_cast<int>(i)) != info.sweeps.front().swept.end();
+    coordinates.push_back({axis.name, axis.unit, swept ? "swept" : "held",
+                           ranges ? format_range((*ranges)[i][0], (*ranges)[i][1], axis.unit) : "no box"});
+  }
+  for (std::size_t i = 0; i < info.joints.size(); ++i)
+    joints.push_back(
+        {info.joints[i].name, info.joints[i].unit, i < info.closed_forms.size() ? info.closed_forms[i] : ""});
+  for (const LimitInfo& limit : info.limits)
+    limits.push_back(
+        {limit.name, "inactive " + with_degrees(limit.inactive, limit.unit), limit.derivation, limit.meaning});
+  out << format_titled_table("parameters", parameters);
+  out << format_titled_table("coordinates", coordinates);
+  out << format_titled_table("joints", joints);
+  out << format_titled_table("limits", limits);
+  out << "\nworking modes: " << names_text(info.modes) << '\n';
+  if (const DesignTests* const tests = mechanism.design_tests()) {
+    std::vector<std::vector<std::string>> rows;
+    for (const DesignMarginInfo& test : tests->list()) rows.push_back({test.name, test.unit, test.meaning});
+    out << format_titled_table("tests of the design", rows);
+  }
+  const auto joined = mechanism.links() ? mechanism.links()->joined() : std::vector<JoinedLinks>();
+  std::vector<std::vector<std::string>> links;
+  for (const auto& [link, others] : joined)
+    links.push_back({link, others.empty() ? "all others" : "all but " + names_text(others)});
+  out << format_titled_table("links, and those that they keep clear of", links);
+  write_nominal_pose(out, mechanism, nominal);
+  write_abilities(out, mechanism, !joined.empty());
+  return out.str();
+}
+
+}  // namespace pkm

@@ -1,0 +1,188 @@
+// [mechanism], [variables], [baseline]: which machine, what of it varies, what it is compared with.
+
+#include <algorithm>
+
+#include "engine/config/assignments.hpp"
+#include "engine/config/mechanism_file.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+/// The names in a table, which has to know them all.
+std::vector<std::string> parameters_in(const ConfigValue& table, bool of_tables, const std::vector<Parameter>& known) {
+  std::vector<std::string> keys = table.dotted_keys(of_tables);
+  const std::vector<std::string> names = names_of(known);
+  for (auto key = keys.begin(); key != keys.end(); ++key) {
+    const ConfigValue value = *table.find(*key);
+    if (!contains(names, *key))
+      throw value.error_of("an unknown parameter", "one of " + join(names), nearest_name(*key, names));
+    if (std::find(keys.begin(), key, *key) != key) throw value.refusal("the parameter is there already");
+  }
+  return keys;
+}
+
+/// Parameters of one limb that the study names, or the command line.
+void find_limb_parameters(const ConfigValue& root, StudyDraft& draft) {
+  std::vector<LimbParameter>& all = draft.limb_parameters;
+  const auto add = [&all](const LimbParameter& own) {
+    if (std::ranges::find(all, own.name(), &LimbParameter::name) == all.end()) all.push_back(own);
+  };
+  const auto add_those_in = [&add](const std::optional<ConfigValue>& table, bool of_tables) {
+    if (!table || !table->is_table()) return;
+    for (const std::string& name : table->dotted_keys(of_tables))
+      if (const auto own = limb_parameter(name, table->find(name)->place())) add(*own);
+  };
+  add_those_in(root.find("mechanism")->find("parameters"), false);
+  add_those_in(root.find("variables"), true);
+  for (const StudyChanges& changes : draft.changes) std::ranges::for_each(limb_parameters(changes), add);
+}
+
+/// Own parameters of limbs that `given` does not have are what that of all is.
+template <class Given>
+void follow(const StudyDraft& draft, const Given& given, std::vector<double>& values) {
+  const auto& known = draft.info().parameters;
+  const auto number = [&known](const std::string& name) {
+    return static_cast<std::size_t>(find_named(known, name) - known.data());
+  };
+  for (const LimbParameter& own : draft.limb_parameters)
+    if (!given(own.name())) values[number(own.name())] = values[number(own.parameter)];
+}
+
+/// Overwrites the parameters that `table` names.
+void read_parameters(const ConfigValue& table, const std::vector<Parameter>& known, std::vector<double>& values) {
+  table.expect_table("a table of parameters, { name = value, ... }");
+  for (const auto& key : parameters_in(table, false, known)) {
+    const Parameter& p = *find_named(known, key);
+    values[static_cast<std::size_t>(&p - known.data())] = table.find(key)->number(p.unit, p.lower, p.upper);
+  }
+}
+
+Variable read_variable(const ConfigValue& table, const Parameter& parameter) {
+  table.expect_table("a table { min = .., max = .., step = .. (if discrete) }");
+  table.allow({"min", "max", "step"});
+  const auto bound = [&](const char* key) {
+    return table.at(key, range_text("a number", parameter.lower, parameter.upper, parameter.unit))
+        .number(parameter.unit, parameter.lower, parameter.upper);
+  };
+  Variable variable{parameter.name, parameter.unit, bound("min"), bound("max"), 0};
+  if (variable.lower >= variable.upper)
+    throw table.find("max")->error("a number above min = " + with_unit(variable.lower, parameter.unit));
+  if (const auto step = table.find("step")) {
+    variable.step = step->number(parameter.unit);
+    if (!(variable.step > 0 && variable.step <= variable.upper - variable.lower))
+      throw step->error("a step > 0 and at most max - min = " +
+                        with_unit(variable.upper - variable.lower, parameter.unit));
+  }
+  return variable;
+}
+
+/// The variable as a study file records it, where this is one.
+Variable recorded_variable(const StudyDraft& draft, const Variable& of_text, const Parameter& parameter) {
+  for (const StudyChanges& changes : draft.changes)
+    if (const Variable* const recorded = find_named(changes.recorded_variables, of_text.name)) {
+      const auto [name, unit, lower, upper, step] = *recorded;
+      if (!(lower >= parameter.lower && lower < upper && upper <= parameter.upper && step >= 0 &&
+            step <= upper - lower))
+        throw ConfigError(
+            {draft.study.file_name, 0, "variables." + name},
+            "the recorded bounds " + format_range(lower, upper, unit) + " with step " + with_unit(step, unit),
+            range_text("bounds", parameter.lower, parameter.upper, unit));
+      return *recorded;
+    }
+  return of_text;
+}
+
+void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < space.dimension(); ++i) {
+    const Variable& v = space[i];
+    const double last = space.nearest(i, v.upper);
+    if (v.step > 0 && v.upper - last > 1e-9 * v.step)
+      warnings.push_back("variable " + v.name + " never takes its max " + with_unit(v.upper, v.unit) +
+                         ": the last value that min + k step reaches is " + with_unit(last, v.unit));
+  }
+}
+
+/// The mechanism that `type` or `file` names.
+std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDraft& draft) {
+  std::vector<std::string> names;
+  for (const auto& mechanism : draft.catalogues.mechanisms) names.push_back(mechanism.name());
+  const std::string either = "type = one of " + join(names) + ", or file = the name of a mechanism's file";
+  const ConfigValue table = root.at("mechanism", "a table [mechanism] with " + either);
+  table.expect_table("a table [mechanism]").allow({"type", "file", "masses", "parameters"});
+  const auto type = table.find("type"), file = table.find("file");
+  if (type && file)
+    throw file->refusal("the mechanism is also given by mechanism.type (" + type->line() +
+                        "); it is either built in or described by a file");
+  if (type) {
+    const std::string& name = type->word(names);
+    return std::ranges::find(draft.catalogues.mechanisms, name, &MechanismEntry::name)->get();
+  }
+  if (!file) throw table.error_of("neither type nor file", either);
+  const SourceText& description = draft.study.description.emplace(draft.description(*file));
+  find_limb_parameters(root, draft);
+  return read_mechanism_toml(description.text, description.file_name, draft.limb_parameters);
+}
+
+}  // namespace
+
+void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
+  draft.parts.mechanism = find_mechanism(root, draft);
+  const ConfigValue table = *root.find("mechanism");
+  if (const auto masses = table.find("masses")) {
+    const Dynamics* const dynamics = draft.parts.mechanism->dynamics();
+    if (!dynamics) throw masses->refusal("the mechanism " + draft.info().name + " has no masses");
+    draft.parts.mechanism = dynamics->with_masses(masses->word(dynamics->mass_models()));
+  }
+
+  for (const auto& parameter : draft.info().parameters) draft.parts.parameters.push_back(parameter.nominal);
+  const auto fixed = table.find("parameters");
+  if (fixed) read_parameters(*fixed, draft.info().parameters, draft.parts.parameters);
+  override_parameters(root, draft);
+  const auto given = [&](const std::string& name) {
+    const auto set = [&name](const StudyChanges& changes) {
+      const auto is_it = [&name](const auto& recorded) { return recorded.first == name; };
+      return contains(assigned_names(changes.set), name) || std::ranges::any_of(changes.recorded_parameters, is_it);
+    };
+    return (fixed && fixed->has(name)) || std::ranges::any_of(draft.changes, set);
+  };
+  follow(draft, given, draft.parts.parameters);
+}
+
+void read_variables(const ConfigValue& root, StudyDraft& draft) {
+  const auto& known = draft.info().parameters;
+  const ConfigValue mechanism = *root.find("mechanism");
+  std::vector<Variable> variables;
+  std::vector<double> nominal = draft.parts.parameters;
+  if (const auto table = root.find("variables")) {
+    table->expect_table("a table [variables]");
+    const auto fixed = mechanism.find("parameters");
+    for (const auto& key : parameters_in(*table, true, known)) {
+      const ConfigValue entry = *table->find(key);
+      if (fixed && fixed->has(key))
+        throw entry.refusal("the parameter is also fixed in mechanism.parameters (" + fixed->find(key)->line() +
+                            "); it can either vary or be fixed");
+      const auto i = static_cast<std::size_t>(find_named(known, key) - known.data());
+      variables.push_back(recorded_variable(draft, read_variable(entry, known[i]), known[i]));
+      draft.parts.varies.push_back(i);
+      nominal[i] = std::clamp(nominal[i], variables.back().lower, variables.back().upper);
+    }
+  }
+  draft.parts.space = DesignSpace(std::move(variables));
+  warn_of_lattice_end(draft.parts.space, draft.study.warnings);
+  if (const Unsupported reason = draft.parts.mechanism->refuse(nominal)) throw mechanism.refusal(*reason);
+}
+
+void read_baseline(const ConfigValue& root, StudyDraft& draft) {
+  const auto table = root.find("baseline");
+  if (!table) return;
+  std::vector<double> values = draft.parts.parameters;
+  read_parameters(*table, draft.info().parameters, values);
+  follow(
+      draft, [&](const std::string& name) { return table->has(name) || !root.find("variables")->has(name); }, values);
+  if (const Unsupported reason = draft.parts.mechanism->refuse(values)) throw table->refusal(*reason);
+  draft.study.baseline = std::move(values);
+}
+
+}  // namespace pkm

@@ -1,0 +1,71 @@
+// [[drive_train]] of a study.
+
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/mechanism/driven.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr double kLeastEfficiency = 1e-3;
+
+/// Refuses what has an effect on forces only, where there are none.
+void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
+  if (!no_forces) return;
+  for (const char* const key : {"rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"})
+    if (const auto given = table.find(key))
+      throw given->refusal("inertias and losses of drive trains need dynamics, and " + *no_forces +
+                           "; gear and lead do without");
+}
+
+DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
+  const bool turns = joint.turns();
+  DriveTrain train;
+  if (const auto gear = table.find("gear")) train.ratio = gear->positive("1");
+  const auto lead = table.find("lead");
+  if (turns && lead) throw lead->refusal("the joint " + joint.name + " turns; a lead is that of a sliding joint");
+  if (!turns) {
+    const ConfigValue way = table.at("lead", "how far " + joint.name + " goes in a turn of its screw: \"10 mm\"");
+    train.ratio *= 2 * kPi / way.positive("m");
+  }
+  train.rotor = table.find_number("rotor_inertia", "kg m^2", 0).value_or(0);
+  train.shaft = table.find_number("shaft_inertia", "kg m^2", 0).value_or(0);
+  train.efficiency = table.find_number("efficiency", "1", kLeastEfficiency, 1).value_or(1);
+  train.coulomb = table.find_number("coulomb", turns ? "N m" : "N", 0).value_or(0);
+  train.viscous = table.find_number("viscous", turns ? "N m s/rad" : "N s/m", 0).value_or(0);
+  if (const auto slow = table.find("slow_speed")) train.slow = slow->positive(turns ? "rad/s" : "m/s");
+  return train;
+}
+
+}  // namespace
+
+void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
+  const std::vector<ConfigValue> tables = tables_of(root, "drive_train");
+  if (tables.empty()) return;
+  const auto& joints = draft.info().joints;
+  const Unsupported no_forces = no_joint_forces(*draft.parts.mechanism);
+  std::vector<std::string> names = {"all"};
+  for (const AxisInfo& joint : joints) names.push_back(joint.name);
+  std::vector<std::optional<DriveTrain>> trains(joints.size());
+  for (const ConfigValue& table : tables) {
+    table.allow(
+        {"joint", "gear", "lead", "rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"});
+    expect_forces(table, no_forces);
+    const ConfigValue value = table.at("joint", "a joint, or \"all\"");
+    const std::string& joint = value.word(names);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (joint != "all" && joint != joints[i].name) continue;
+      if (trains[i]) throw value.refusal("the joint " + joints[i].name + " has a drive train already");
+      trains[i] = read_train(table, joints[i]);
+    }
+  }
+  DriveTrains all;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (!trains[i])
+      throw tables.front().refusal("the joint " + joints[i].name + " has no drive train; all or none have");
+    all.push_back(*trains[i]);
+  }
+  draft.parts.mechanism = with_drive_trains(draft.parts.mechanism, std::move(all));
+}
+
+}  // namespace pkm

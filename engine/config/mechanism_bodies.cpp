@@ -1,0 +1,256 @@
+// Masses of a mechanism's file: parts of limbs, links, the platform, [[body]].
+//
+// Parts of limbs and links are thin: they turn with the line between their ends and have no spin about it, so that
+// their inertia is one number, across that line about the centre of mass.
+
+#include <algorithm>
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+
+namespace pkm {
+namespace {
+
+using generic::BodyNodes;
+using limbs::Term, limbs::Vector3;
+
+bool has_length(const std::string& part) { return part == "crank" || part == "rod" || part.ends_with("_link"); }
+bool is_telescopic(const std::string& part) { return part == "cylinder" || part == "piston"; }
+
+/// A mass or an inertia, which has to be positive.
+Term checked(MechanismDraft& draft, const Term& value, const std::string& name, const std::string& unit,
+             bool may_vanish) {
+  draft.model.masses.push_back({name, unit, value.node(), may_vanish});
+  return value;
+}
+
+struct Mass {
+  Term mass;
+  std::optional<Term> inertia;  ///< where the cross-section says it
+};
+
+/// A tube or a rod of some material.
+Mass mass_of_section(const ConfigValue& section, const Term& length, const std::string& what, MechanismDraft& draft) {
+  section.expect_table("a table { density = .., outer = .., inner = .. }").allow({"density", "outer", "inner"});
+  const auto value = [&](const char* key, const char* unit, const char* expected) {
+    return checked(
+        draft, draft.scope.positive(section.at(key, expected), unit, what),
+        "the " + std::string(key == std::string("density") ? key : std::string(key) + " diameter") + " of " + what,
+        unit, false);
+  };
+  const Term density = value("density", "kg/m^3", "the material's density: \"2700 kg/m^3\"");
+  const Term outer = value("outer", "m", "the outer diameter");
+  const Term inner = section.has("inner") ? value("inner", "m", "the inner diameter") : draft.zero();
+  const Term mass = density * length * (outer * outer - inner * inner) * (kPi / 4);
+  return {mass, mass * (length * length / 12 + (outer * outer + inner * inner) / 16)};
+}
+
+/// The mass of a limb's part, as its table says it; none: it says nothing.
+std::optional<Mass> mass_of_part(const ConfigValue& table, const LimbPart& part, const std::string& what,
+                                 MechanismDraft& draft) {
+  std::optional<ConfigValue> given;
+  for (const char* way : {"_mass", "_mass_per_length", "_section"}) {
+    const auto value = table.find(part.name + way);
+    if (value && given) throw value->refusal("the mass of the " + part.name + " is also given at " + given->line());
+    if (value) given = value;
+  }
+  if (!given) return {};
+  if (const auto section = table.find(part.name + "_section"))
+    return mass_of_section(*section, *part.length, what, draft);
+  if (const auto per_length = table.find(part.name + "_mass_per_length"))
+    return Mass{draft.scope.positive(*per_length, "kg/m", what) * *part.length, {}};
+  return Mass{draft.scope.positive(*given, "kg", what, part.name == "slider"), {}};
+}
+
+Vector3 axis_of(const limbs::Rotation& R, std::size_t k) { return {R[0][k], R[1][k], R[2][k]}; }
+
+void add_square(const std::array<expression::Node, 3>& f, const Term& weight, BodyNodes& body) {
+  body.products.push_back({f, f, weight.node()});
+}
+
+/// Three principal values along the platform's axes, of a body that turns with it: the inertia about the one axis of
+/// its turns, else the second moments of its mass along its axes.
+void add_turns_of_platform(const std::array<Term, 3>& inertia, BodyNodes& body, MechanismDraft& draft) {
+  const auto turns = [](const auto& axis) { return axis.has_value(); };
+  const auto& about = draft.model.turns_about;
+  const auto count = std::ranges::count_if(about, turns);
+  const expression::Node zero = draft.zero().node();
+  if (count == 1) {
+    const auto which = static_cast<std::size_t>(std::ranges::find_if(about, turns) - about.begin());
+    const expression::Node angle = draft.model.graph.input(draft.model.inputs.coordinate(which));
+    add_square({angle, zero, zero}, inertia[*about[which]], body);
+  }
+  if (count <= 1) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Term moment = (inertia[(k + 1) % 3] + inertia[(k + 2) % 3] - inertia[k]) * 0.5;
+    add_square(nodes(axis_of(draft.turn, k)), moment, body);
+  }
+}
+
+std::array<Term, 3> read_inertia(const ConfigValue& value, const std::string& of, MechanismDraft& draft) {
+  constexpr const char* kExpected = "three principal values about the centre of mass [I_1, I_2, I_3]";
+  const auto elements = value.elements(kExpected);
+  if (elements.size() != 3) throw value.error(kExpected);
+  const auto one = [&](std::size_t k) {
+    return checked(draft, draft.scope.positive(elements[k], "kg m^2", of, true), "the inertia of " + of, "kg m^2",
+                   true);
+  };
+  return {one(0), one(1), one(2)};
+}
+
+}  // namespace
+
+std::vector<std::string> mass_keys(const std::string& part) {
+  std::vector<std::string> keys = {part + "_mass"};
+  if (part != "slider") keys.push_back(part + "_inertia");
+  if (has_length(part)) keys.insert(keys.end(), {part + "_mass_per_length", part + "_section"});
+  if (is_telescopic(part)) keys.push_back(part + "_centre");
+  return keys;
+}
+
+namespace {
+
+/// A body of this mass, whose centre moves.
+BodyNodes body_at(const Vector3& centre, const Term& mass, const std::string& name) {
+  BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
+  add_square(body.centre, mass, body);
+  return body;
+}
+
+/// The mass of a thin part of constant length, its centre in its middle, by the rates of its ends P and Q:
+/// (m/4 + I/l^2) (P'^2 + Q'^2) + 2 (m/4 - I/l^2) P' . Q'.
+BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia, const std::string& name,
+                    MechanismDraft& draft) {
+  const Term quarter = mass * 0.25, turning = inertia / (*part.length * *part.length);
+  const Vector3 centre = (part.from + part.to) * Term(draft.model.graph, 0.5);
+  BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
+  if (part.on_arm && part.on_arm->is_arm) {  // from its pivot, which moves along the axis
+    add_square(nodes(part.from), mass, body);
+    body.arm_turns.push_back({part.on_arm->arm, (mass * 0.25 * *part.length * *part.length + inertia).node()});
+    return body;
+  }
+  const Term square = quarter + turning;
+  if (part.on_arm) {
+    add_square(nodes(part.on_arm->pivot), square, body);
+    body.arm_turns.push_back({part.on_arm->arm, (square * part.on_arm->length * part.on_arm->length).node()});
+  } else {
+    add_square(nodes(part.from), square, body);
+  }
+  add_square(nodes(part.to), square, body);
+  body.products.push_back({nodes(part.from), nodes(part.to), ((quarter - turning) * 2.0).node()});
+  return body;
+}
+
+/// Half a leg, with its centre of mass on the line from A to B, whose direction is `part.line`.
+BodyNodes telescopic_body(const LimbPart& part, const Term& mass, const Term& along, const Term& inertia,
+                          const std::string& name) {
+  const std::array<expression::Node, 3> direction = nodes(*part.line);
+  const bool at_base = part.name == "cylinder";
+  BodyNodes body{name, mass.node(), nodes(at_base ? part.from + *part.line * along : part.to - *part.line * along),
+                 {},   {},          {}};
+  add_square(direction, mass * along * along + inertia, body);
+  if (at_base) return body;
+  add_square(nodes(part.to), mass, body);
+  body.products.push_back({nodes(part.to), direction, (mass * along * -2.0).node()});
+  return body;
+}
+
+}  // namespace
+
+void add_part_body(const ConfigValue& table, const std::string& limb, const LimbPart& part, MechanismDraft& draft) {
+  const std::string what = part.name + " of " + limb;
+  const std::optional<Mass> given = mass_of_part(table, part, what, draft);
+  for (const char* key : {"_inertia", "_centre"})
+    if (const auto alone = table.find(part.name + key); alone && !given)
+      throw alone->refusal("the " + part.name + " has no mass: " + part.name + "_mass is missing");
+  if (!given) return;
+  const Term mass = checked(draft, given->mass, "the mass of " + what, "kg", part.name == "slider");
+  Term inertia = given->inertia ? *given->inertia
+                 : part.length  ? mass * *part.length * *part.length / 12
+                                : draft.zero();
+  if (const auto own = table.find(part.name + "_inertia")) inertia = draft.scope.positive(*own, "kg m^2", what, true);
+  checked(draft, inertia, "the inertia of " + what, "kg m^2", true);
+  const expression::Node none = draft.zero().node(), across = inertia.node();
+  if (part.length) {
+    draft.model.bodies.push_back(thin_body(part, mass, inertia, what, draft));
+    draft.model.bodies.back().inertia = {none, across, across};
+  } else if (part.line) {
+    const std::string from = part.name == "cylinder" ? "A" : "B";
+    const Term along = draft.scope.of_design(
+        table.at(part.name + "_centre", "the distance of its centre of mass from " + from), "m", what);
+    draft.model.bodies.push_back(telescopic_body(part, mass, along, inertia, what));
+    draft.model.bodies.back().inertia = {none, across, across};
+  } else {
+    draft.model.bodies.push_back(body_at(part.from, mass, what));
+  }
+}
+
+void add_link_body(const ConfigValue& table, const std::string& name, const Vector3& from, const Vector3& to,
+                   MechanismDraft& draft) {
+  const auto mass = table.find("mass"), inertia = table.find("inertia");
+  if (inertia && !mass) throw inertia->refusal("the link has no mass: mass is missing");
+  if (!mass) return;
+  const Term m = checked(draft, draft.scope.positive(*mass, "kg", name), "the mass of " + name, "kg", false);
+  BodyNodes body = body_at((from + to) * Term(draft.model.graph, 0.5), m, name);
+  if (inertia) {
+    const Term I = draft.scope.positive(*inertia, "kg m^2", name, true);
+    body.line_turns.push_back({nodes(to - from), checked(draft, I, "the inertia of " + name, "kg m^2", true).node()});
+    body.inertia = {draft.zero().node(), I.node(), I.node()};
+  }
+  draft.model.bodies.push_back(std::move(body));
+}
+
+void read_platform_body(const ConfigValue& platform, MechanismDraft& draft) {
+  const auto mass = platform.find("mass"), centre = platform.find("centre"), inertia = platform.find("inertia");
+  if (inertia && !mass) throw inertia->refusal("the platform has no mass: mass is missing");
+  const Vector3 at = centre ? draft.scope.point(*centre, "centre") : draft.origin;
+  draft.model.wrench_point = nodes(at);
+  if (!mass) return;
+  const Term m = checked(draft, draft.scope.positive(*mass, "kg", "mass"), "the mass of the platform", "kg", false);
+  BodyNodes body = body_at(at, m, "platform");
+  if (inertia) {
+    const std::array<Term, 3> values = read_inertia(*inertia, "the platform", draft);
+    add_turns_of_platform(values, body, draft);
+    body.inertia = {values[0].node(), values[1].node(), values[2].node()};
+  }
+  draft.model.bodies.push_back(std::move(body));
+}
+
+void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft) {
+  std::vector<LimbPart> turning = links;
+  for (const NamedLimb& limb : draft.limbs)
+    for (LimbPart part : limb.parts) {
+      part.name = limb.name + "." + part.name;
+      turning.push_back(part);
+    }
+  std::vector<std::string> names = {"platform"};
+  for (const LimbPart& part : turning) names.push_back(part.name);
+  for (const ConfigValue& table : tables_of(root, "body")) {
+    table.allow({"name", "centre", "mass", "inertia", "rotation"});
+    const std::string name = new_name(table, "body", draft.model.bodies, "the body's name");
+    const Vector3 centre = read_point(table.at("centre", "a point"), name, draft);
+    const Term mass = checked(draft, draft.scope.positive(table.at("mass", "the body's mass"), "kg", name, true),
+                              "the mass of " + name, "kg", true);
+    BodyNodes body = body_at(centre, mass, name);
+    const auto rotation = table.find("rotation");
+    if (rotation) body.part_of = rotation->word(names);
+    if (const auto value = table.find("inertia")) {
+      const std::array<Term, 3> inertia = read_inertia(*value, name, draft);
+      body.inertia = {inertia[0].node(), inertia[1].node(), inertia[2].node()};
+      if (rotation && rotation->text("a name") == "platform") {
+        add_turns_of_platform(inertia, body, draft);
+      } else if (rotation) {
+        if (inertia[1].node() != inertia[2].node())
+          throw value->refusal(
+              "a body that turns with a link has no spin about it: [along the link, across, across], "
+              "the last two the same formula");
+        const LimbPart& link = *find_named(turning, rotation->text("a name"));
+        if (link.line) body.line_turns.push_back({nodes(*link.line), inertia[1].node()});
+      }
+    }
+    draft.model.bodies.push_back(std::move(body));
+  }
+}
+
+}  // namespace pkm

@@ -1,0 +1,295 @@
+#include "engine/config/mechanism_file.hpp"
+
+#include <algorithm>
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/generic/mechanism.hpp"
+#include "engine/geometry/mixed_units.hpp"
+
+namespace pkm {
+namespace {
+
+using generic::Inputs;
+using limbs::Term;
+
+const std::vector<std::string> kUnits = {"m", "rad", "kg", "kg m^2", "kg/m", "kg/m^3", "N", "N/m", "N m/rad", "1"};
+const std::vector<std::string> kAxes = {"along x", "along y", "along z", "about x", "about y", "about z"};
+
+void read_names(const ConfigValue& root, MechanismDraft& draft) {
+  const ConfigValue table = root.at("mechanism", "a table [mechanism] with name, title, source");
+  table.expect_table("a table [mechanism]").allow({"name", "title", "source"});
+  const ConfigValue name = table.at("name", "the mechanism's name");
+  draft.model.info.name = name.text("the mechanism's name");
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
+  if (draft.model.info.name.empty() || draft.model.info.name.size() > 60 ||
+      !std::ranges::all_of(draft.model.info.name, fits))
+    throw name.error("a name of at most 60 letters, digits, '-' and '_'");
+  draft.model.info.title = text_of(table, "title");
+  draft.model.info.source = text_of(table, "source");
+}
+
+/// The unit in which a quantity is written: of "200 mm" it is m.
+std::string unit_of(const ConfigValue& table) {
+  if (const auto unit = table.find("unit")) return si_unit(*unit);
+  const ConfigValue value = table.at("default", "the default, a number or text with a unit: \"200 mm\"");
+  if (!value.is_text()) return "1";
+  const std::string& text = value.text("a number or text with a unit");
+  if (parse_quantity(text, "1")) return "1";
+  for (const std::string& unit : kUnits)
+    if (parse_quantity(text, unit)) return unit;
+  throw value.error("a number, or text with a unit: \"200 mm\", \"40 deg\"; other units by unit = \"..\"");
+}
+
+/// A limb's own parameter is what that of all is, but for what the file says.
+Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, const std::vector<Parameter>& all) {
+  const Parameter* const general = find_named(all, own.parameter);
+  if (!general)
+    throw table.refusal("there is no parameter '" + own.parameter + "' above, which " + own.name() + " could be of");
+  Parameter p = *general;
+  p.lower = table.find_number("min", p.unit).value_or(p.lower);
+  p.upper = table.find_number("max", p.unit).value_or(p.upper);
+  if (!(p.lower < p.upper)) throw table.refusal("max is not above min");
+  p.nominal = table.find_number("default", p.unit, p.lower, p.upper).value_or(p.nominal);
+  if (table.has("meaning")) p.meaning = text_of(table, "meaning");
+  return p;
+}
+
+/// Adds the parameters of a table.
+void read_parameter_table(const ConfigValue& all, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  for (const std::string& name : all.dotted_keys(true)) {
+    const ConfigValue table = *all.find(name);
+    if (const auto own = limb_parameter(name, table.place())) {
+      table.expect_table("a table { default = .., min = .., max = .., meaning = .. }")
+          .allow({"default", "min", "max", "meaning"});
+      add_own_parameter(*own, own_parameter(table, *own, model.info.parameters), draft);
+      continue;
+    }
+    table.expect_table("a table { default = .., min = .., max = .., meaning = .. }")
+        .allow({"default", "min", "max", "meaning", "unit"});
+    if (name == generic::kClearanceLimit)
+      throw table.refusal(
+          "clearance_min is the name of the limit of the links' clearance; call the parameter otherwise");
+    Parameter p;
+    p.name = name;
+    p.unit = unit_of(table);
+    p.lower = table.at("min", "the least value allowed").number(p.unit);
+    p.upper = table.at("max", "the greatest value allowed").number(p.unit);
+    if (!(p.lower < p.upper)) throw table.find("max")->error("a number above min = " + with_unit(p.lower, p.unit));
+    p.nominal = table.at("default", "the default").number(p.unit, p.lower, p.upper);
+    p.meaning = text_of(table, "meaning");
+    draft.scope.add(table, name, model.graph.input(model.info.parameters.size(), Inputs::kDesign));
+    model.info.parameters.push_back(p);
+  }
+}
+
+void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& asked, MechanismDraft& draft) {
+  const ConfigValue all = root.at("parameters", "a table [parameters]: what a design may choose");
+  all.expect_table("a table [parameters]");
+  if (all.keys().empty()) throw all.error("at least one parameter");
+  read_parameter_table(all, draft);
+  if (draft.masses)
+    if (const auto more = draft.masses->find("parameters"))
+      read_parameter_table(more->expect_table("a table of parameters"), draft);
+  generic::Model& model = draft.model;
+  for (const LimbParameter& own : asked) {
+    const Parameter* const general = find_named(model.info.parameters, own.parameter);
+    const auto known = names_of(model.info.parameters);
+    if (!general)
+      throw ConfigError(own.place, "the unknown parameter '" + own.parameter + "' of " + own.name(),
+                        "one of " + join(known), nearest_name(own.parameter, known));
+    if (!find_named(model.info.parameters, own.name())) add_own_parameter(own, Parameter(*general), draft);
+  }
+  model.inputs.parameters = model.info.parameters.size();
+}
+
+void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  const ConfigValue all = platform.at("coordinates", "a table { x = \"along x\", phi = \"about z\", .. }");
+  all.expect_table("a table { x = \"along x\", phi = \"about z\", .. }");
+  const std::size_t count = all.keys().size();
+  if (count < 1 || count > kMaxCoordinates) throw all.error("1 to 6 coordinates");
+  for (const std::string& name : all.keys()) {
+    const ConfigValue value = *all.find(name);
+    const std::string& kind = value.word(kAxes);
+    const auto axis = static_cast<std::size_t>(kind.back() - 'x');
+    const bool turns = kind.starts_with("about");
+    const std::size_t i = model.inputs.coordinates++;
+    const Term coordinate = model.term(model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i)));
+    draft.scope.add(value, name, coordinate.node());
+    model.info.coordinates.push_back({name, turns ? "rad" : "m"});
+    model.turns_about.push_back(turns ? std::optional(axis) : std::nullopt);
+    model.moves_along.push_back(turns ? std::nullopt : std::optional(axis));
+    const expression::Node none = model.graph.number(0);
+    model.turn_axes.push_back({none, none, none});
+    if (turns) {
+      for (std::size_t row = 0; row < 3; ++row) model.turn_axes.back()[row] = draft.turn[row][axis].node();
+      if (std::ranges::count_if(model.turns_about, [](const auto& each) { return each.has_value(); }) > 3)
+        throw value.refusal("a platform has at most three rotations");
+      draft.turn = draft.turn * limbs::turn_about(axis, sin(coordinate), cos(coordinate));
+    } else {
+      if (!draft.origin[axis].is(0)) throw value.refusal("there is already a coordinate " + kind);
+      draft.origin[axis] = coordinate;
+    }
+  }
+}
+
+void read_let(const ConfigValue& root, MechanismDraft& draft) {
+  for (const auto& all : {root.find("let"), draft.masses ? draft.masses->find("let") : std::nullopt}) {
+    if (!all) continue;
+    all->expect_table("a table of formulas");
+    draft.let.push_back(*all);
+    for (const std::string& name : all->keys()) {
+      const ConfigValue value = *all->find(name);
+      draft.scope.add(value, name, draft.scope.formula(value, "1", name).node());
+    }
+  }
+}
+
+/// [masses]: alternatives, each with parameters and formulas of its own. @param chosen  "": the first
+void choose_masses(const ConfigValue& root, const std::string& chosen, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  const auto all = root.find("masses");
+  if (!all) {
+    model.mass_models = {"file"};
+  } else {
+    all->expect_table("a table [masses] of alternatives, [masses.NAME] each");
+    if (all->keys().empty()) throw all->error("at least one alternative [masses.NAME]");
+    model.mass_models = all->keys();
+    for (const std::string& name : model.mass_models)
+      all->find(name)->expect_table("a table [masses.NAME]").allow({"parameters", "let"});
+  }
+  model.mass_model = chosen.empty() ? model.mass_models.front() : chosen;
+  if (all) draft.masses = all->at(model.mass_model, "an alternative of [masses]");
+}
+
+void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  if (const auto origin = platform.find("origin")) draft.origin = draft.scope.point(*origin, "origin");
+  model.origin = nodes(draft.origin);
+  for (std::size_t row = 0; row < 3; ++row) model.turn[row] = nodes(draft.turn[row]);
+  if (const auto length = platform.find("characteristic_length")) {
+    model.length = draft.scope.of_design(*length, "m", "characteristic_length").node();
+    model.info.characteristic_length = length->is_text() ? length->text("a formula") : shortest(length->number("m"));
+  }
+  if (const auto list = platform.find("conditioning_over")) {
+    constexpr const char* kExpected = "a list of coordinates: [\"x\", \"z\"]";
+    for (const ConfigValue& each : list->elements(kExpected)) {
+      const std::string& name = each.word(names_of(model.info.coordinates));
+      const auto i = static_cast<std::size_t>(find_named(model.info.coordinates, name) - model.info.coordinates.data());
+      if (std::ranges::count(model.conditioned, i) > 0) throw each.refusal("'" + name + "' is in the list already");
+      model.conditioned.push_back(i);
+    }
+    if (model.conditioned.empty()) throw list->error(kExpected);
+  }
+  if (const auto radius = platform.find("characteristic_radius"))
+    model.radius = draft.scope.of_design(*radius, "m", "characteristic_radius").node();
+  if (!mixes_units(model.info.coordinates) && model.info.characteristic_length.empty())
+    model.info.characteristic_length = "1";  // of no effect
+  if (const auto size = platform.find("size")) {
+    size->expect_table("a table { formula = .., unit = .., meaning = .. }").allow({"formula", "unit", "meaning"});
+    const std::string unit = si_unit(size->at("unit", "the size's unit: \"m^3\""));
+    const ConfigValue formula = size->at("formula", "a formula of parameters");
+    model.size = {draft.scope.of_design(formula, unit, "size").node(), unit, text_of(*size, "meaning")};
+  }
+  read_platform_body(platform, draft);
+}
+
+/// Leaves the mechanism without a conditioning where it is undefined although there is a characteristic length.
+void forget_undefined_conditioning(generic::Model& model) {
+  const bool needs_radius = mixes_units(model.info.joints) && !model.radius;
+  if (needs_radius || model.info.joints.size() < model.info.coordinates.size())
+    model.info.characteristic_length.clear();
+}
+
+/// The unit of all conditions that depend on the pose; "": they differ, or one of them is the radicand of a root.
+std::string common_margin_unit(const generic::Model& model) {
+  std::optional<std::string> unit;
+  for (const auto* const conditions : {&model.domains, &model.margins})
+    for (const generic::Result& condition : *conditions) {
+      if ((model.graph[condition.node].groups & ~Inputs::kDesign) == 0) continue;
+      if (unit && *unit != condition.unit) return "";
+      unit = condition.unit;
+    }
+  return unit.value_or("");
+}
+
+}  // namespace
+
+std::string text_of(const ConfigValue& table, const std::string& key) {
+  const auto value = table.find(key);
+  return value ? value->text("text") : "";
+}
+
+std::string si_unit(const ConfigValue& unit) {
+  const std::string& text = unit.text("a unit");
+  if (!is_si_unit(text)) throw unit.error("a product of SI units: \"m\", \"rad\", \"kg m^2\"");
+  return text;
+}
+
+generic::Model read_mechanism_model(const std::string& text, const std::string& file_name,
+                                    const std::vector<LimbParameter>& own, const std::string& mass_model) {
+  const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
+  const ConfigValue root(document, file_name, "");
+  if (root.keys().empty())
+    throw ConfigError({file_name, 0, ""}, "an empty file",
+                      "a mechanism: [mechanism], [parameters], [platform], [[limb]]");
+  root.allow({"mechanism", "parameters", "masses", "platform", "survey", "modes", "let", "limb", "inputs", "quantity",
+              "limit", "margin", "design", "link", "body", "joint"});
+  MechanismDraft draft;
+  read_names(root, draft);
+  choose_masses(root, mass_model, draft);
+  read_parameters(root, own, draft);
+  draft.model.inputs.limits = 0;
+  read_limits(root, draft);
+  const ConfigValue platform = root.at("platform", "a table [platform] with its coordinates");
+  platform.expect_table("a table [platform]")
+      .allow({"coordinates", "characteristic_length", "characteristic_radius", "conditioning_over", "size", "origin",
+              "mass", "centre", "inertia"});
+  read_coordinates(platform, draft);
+  read_modes(root, draft);
+  read_inputs(root, draft);
+  draft.scope.allow_motion(true);
+  read_let(root, draft);
+  draft.scope.allow_motion(false);
+  read_platform(platform, draft);
+  read_limbs(root, draft);
+  read_quantities(root, draft);
+  read_margins(root, draft);
+  refuse_idle_signs(root, draft);
+  refuse_idle_parameters(draft);
+  read_bodies(root, read_links(root, draft), draft);
+  read_survey(root, draft);
+  forget_undefined_conditioning(draft.model);
+  draft.scope.note_domains();
+  list_modes(draft);
+  refuse_changing_planes(draft);
+  add_clearance(draft);
+  add_joints(root, draft);
+  draft.model.margin_unit = common_margin_unit(draft.model);
+  return std::move(draft.model);
+}
+
+namespace {
+
+std::shared_ptr<const Mechanism> build(const std::string& text, const std::string& file_name,
+                                       const std::vector<LimbParameter>& own, const std::string& mass_model) {
+  generic::Model model = read_mechanism_model(text, file_name, own, mass_model);
+  if (model.mass_models.size() > 1)
+    model.with_masses = [=](const std::string& name) { return build(text, file_name, own, name); };
+  return generic::make_mechanism(std::move(model));
+}
+
+}  // namespace
+
+std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
+                                                     const std::vector<LimbParameter>& own) {
+  return build(text, file_name, own, "");
+}
+
+}  // namespace pkm

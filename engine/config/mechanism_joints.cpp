@@ -1,0 +1,257 @@
+// The joints of a mechanism's file, for the forces in them (engine/dynamics/newton_euler.hpp) and for the mobility of
+// the platform.
+//
+// What joints carry follows from the limbs:
+//
+//   a crank's pivot       all forces and couples, the drive's about its axis among them
+//   a rod, a leg          ball joints at both ends: forces alone. Nothing spins it; what holds its spin carries nothing
+//   a pair of rods        two of them, side by side, with half the mass each
+//   `links`, `across`     revolutes along one axis: all couples but those about it. Where the platform turns about
+//   other
+//                         axes, the joint at the platform turns about these, too
+//   a leg's slide         all forces and couples, the drive's along it among them, taken in the middle of the leg
+//   a slide on its rail   a point: the drive moves it and its mass
+//   [[joint]]             a revolute of two bodies
+
+#include <algorithm>
+#include <map>
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+
+namespace pkm {
+namespace {
+
+using generic::BodyNodes, generic::JointNodes, generic::SolidNodes;
+using limbs::Term, limbs::Vector3;
+using Nodes = std::array<expression::Node, 3>;
+
+/// Ends with a sentence where the file does not say enough.
+struct Unsaid {
+  std::string why;
+};
+
+class JointReader {
+ public:
+  explicit JointReader(MechanismDraft& draft) : draft_(draft), model_(draft.model) {}
+
+  /// The bodies and joints that the file describes, without masses.
+  generic::JointedBodies read(const std::vector<ConfigValue>& tables) {
+    for (const ConfigValue& table : tables) table.allow({"name", "bodies", "at", "about"});
+    add_solid("platform", {.name = "platform", .place = nodes(draft_.origin), .with_platform = true});
+    for (const BodyNodes& body : model_.bodies) {
+      if (!body.part_of.empty() || is_of_limb(body.name) || body.name == "platform") continue;
+      add_solid(body.name, {.name = body.name, .place = body.centre});
+      if (!body.line_turns.empty()) solids_.back().line = body.line_turns.front().d;
+    }
+    for (const NamedLimb& limb : draft_.limbs) add_limb(limb);
+    for (const ConfigValue& table : tables) add_joint(table);
+    return {solids_, joints_};
+  }
+  /// The same with masses, for the forces in the joints.
+  generic::JointedBodies with_masses() {
+    gather_bodies();
+    refuse_loose();
+    return {solids_, joints_};
+  }
+
+ private:
+  Vector3 vector(const Nodes& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
+
+  /// @param body  of the model, or the platform: whose mass it has, or a share of it
+  std::size_t add_solid(const std::string& body, SolidNodes solid) {
+    made_of_[body].push_back(solids_.size());
+    solids_.push_back(std::move(solid));
+    return solids_.size() - 1;
+  }
+  bool is_of_limb(const std::string& body) const {
+    for (const NamedLimb& limb : draft_.limbs)
+      for (const LimbPart& part : limb.parts)
+        if (body == part.name + " of " + limb.name) return true;
+    return false;
+  }
+
+  JointNodes joint(const std::string& name, const Vector3& point, std::size_t on, std::optional<std::size_t> from,
+                   JointNodes::Couples couples, const std::vector<Vector3>& axes) const {
+    JointNodes joint{name, nodes(point), on, from, couples, {}};
+    for (const Vector3& axis : axes) joint.axes.push_back(nodes(axis));
+    return joint;
+  }
+
+  /// A joint of a limb: a revolute about the limb's axis and those of `also`, or a ball that holds the spin about
+  /// `line`, if any.
+  JointNodes limb_joint(const NamedLimb& limb, const std::string& name, const Vector3& point, std::size_t on,
+                        std::optional<std::size_t> from, const std::optional<Vector3>& line,
+                        const std::vector<Vector3>& also = {}) const {
+    using enum JointNodes::Couples;
+    if (!limb.revolute) return joint(name, point, on, from, along, line ? std::vector{*line} : std::vector<Vector3>());
+    std::vector<Vector3> axes = {*limb.revolute};
+    axes.insert(axes.end(), also.begin(), also.end());
+    return joint(name, point, on, from, all_but_about, axes);
+  }
+  JointNodes rigid_joint(const std::string& name, const Vector3& point, std::size_t on,
+                         std::optional<std::size_t> from) const {
+    return joint(name, point, on, from, JointNodes::Couples::all_but_about, {});
+  }
+
+  std::size_t add_part(const NamedLimb& limb, const LimbPart& part) {
+    const std::string name = part.name + " of " + limb.name;
+    Vector3 line = *part.line;
+    if (limb.revolute) line = line - *limb.revolute * dot(line, *limb.revolute);
+    return add_solid(name, {.name = name, .place = nodes(part.from), .line = nodes(line)});
+  }
+
+  void add_limb(const NamedLimb& limb) {
+    if (limb.drive == "formula")
+      throw Unsaid{"limb " + limb.name + " is a formula, which does not say what its links are"};
+    if (limb.parts.size() == 1)
+      throw Unsaid{"limb " + limb.name + " has neither `rod` nor `links` to carry the platform by"};
+    if (limb.end_on.empty())
+      throw Unsaid{"limb " + limb.name +
+                   " ends at `end`; end_on = \"platform\", or the name of a [[body]], says what carries its end"};
+    const auto found = std::ranges::find(solids_, limb.end_on, &SolidNodes::name);
+    if (found == solids_.end())
+      throw Unsaid{"limb " + limb.name + " ends on '" + limb.end_on + "', which is neither the platform nor a body" +
+                   did_you_mean(limb.end_on, names_of(solids_))};
+    const auto carrier = static_cast<std::size_t>(found - solids_.begin());
+    const auto& points = limb.points;
+    const Vector3 &A = points.at("A"), &B = points.at("B"), &C = points.at("C"), &S = points.at("S");
+    const LimbPart &first = limb.parts[limb.parts.size() - 2], &last = limb.parts.back();
+    std::vector<Vector3> turns;
+    if (found->with_platform)
+      for (std::size_t i = 0; i < model_.turns_about.size(); ++i)
+        if (model_.turns_about[i]) turns.push_back(vector(model_.turn_axes[i]));
+
+    const bool telescope = limb.drive == "telescope", slides = limb.drive == "slider",
+               has_links = first.name != "slider" && slides;
+    JointNodes::Drive drive{limb.joint, nodes(telescope ? *last.line : *limb.axis), limb.drive == "crank"};
+    if (slides)
+      for (std::size_t i = 0; i < model_.bodies.size(); ++i)
+        if (model_.bodies[i].name == "slider of " + limb.name) drive.slide = i;
+
+    std::optional<std::size_t> inner;  // the crank, the cylinder or the first link
+    if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
+    if (telescope) {
+      joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, {}, first.line));
+      const std::size_t piston = add_part(limb, last);
+      joints_.push_back(rigid_joint(limb.name + ".slide", (A + B) * Term(model_.graph, 0.5), piston, inner));
+      joints_.back().drive = drive;
+      joints_.push_back(limb_joint(limb, limb.name + ".B", B, piston, carrier, {}, turns));
+      return;
+    }
+    if (limb.drive == "crank") joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, {}));
+    if (has_links) joints_.push_back(limb_joint(limb, limb.name + ".S", S, *inner, {}, {}));
+    if (inner) joints_.back().drive = drive;
+    const int rods = limb.beside ? 2 : 1;
+    for (int rod = 1; rod <= rods; ++rod) {
+      const std::string number = rods == 2 ? " " + std::to_string(rod) : "";
+      const std::size_t outer = add_part(limb, last);
+      Vector3 near = inner ? C : S, far = B;
+      if (rods == 2) {
+        const Vector3 beside = rod == 1 ? *limb.beside * Term(model_.graph, -1) : *limb.beside;
+        near = near + beside;
+        far = far + beside;
+        solids_[outer].name = "rod" + number + " of " + limb.name;
+        solids_[outer].share = 0.5;
+        solids_[outer].beside = nodes(beside);
+      }
+      if (inner) {
+        joints_.push_back(limb_joint(limb, limb.name + ".C" + number, near, *inner, outer, last.line));
+      } else {
+        joints_.push_back(limb_joint(limb, limb.name + ".S" + number, near, outer, {}, last.line));
+        joints_.back().drive = drive;
+        drive.slide = {};  // once for both rods
+      }
+      joints_.push_back(limb_joint(limb, limb.name + ".B" + number, far, outer, carrier, {}, turns));
+    }
+  }
+
+  std::size_t solid_called(const ConfigValue& value) const {
+    const std::string& name = value.word(names_of(solids_));
+    return static_cast<std::size_t>(std::ranges::find(solids_, name, &SolidNodes::name) - solids_.begin());
+  }
+
+  void add_joint(const ConfigValue& table) {
+    const std::string name = new_name(table, "joint", joints_, "the joint's name");
+    const ConfigValue both = table.at("bodies", "the two bodies that it joins");
+    const auto bodies = both.elements("two bodies");
+    if (bodies.size() != 2) throw both.error("two bodies");
+    const std::size_t first = solid_called(bodies[0]), second = solid_called(bodies[1]);
+    if (first == second) throw bodies[1].error("another body than the first");
+    joints_.push_back(joint(name, read_point(table.at("at", "a point"), name, draft_), first, second,
+                            JointNodes::Couples::all_but_about,
+                            {draft_.scope.direction(table.at("about", "the axis [x, y, z] of the base"), name)}));
+  }
+
+  /// Gives each mass to the body that it belongs to.
+  void gather_bodies() {
+    for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+      const BodyNodes& body = model_.bodies[i];
+      if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;  // its drive's affair
+      std::string owner = body.part_of.empty() ? body.name : body.part_of;
+      for (const NamedLimb& limb : draft_.limbs)
+        for (const LimbPart& part : limb.parts)
+          if (owner == limb.name + "." + part.name) owner = part.name + " of " + limb.name;
+      const auto owners = made_of_.find(owner);
+      if (owners == made_of_.end())
+        throw Unsaid{"body " + body.name + " turns with " + body.part_of + ", which is no body of its own"};
+      if (owners->second.size() > 1 && body.name != owner)
+        throw Unsaid{"body " + body.name + " turns with a pair of rods, and the file does not say with which"};
+      for (const std::size_t solid : owners->second) solids_[solid].bodies.push_back(i);
+    }
+  }
+
+  /// A body that no joint holds, and fewer unknowns than equations, which leave some motion to nobody.
+  void refuse_loose() {
+    std::vector<bool> held(solids_.size(), false);
+    std::size_t unknowns = 0;
+    for (const JointNodes& joint : joints_) {
+      held[joint.on] = true;
+      if (joint.from) held[*joint.from] = true;
+      unknowns += 3 + couples_of(joint);
+    }
+    for (std::size_t i = 0; i < solids_.size(); ++i)
+      if (!held[i])
+        throw Unsaid{"no joint holds the body " + solids_[i].name +
+                     "; rotation = \"platform\" makes a body part of the platform, [[joint]] joins two"};
+    if (const std::size_t equations = 6 * solids_.size(); unknowns < equations)
+      throw Unsaid{"the joints of the file hold its bodies too little (" + std::to_string(equations) +
+                   " equations have " + std::to_string(unknowns) +
+                   " unknowns); rods that come in pairs say `pair`, limbs of parallel revolutes `across`"};
+  }
+  std::size_t couples_of(const JointNodes& joint) {
+    if (joint.couples == JointNodes::Couples::along) return joint.axes.size();
+    std::vector<Vector3> free;  // directions about which it turns, of the default design
+    for (const Nodes& axis : joint.axes)
+      if (free.empty() || (free.size() < 2 && !parallel(free[0], vector(axis)))) free.push_back(vector(axis));
+    return 3 - free.size();
+  }
+  bool parallel(const Vector3& a, const Vector3& b) const {
+    const Vector3 normal = cross(a, b);
+    return draft_.scope.at_default(dot(normal, normal)) < 1e-18;
+  }
+
+  MechanismDraft& draft_;
+  generic::Model& model_;
+  std::vector<SolidNodes> solids_;
+  std::vector<JointNodes> joints_;
+  std::map<std::string, std::vector<std::size_t>> made_of_;  ///< solids that a body of the model is, or is part of
+};
+
+}  // namespace
+
+void add_joints(const ConfigValue& root, MechanismDraft& draft) {
+  const std::vector<ConfigValue> tables = tables_of(root, "joint");
+  generic::Model& model = draft.model;
+  JointReader reader(draft);
+  try {
+    model.jointed = reader.read(tables);
+    if (model.bodies.empty()) throw Unsaid{"the file names no masses"};
+    model.jointed = reader.with_masses();
+  } catch (const Unsaid& unsaid) {
+    model.why_no_reactions = unsaid.why;
+  }
+}
+
+}  // namespace pkm

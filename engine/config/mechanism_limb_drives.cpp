@@ -1,0 +1,84 @@
+// [[limb]]: telescopes, sliders and cranks in closed form.
+
+#include <cmath>
+
+#include "engine/config/mechanism_limb.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/expression/formula_lexer.hpp"
+
+namespace pkm {
+namespace {
+
+using limbs::Ends, limbs::Term, limbs::Vector3;
+
+/// The sign of a copy's branch. Quantities and margins know it as "arm1_branch".
+Term branch(const LimbCopy& copy) {
+  const ConfigValue value = copy.table.at("branch", "\"+\" or \"-\"");
+  const Term sign = copy.draft.add_sign(value.word({"+", "-"})[0], true);
+  const std::string name = copy.name + "_branch";
+  if (expression::may_be_name(name) && !copy.draft.scope.knows(name))
+    copy.draft.scope.add(copy.table, name, sign.node());
+  return sign;
+}
+
+void refuse_oblique(const LimbCopy& copy, const Vector3& a, const Vector3& b, const char* key, const char* other) {
+  if (std::fabs(copy.draft.scope.at_default(dot(a, b))) > 1e-9)
+    throw copy.table.find(key)->refusal(std::string("`") + key + "` has to be normal to " + other);
+}
+
+DrivenLimb slider_and_links(const LimbCopy& copy, const Ends& at, const Vector3& e, const Term& q) {
+  if (const auto rod = copy.table.find("rod")) throw rod->refusal("a limb has a `rod` or `links`, not both");
+  const auto [l_1, l_2] = copy.links();
+  const auto given = copy.table.find("axis");
+  const Vector3 axis = given ? copy.direction(*given) : e;
+  const Term beyond = l_1 + l_2;
+  return {limbs::slider_and_links(at, e, axis, l_1, l_2, branch(copy), q), "q = (B - A) . e, two links across e", e,
+          beyond};
+}
+
+DrivenLimb slider(const LimbCopy& copy, const Ends& at, const Term& q) {
+  const ConfigValue& table = copy.table;
+  const auto along = table.find("along");
+  if (along && table.has("direction")) throw along->refusal("a slide has a `direction` or, with `links`, runs `along`");
+  const Vector3 e = copy.direction(along ? *along : table.at("direction", "the slide's direction [x, y, z]"));
+  if (at.across) refuse_oblique(copy, e, *at.across, along ? "along" : "direction", "`across`");
+  if (const auto across = table.find("across"); across && !table.has("rod"))
+    throw across->refusal("`across` has no effect on a slide without `rod`: " +
+                          std::string(table.has("links") ? "its links move across `along`"
+                                                         : "it is where the platform's point is along `direction`"));
+  if (table.has("links")) return slider_and_links(copy, at, e, q);
+  if (!table.has("rod")) {
+    if (const auto sign = table.find("branch")) throw sign->refusal("a slide without rod has one way to reach a pose");
+    return {limbs::slider(at, e, q), "q = (B - A) . e", e};
+  }
+  const Term rod = copy.length("rod", "the rod's length");
+  return {limbs::slider_and_rod(at, e, rod, branch(copy), q),
+          "q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), s = v . e, v = B - A", e, rod};
+}
+
+DrivenLimb crank(const LimbCopy& copy, const Ends& at, const Term& q) {
+  const ConfigValue& table = copy.table;
+  const Vector3 axis = copy.direction(table.at("axis", "the pivot's axis [x, y, z]"));
+  const Vector3 zero = copy.direction(table.at("zero", "the crank's direction at q = 0, [x, y, z]"));
+  refuse_oblique(copy, zero, axis, "zero", "`axis`");
+  if (at.across) {
+    refuse_oblique(copy, *at.across, zero, "across", "the crank's motion, along its `axis`");
+    refuse_oblique(copy, *at.across, cross(axis, zero), "across", "the crank's motion, along its `axis`");
+  }
+  const Term crank = copy.length("crank", "the crank's length"), rod = copy.length("rod", "the rod's length");
+  std::optional<std::array<Term, 2>> ends;
+  if (table.has("range")) ends = copy.range("rad");
+  const Term beyond = crank + rod;
+  return {limbs::crank_and_rod(at, axis, zero, crank, rod, branch(copy), ends, q),
+          "q = atan2(w, u) + branch acos(k / hypot(u, w)), k = (|v|^2 + crank^2 - rod^2) / (2 crank)", axis, beyond};
+}
+
+}  // namespace
+
+DrivenLimb read_drive(const LimbCopy& copy, const Ends& at, const Term& q) {
+  if (copy.drive == "slider") return slider(copy, at, q);
+  if (copy.drive == "crank") return crank(copy, at, q);
+  return {limbs::telescope(at, q), "q = |B - A|", {}};
+}
+
+}  // namespace pkm

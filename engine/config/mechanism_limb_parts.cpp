@@ -1,0 +1,87 @@
+// [[limb]]: the parts of a limb of closed form, the links that are drawn of it, and how far it reaches.
+
+#include "engine/config/mechanism_limb.hpp"
+
+namespace pkm {
+
+using limbs::Ends, limbs::Term, limbs::Vector3;
+
+std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::string& drive) {
+  if (drive == "telescope") return {"cylinder", "piston"};
+  if (drive == "crank") return {"crank", "rod"};
+  if (table.has("links")) return {"slider", "first_link", "second_link"};
+  if (table.has("rod")) return {"slider", "rod"};
+  return {"slider"};
+}
+
+std::vector<LimbPart> read_parts(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
+  if (copy.drive == "telescope") {
+    const Vector3 v = at.B - at.A, line = (at.across ? v - *at.across * dot(v, *at.across) : v) / limb.joint;
+    return {{.name = "cylinder", .from = at.A, .to = at.B, .line = line},
+            {.name = "piston", .from = at.A, .to = at.B, .line = line}};
+  }
+  const bool is_crank = copy.drive == "crank";
+  std::vector<LimbPart> list;
+  if (!is_crank) list.push_back({.name = "slider", .from = limb.S, .to = limb.S});
+  if (limb.arm) {
+    const auto [of_arm, of_rod] =
+        is_crank ? std::array{copy.length("crank", "a length"), copy.length("rod", "a length")} : copy.links();
+    const std::vector<std::string> names = parts_of_limb(copy.table, copy.drive);
+    const Vector3 C = limb.S + limb.arm->arm;
+    std::vector<generic::ArmNodes>& arms = copy.draft.model.arms;
+    LimbPart::OnArm on_arm{arms.size(), limb.S, of_arm, true};
+    arms.push_back({nodes(limb.arm->arm), nodes(limb.arm->axis), nodes(limb.arm->rod), nodes(at.B),
+                    is_crank ? std::optional(limb.joint.node()) : std::nullopt});
+    list.push_back({names[names.size() - 2], limb.S, C, of_arm, limb.arm->arm, on_arm});
+    on_arm.is_arm = false;
+    list.push_back({names.back(), C, at.B, of_rod, limb.arm->rod, on_arm});
+  } else if (copy.table.has("rod")) {
+    list.push_back({"rod", limb.S, at.B, copy.length("rod", "a length"), at.B - limb.S});
+  }
+  return list;
+}
+
+void add_limb_links(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
+  const auto radius = copy.table.find("radius");
+  if (!radius) return;
+  const bool has_links = copy.table.has("links");
+  const Term r = copy.draft.scope.positive(*radius, "m", copy.name, true);
+  const auto link = [&](const std::string& what, const std::string& part, const Vector3& from, const Vector3& to) {
+    const std::string& group = part == kPlatformPart ? part : copy.name;
+    copy.draft.model.links.push_back({what + " of " + copy.name, part, nodes(from), nodes(to), r.node(), {group}});
+  };
+  if (copy.drive == "crank") link("crank", copy.name, at.A, limb.C);
+  if (has_links) link("first link", copy.name, limb.S, limb.C);
+  if (copy.drive == "telescope" || copy.table.has("rod") || has_links)
+    link(copy.drive == "telescope" ? "leg" : has_links ? "second link" : "rod", copy.name, limb.C, at.B);
+  if (copy.drive == "slider" && copy.table.has("range")) {
+    const auto [from, to] = copy.range("m");
+    link("rail", kFramePart, at.A + *limb.e * from, at.A + *limb.e * to);
+  }
+  if (!copy.table.has("end")) link("platform's arm", kPlatformPart, copy.draft.origin, at.B);
+}
+
+void add_reach(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
+  std::array<std::optional<std::array<Term, 2>>, 3>& reach = copy.draft.reaches.emplace_back();
+  const ConfigValue& table = copy.table;
+  const bool has_range = table.has("range");
+  const bool on_rail = copy.drive == "slider";
+  std::optional<Term> far = limb.beyond;
+  if (copy.drive == "telescope" && has_range) far = copy.range("m")[1];
+  if (!far || at.across || table.has("end") || (on_rail && (!has_range || table.has("links")))) return;
+  const Vector3 arm = copy.draft.scope.point(table.at("platform", "a point"), copy.group);
+  const Term round = *far + limbs::length(arm);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Term low = at.A[i], high = at.A[i];
+    if (on_rail) {
+      const auto [from, to] = copy.range("m");
+      const Term a = (*limb.e)[i] * from, b = (*limb.e)[i] * to;
+      low = low + call(expression::operation("min"), a, b);
+      high = high + call(expression::operation("max"), a, b);
+    }
+    reach[i] = {low - round, high + round};
+  }
+  copy.draft.scope.known_to_exist(round.node());
+}
+
+}  // namespace pkm

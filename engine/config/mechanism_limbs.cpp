@@ -1,0 +1,240 @@
+// [[limb]]: copies, ends, ranges, angles of passive joints, and what a drive comes to as part of the mechanism.
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/config/mechanism_limb.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+using limbs::Rotation, limbs::Term, limbs::Vector3;
+
+const std::vector<std::string> kDrives = {"telescope", "slider", "crank", "formula"};
+const std::vector<std::string> kOfAll = {"name", "drive", "range"};
+
+void allow_keys(const ConfigValue& table, const std::string& drive) {
+  std::vector<std::string> keys = kOfAll;
+  const auto also = [&keys](std::initializer_list<const char*> more) {
+    keys.insert(keys.end(), more.begin(), more.end());
+  };
+  if (drive == "formula") {
+    if (const auto copies = table.find("copies"))
+      throw copies->refusal("a limb of formulas has no copies; it may have several joints");
+    also({"joints", "joint", "unit", "closures"});
+  } else {
+    also({"copies", "base", "platform", "end", "across", "across_in", "radius", "joint_base", "joint_platform",
+          "joint_name", "end_on"});
+    for (const std::string& part : parts_of_limb(table, drive)) {
+      const std::vector<std::string> of_mass = mass_keys(part);
+      keys.insert(keys.end(), of_mass.begin(), of_mass.end());
+    }
+  }
+  if (drive == "slider") also({"direction", "along", "rod", "links", "axis", "branch", "pair"});
+  if (drive == "crank") also({"axis", "zero", "crank", "rod", "branch", "pair"});
+  table.allow(keys);
+}
+
+void refuse_known(const ConfigValue& table, const std::string& name, const MechanismDraft& draft) {
+  for (const NamedLimb& limb : draft.limbs)
+    if (limb.name == name || limb.group == name)
+      throw table.find("name")->refusal("there is already a limb called '" + name + "'");
+}
+
+/// How each copy is turned in its frames.
+std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) {
+  const auto number = [&draft](double x) { return Term(draft.model.graph, x); };
+  const auto copies = table.find("copies");
+  if (!copies) return {limbs::turn_about(2, number(0), number(1))};
+  copies->expect_table("a table { number = .., about = \"z\" }").allow({"number", "angles", "about"});
+  const auto about =
+      static_cast<std::size_t>(copies->at("about", "an axis, \"x\", \"y\" or \"z\"").word({"x", "y", "z"})[0] - 'x');
+  std::vector<double> angles;
+  if (const auto list = copies->find("angles")) {
+    if (const auto both = copies->find("number")) throw both->refusal("copies have a number or angles, not both");
+    for (const ConfigValue& angle : list->elements("a list of angles")) angles.push_back(angle.number("rad"));
+    if (angles.empty()) throw list->error("at least one angle");
+  } else {
+    const std::int64_t count = copies->at("number", "how many copies, 1 to 8").integer(1, 8);
+    for (std::int64_t i = 0; i < count; ++i)
+      angles.push_back(2 * kPi * static_cast<double>(i) / static_cast<double>(count));
+  }
+  const auto exact = [](double x) {
+    return std::fabs(x) < 1e-15 ? 0 : std::fabs(std::fabs(x) - 1) < 1e-15 ? std::round(x) : x;
+  };
+  std::vector<Rotation> turns;
+  for (const double angle : angles) {
+    const auto [sine, cosine] = sincos(angle);
+    turns.push_back(limbs::turn_about(about, number(exact(sine)), number(exact(cosine))));
+  }
+  return turns;
+}
+
+bool on_platform(const ConfigValue& table, const std::string& key) {
+  const auto in = table.find(key);
+  return in && in->word({"base", "platform"}) == "platform";
+}
+
+limbs::Ends read_ends(const LimbCopy& copy) {
+  const ConfigValue& table = copy.table;
+  MechanismDraft& draft = copy.draft;
+  const auto end = table.find("end");
+  if (const auto both = table.find("platform"); both && end)
+    throw both->refusal("a limb ends at `platform` (in the platform's frame) or at `end` (in the base's), not both");
+  const Vector3 base =
+      copy.turn * draft.scope.point_of_design(table.at("base", "the base point [x, y, z]"), copy.group);
+  const auto reached = [&] {
+    if (end) {
+      if (table.has("copies")) throw end->refusal("copies end at `platform`; `end` is one point of the base's frame");
+      return draft.scope.point(*end, copy.group);
+    }
+    const ConfigValue platform = table.at("platform", "the platform's point [x, y, z]");
+    return draft.origin + draft.turn * (copy.turn * draft.scope.point_of_design(platform, copy.group));
+  };
+  limbs::Ends ends{.A = base, .B = reached(), .across = {}};
+  if (const auto across = table.find("across")) {
+    ends.across = copy.direction(*across, on_platform(table, "across_in"));
+    draft.in_planes.push_back({*across, ends.A, ends.B, *ends.across});
+  }
+  return ends;
+}
+
+/// Angles of the rod with an axis, at its ends.
+void add_passive_joint(const LimbCopy& copy, const char* key, const char* called, const Vector3& from,
+                       const Vector3& to) {
+  const auto table = copy.table.find(key);
+  if (!table) return;
+  MechanismDraft& draft = copy.draft;
+  table->expect_table("a table { axis = [..], min = .., max = .. }").allow({"axis", "in", "min", "max"});
+  const Vector3 axis = copy.direction(table->at("axis", "an axis [x, y, z]"), on_platform(*table, "in"));
+  const Vector3 rod = to - from;
+  const Term angle = acos(dot(rod, axis) / limbs::length(rod));
+  const std::string what = copy.name + called;
+  draft.model.angles.push_back({what, "rad", angle.node()});
+  const auto limit = [&](const char* end, const auto& margin) {
+    if (const auto value = table->find(end))
+      draft.model.margins.push_back(
+          {what + " " + end, "rad", margin(draft.scope.of_design(*value, "rad", copy.name)).node()});
+  };
+  limit("min", [&](const Term& least) { return angle - least; });
+  limit("max", [&](const Term& greatest) { return greatest - angle; });
+  draft.scope.known_to_exist(angle.node());
+}
+
+/// From the rod to one of a pair that are side by side; none: there is one rod.
+std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
+  const auto pair = copy.table.find("pair");
+  if (!pair) return {};
+  const bool is_crank = copy.drive == "crank";
+  pair->expect_table("a table { spacing = .., along = [x, y, z] }").allow({"spacing", "along"});
+  if (limb.revolute || !copy.table.has("rod"))
+    throw pair->refusal("a pair is of rods with ball joints: of a `rod` without `across`");
+  const auto along = pair->find("along");
+  if (is_crank && along) throw along->refusal("the rods of a pair are side by side along the crank's axis");
+  const auto& about = copy.draft.model.turns_about;
+  if (limb.end_on == "platform" && std::ranges::any_of(about, [](const auto& axis) { return axis.has_value(); }))
+    throw pair->refusal("a pair of rods stays parallel where the platform does not turn, and this one does");
+  const Vector3 side =
+      is_crank ? *limb.axis : copy.direction(pair->at("along", "the direction from one rod to the other"));
+  return side * (copy.draft.scope.positive(pair->at("spacing", "the rods' distance"), "m", copy.name) * 0.5);
+}
+
+/// As other sections name it, with what its joints are.
+NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& driven) {
+  const ConfigValue& table = copy.table;
+  NamedLimb limb{.name = copy.name,
+                 .group = copy.group,
+                 .points = {{"A", at.A}, {"B", at.B}, {"C", driven.C}, {"S", driven.S}},
+                 .parts = read_parts(copy, at, driven),
+                 .drive = copy.drive,
+                 .joint = copy.draft.model.joints.size() - 1,
+                 .axis = driven.e,
+                 .revolute = table.has("links") ? driven.e : at.across};
+  const auto end_on = table.find("end_on");
+  if (end_on && !table.has("end"))
+    throw end_on->refusal("a limb that ends at `platform` ends on the platform; `end_on` belongs to `end`");
+  limb.end_on = end_on ? end_on->text("\"platform\" or the name of a body") : table.has("end") ? "" : "platform";
+  limb.beside = read_pair(copy, limb);
+  return limb;
+}
+
+/// What surveys know of a crank's range and of what it reaches with its rod, in place of the conditions that say so.
+void add_surfaces(const limbs::Limb& limb, generic::Model& model) {
+  std::vector<expression::Node> conditions;
+  for (const auto& condition : limb.conditions) conditions.push_back(condition.margin.node());
+  if (limb.folds) {
+    generic::CoveredFolds folds{{(*limb.folds)[0].node(), (*limb.folds)[1].node()}, conditions, {}};
+    if (limb.crank_range) folds.crank_range = model.crank_ranges.size();
+    model.folds.push_back(folds);
+  }
+  if (limb.crank_range) {
+    const limbs::CrankRange& r = *limb.crank_range;
+    for (std::size_t i = model.margins.size() - 2; i < model.margins.size(); ++i)  // those of the range
+      conditions.push_back(model.margins[i].node);
+    model.crank_ranges.push_back({r.at_min.node(), r.at_max.node(), r.after_min.node(), r.before_max.node(),
+                                  r.half_turn.node(), r.reach.node(), r.branch.node(), conditions});
+  }
+}
+
+void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends& at, const DrivenLimb& limb) {
+  MechanismDraft& draft = copy.draft;
+  generic::Model& model = draft.model;
+  for (const auto& condition : limb.conditions) {
+    model.domains.push_back({copy.name + " " + condition.reason, condition.unit, condition.margin.node()});
+    draft.scope.known_to_exist(condition.margin.node());
+  }
+  draft.scope.known_to_exist(limb.joint.node());
+  draft.scope.known_to_exist(limb.C[0].node());
+  draft.scope.add(copy.table, joint, limb.joint.node());
+  model.joints.push_back(limb.joint.node());
+  model.closures.push_back(limb.closure.node());
+  model.info.closed_forms.push_back(copy.drive + ": " + limb.form);
+  add_range(copy.table, copy.group, joint, model.info.joints.back().unit, limb.joint, draft);
+  add_surfaces(limb, model);
+  if (copy.drive != "slider" || copy.table.has("rod")) model.rods.push_back({nodes(limb.C), nodes(at.B)});
+  add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
+  add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);
+  draft.limbs.push_back(named(copy, at, limb));
+  for (const LimbPart& part : draft.limbs.back().parts) add_part_body(copy.table, copy.name, part, draft);
+  add_limb_links(copy, at, limb);
+  add_reach(copy, at, limb);
+}
+
+/// @param number  of the copy, as its name ends; "": there are no copies
+void read_copy(const LimbCopy& copy, const std::string& number) {
+  refuse_known(copy.table, copy.name, copy.draft);
+  const auto given = copy.table.find("joint_name");
+  const std::string joint = given ? given->text("the joint's name") + number : copy.name;
+  const limbs::Ends at = read_ends(copy);
+  const Term q = add_joint_variable(copy.table, joint, copy.drive == "crank" ? "rad" : "m", copy.draft);
+  add_limb(copy, joint, at, read_drive(copy, at, q));
+}
+
+void read_limb(const ConfigValue& table, MechanismDraft& draft) {
+  const std::string name = table.at("name", "the limb's name").text("the limb's name");
+  const std::string drive = type_of(table, "drive", kDrives);
+  allow_keys(table, drive);
+  refuse_known(table, name, draft);
+  if (drive == "formula")
+    return read_as_limb(
+        name, [&] { read_formula_limb(table, name, draft); }, draft);
+  int copies = 0;
+  for (const Rotation& turn : turns_of(table, draft)) {
+    const std::string number = table.has("copies") ? std::to_string(++copies) : "";
+    const LimbCopy copy{table, draft, drive, name, name + number, turn};
+    read_as_limb(
+        copy.name, [&] { read_copy(copy, number); }, draft);
+  }
+}
+
+}  // namespace
+
+void read_limbs(const ConfigValue& root, MechanismDraft& draft) {
+  const auto tables = tables_of(root, "limb");
+  if (tables.empty()) throw root.refusal("a mechanism needs [[limb]]s: what its joints are");
+  for (const ConfigValue& table : tables) table.explained([&] { read_limb(table, draft); });
+}
+
+}  // namespace pkm

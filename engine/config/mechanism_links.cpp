@@ -1,0 +1,72 @@
+// [[link]]: what is drawn beside the limbs' own links; the clearance of all links.
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/generic/clearance.hpp"
+
+namespace pkm {
+
+using limbs::Term, limbs::Vector3;
+
+Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft) {
+  if (!value.is_text()) return draft.scope.point(value, what);
+  const std::string& text = value.text("a point");
+  std::vector<std::string> known;
+  for (const NamedLimb& limb : draft.limbs)
+    for (const auto& [point, place] : limb.points) {
+      known.push_back(limb.name + "." + point);
+      if (known.back() == text) return place;
+    }
+  throw value.error("[x, y, z] or the point of a limb: " + join(known), nearest_name(text, known));
+}
+
+std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft) {
+  std::vector<LimbPart> links;
+  for (const ConfigValue& table : tables_of(root, "link")) {
+    table.allow({"name", "from", "to", "radius", "group", "clearance", "mass", "inertia"});
+    const std::string& name = table.at("name", "the link's name").text("the link's name");
+    const Vector3 from = read_point(table.at("from", "a point"), name, draft),
+                  to = read_point(table.at("to", "a point"), name, draft);
+    const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
+    std::string part = kFramePart;
+    std::vector<std::string> in, copies;  // groups; `arm` is also each of its copies
+    if (const auto group = table.find("group")) {
+      constexpr const char* kExpected = "a name or a list of names";
+      const auto groups = group->is_list() ? group->elements(kExpected) : std::vector{*group};
+      if (groups.empty()) throw group->error(kExpected);
+      for (const ConfigValue& each : groups) {
+        in.push_back(each.text(kExpected));
+        for (const NamedLimb& limb : draft.limbs)
+          if (limb.group == in.back() && limb.name != in.back()) copies.push_back(limb.name);
+      }
+      part = in.front();
+      in.insert(in.end(), copies.begin(), copies.end());
+    }
+    const auto clearance = table.find("clearance");
+    draft.model.links.push_back({.name = name,
+                                 .part = part,
+                                 .from = nodes(from),
+                                 .to = nodes(to),
+                                 .radius = radius.node(),
+                                 .groups = in,
+                                 .has_clearance = !clearance || clearance->flag()});
+    add_link_body(table, name, from, to, draft);
+    links.push_back({.name = name, .from = from, .to = to, .line = to - from});
+  }
+  return links;
+}
+
+void add_clearance(MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  model.link_pairs = generic::pairs_to_keep_clear(model.graph, model.links);
+  model.moving_links = generic::moving_links(model.graph, model.links);
+  if (model.link_pairs.empty()) return;
+  model.clearance_limit = model.info.limits.size();
+  model.info.limits.push_back({generic::kClearanceLimit, "m", kInactiveClearance, kInactiveClearance, 100, "clearance",
+                               "", "least distance of links that are not joined; < 0: they may overlap that far"});
+  model.derived.emplace_back();
+  model.replaced.emplace_back();
+}
+
+}  // namespace pkm

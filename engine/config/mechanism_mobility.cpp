@@ -1,0 +1,41 @@
+#include "engine/config/mechanism_mobility.hpp"
+
+#include <algorithm>
+
+#include "engine/core/error.hpp"
+#include "engine/generic/mobility.hpp"
+
+namespace pkm {
+
+std::string mobility_text(const Mechanism& mechanism, std::span<const double> parameters, const Pose<double>& pose,
+                          std::size_t rank) {
+  constexpr std::size_t kBody = 6;  // degrees of freedom of a rigid body
+  const MechanismInfo& info = mechanism.info();
+  const std::size_t coordinates = info.coordinates.size();
+  const std::string loose =
+      rank < coordinates ? ": the platform can move while the drives stand still, or the pose is singular" : "";
+  const auto determined = [&](std::size_t degrees) {
+    return "the drives determine " + std::to_string(rank) + " of " + std::to_string(degrees) +
+           " degrees of freedom there" + loose;
+  };
+  const auto mobility = generic::platform_mobility(mechanism, parameters, pose, info.modes.front());
+  if (!mobility) {
+    if (coordinates == kBody) return determined(kBody);
+    return "the drives determine " +
+           (loose.empty() ? "the coordinates" : std::to_string(rank) + " of the coordinates") + " there" + loose +
+           "; unknown whether joints hold the platform's other degrees of freedom: " + mechanism.why_no_reactions();
+  }
+  const generic::PlatformMobility& found = *mobility;
+  const std::size_t described = found.of_coordinates.value_or(std::min(coordinates, found.of_joints));
+  if (described < coordinates)
+    return determined(coordinates) + ", but the joints described allow only " + std::to_string(described) +
+           " of the coordinates' motions";
+  const std::size_t assumed = found.of_joints - described;
+  if (assumed == 0) return determined(coordinates);
+  return determined(coordinates + assumed) + (loose.empty() ? ": " : "; ") +
+         "no joint that the file describes prevents " +
+         (found.assumed.empty() ? std::to_string(assumed) + " others" : join(found.assumed)) +
+         ", and the platform is assumed not to move so";
+}
+
+}  // namespace pkm

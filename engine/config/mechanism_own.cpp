@@ -1,0 +1,59 @@
+// Parameters that one limb has for itself: "arm2.l_b".
+
+#include <algorithm>
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+
+namespace pkm {
+
+using generic::Inputs;
+
+std::optional<LimbParameter> limb_parameter(const std::string& name, const SourceLocation& place) {
+  const auto dot = name.find('.');
+  if (dot == std::string::npos) return {};
+  return LimbParameter{name.substr(0, dot), name.substr(dot + 1), place};
+}
+
+void add_own_parameter(const LimbParameter& own, const Parameter& parameter, MechanismDraft& draft) {
+  std::vector<Parameter>& all = draft.model.info.parameters;
+  if (find_named(all, own.name())) throw ConfigError(own.place, "there is already a parameter " + own.name());
+  draft.own.push_back({own, draft.model.graph.input(all.size(), Inputs::kDesign)});
+  all.push_back(parameter);
+  all.back().name = own.name();
+}
+
+void read_as_limb(const std::string& limb, const std::function<void()>& read, MechanismDraft& draft) {
+  const std::vector<expression::Node> usual = draft.scope.meanings();
+  bool any = false;
+  for (const OwnParameter& own : draft.own)
+    if (own.limb == limb) {
+      draft.scope.replace(own.parameter, own.node);
+      any = true;
+    }
+  for (const ConfigValue& let : draft.let)
+    for (const std::string& name : let.keys())
+      if (any) draft.scope.replace(name, draft.scope.formula(*let.find(name), "1", name + " of " + limb).node());
+  read();
+  draft.scope.restore(usual);
+}
+
+void refuse_idle_parameters(const MechanismDraft& draft) {
+  const generic::Model& model = draft.model;
+  std::vector<expression::Node> used = model.joints;
+  std::ranges::copy(model.closures, std::back_inserter(used));
+  for (const generic::Result& margin : model.margins) used.push_back(margin.node);
+  used = model.graph.reachable(used);
+  const std::vector<std::string> limbs = names_of(draft.limbs);
+  for (const OwnParameter& own : draft.own) {
+    if (!contains(limbs, own.limb))
+      throw ConfigError(own.place, "the unknown limb '" + own.limb + "' of " + own.name(), "one of " + join(limbs),
+                        nearest_name(own.limb, limbs));
+    if (!std::ranges::binary_search(used, own.node))
+      throw ConfigError(own.place,
+                        own.name() + ", and no joint or limit of " + own.limb + " depends on " + own.parameter);
+  }
+}
+
+}  // namespace pkm

@@ -1,0 +1,109 @@
+// `across` of a limb: crank and rod stay in planes normal to it, so the component of B - A along it is the same at
+// every pose. Checked at random poses of the survey's box, for the default and for random designs.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/math/random.hpp"
+
+namespace pkm {
+namespace {
+
+using expression::Node;
+using generic::Inputs;
+
+constexpr std::uint32_t kDesigns = 8, kPoses = 16;  // the first design is the default
+constexpr double kConstant = 1e-9;                  // greatest change that counts as rounding, relative to |B - A|
+
+std::string length_text(double length) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.4g m", length);
+  return text.data();
+}
+
+struct Span {
+  double least = kUnbounded, greatest = -kUnbounded;
+  void add(double x) {
+    least = std::min(least, x);
+    greatest = std::max(greatest, x);
+  }
+};
+
+/// Random inputs of the graph: a design, and poses in the survey's box.
+class RandomPoses {
+ public:
+  RandomPoses(const generic::Model& model, std::uint32_t design)
+      : model_(model), random_(0, design, 0, Stream::Use::start), inputs_(model.inputs.count()) {
+    for (std::size_t i = 0; i < model.info.parameters.size(); ++i) {
+      const Parameter& p = model.info.parameters[i];
+      inputs_[i] = design == 0 ? p.nominal : between(p.lower, p.upper);
+    }
+    for (std::size_t i = 0; i < model.inputs.limits; ++i)
+      inputs_[model.inputs.limit(i)] = model.replaced[i] ? inputs_[*model.replaced[i]] : model.info.limits[i].inactive;
+    for (std::size_t i = 0; i < model.inputs.signs; ++i) inputs_[model.inputs.sign(i)] = model.signs.front()[i];
+    for (const auto& range : model.box) {
+      std::array<double, 2> ends = {-1, 1};
+      if (range) std::ranges::transform(*range, ends.begin(), [&](Node node) { return values({node}).front(); });
+      const bool usable = ends[0] <= ends[1] && std::isfinite(ends[1] - ends[0]);
+      box_.push_back(usable ? ends : std::array{-1.0, 1.0});
+    }
+  }
+
+  /// What the nodes are at the next pose.
+  std::vector<double> next(const std::vector<Node>& nodes) {
+    for (std::size_t i = 0; i < box_.size(); ++i)
+      inputs_[model_.inputs.coordinate(i)] = between(box_[i][0], box_[i][1]);
+    return values(nodes);
+  }
+
+ private:
+  double between(double from, double to) { return from + (to - from) * random_.u01(); }
+  std::vector<double> values(const std::vector<Node>& nodes) const {
+    const expression::Program program(model_.graph, nodes);
+    std::vector<double> registers, found;
+    program.run_all<double>(inputs_, registers);
+    for (const std::uint32_t output : program.outputs()) found.push_back(registers[output]);
+    return found;
+  }
+
+  const generic::Model& model_;
+  Stream random_;
+  std::vector<double> inputs_;
+  std::vector<std::array<double, 2>> box_;
+};
+
+}  // namespace
+
+void refuse_changing_planes(MechanismDraft& draft) {
+  std::vector<Node> nodes;  // of each limb: the component of B - A along the normal, |B - A|^2
+  for (const LimbInPlane& limb : draft.in_planes) {
+    const limbs::Vector3 v = limb.B - limb.A;
+    nodes.push_back(dot(v, limb.normal).node());
+    nodes.push_back(dot(v, v).node());
+  }
+  if (nodes.empty()) return;
+  for (std::uint32_t design = 0; design < kDesigns; ++design) {
+    RandomPoses poses(draft.model, design);
+    std::vector<Span> offsets(draft.in_planes.size()), sizes(draft.in_planes.size());
+    for (std::uint32_t k = 0; k < kPoses; ++k) {
+      const std::vector<double> values = poses.next(nodes);
+      for (std::size_t i = 0; i < offsets.size(); ++i) {
+        if (!std::isfinite(values[2 * i]) || !std::isfinite(values[2 * i + 1])) continue;  // it does not assemble
+        offsets[i].add(values[2 * i]);
+        sizes[i].add(std::sqrt(values[2 * i + 1]));
+      }
+    }
+    for (std::size_t i = 0; i < offsets.size(); ++i)
+      if (offsets[i].greatest - offsets[i].least > kConstant * sizes[i].greatest)
+        throw draft.in_planes[i].across.refusal(
+            "the component of B - A along `across` changes with the pose (" + length_text(offsets[i].least) + " to " +
+            length_text(offsets[i].greatest) + (design == 0 ? "" : " for another design than the default") +
+            "), so crank and rod leave the plane that `across` keeps them in; write the platform's dependent "
+            "coordinates as formulas in `origin` or `end` that keep the limb in its plane, leave `across` out where "
+            "ball joints end the rod, or, where a joint slides along `across`, put `end` into the plane");
+  }
+}
+
+}  // namespace pkm

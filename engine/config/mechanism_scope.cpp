@@ -1,0 +1,145 @@
+#include "engine/config/mechanism_scope.hpp"
+
+#include <algorithm>
+
+#include "engine/core/unit.hpp"
+#include "engine/expression/formula_lexer.hpp"
+#include "engine/expression/formula_parser.hpp"
+#include "engine/expression/program.hpp"
+
+namespace pkm {
+
+using expression::Node, limbs::Term, limbs::Vector3;
+
+void MechanismScope::add(const ConfigValue& at, const std::string& name, Node node) {
+  if (!expression::may_be_name(name))
+    throw at.refusal("'" + name + "' is no name for formulas: letters, digits and '_', none of the functions nor pi");
+  if (const auto known = names_.find(name))
+    throw at.refusal("'" + name + "' is the name of " + origins_[*known] + " already");
+  names_.add(name);
+  origins_.push_back(at.place().key + " (" + at.line() + ")");
+  nodes_.push_back(node);
+}
+
+void MechanismScope::replace(const std::string& name, Node node) { nodes_[names_.find(name).value()] = node; }
+
+bool MechanismScope::knows(const std::string& name) const { return names_.find(name).has_value(); }
+
+Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, const std::string& what) {
+  if (!value.is_text()) return model_.term(model_.graph.number(value.number(unit)));
+  const std::string& text = value.text("a number or a formula");
+  if (const auto number = parse_quantity(text, unit)) return model_.term(model_.graph.number(*number));
+  if (const std::string kind = kind_of_quantity(text); !kind.empty())
+    throw value.error_of('"' + text + "\", " + kind, kind_of_unit(unit) + ", or a formula: " + quantity_hint(unit));
+  const Node node = value.explained([&] { return expression::read_formula(model_.graph, text, names_, nodes_); });
+  if (!motion_allowed_ && (model_.graph[node].groups & (generic::Inputs::kExtras | generic::Inputs::kRates)) != 0)
+    throw value.refusal("a formula of [inputs] or of rates is possible for a [[quantity]] only");
+  watch(node, what);
+  return model_.term(node);
+}
+
+Term MechanismScope::of_design(const ConfigValue& value, const std::string& unit, const std::string& what) {
+  const Term term = formula(value, unit, what);
+  std::vector<std::string> moving;
+  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)
+    if (model_.graph[term.node()].groups & generic::Inputs::coordinate_group(i))
+      moving.push_back("'" + model_.info.coordinates[i].name + "'");
+  if (!moving.empty()) throw value.error("a formula of parameters alone, which this is not for " + join(moving));
+  return term;
+}
+
+Term MechanismScope::positive(const ConfigValue& value, const std::string& unit, const std::string& what,
+                              bool may_vanish) {
+  const Term term = of_design(value, unit, what);
+  const auto& node = model_.graph[term.node()];
+  if (node.is_number() && !(node.number > 0 || (may_vanish && node.number == 0)))
+    throw value.error((may_vanish ? "a number >= " : "a number > ") + with_unit(0, unit));
+  return term;
+}
+
+namespace {
+
+constexpr const char* kPoint = "three numbers or formulas [x, y, z]";
+constexpr const char* kDirection = "a direction, three numbers or formulas [x, y, z] that are not all 0";
+
+/// [x, y, z], each read by `read`.
+template <class Read>
+Vector3 three(const ConfigValue& value, const char* expected, const Read& read) {
+  const std::vector<ConfigValue> elements = value.elements(expected);
+  if (elements.size() != 3) throw value.error(expected);
+  return {read(elements[0]), read(elements[1]), read(elements[2])};
+}
+
+}  // namespace
+
+Vector3 MechanismScope::point(const ConfigValue& value, const std::string& what) {
+  return three(value, kPoint, [&](const ConfigValue& each) { return formula(each, "m", what); });
+}
+
+Vector3 MechanismScope::point_of_design(const ConfigValue& value, const std::string& what) {
+  return three(value, kPoint, [&](const ConfigValue& each) { return of_design(each, "m", what); });
+}
+
+Vector3 MechanismScope::direction(const ConfigValue& value, const std::string& what) {
+  const Vector3 v = three(value, kDirection, [&](const ConfigValue& each) { return of_design(each, "1", what); });
+  const Term length = limbs::length(v);
+  if (!(at_default(length) > 0)) throw value.error(kDirection);
+  known_to_exist(length.node());
+  return v / length;
+}
+
+double MechanismScope::at_default(const Term& term) const {
+  const expression::Node node = term.node();
+  const expression::Program program(model_.graph, {&node, 1});
+  std::vector<double> inputs(model_.inputs.count(), 1), registers;
+  for (std::size_t i = 0; i < model_.info.parameters.size(); ++i) inputs[i] = model_.info.parameters[i].nominal;
+  for (std::size_t i = 0; i < model_.inputs.limits; ++i)
+    inputs[model_.inputs.limit(i)] = model_.info.limits[i].inactive;
+  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)  // nothing special about this pose
+    inputs[model_.inputs.coordinate(i)] = 0.37 + 0.11 * static_cast<double>(i);
+  program.run_all<double>(inputs, registers);
+  return registers[program.outputs().front()];
+}
+
+void MechanismScope::refuse_empty(const ConfigValue& range, const Term& from, const Term& to) const {
+  const double least = at_default(from), greatest = at_default(to);
+  if (least > greatest)
+    throw range.error("the least value before the greatest; the default parameters make it [" + shortest(least) + ", " +
+                      shortest(greatest) + "]");
+}
+
+std::vector<Node> MechanismScope::unseen(Node root) const {
+  return model_.graph.reachable({&root, 1}, [&](Node each) { return seen_.contains(each); });
+}
+
+void MechanismScope::known_to_exist(Node node) {
+  for (const Node each : unseen(node)) seen_.insert(each);
+}
+
+void MechanismScope::watch(Node root, const std::string& what) {
+  const auto has_domain = [](const expression::Operation* operation) {
+    return operation && (operation->name == "sqrt" || operation->name == "asin" || operation->name == "acos" ||
+                         operation->name == "log" || operation->name == "log10");
+  };
+  int count = 0;
+  for (const Node node : unseen(root)) {
+    seen_.insert(node);
+    if (has_domain(model_.graph[node].operation))
+      watched_.push_back({node, what + (++count > 1 ? " exists (" + std::to_string(count) + ")" : " exists")});
+  }
+}
+
+void MechanismScope::note_domains() {
+  std::vector<Node> used = model_.joints;
+  for (const generic::Result& margin : model_.margins) used.push_back(margin.node);
+  const std::vector<Node> reachable = model_.graph.reachable(used);
+  for (const auto& [node, name] : watched_) {
+    if (!std::ranges::binary_search(reachable, node)) continue;
+    const expression::Entry entry = model_.graph[node];
+    const Term argument = model_.term(entry.arguments[0]), one(model_.graph, 1.0);
+    const bool of_circle = entry.operation->name == "asin" || entry.operation->name == "acos";
+    model_.domains.push_back({name, "", (of_circle ? one - abs(argument) : argument).node()});
+  }
+}
+
+}  // namespace pkm

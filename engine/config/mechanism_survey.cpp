@@ -1,0 +1,111 @@
+// [survey]: which coordinates a survey sweeps, within which box, and where it holds the others.
+
+#include <algorithm>
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/catalogue.hpp"
+
+namespace pkm {
+
+using generic::Inputs;
+using limbs::Term;
+
+namespace {
+
+/// The number of a coordinate that a value names.
+int coordinate_named(const ConfigValue& value, const MechanismInfo& info) {
+  const std::string& name = value.word(names_of(info.coordinates));
+  return static_cast<int>(find_named(info.coordinates, name) - info.coordinates.data());
+}
+
+}  // namespace
+
+namespace {
+
+/// Reads a table of ranges { x = [from, to] }, formulas of parameters, by coordinate.
+void read_ranges(const ConfigValue& survey, const char* key, MechanismDraft& draft,
+                 std::vector<std::optional<std::array<expression::Node, 2>>>& ranges) {
+  const auto table = survey.find(key);
+  if (!table) return;
+  const auto& coordinates = draft.model.info.coordinates;
+  table->expect_table("a table { x = [from, to] }").allow(names_of(coordinates), "coordinate");
+  for (const std::string& name : table->keys()) {
+    const ConfigValue range = *table->find(name);
+    const auto i = static_cast<std::size_t>(find_named(coordinates, name) - coordinates.data());
+    const auto ends = range.elements("[from, to]");
+    if (ends.size() != 2) throw range.error("[from, to]");
+    const Term from = draft.scope.of_design(ends[0], coordinates[i].unit, name),
+               to = draft.scope.of_design(ends[1], coordinates[i].unit, name);
+    draft.scope.refuse_empty(range, from, to);
+    ranges[i] = {from.node(), to.node()};
+  }
+}
+
+}  // namespace
+
+void read_survey(const ConfigValue& root, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  const std::size_t count = model.inputs.coordinates;
+  model.box.resize(count);
+  model.reach.resize(count);
+  model.middle.resize(count);
+  std::vector<int> swept, columns_along;
+  for (std::size_t i = 0; i < std::min<std::size_t>(count, 3); ++i) swept.push_back(static_cast<int>(i));
+  const auto survey = root.find("survey");
+  if (survey) {
+    survey->expect_table("a table [survey]").allow({"sweep", "hold", "box", "reach", "columns_along"});
+    if (const auto sweep = survey->find("sweep")) {
+      swept.clear();
+      for (const ConfigValue& each : sweep->elements("one to three coordinates")) {
+        swept.push_back(coordinate_named(each, model.info));
+        if (std::ranges::count(swept, swept.back()) > 1) throw each.refusal("this coordinate is swept already");
+      }
+      if (swept.empty() || swept.size() > 3) throw sweep->error("one to three coordinates");
+    }
+    if (const auto hold = survey->find("hold")) {
+      hold->expect_table("a table { phi = 0 }").allow(names_of(model.info.coordinates), "coordinate");
+      for (const std::string& name : hold->keys()) {
+        const ConfigValue value = *hold->find(name);
+        const auto i =
+            static_cast<std::size_t>(find_named(model.info.coordinates, name) - model.info.coordinates.data());
+        model.middle[i] = draft.scope.of_design(value, model.info.coordinates[i].unit, name).node();
+      }
+    }
+    read_ranges(*survey, "box", draft, model.box);
+    read_ranges(*survey, "reach", draft, model.reach);
+    if (const auto columns = survey->find("columns_along")) {
+      for (const ConfigValue& each : columns->elements("a list of coordinates, the preferred one first"))
+        columns_along.push_back(coordinate_named(each, model.info));
+    }
+  }
+  // What the file leaves out: turns once around, places within the reach of all limbs that say theirs.
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!model.box[i] && model.turns_about[i]) model.box[i] = {model.graph.number(-kPi), model.graph.number(kPi)};
+    if (!model.box[i])
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (draft.origin[axis].node() != model.graph.input(model.inputs.coordinate(i))) continue;
+        std::optional<std::array<Term, 2>> common;
+        for (const auto& reach : draft.reaches)
+          if (reach[axis])
+            common = common ? std::array{call(expression::operation("max"), (*common)[0], (*reach[axis])[0]),
+                                         call(expression::operation("min"), (*common)[1], (*reach[axis])[1])}
+                            : *reach[axis];
+        const auto of_design = [&](const Term& t) { return (model.graph[t.node()].groups & ~Inputs::kDesign) == 0; };
+        if (common && of_design((*common)[0]) && of_design((*common)[1]))
+          model.box[i] = {(*common)[0].node(), (*common)[1].node()};
+      }
+    if (!model.middle[i] && model.box[i])
+      model.middle[i] = ((model.term((*model.box[i])[0]) + model.term((*model.box[i])[1])) * 0.5).node();
+  }
+  model.info.sweeps = all_sweeps(model.info.coordinates, swept);
+  for (Sweep& sweep : model.info.sweeps) {
+    const auto along = std::ranges::find_if(
+        columns_along, [&](int coordinate) { return std::ranges::find(sweep.swept, coordinate) != sweep.swept.end(); });
+    if (along != columns_along.end()) sweep.column = *along;
+    sweep.integrates = std::ranges::all_of(
+        sweep.held, [&](int coordinate) { return model.box[static_cast<std::size_t>(coordinate)].has_value(); });
+  }
+}
+
+}  // namespace pkm

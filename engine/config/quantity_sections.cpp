@@ -1,0 +1,288 @@
+// [[objective]], [[constraint]], [[report]]: entries of the catalogues become named quantities of the problem.
+
+#include <algorithm>
+#include <map>
+
+#include "engine/config/sections.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/problem/design_test.hpp"
+#include "engine/problem/motion_options.hpp"
+#include "engine/problem/pose_options.hpp"
+
+namespace pkm {
+namespace {
+
+std::string in_unit(const std::string& unit) { return unit == "1" ? "dimensionless" : "in " + unit; }
+
+constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+
+/// The name of an entry within its kind: `name = `, else its type. Names are keys of the study file and of JSON.
+std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
+  const auto given = table.find("name");
+  std::string name = given ? given->text("text") : type;
+  if (!given) std::ranges::replace(name, ' ', '-');  // of a described mechanism's tests
+  if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
+    throw given->error("a name of letters, digits, '-', '_' and '.'");
+  if (find_named(before, name))
+    throw table.refusal("there is already one called '" + name + "'; tell them apart with name = \"...\"");
+  return name;
+}
+
+/// The name of an objective that the study does not name: peak and RMS of one kind are two quantities.
+std::string default_name(const ObjectiveEntry& entry, const Options& options) {
+  const bool rms = options.has("statistic") && options.word("statistic") == "rms";
+  return entry.name + (rms ? "-rms" : "");
+}
+
+/// Adds what an entry needs to the demands of those before it. All samples of a survey share one characteristic length
+/// and one working mode.
+void add_demand(const ConfigValue& table, const Demand& own, Demand& demand) {
+  if (own.needs_jacobian()) {
+    if (demand.needs_jacobian() && own.characteristic_length != demand.characteristic_length)
+      throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
+    demand.characteristic_length = own.characteristic_length;
+  }
+  if (own.needs_inertia()) {
+    if (demand.needs_inertia() && own.mode != demand.mode)
+      throw table.refusal("the inertia is asked for in two different working modes, " + demand.mode + " and " +
+                          own.mode + "; a survey has one (name another [[region]] for the other)");
+    demand.mode = own.mode;
+  }
+  for (const PoseQuantity* const quantity : own.fields) demand.add(*quantity);
+}
+
+/// The survey that an entry reads: 0 the workspace's, k that of the k-th region, which `region = ".."` names.
+std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, const StudyDraft& draft) {
+  const auto named = table.find("region");
+  if (!named) return 0;
+  if (!entry.uses_workspace)
+    throw named->refusal("the objective " + entry.name + " reads no survey, so it has no region");
+  const auto names = names_of(draft.parts.regions);
+  if (names.empty()) throw named->refusal("the study names no [[region]]");
+  return static_cast<std::size_t>(std::ranges::find(names, named->word(names)) - names.begin()) + 1;
+}
+
+/// Refuses an entry that the mechanism cannot serve.
+template <class Entry>
+void expect_served(const ConfigValue& table, const Entry& entry, const StudyDraft& draft) {
+  if (const Unsupported reason = entry.refusal(*draft.parts.mechanism)) throw table.find("type")->refusal(*reason);
+}
+
+/// What an [[objective]], [[constraint]] or [[report]] made from an entry of the catalogue of objectives has in common.
+/// It is listed in `entries`, without its role.
+NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, std::vector<StudyEntry>& entries,
+                             StudyDraft& draft) {
+  const Options options = read_options(table, entry.options);
+  const std::string name = entry_name(table, default_name(entry, options), entries);
+  entries.push_back({entry.name, name, "", entry.options, options});
+  expect_served(table, entry, draft);
+  const std::size_t survey = survey_read(table, entry, draft);
+  Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
+  const EntryContext context{*draft.parts.mechanism, region ? region->plan : draft.parts.plan, options,
+                             draft.parts.regions, draft.study.motions};
+  return table.explained([&]() -> NamedQuantity {
+    Demand own;
+    entry.demand(context, own);
+    add_demand(table, own, region ? region->demand : draft.parts.demand);
+    return {.name = name,
+            .unit = entry.unit(context),
+            .meaning = entry.detail ? entry.detail(context) : entry.meaning,
+            .direction = entry.direction,
+            .quantity = entry.make(context),
+            .survey = survey,
+            .uses_workspace = entry.reads(context),
+            .range = entry.range(context)};
+  });
+}
+
+/// [[objective]], or a [[report]].
+void read_objective(const ConfigValue& table, StudyDraft& draft, bool optimised) {
+  const auto& catalogue = draft.catalogues.objectives;
+  const ObjectiveEntry& entry = *find_named(catalogue, type_of(table, "type", names_of(catalogue)));
+  std::vector<std::string> keys = {"type", "name", "region"};
+  if (optimised) keys.insert(keys.begin() + 2, "direction");
+  allow_options(table, keys, entry.options);
+  auto& entries = optimised ? draft.study.objectives : draft.study.reports;
+  NamedQuantity made = make_objective(table, entry, entries, draft);
+  std::string role = in_unit(made.unit);
+  if (optimised) {
+    if (const auto direction = table.find("direction"))
+      made.direction =
+          direction->word({"minimise", "maximise"}) == "maximise" ? Direction::maximise : Direction::minimise;
+    role = (made.direction == Direction::maximise ? "maximise, " : "minimise, ") + role;
+  }
+  entries.back().role = role;
+  (optimised ? draft.parts.objectives : draft.parts.reports).push_back(std::move(made));
+}
+
+/// An objective as a constraint: its value has a least or a greatest allowed value.
+void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entry, StudyDraft& draft) {
+  allow_options(table, {"type", "name", "min", "max", "region"}, entry.options);
+  const auto least = table.find("min"), greatest = table.find("max");
+  if (!least && !greatest)
+    throw table.refusal("the objective " + entry.name + " becomes a constraint by min = .. or max = ..; give one");
+  if (least && greatest)
+    throw table.refusal("found both min and max; a constraint has one of them (write two [[constraint]] tables)");
+  NamedQuantity made = make_objective(table, entry, draft.study.constraints, draft);
+  const double bound = (least ? least : greatest)->number(made.unit);
+  (least ? made.least : made.greatest) = bound;
+  const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
+  made.meaning = "margin of " + role + ": " + made.meaning;
+  draft.study.constraints.back().role = role;
+  // Those that read no survey come first: they may save it.
+  (entry.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
+}
+
+/// A constraint that gives a margin, of the design alone or of its survey.
+void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
+  auto specs = entry.options(draft.info());
+  allow_options(table, {"type", "name"}, specs);
+  expect_served(table, entry, draft);
+  // The margin's unit may follow from some options and be that of others, which are read after it is known.
+  auto first = specs;
+  std::erase_if(first, [](const OptionSpec& spec) { return spec.unit == kUnitOfEntry; });
+  Options options = read_options(table, first);
+  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions,
+                             draft.study.motions};
+  NamedQuantity made;
+  made.name = entry_name(table, entry.name, draft.study.constraints);
+  table.explained([&] {
+    made.unit = entry.unit(context);
+    specs = with_entry_unit(std::move(specs), made.unit);
+    options = read_options(table, specs);
+    made.quantity = entry.make(context);
+    if (entry.name == kMotionConstraint)
+      draft.parts.followed.push_back({motion_of(context).name, motion_of(context).motion, mode_of(context)});
+    made.meaning = entry.detail ? entry.detail(context) : entry.meaning;
+    made.uses_workspace = entry.needs_workspace && entry.needs_workspace(context);
+    Demand own;
+    entry.demand(context, own);
+    add_demand(table, own, draft.parts.demand);
+  });
+  draft.study.constraints.push_back({entry.name, made.name, "margin >= 0, " + in_unit(made.unit), specs, options});
+  (made.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
+}
+
+/// "motion-cycle" for a motion called cycle; letters that names of constraints cannot have are dashes.
+std::string implied_name(const std::string& motion, const std::vector<StudyEntry>& before) {
+  std::string name = std::string(kMotionConstraint) + "-" + motion;
+  for (char& letter : name)
+    if (std::string(kLetters).find(letter) == std::string::npos) letter = '-';
+  while (find_named(before, name)) name += "-2";
+  return name;
+}
+
+/// Adds the constraint that a motion keeps every limit of a pose: once per motion that entries name, and per working
+/// mode; not where the study has it already or does not want it.
+void add_motion_constraints(StudyDraft& draft) {
+  const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, kMotionConstraint);
+  if (!entry || draft.implied == ImpliedConstraints::left_out) return;
+  struct Use {
+    std::int64_t samples = 0;  ///< the most that an entry looks at
+    std::vector<std::string> names;
+  };
+  Study& study = draft.study;
+  for (const NamedMotion& named : study.motions) {
+    std::map<std::string, Use> by_mode;
+    bool is_stated = contains(study.unfollowed_motions, named.name);
+    for (const auto* const list : {&study.objectives, &study.constraints, &study.reports})
+      for (const StudyEntry& user : *list) {
+        if (!user.options.has("motion") || user.options.word("motion") != named.name) continue;
+        is_stated = is_stated || user.type == kMotionConstraint;
+        const std::string mode = user.options.has("mode") ? user.options.word("mode") : draft.info().modes.front();
+        Use& use = by_mode[mode];
+        use.samples = std::max(use.samples, user.options.integer("samples"));
+        if (!contains(use.names, user.name)) use.names.push_back(user.name);
+      }
+    if (is_stated) continue;
+    for (const auto& [mode, use] : by_mode) {
+      auto specs = entry->options(draft.info());
+      Options options = default_options(specs);
+      options.set("motion", named.name);
+      options.set("samples", use.samples);
+      if (mode != draft.info().modes.front()) options.set("mode", mode);
+      const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions, study.motions};
+      NamedQuantity made{.name = implied_name(named.name, study.constraints),
+                         .unit = entry->unit(context),
+                         .meaning = entry->detail(context),
+                         .quantity = entry->make(context),
+                         .uses_workspace = false};
+      const std::string role = "margin >= 0, " + in_unit(made.unit) + ", because of " + join(use.names, " and ");
+      study.constraints.push_back({entry->name, made.name, role, std::move(specs), options});
+      draft.parts.design_margins.push_back(std::move(made));
+      draft.parts.followed.push_back({named.name, named.motion, mode});
+    }
+  }
+}
+
+void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
+  const MechanismInfo& info = draft.info();
+  const auto specs = entry.options(info);
+  allow_options(table, {"type"}, specs);
+  expect_served(table, entry, draft);
+  const Options options = read_options(table, specs);
+  LimitSpec& all = draft.parts.plan.limits;
+  const LimitSpec own = table.explained([&] { return entry.limits(info, options); });
+  std::vector<std::string> set;
+  for (std::size_t i = 0; i < info.limits.size(); ++i) {
+    if (!own.given[i] && !own.derived[i]) continue;
+    std::string& origin = draft.study.limit_origins[i];
+    if (!origin.empty())
+      throw table.refusal("the threshold " + info.limits[i].name + " is set here and in " + origin + "; set it once");
+    origin = table.place().key + " " + entry.name + " (" + table.line() + ")";
+    all.given[i] = own.given[i];
+    all.derived[i] = own.derived[i];
+    set.push_back(info.limits[i].name);
+  }
+  const std::string role = set.empty() ? "sets no threshold" : "cuts the workspace by " + join(set);
+  draft.study.constraints.push_back({entry.name, entry.name, role, specs, options});
+}
+
+/// Reads each [[constraint]] of the wanted level; objectives' names count as design level.
+void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level) {
+  std::vector<ConstraintEntry> entries = draft.catalogues.constraints;
+  for (const DesignMarginInfo& test : design_tests_of(*draft.parts.mechanism))  // a file's mechanism has its own
+    if (!find_named(entries, test.name)) entries.push_back(design_test(test.name, test.meaning));
+  std::vector<std::string> names = names_of(entries);
+  for (const auto& name : names_of(draft.catalogues.objectives))
+    if (!contains(names, name)) names.push_back(name);
+  for (const auto& table : tables_of(root, "constraint")) {
+    const std::string& type = type_of(table, "type", names);
+    const ConstraintEntry* const entry = find_named(entries, type);
+    if ((entry && entry->pose_level()) != pose_level) continue;
+    if (pose_level)
+      read_pose_constraint(table, *entry, draft);
+    else if (entry)
+      read_margin_constraint(table, *entry, draft);
+    else
+      read_bounded_objective(table, *find_named(draft.catalogues.objectives, type), draft);
+  }
+}
+
+/// A threshold that is called like a parameter takes its place, so such a parameter may not vary beside it.
+void check_thresholds(const ConfigValue& root, const StudyDraft& draft) {
+  const auto variables = root.find("variables");
+  if (!variables) return;
+  const auto& limits = draft.info().limits;
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    if (const auto varied = variables->find(limits[i].name); varied && draft.parts.plan.limits.given[i])
+      throw varied->refusal("the threshold " + limits[i].name + " is set in " + draft.study.limit_origins[i] +
+                            "; it can either vary or be set");
+}
+
+}  // namespace
+
+void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
+  read_constraints(root, draft, true);
+  override_limits(draft);
+  check_thresholds(root, draft);
+}
+
+void read_quantities(const ConfigValue& root, StudyDraft& draft) {
+  for (const auto& table : tables_of(root, "objective")) read_objective(table, draft, true);
+  read_constraints(root, draft, false);
+  for (const auto& table : tables_of(root, "report")) read_objective(table, draft, false);
+  add_motion_constraints(draft);
+}
+
+}  // namespace pkm

@@ -1,0 +1,96 @@
+// [[stage]]: optimisers with their options, checked against what the problem asks of them.
+
+#include "engine/config/sections.hpp"
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+/// Names what the optimiser can do and what the study asks for.
+Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, const DesignProblem& problem) {
+  const ProblemParts& parts = problem.parts();
+  const Capabilities can = entry.capabilities(options);
+  const std::string who = "the optimiser " + entry.name + " " +
+                          (options.has("algorithm") ? "with the algorithm " + options.word("algorithm") + " " : "");
+  if (parts.space.dimension() == 0) return who + "needs variables, but the study's [variables] is empty";
+  if (can.min_objectives > 0 && parts.objectives.empty())
+    return who + "needs an objective, but the study has no [[objective]]";
+  if (parts.objectives.size() < can.min_objectives)
+    return who + "needs " + std::to_string(can.min_objectives) + " objectives, but the study has one (" +
+           parts.objectives.front().name + ")";
+  if (parts.objectives.size() > can.max_objectives)
+    return who + "handles " + std::to_string(can.max_objectives) + " objective" + (can.max_objectives == 1 ? "" : "s") +
+           ", but the study has " + std::to_string(parts.objectives.size()) + " (" + join(names_of(parts.objectives)) +
+           ")" + (*can.too_many_objectives_hint ? std::string("; ") + can.too_many_objectives_hint : "");
+  const auto margins = names_of(parts.design_margins, parts.workspace_margins);
+  if (!can.constraints && !margins.empty()) return who + "handles no constraints, but the study has " + join(margins);
+  for (const auto& variable : parts.space.variables())
+    if (!can.discrete && variable.step > 0)
+      return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
+  if (can.needs_gradient)
+    if (const Unsupported reason = problem.no_derivatives()) return who + "needs derivatives, but " + *reason;
+  return {};
+}
+
+/// What an option has that the study does not give, beside the others as they are.
+std::optional<OptionValue> default_of(const std::string& name, const OptimiserEntry& entry, const Options& options,
+                                      const DesignSpace& space) {
+  Options others;
+  for (const auto& [other, value] : options.values())
+    if (other != name) others.set(other, value);
+  if (entry.resolve) entry.resolve(others, space);
+  const auto found = others.values().find(name);
+  return found == others.values().end() ? std::nullopt : std::optional(found->second);
+}
+
+/// The designs that a stage is to start from lie in the space that it searches.
+void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpace& space) {
+  for (const OptionSpec& spec : stage.specs) {
+    if (spec.field_names != FieldNames::variables || !table.has(spec.name)) continue;
+    for (const NamedNumbers& design : stage.options.list(spec.name))
+      for (const Variable& v : space.variables())
+        if (const auto given = design.find(v.name);
+            given != design.end() && !(given->second >= v.lower && given->second <= v.upper))
+          throw table.find(spec.name)->refusal(v.name + " = " + with_unit(given->second, v.unit) +
+                                               " lies outside the variable's bounds " + with_unit(v.lower, v.unit) +
+                                               " to " + with_unit(v.upper, v.unit));
+  }
+}
+
+}  // namespace
+
+void read_stages(const ConfigValue& root, StudyDraft& draft) {
+  const auto names = names_of(draft.catalogues.optimisers);
+  const auto tables = tables_of(root, "stage");
+  if (tables.empty()) root.at("stage", "at least one [[stage]] with optimiser = one of " + join(names));
+  for (const auto& table : tables) {
+    const OptimiserEntry& entry = *find_named(draft.catalogues.optimisers, type_of(table, "optimiser", names));
+    allow_options(table, {"optimiser"}, entry.options);
+    // The unit of the objective that an optimiser works on; of several there is no one unit.
+    const auto& objectives = draft.parts.objectives;
+    auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");
+    for (auto& spec : specs) {
+      if (spec.field_names == FieldNames::variables)
+        for (const Variable& v : draft.parts.space.variables()) spec.fields.emplace_back(v.name, v.unit);
+      if (spec.field_names != FieldNames::objectives) continue;
+      for (const NamedQuantity& o : objectives) spec.fields.emplace_back(o.name, o.unit);
+      if (spec.kind == OptionKind::word) spec.choices = names_of(objectives);
+    }
+    Stage stage{
+        std::make_shared<const OptimiserEntry>(entry), read_options(table, specs), nullptr, table.place().line, {}};
+    if (const Unsupported reason = refusal_of(entry, stage.options, *draft.study.problem))
+      throw table.find("optimiser")->refusal(*reason);
+    if (entry.capabilities(stage.options).needs_front && draft.study.stages.empty())
+      throw table.find("start")->refusal(
+          "start = \"pareto\" needs a [[stage]] before it that finds a front, such as nsga2");
+    if (entry.resolve) entry.resolve(stage.options, draft.parts.space);
+    for (auto& spec : specs)
+      if (!spec.initial) spec.initial = default_of(spec.name, entry, stage.options, draft.parts.space);
+    stage.specs = std::move(specs);
+    check_designs(table, stage, draft.parts.space);
+    stage.optimiser = table.explained([&] { return entry.make(stage.options, draft.parts.space); });
+    draft.study.stages.push_back(std::move(stage));
+  }
+}
+
+}  // namespace pkm

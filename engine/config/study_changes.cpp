@@ -1,0 +1,98 @@
+// [[override]]: what the command line changed in a study.
+
+#include "engine/config/study_changes.hpp"
+
+#include <array>
+
+#include "engine/config/assignments.hpp"
+#include "engine/config/sections.hpp"
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+struct Change {
+  const char* key;
+  std::vector<std::string> StudyChanges::*lists;
+};
+constexpr std::array<Change, 3> kChanges = {
+    {{"set", &StudyChanges::set}, {"limit", &StudyChanges::limit}, {"cells", &StudyChanges::cells}}};
+constexpr const char* kHeading = "\n# from the command line\n[[override]]\n";
+
+}  // namespace
+
+std::vector<std::string> StudyChanges::arguments() const {
+  std::vector<std::string> words;
+  for (const auto& [key, lists] : kChanges)
+    for (const std::string& list : this->*lists) words.insert(words.end(), {std::string("--") + key, list});
+  return words;
+}
+
+std::string with_changes(const std::string& text, const StudyChanges& changes) {
+  std::string all = text + kHeading;
+  for (const auto& [key, lists] : kChanges)
+    if (const auto& words = changes.*lists; !words.empty())
+      all += std::string(key) + " = [\"" + join(words, "\", \"") + "\"]\n";
+  return all;
+}
+
+std::string without_changes(const std::string& text) { return text.substr(0, text.find(kHeading)); }
+
+std::vector<LimbParameter> limb_parameters(const StudyChanges& changes) {
+  std::vector<LimbParameter> all;
+  const auto add = [&all](const std::string& name) {
+    const auto own = limb_parameter(name, {"", 0, "--set"});
+    if (own && std::ranges::find(all, name, &LimbParameter::name) == all.end()) all.push_back(*own);
+  };
+  for (const std::string& name : assigned_names(changes.set)) add(name);
+  std::ranges::for_each(changes.limb_parameters, add);
+  return all;
+}
+
+void read_overrides(const ConfigValue& root, StudyDraft& draft) {
+  for (const ConfigValue& table : tables_of(root, "override")) {
+    StudyChanges& changes = draft.changes.emplace_back();
+    table.allow({"set", "limit", "cells"});
+    for (const auto& [key, lists] : kChanges)
+      if (const auto words = table.find(key))
+        for (const ConfigValue& each : words->elements("a list of texts, such as [\"L0=2\"]"))
+          (changes.*lists).push_back(each.text("text such as \"L0=2\""));
+  }
+}
+
+void override_parameters(const ConfigValue& root, StudyDraft& draft) {
+  const auto variables = root.find("variables");
+  for (const StudyChanges& changes : draft.changes) {
+    const auto given = parse_assignments(changes.set, "--set", assignable_parameters(draft.info()));
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      if (!given[i]) continue;
+      const std::string& name = draft.info().parameters[i].name;
+      if (variables && variables->find(name))
+        throw ConfigError({"", 0, "--set"}, name + ", which varies",
+                          "a parameter that is not among the [variables] of " + draft.study.file_name);
+      draft.parts.parameters[i] = *given[i];
+    }
+    for (const auto& [name, value] : changes.recorded_parameters) {
+      const Parameter& p = *find_named(draft.info().parameters, name);
+      if (!(value >= p.lower && value <= p.upper))
+        throw ConfigError({draft.study.file_name, 0, name}, "the recorded value " + with_unit(value, p.unit),
+                          range_text("a number", p.lower, p.upper, p.unit));
+      draft.parts.parameters[static_cast<std::size_t>(&p - draft.info().parameters.data())] = value;
+    }
+  }
+}
+
+void override_limits(StudyDraft& draft) {
+  LimitSpec& limits = draft.parts.plan.limits;
+  for (const StudyChanges& changes : draft.changes) {
+    const auto given = parse_assignments(changes.limit, "--limit", assignable_limits(draft.info()));
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (given[i]) {
+        limits.given[i] = given[i];
+        limits.derived[i] = false;
+        draft.study.limit_origins[i] = "--limit";
+      }
+  }
+}
+
+}  // namespace pkm

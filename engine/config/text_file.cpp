@@ -1,0 +1,30 @@
+#include "engine/config/text_file.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/core/error.hpp"
+
+namespace pkm {
+
+std::string read_text_file(const std::string& path, const std::string& expected) {
+  constexpr std::size_t kLargestFile = std::size_t{16} << 20;  // bytes
+  std::error_code unreadable;                                  // is told below, by the attempt to open
+  if (std::filesystem::is_directory(path, unreadable)) throw ConfigError({path, 0, ""}, "a folder", expected);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw ConfigError({path, 0, ""}, std::string("no readable file (") + std::strerror(errno) + ")", expected);
+  std::string text;
+  std::array<char, std::size_t{1} << 14> piece;  // memory in proportion to the file: clearing 16 MiB takes 10 ms
+  do {
+    file.read(piece.data(), piece.size());
+    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+    if (text.size() > kLargestFile) throw ConfigError({path, 0, ""}, "more than 16 MiB", expected);
+  } while (file);
+  return text;
+}
+
+}  // namespace pkm

@@ -1,0 +1,81 @@
+// Vectorised (SIMD) evaluation of one stage of a program, for a batch of up to kRow input values.
+//
+// The innermost loop of a workspace analysis evaluates the same steps for many values of one coordinate. Here, every
+// step is carried out for the whole batch before the next step follows (structure of arrays): a register of the stage
+// becomes a row of kRow numbers, one per input value. Registers of the earlier stages stay single numbers.
+#pragma once
+
+#include <new>
+#include <span>
+#include <vector>
+
+#include "engine/core/instruction_set.hpp"
+#include "engine/expression/program.hpp"
+
+namespace pkm::expression {
+
+inline constexpr std::size_t kRow = 64;  ///< batch size: numbers of a row, a multiple of kLanes
+
+/// Allocator that aligns to cache lines, so that no SIMD load or store crosses a line boundary: this saves a quarter of
+/// the time of a workspace analysis.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+
+  CacheLineAllocator() = default;
+  template <class U>
+  explicit CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kLine)); }
+  void deallocate(T* memory, std::size_t) { ::operator delete(memory, kLine); }
+  bool operator==(const CacheLineAllocator&) const = default;
+};
+using Rows = std::vector<double, CacheLineAllocator<double>>;
+
+/// An operand of a step: a row of this stage, or a single number of an earlier stage.
+struct Operand {
+  std::uint32_t index = 0;  ///< slot of a row; register of a number
+  bool row = false;         ///< true: a row
+};
+
+/// A step of the stage. A plain struct, so that the kernels, which are compiled once per instruction set, share no
+/// inline functions with other files.
+struct BatchStep {
+  Code code;
+  Rule<double> rule;
+  std::uint8_t count;
+  std::uint32_t to;  ///< slot of the result
+  Operand from[kMaxArguments];
+};
+
+/// Runs steps for the first `count` values of each row.
+/// @param count  a multiple of kLanes, at most kRow
+/// @param rows   slot k is rows[k * kRow], ..., rows[k * kRow + kRow - 1]
+template <InstructionSet set>
+void run_batch(std::span<const BatchStep> steps, const double* registers, double* rows, std::size_t count);
+
+/// A stage prepared for batches; immutable. Rows are assigned to slots by their lifetime: a slot is reused after the
+/// last step that reads its row, so that few slots are needed and they stay in the cache.
+class BatchStage {
+ public:
+  /// @param retained  registers of the stage that the caller or a later stage reads; their slots are not reused
+  BatchStage(const Program& program, std::size_t stage, std::span<const std::uint32_t> retained);
+
+  std::size_t slots() const { return slots_; }
+  /// Location of a retained register or an input of the stage (a row), or of a register of an earlier stage (a number).
+  Operand operand(std::uint32_t program_register) const { return operands_[program_register]; }
+  /// Slots of the stage's inputs, which the caller fills before run().
+  const std::vector<std::uint32_t>& inputs() const { return inputs_; }
+
+  /// Runs the stage for `count` values; parameters as run_batch().
+  /// @param registers  of the earlier stages
+  void run(const double* registers, double* rows, std::size_t count) const;
+
+ private:
+  std::vector<BatchStep> steps_;
+  std::vector<Operand> operands_;  ///< by register of the program
+  std::vector<std::uint32_t> inputs_;
+  std::size_t slots_ = 0;
+};
+
+}  // namespace pkm::expression

@@ -1,0 +1,84 @@
+#include "engine/expression/derivative.hpp"
+
+namespace pkm::expression {
+namespace {
+
+Term choose(const Term& condition, const Term& x, const Term& y) {
+  if (x.node() == y.node()) return x;
+  return {x.graph(), x.graph().apply(choice(), std::array{condition.node(), x.node(), y.node()})};
+}
+Term is_less(const Term& x, const Term& y) { return call(operation("<"), x, y); }
+
+}  // namespace
+
+Term Rates::of(Node root) {
+  for (const Node node : graph_.reachable({&root, 1}, [&](Node each) { return rates_.contains(each); }))
+    rates_.emplace(node, differentiate(node).node());
+  return cached(root);
+}
+
+Term Rates::differentiate(Node node) {
+  const Entry entry = graph_[node];
+  const Term zero(graph_, 0.0), one(graph_, 1.0), f(graph_, node);
+  if (!entry.operation) return zero;
+  const auto argument = [&](std::size_t i) { return Term(graph_, entry.arguments[i]); };
+  const auto rate = [&](std::size_t i) { return cached(entry.arguments[i]); };
+  const Term x = argument(0), dx = rate(0);
+  bool is_constant = true;
+  for (const Node each : entry.operands()) is_constant = is_constant && cached(each).is(0);
+  if (is_constant) return zero;
+
+  switch (entry.operation->code) {
+    case Code::add:
+      return dx + rate(1);
+    case Code::subtract:
+      return dx - rate(1);
+    case Code::multiply:
+      return dx * argument(1) + x * rate(1);
+    case Code::divide:
+      return (dx - f * rate(1)) / argument(1);
+    case Code::negate:
+      return -dx;
+    case Code::sqrt:
+      return dx * 0.5 / f;
+    case Code::abs:
+      return choose(is_less(x, zero), -dx, dx);
+    case Code::min:
+      return choose(is_less(argument(1), x), rate(1), dx);
+    case Code::max:
+      return choose(is_less(x, argument(1)), rate(1), dx);
+    case Code::other:
+      break;
+  }
+  if (entry.operation == &choice()) return choose(x, rate(1), rate(2));
+  if (entry.operation == &turn()) return dx;
+  const std::string& name = entry.operation->name;
+  if (name == "sin") return cos(x) * dx;
+  if (name == "cos") return -(sin(x) * dx);
+  if (name == "tan") return (one + f * f) * dx;
+  if (name == "asin") return dx / sqrt(one - x * x);
+  if (name == "acos") return -(dx / sqrt(one - x * x));
+  if (name == "atan") return dx / (one + x * x);
+  if (name == "atan2") {  // atan2(y, x): y is the first argument
+    const Term& y = x;
+    const Term abscissa = argument(1);
+    return (abscissa * dx - y * rate(1)) / (abscissa * abscissa + y * y);
+  }
+  if (name == "sinh") return call(operation("cosh"), x) * dx;
+  if (name == "cosh") return call(operation("sinh"), x) * dx;
+  if (name == "tanh") return (one - f * f) * dx;
+  if (name == "exp") return f * dx;
+  if (name == "log") return dx / x;
+  if (name == "log10") return dx / (x * call(operation("log"), Term(graph_, 10.0)));
+  if (name == "^") {
+    const Term y = argument(1);
+    // Fold y - 1 here if that is exact: then it is a constant even in graphs without constants (without_numbers).
+    const double reduced = graph_[y.node()].number - 1;
+    const bool exact = graph_[y.node()].is_number() && reduced + 1 == graph_[y.node()].number;
+    const Term by_base = dx.is(0) ? zero : y * call(operation("^"), x, exact ? Term(graph_, reduced) : y - one) * dx;
+    return rate(1).is(0) ? by_base : by_base + f * call(operation("log"), x) * rate(1);
+  }
+  return zero;  // piecewise constant: comparisons, && and ||, sign
+}
+
+}  // namespace pkm::expression

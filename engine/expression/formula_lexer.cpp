@@ -1,0 +1,146 @@
+#include "engine/expression/formula_lexer.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+#include "engine/core/catalogue.hpp"
+
+namespace pkm::expression {
+namespace {
+
+constexpr const char* kPiName = "pi";
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_name_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
+
+/// "; expected one of a, b; did you mean 'a'?"
+std::string expected_names(const std::string& name, const std::vector<std::string>& known) {
+  return "; expected one of " + join(known) + did_you_mean(name, known);
+}
+
+class Lexer {
+ public:
+  Lexer(const std::string& text, const Names& names) : text_(text), names_(names) {}
+
+  std::vector<Token> run() {
+    for (std::size_t i = 0; i < text_.size();)
+      if (is_blank(text_[i])) {
+        ++i;
+      } else {
+        tokens_.push_back(token_at(i));
+        i += tokens_.back().text.size();
+      }
+    if (tokens_.empty()) refuse(text_, "is empty");
+    if (!open_.empty()) refuse(text_, "does not close the " + quote("(", tokens_[open_.back().token].position));
+    return std::move(tokens_);
+  }
+
+ private:
+  struct Parenthesis {
+    std::size_t token;  ///< its index
+    bool calls;         ///< begins the arguments of a function; else it only groups
+    std::size_t commas = 0;
+  };
+
+  Token token_at(std::size_t i) {
+    const std::string_view rest = std::string_view(text_).substr(i);
+    if (is_digit(rest[0]) || (rest[0] == '.' && rest.size() > 1 && is_digit(rest[1]))) return number_at(i);
+    if (is_name_start(rest[0])) return name_at(i);
+    std::size_t length = 1;
+    for (const char* pair : {"<=", ">=", "==", "!=", "&&", "||"})
+      if (rest.starts_with(pair)) length = 2;
+    if (length == 2) return {.text = text_.substr(i, length), .position = i};
+    if (rest[0] == '(') {
+      open_.push_back({tokens_.size(), !tokens_.empty() && tokens_.back().function});
+    } else if (rest[0] == ')') {
+      close(i);
+    } else if (rest[0] == ',') {
+      if (open_.empty()) refuse(text_, "has a " + quote(",", i) + "; a formula has one value");
+      if (!open_.back().calls) refuse(text_, "has a " + quote(",", i) + " outside of a function's arguments");
+      ++open_.back().commas;
+    } else if (rest[0] == '=') {
+      refuse(text_, "has a " + quote("=", i) + "; formulas have no assignment, compare with '=='");
+    } else if (std::string_view("+-*/^<>?:").find(rest[0]) == std::string_view::npos) {
+      // include the continuation bytes of a UTF-8 character
+      while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0U) == 0x80U) ++length;
+      refuse(text_, "has a " + quote(rest.substr(0, length), i) + ", which is not allowed in formulas");
+    }
+    return {.text = text_.substr(i, 1), .position = i};
+  }
+
+  /// std::from_chars does not depend on the locale.
+  Token number_at(std::size_t i) const {
+    double number = 0;
+    const auto [end, error] = std::from_chars(text_.data() + i, text_.data() + text_.size(), number);
+    const std::string word(text_.data() + i, end);
+    if (error != std::errc{}) refuse(text_, "has a number out of range: " + quote(word, i));
+    return {.text = word, .position = i, .number = number};
+  }
+
+  Token name_at(std::size_t i) const {
+    const auto begin = text_.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto end = std::find_if_not(begin, text_.end(), is_name_part);
+    const auto next = std::find_if_not(end, text_.end(), is_blank);
+    const bool calls = next != text_.end() && *next == '(';
+
+    const std::string word(begin, end);
+    const Operation* function = find_named(functions(), word);
+    const auto index = names_.find(word);
+    const bool known = index || word == kPiName;
+    if (calls && known) refuse(text_, "calls " + quote(word, i) + ", which is not a function; multiply with '*'");
+    if (calls && !function)
+      refuse(text_, "calls the unknown function " + quote(word, i) + expected_names(word, names_of(functions())));
+    if (!calls && function) refuse(text_, "has no arguments in parentheses after the function " + quote(word, i));
+    if (!calls && !known) {
+      std::vector<std::string> names = names_.all();
+      names.emplace_back(kPiName);
+      refuse(text_, "has the unknown name " + quote(word, i) + expected_names(word, names));
+    }
+    if (calls) return {.text = word, .position = i, .function = function};
+    if (word == kPiName) return {.text = word, .position = i, .number = kPi};
+    return {.text = word, .position = i, .name = index};
+  }
+
+  void close(std::size_t i) {
+    if (open_.empty()) refuse(text_, "has a " + quote(")", i) + " without its '('");
+    const auto [token, calls, commas] = open_.back();
+    open_.pop_back();
+    if (!calls) return;
+    const Token& call = tokens_[token - 1];
+    const std::size_t given = token + 1 == tokens_.size() ? 0 : commas + 1, wanted = call.function->arguments;
+    if (wanted == 0 ? given >= 2 : given == wanted) return;
+    refuse(text_, "gives " + std::to_string(given) + (given == 1 ? " argument" : " arguments") + " to " +
+                      quote(call.text, call.position) + ", which takes " +
+                      (wanted == 0 ? "two or more" : std::to_string(wanted)));
+  }
+
+  const std::string& text_;
+  const Names& names_;
+  std::vector<Token> tokens_;
+  std::vector<Parenthesis> open_;
+};
+
+}  // namespace
+
+bool may_be_name(const std::string& name) {
+  return !name.empty() && is_name_start(name[0]) && std::ranges::all_of(name, is_name_part) && name != kPiName &&
+         !find_named(functions(), name);
+}
+
+void refuse(const std::string& text, const std::string& error) {
+  constexpr std::size_t kMaxShown = 60;  // characters of the formula
+  std::string shown = text.size() > kMaxShown ? text.substr(0, kMaxShown - 3) + "..." : text;
+  std::ranges::replace_if(shown, is_blank, ' ');
+  throw std::invalid_argument("the formula \"" + shown + "\" " + error);
+}
+
+std::string quote(std::string_view token, std::size_t position) {
+  return "'" + std::string(token) + "' at character " + std::to_string(position + 1);
+}
+
+std::vector<Token> tokenize(const std::string& text, const Names& names) { return Lexer(text, names).run(); }
+
+}  // namespace pkm::expression

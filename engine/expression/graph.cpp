@@ -1,0 +1,188 @@
+#include "engine/expression/graph.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "engine/core/error.hpp"
+#include "engine/math/hash.hpp"
+
+namespace pkm::expression {
+namespace {
+
+bool commutes(const Operation& operation) { return operation.code == Code::add || operation.code == Code::multiply; }
+
+}  // namespace
+
+std::size_t Graph::Hash::operator()(const Entry& entry) const {
+  Fnv1a hash;
+  hash.add(std::bit_cast<std::uint64_t>(entry.number));
+  hash.add(reinterpret_cast<std::uintptr_t>(entry.operation));
+  hash.add(static_cast<std::uint64_t>(entry.input));
+  for (const Node node : entry.operands()) hash.add(static_cast<std::uint64_t>(node));
+  return static_cast<std::size_t>(hash.value() ^ (hash.value() >> 32U));
+}
+
+bool Graph::Equal::operator()(const Entry& x, const Entry& y) const {
+  return x.operation == y.operation && x.input == y.input && std::ranges::equal(x.operands(), y.operands()) &&
+         std::bit_cast<std::uint64_t>(x.number) == std::bit_cast<std::uint64_t>(y.number);
+}
+
+Node Graph::intern(const Entry& entry) {
+  const auto [found, is_new] = nodes_.try_emplace(entry, static_cast<Node>(entries_.size()));
+  if (is_new) entries_.push_back(entry);
+  return found->second;
+}
+
+Node Graph::number(double value) { return intern({.number = value}); }
+
+Node Graph::input(std::size_t position, Groups group) {
+  return intern({.input = static_cast<std::int32_t>(position), .groups = group});
+}
+
+/// base^exponent as products by repeated squaring, in the order of operation ^, which gives the same bits.
+Node Graph::power(Node base, int exponent) {
+  const Operation& times = operation("*");
+  const auto product = [&](Node x, Node y) { return apply(times, std::array{x, y}); };
+  if (exponent == 0) return number(1);
+  if (exponent < 0) return apply(operation("/"), std::array{number(1), power(base, -exponent)});
+  Node result{};
+  for (bool first = true; exponent > 0; exponent /= 2) {
+    if (exponent % 2 != 0) {
+      result = first ? base : product(result, base);
+      first = false;
+    }
+    if (exponent > 1) base = product(base, base);
+  }
+  return result;
+}
+
+Node Graph::apply(const Operation& operation, std::span<const Node> arguments) {
+  if (operation.arguments == 0 && arguments.size() > 2) {
+    Node result = arguments[0];
+    for (const Node next : arguments.subspan(1)) result = apply(operation, std::array{result, next});
+    return result;
+  }
+  PKM_EXPECTS(arguments.size() <= kMaxArguments && !arguments.empty());
+  Entry entry{.operation = &operation, .count = static_cast<std::uint8_t>(arguments.size())};
+  std::ranges::copy(arguments, entry.arguments.begin());
+  if (commutes(operation)) std::sort(entry.arguments.begin(), entry.arguments.begin() + 2);
+  bool are_constants = true;
+  double values[kMaxArguments] = {};
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Entry& argument = (*this)[arguments[i]];
+    entry.groups |= argument.groups;
+    are_constants = are_constants && argument.is_number();
+    values[i] = argument.number;
+  }
+  if (are_constants) return number(std::get<Rule<double>>(operation.rules)(values, arguments.size()));
+  if (operation.name == "^" && (*this)[entry.arguments[1]].is_number() && values[1] == std::nearbyint(values[1]) &&
+      std::fabs(values[1]) <= 1024)
+    return power(entry.arguments[0], static_cast<int>(values[1]));
+  return intern(entry);
+}
+
+std::vector<Node> Graph::reachable(std::span<const Node> roots, const std::function<bool(Node)>& is_known) const {
+  std::vector<bool> seen(entries_.size());
+  std::vector<Node> all;
+  const auto visit = [&](Node node) {
+    const auto index = static_cast<std::size_t>(node);
+    if (seen[index]) return;
+    seen[index] = true;
+    if (!is_known || !is_known(node)) all.push_back(node);
+  };
+  for (const Node root : roots) visit(root);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const Node operand : (*this)[all[i]].operands()) visit(operand);
+  std::ranges::sort(all);  // by index, which is a topological order
+  return all;
+}
+
+namespace {
+
+/// Copies the nodes of `order` into a new graph, whose constants and inputs are created by `leaf`, and replaces `roots`
+/// by their copies.
+/// @param order  nodes that include everything `roots` depend on, operands first
+/// @param leaf   leaf(new graph, contents of the old node, new nodes by index of the old ones)
+template <class Leaf>
+Graph rebuild(const Graph& graph, const std::vector<Node>& order, std::vector<Node>& roots, const Leaf& leaf) {
+  Graph made;
+  std::vector<Node> copies(graph.size());
+  for (const Node node : order) {
+    const Entry& entry = graph[node];
+    std::array<Node, kMaxArguments> arguments{};
+    for (std::size_t i = 0; i < entry.count; ++i) arguments[i] = copies[static_cast<std::size_t>(entry.arguments[i])];
+    copies[static_cast<std::size_t>(node)] = entry.operation
+                                                 ? made.apply(*entry.operation, std::span(arguments).first(entry.count))
+                                                 : leaf(made, entry, std::as_const(copies));
+  }
+  for (Node& root : roots) root = copies[static_cast<std::size_t>(root)];
+  return made;
+}
+
+/// The replacement of a node; std::nullopt if it is not an input or is not to be replaced.
+template <class T>
+std::optional<T> replacement(const Entry& entry, std::span<const std::optional<T>> by_input) {
+  const auto input = static_cast<std::size_t>(entry.input);
+  return entry.input >= 0 && input < by_input.size() ? by_input[input] : std::nullopt;
+}
+Node copy_leaf(Graph& made, const Entry& entry) {
+  return entry.is_number() ? made.number(entry.number)
+                           : made.input(static_cast<std::size_t>(entry.input), entry.groups);
+}
+
+}  // namespace
+
+Graph substitute_numbers(const Graph& graph, std::span<const std::optional<double>> numbers, std::vector<Node>& roots) {
+  return rebuild(graph, graph.reachable(roots), roots, [&](Graph& made, const Entry& entry, const auto&) {
+    const auto number = replacement(entry, numbers);
+    return number ? made.number(*number) : copy_leaf(made, entry);
+  });
+}
+
+Graph without_numbers(const Graph& graph, std::size_t first, const std::function<Groups(std::size_t)>& group,
+                      std::vector<double>& numbers, std::vector<Node>& roots) {
+  return rebuild(graph, graph.reachable(roots), roots, [&](Graph& made, const Entry& entry, const auto&) {
+    auto input = static_cast<std::size_t>(entry.input);
+    if (entry.is_number()) {
+      input = first + numbers.size();
+      numbers.push_back(entry.number);
+    }
+    return made.input(input, group(input));
+  });
+}
+
+Graph substitute_nodes(const Graph& graph, std::span<const std::optional<Node>> nodes, std::vector<Node>& roots) {
+  std::vector<Node> wanted;
+  for (const auto& node : nodes)
+    if (node) wanted.push_back(*node);
+  std::vector<Node> order = graph.reachable(wanted);  // before the nodes that use the replacements
+  const std::vector<Node> others = graph.reachable(roots);
+  order.insert(order.end(), others.begin(), others.end());
+  return rebuild(graph, order, roots, [&](Graph& made, const Entry& entry, const std::vector<Node>& copies) {
+    const auto node = replacement(entry, nodes);
+    return node ? copies[static_cast<std::size_t>(*node)] : copy_leaf(made, entry);
+  });
+}
+
+Term call(const Operation& function, const Term& x) {
+  return {x.graph(), x.graph().apply(function, std::array{x.node()})};
+}
+Term call(const Operation& function, const Term& x, const Term& y) {
+  return {x.graph(), x.graph().apply(function, std::array{x.node(), y.node()})};
+}
+
+Term operator+(const Term& x, const Term& y) { return x.is(0) ? y : y.is(0) ? x : call(operation("+"), x, y); }
+Term operator-(const Term& x, const Term& y) {
+  if (x.node() == y.node()) return {x.graph(), 0.0};
+  return y.is(0) ? x : x.is(0) ? -y : call(operation("-"), x, y);
+}
+Term operator*(const Term& x, const Term& y) {
+  if (x.is(0) || y.is(0)) return {x.graph(), 0.0};
+  return x.is(1) ? y : y.is(1) ? x : x.is(-1) ? -y : y.is(-1) ? -x : call(operation("*"), x, y);
+}
+Term operator/(const Term& x, const Term& y) { return y.is(1) || x.is(0) ? x : call(operation("/"), x, y); }
+Term operator-(const Term& x) { return call(negation(), x); }
+
+}  // namespace pkm::expression

@@ -1,0 +1,14 @@
+// Incremental interval evaluation of selected steps of a program, for callers that need few of its outputs at a time.
+#pragma once
+
+#include "engine/expression/program.hpp"
+
+namespace pkm::expression {
+
+/// Runs those steps whose results are not up to date.
+/// @param now    version of the inputs, increased by the caller whenever they change
+/// @param since  by register: version for which it was computed last; updated
+void run_steps(std::span<const Program::Step> steps, std::uint64_t now, std::span<std::uint64_t> since,
+               std::span<Interval> registers);
+
+}  // namespace pkm::expression

@@ -1,0 +1,365 @@
+#include "engine/expression/polynomial_form.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "engine/math/scalar.hpp"
+
+namespace pkm::expression {
+namespace {
+
+constexpr std::size_t kMaxCoefficients = 5;  // of intermediate polynomials: squares of quadratics have degree four
+// Limits of the nesting depth and of the number of nodes visited; beyond them a constraint is not converted.
+constexpr int kMaxDepth = 500, kMaxSteps = 100'000;
+
+/// Coefficients of a polynomial in z, constant term first; empty: 0.
+using Coefficients = std::vector<Term>;
+
+/// A + B sqrt(Q).
+struct RadicalForm {
+  Coefficients A, B;
+  Node radicand{};  ///< Q as a node; meaningful if B is not 0
+  Coefficients Q;
+};
+
+Coefficients trimmed(Coefficients p) {
+  while (!p.empty() && p.back().is(0)) p.pop_back();
+  return p;
+}
+Coefficients sum(const Coefficients& p, const Coefficients& q) {
+  Coefficients r = p.size() >= q.size() ? p : q;
+  const Coefficients& shorter = p.size() >= q.size() ? q : p;
+  for (std::size_t i = 0; i < shorter.size(); ++i) r[i] = p[i] + q[i];
+  return trimmed(r);
+}
+Coefficients negated(Coefficients p) {
+  for (Term& c : p) c = -c;
+  return p;
+}
+std::optional<Coefficients> product(const Coefficients& p, const Coefficients& q) {
+  if (p.empty() || q.empty()) return Coefficients();
+  if (p.size() + q.size() - 1 > kMaxCoefficients) return {};
+  Coefficients r(p.size() + q.size() - 1, Term(p[0].graph(), 0.0));
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (std::size_t j = 0; j < q.size(); ++j) r[i + j] = r[i + j] + p[i] * q[j];
+  return trimmed(r);
+}
+
+class NormalForm {
+ public:
+  NormalForm(Graph& graph, Groups z, std::size_t degree, bool squares)
+      : graph_(graph), z_(z), degree_(degree), squares_(squares) {}
+
+  /// The radical form of a node; std::nullopt if it has none. Depth-first with an explicit stack and a cache, because a
+  /// node may depend on 10^5 others and reach them along several paths.
+  std::optional<RadicalForm> form(Node root) {
+    std::vector<Node> stack = {root};
+    while (!stack.empty()) {
+      const Node node = stack.back();
+      const std::vector<Node> operands = forms_.contains(node) ? std::vector<Node>() : operands_of_form(node);
+      const auto next = std::ranges::find_if(operands, [&](Node operand) { return !forms_.contains(operand); });
+      if (next != operands.end()) {
+        stack.push_back(*next);
+        continue;
+      }
+      stack.pop_back();
+      if (!forms_.contains(node)) forms_.emplace(node, combine_forms(node));
+    }
+    return forms_.at(root);
+  }
+
+  /// The constraint node >= 0 in conjunctive normal form.
+  std::optional<std::vector<Clause>> clauses(Node node) {
+    if (depth_ > kMaxDepth || ++steps_ > kMaxSteps) return {};
+    ++depth_;
+    auto found = convert(node);
+    --depth_;
+    return found;
+  }
+
+ private:
+  using Clauses = std::optional<std::vector<Clause>>;
+
+  /// The operands whose radical forms combine_forms() needs.
+  std::vector<Node> operands_of_form(Node node) const {
+    const Entry& entry = graph_[node];
+    if ((entry.groups & z_) == 0 || !entry.operation) return {};
+    switch (entry.operation->code) {
+      case Code::add:
+      case Code::subtract:
+      case Code::multiply:
+        return {entry.arguments[0], entry.arguments[1]};
+      case Code::divide:
+        if ((graph_[entry.arguments[1]].groups & z_) != 0) return {};
+        [[fallthrough]];
+      case Code::negate:
+      case Code::sqrt:
+        return {entry.arguments[0]};
+      default:
+        return {};
+    }
+  }
+  /// The radical form of a node from the cached forms of its operands.
+  std::optional<RadicalForm> combine_forms(Node node) {
+    const Entry entry = graph_[node];
+    if ((entry.groups & z_) == 0) return RadicalForm{.A = trimmed({Term(graph_, node)}), .B = {}, .Q = {}};
+    if (entry.input >= 0) return RadicalForm{.A = {Term(graph_, 0.0), Term(graph_, 1.0)}, .B = {}, .Q = {}};
+    switch (entry.operation->code) {
+      case Code::add:
+      case Code::subtract: {
+        auto x = forms_.at(entry.arguments[0]), y = forms_.at(entry.arguments[1]);
+        if (!x || !y) return {};
+        if (entry.operation->code == Code::subtract) y = RadicalForm{negated(y->A), negated(y->B), y->radicand, y->Q};
+        if (!x->B.empty() && !y->B.empty() && x->radicand != y->radicand) return {};
+        const RadicalForm& radical = x->B.empty() ? *y : *x;
+        return RadicalForm{sum(x->A, y->A), sum(x->B, y->B), radical.radicand, radical.Q};
+      }
+      case Code::negate: {
+        const auto& x = forms_.at(entry.arguments[0]);
+        if (!x) return {};
+        return RadicalForm{negated(x->A), negated(x->B), x->radicand, x->Q};
+      }
+      case Code::multiply:
+        return times(forms_.at(entry.arguments[0]), forms_.at(entry.arguments[1]));
+      case Code::divide: {
+        if ((graph_[entry.arguments[1]].groups & z_) != 0) return {};
+        const Term divisor(graph_, entry.arguments[1]);
+        auto x = forms_.at(entry.arguments[0]);
+        if (!x) return {};
+        for (Coefficients* p : {&x->A, &x->B})
+          for (Term& c : *p) c = c / divisor;
+        return x;
+      }
+      case Code::sqrt: {
+        const auto& x = forms_.at(entry.arguments[0]);
+        if (!x || !x->B.empty()) return {};
+        return RadicalForm{.A = {}, .B = {Term(graph_, 1.0)}, .radicand = entry.arguments[0], .Q = x->A};
+      }
+      default:
+        return {};
+    }
+  }
+
+  Clauses convert(Node node) {
+    const Entry entry = graph_[node];
+    if ((entry.groups & z_) != 0 && entry.operation) {
+      const Code code = entry.operation->code;
+      if (code == Code::min) return conjunction(clauses(entry.arguments[0]), clauses(entry.arguments[1]));
+      if (code == Code::max) return disjunction(clauses(entry.arguments[0]), clauses(entry.arguments[1]));
+      if (code == Code::subtract) {
+        const Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+        if (const auto inner = inside_of_abs(y))  // x - |u|
+          return conjunction(clauses((x - *inner).node()), clauses((x + *inner).node()));
+        if (const auto inner = inside_of_abs(x))  // |u| - y
+          return disjunction(clauses((*inner - y).node()), clauses((-*inner - y).node()));
+      }
+    }
+    if (auto found = clauses_of_form(node)) return found;
+    return squares_ ? clauses_of_squares(node) : std::nullopt;
+  }
+
+  /// Sufficient test: true if a node is >= 0 for all inputs, because it is composed of non-negative constants, squares,
+  /// roots and absolute values by sums, products and quotients.
+  bool is_nonnegative(Node root) const {
+    std::vector<Node> stack = {root};
+    for (int steps = 0; !stack.empty(); ++steps) {
+      if (steps > kMaxSteps) return false;
+      const Entry& entry = graph_[stack.back()];
+      stack.pop_back();
+      const Code code = entry.operation ? entry.operation->code : Code::other;
+      if (entry.is_number() ? entry.number >= 0 : code == Code::sqrt || code == Code::abs) continue;
+      if (code == Code::multiply && entry.arguments[0] == entry.arguments[1]) continue;
+      if (code != Code::multiply && code != Code::add && code != Code::divide) return false;
+      stack.insert(stack.end(), entry.operands().begin(), entry.operands().end());
+    }
+    return true;
+  }
+
+  /// A + B sqrt(Q) >= 0, where B does not depend on z.
+  Clauses clauses_of_form(Node node) {
+    const auto f = form(node);
+    if (!f) return {};
+    if (f->B.empty()) return clause({f->A});
+    const auto BB = product(f->B, f->B), AA = product(f->A, f->A);
+    if (!BB || !AA) return {};
+    const auto BBQ = product(*BB, f->Q);
+    if (!BBQ) return {};
+    if (f->B.size() != 1) return {};
+    const Term b = f->B[0];
+    if (is_nonnegative((-b).node()) ||
+        (graph_[b.node()].operation == &negation() && is_nonnegative(graph_[b.node()].arguments[0])))
+      return conjunction(clause({f->A}), clause({sum(*AA, negated(*BBQ))}));
+    if (is_nonnegative(b.node())) return clause({f->A, sum(*BBQ, negated(*AA))});
+    if (!squares_) return {};
+    // the sign of b is unknown: the two cases b >= 0 and b <= 0, in conjunctive normal form
+    const Coefficients R = sum(*AA, negated(*BBQ));
+    return conjunction(conjunction(clause({f->A, f->B}), clause({f->A, negated(R)})), clause({f->B, R}));
+  }
+
+  bool is_independent(const Term& x) const { return (graph_[x.node()].groups & z_) == 0; }
+
+  /// Y - u^2, where Y does not depend on z.
+  struct SquareBound {
+    Term Y, u;
+  };
+  std::optional<SquareBound> square_bound(Node node) {
+    const Entry entry = graph_[node];
+    if (!entry.operation || entry.operation->code != Code::subtract) return {};
+    const Term Y(graph_, entry.arguments[0]);
+    const Entry square = graph_[entry.arguments[1]];
+    if (!is_independent(Y) || !square.operation || square.operation->code != Code::multiply ||
+        square.arguments[0] != square.arguments[1])
+      return {};
+    return SquareBound{Y, Term(graph_, square.arguments[0])};
+  }
+  /// X + sqrt(P) or X - sqrt(P), where X does not depend on z.
+  struct RootSum {
+    Term X;
+    bool plus;  ///< the sign of the root
+    Node P;
+  };
+  std::optional<RootSum> root_sum(Node node, int depth = 0) {
+    const Entry entry = graph_[node];
+    if (!entry.operation || depth > kMaxDepth) return {};
+    const Code code = entry.operation->code;
+    if (code == Code::sqrt) return RootSum{Term(graph_, 0.0), true, entry.arguments[0]};
+    if (code != Code::add && code != Code::subtract && code != Code::negate) return {};
+    const Term x(graph_, entry.arguments[0]);
+    if (code == Code::negate) {
+      const auto inner = root_sum(x.node(), depth + 1);
+      return inner ? std::optional(RootSum{-inner->X, !inner->plus, inner->P}) : std::nullopt;
+    }
+    const Term y(graph_, entry.arguments[1]);
+    const bool adds = code == Code::add;
+    if (is_independent(y)) {
+      const auto inner = root_sum(x.node(), depth + 1);
+      return inner ? std::optional(RootSum{adds ? inner->X + y : inner->X - y, inner->plus, inner->P}) : std::nullopt;
+    }
+    const auto inner = is_independent(x) ? root_sum(y.node(), depth + 1) : std::nullopt;
+    return inner ? std::optional(RootSum{adds ? x + inner->X : x - inner->X, inner->plus == adds, inner->P})
+                 : std::nullopt;
+  }
+
+  /// |u| <= sqrt(Y), as two constraints linear in u.
+  Clauses abs_at_most(const Term& u, const Term& Y) {
+    const Entry entry = graph_[Y.node()];
+    const bool is_square =
+        entry.operation && entry.operation->code == Code::multiply && entry.arguments[0] == entry.arguments[1];
+    const Term root = is_square ? abs(Term(graph_, entry.arguments[0])) : sqrt(Y);
+    return conjunction(clauses((root - u).node()), clauses((root + u).node()));
+  }
+  /// |u| >= sqrt(Y), or Y <= 0.
+  Clauses abs_at_least(const Term& u, const Term& Y) {
+    const Term root = sqrt(Y);
+    return disjunction(clauses((-Y).node()), disjunction(clauses((u - root).node()), clauses((-u - root).node())));
+  }
+  /// Bounds of a quotient or an angle by a c that does not depend on z: N / w - c >= 0 and c - N / w >= 0, where w is a
+  /// root, acos(q) - c >= 0 and c - acos(q) >= 0.
+  Clauses clauses_of_quotient(Node node) {
+    const Entry entry = graph_[node];
+    if (!entry.operation || entry.operation->code != Code::subtract) return {};
+    Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+    const bool is_lower = is_independent(y);  // c is a lower bound
+    if (!is_lower && !is_independent(x)) return {};
+    const Term c = is_lower ? y : x, value = is_lower ? x : y;
+    const Entry of = graph_[value.node()];
+    if (!of.operation) return {};
+    if (of.operation == &operation("acos")) {
+      const Term cosine(graph_, of.arguments[0]), pi(graph_, kPi);
+      const Term difference = is_lower ? cos(c) - cosine : cosine - cos(c);
+      return is_lower
+                 ? disjunction(clauses((-c).node()), conjunction(clauses((pi - c).node()), clauses(difference.node())))
+                 : conjunction(clauses(c.node()), disjunction(clauses((c - pi).node()), clauses(difference.node())));
+    }
+    if (of.operation->code != Code::divide || graph_[of.arguments[1]].operation != &operation("sqrt")) return {};
+    const Term N(graph_, of.arguments[0]), w(graph_, of.arguments[1]);
+    return clauses((is_lower ? N - c * w : c * w - N).node());
+  }
+
+  /// Y - u^2 >= 0 and constraints that contain sqrt(Y - u^2). They are factored: expanding u^2 would double the degree.
+  Clauses clauses_of_squares(Node node) {
+    if (const auto found = square_bound(node)) return abs_at_most(found->u, found->Y);
+    if (auto found = clauses_of_quotient(node)) return found;
+    const auto root = root_sum(node);
+    if (!root) return {};
+    const auto inside = square_bound(root->P);
+    if (!inside) return {};
+    const Clauses X = clauses(root->X.node());
+    const Term Y = inside->Y - root->X * root->X;
+    return root->plus ? disjunction(X, abs_at_most(inside->u, Y)) : conjunction(X, abs_at_least(inside->u, Y));
+  }
+
+  /// u if the term is |u|, or u / d if it is |u| / d with d >= 0; std::nullopt otherwise, or if it is constant in z.
+  std::optional<Term> inside_of_abs(const Term& term, int depth = 0) {
+    const Entry entry = graph_[term.node()];
+    if (!entry.operation || (entry.groups & z_) == 0) return {};
+    if (entry.operation->code == Code::abs) return Term(graph_, entry.arguments[0]);
+    if (entry.operation->code != Code::divide || !is_nonnegative(entry.arguments[1])) return {};
+    if (depth > kMaxDepth) return {};
+    const auto inner = inside_of_abs(Term(graph_, entry.arguments[0]), depth + 1);
+    if (!inner) return {};
+    return *inner / Term(graph_, entry.arguments[1]);
+  }
+
+  std::optional<RadicalForm> times(const std::optional<RadicalForm>& x, const std::optional<RadicalForm>& y) {
+    if (!x || !y) return {};
+    if (!x->B.empty() && !y->B.empty() && x->radicand != y->radicand) return {};
+    const RadicalForm& radical = x->B.empty() ? *y : *x;
+    const auto AA = product(x->A, y->A), BB = product(x->B, y->B), AB = product(x->A, y->B), BA = product(x->B, y->A);
+    if (!AA || !BB || !AB || !BA) return {};
+    const auto BBQ = product(*BB, radical.Q);
+    if (!BBQ) return {};
+    return RadicalForm{sum(*AA, *BBQ), sum(*AB, *BA), radical.radicand, radical.Q};
+  }
+
+  /// One clause; std::nullopt if the degree of a polynomial is too high.
+  Clauses clause(const std::vector<Coefficients>& polynomials) {
+    Clause made;
+    for (const Coefficients& p : polynomials) {
+      if (p.size() > degree_ + 1) return {};
+      made.emplace_back().c.fill(graph_.number(0));
+      std::ranges::transform(p, made.back().c.begin(), &Term::node);
+    }
+    return {{made}};
+  }
+  static Clauses conjunction(Clauses x, const Clauses& y) {
+    if (!x || !y) return {};
+    x->insert(x->end(), y->begin(), y->end());
+    return x;
+  }
+  /// By the distributive law.
+  static Clauses disjunction(const Clauses& x, const Clauses& y) {
+    if (!x || !y) return {};
+    std::vector<Clause> all;
+    for (const Clause& a : *x)
+      for (const Clause& b : *y) {
+        all.push_back(a);
+        all.back().insert(all.back().end(), b.begin(), b.end());
+      }
+    return all;
+  }
+
+  Graph& graph_;
+  Groups z_;
+  std::size_t degree_;
+  bool squares_;
+  std::unordered_map<Node, std::optional<RadicalForm>> forms_;  ///< cache
+  int depth_ = 0, steps_ = 0;                                   ///< of clauses()
+};
+
+}  // namespace
+
+std::optional<std::vector<Clause>> polynomial_clauses(Graph& graph, Node f, Groups z, std::size_t degree,
+                                                      bool squares) {
+  return NormalForm(graph, z, degree, squares).clauses(f);
+}
+
+std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z) {
+  const auto form = NormalForm(graph, z, kMaxCoefficients - 1, false).form(f);
+  if (!form || !form->B.empty()) return {};
+  std::vector<Node> coefficients;
+  for (const Term& c : form->A) coefficients.push_back(c.node());
+  return coefficients;
+}
+
+}  // namespace pkm::expression

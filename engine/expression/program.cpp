@@ -1,0 +1,137 @@
+#include "engine/expression/program.hpp"
+
+#include <cmath>
+#include <unordered_map>
+
+#include "engine/expression/interval_steps.hpp"
+
+namespace pkm::expression {
+
+Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<const Groups> stages)
+    : stages_(std::max<std::size_t>(stages.size(), 1)) {
+  std::unordered_map<Node, std::uint32_t> registers;
+  const auto stage_for = [&](Groups groups) {
+    std::size_t stage = 0;
+    for (Groups known = stages.empty() ? groups : stages[0]; stage + 1 < stages_.size() && (groups & ~known) != 0;)
+      known |= stages[++stage];
+    return stage;
+  };
+  for (const Node node : graph.reachable(outputs)) {
+    const Entry& entry = graph[node];
+    const auto to = static_cast<std::uint32_t>(registers.size());
+    registers.emplace(node, to);
+    const std::size_t stage = stage_for(entry.groups);
+    stage_of_.push_back(entry.is_number() ? -1 : static_cast<int>(stage));
+    if (entry.operation) {
+      Step step{
+          .operation = entry.operation, .to = to, .from = {}, .count = entry.count, .code = entry.operation->code};
+      for (std::size_t i = 0; i < entry.count; ++i) step.from[i] = registers.at(entry.arguments[i]);
+      stages_[stage].steps.push_back(step);
+    } else if (entry.is_number()) {
+      numbers_.emplace_back(to, entry.number);
+    } else {
+      stages_[stage].inputs.push_back({static_cast<std::uint32_t>(entry.input), to});
+    }
+  }
+  for (const Node node : outputs) outputs_.push_back(registers.at(node));
+  registers_ = registers.size();
+}
+
+namespace {
+
+/// Fast path: evaluates the four basic operations and negation without an indirect call.
+/// @return false if the operation is another one, or if the value is not finite: then Operation::rules must be used,
+///         which also set the derivatives of such a value
+template <class S>
+bool run_inline(const Program::Step& step, std::span<S> registers) {
+  const S& x = registers[step.from[0]];
+  const auto keep = [&](const S& result) {
+    if (!std::isfinite(value_of(result))) return false;
+    registers[step.to] = result;
+    return true;
+  };
+  switch (step.code) {
+    case Code::add:
+      return keep(x + registers[step.from[1]]);
+    case Code::subtract:
+      return keep(x - registers[step.from[1]]);
+    case Code::multiply:
+      return keep(x * registers[step.from[1]]);
+    case Code::divide:
+      return keep(x / registers[step.from[1]]);
+    case Code::negate:
+      return keep(-x);
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+template <class S>
+void Program::run(std::size_t stage, std::span<S> registers) const {
+  for (const Step& step : stages_[stage].steps) {
+    if (run_inline(step, registers)) continue;
+    S arguments[kMaxArguments];
+    for (std::size_t i = 0; i < step.count; ++i) arguments[i] = registers[step.from[i]];
+    registers[step.to] = std::get<Rule<S>>(step.operation->rules)(arguments, step.count);
+  }
+}
+
+namespace {
+
+/// Evaluates a step with intervals. A product of a register with itself is computed as a square, whose enclosure is
+/// tighter: for x in [-1, 2] it is [0, 4] instead of [-2, 4].
+[[gnu::always_inline]] inline void run_step(const Program::Step& step, std::span<Interval> registers) {
+  const Interval& x = registers[step.from[0]];
+  const Interval& y = registers[step.from[1]];
+  Interval& to = registers[step.to];
+  switch (step.code) {
+    case Code::add:
+      to = x + y;
+      break;
+    case Code::subtract:
+      to = x - y;
+      break;
+    case Code::multiply:
+      to = step.from[0] == step.from[1] ? square(x) : x * y;
+      break;
+    case Code::divide:
+      to = x / y;
+      break;
+    case Code::negate:
+      to = -x;
+      break;
+    case Code::sqrt:
+      to = sqrt(x);
+      break;
+    default: {
+      Interval arguments[kMaxArguments];
+      for (std::size_t i = 0; i < kMaxArguments; ++i)
+        if (i < step.count) arguments[i] = registers[step.from[i]];
+      to = std::get<Rule<Interval>>(step.operation->rules)(arguments, step.count);
+    }
+  }
+}
+
+}  // namespace
+
+[[gnu::flatten]] void run_steps(std::span<const Program::Step> steps, std::uint64_t now, std::span<std::uint64_t> since,
+                                std::span<Interval> registers) {
+  for (const Program::Step& step : steps) {
+    if (since[step.to] == now) continue;
+    run_step(step, registers);
+    since[step.to] = now;
+  }
+}
+
+template <>
+[[gnu::flatten]] void Program::run(std::size_t stage, std::span<Interval> registers) const {
+  for (const Step& step : stages_[stage].steps) run_step(step, registers);
+}
+
+template void Program::run(std::size_t, std::span<double>) const;
+template void Program::run(std::size_t, std::span<Dual4>) const;
+template void Program::run(std::size_t, std::span<Taylor>) const;
+
+}  // namespace pkm::expression

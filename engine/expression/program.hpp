@@ -1,0 +1,88 @@
+// Straight-line programs compiled from an expression graph, with loop-invariant code motion.
+//
+// The nodes that the outputs depend on become steps in topological order, each of which writes one register. The steps
+// are split into stages, one per nested loop (parameters, outer coordinate, ..., innermost coordinate): a step belongs
+// to the outermost stage that provides all inputs it depends on. What depends on the parameters alone is therefore
+// computed once, what depends on the outer coordinate once per value of that coordinate, and so on.
+//
+// One program serves all scalars: double, dual numbers, Taylor coefficients, intervals; batch_stage.hpp evaluates a
+// stage with SIMD instructions.
+//
+// Reference: Aho, Lam, Sethi, Ullman, "Compilers", 2nd ed., section 9.1.7 (loop-invariant code motion).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "engine/expression/graph.hpp"
+
+namespace pkm::expression {
+
+/// Immutable and thread-safe: the registers belong to the caller. Every node in use has its own register.
+class Program {
+ public:
+  struct Step {
+    const Operation* operation;
+    std::uint32_t to;                               ///< register of the result
+    std::array<std::uint32_t, kMaxArguments> from;  ///< registers of the arguments
+    std::uint8_t count;                             ///< number of arguments
+    Code code;                                      ///< operation->code
+  };
+  struct Input {
+    std::uint32_t position;  ///< index among the graph's inputs
+    std::uint32_t to;        ///< register
+  };
+  struct Stage {
+    std::vector<Input> inputs;  ///< provided by this stage
+    std::vector<Step> steps;
+  };
+
+  Program() = default;
+  /// Compiles the nodes that `outputs` depend on.
+  /// @param stages  groups of inputs that each nested loop provides, outermost loop first; inputs of other groups
+  ///                belong to the last stage. Empty: one stage
+  Program(const Graph& graph, std::span<const Node> outputs, std::span<const Groups> stages = {});
+
+  std::size_t registers() const { return registers_; }
+  const std::vector<Stage>& stages() const { return stages_; }
+  const std::vector<std::uint32_t>& outputs() const { return outputs_; }  ///< register of each output
+  const std::vector<int>& stage_of() const { return stage_of_; }          ///< by register; -1: constant
+
+  /// Writes the constants to their registers; running stages does not change them.
+  /// @param registers  size registers()
+  template <class S>
+  void start(std::span<S> registers) const {
+    for (const auto& [to, value] : numbers_) registers[to] = S(value);
+  }
+  /// Runs a stage; start() and all earlier stages must have been run. S is double, Dual4, Taylor or Interval.
+  /// @param inputs  one value per input of the graph; only those of this stage are read
+  template <class S>
+  void run(std::size_t stage, std::span<const S> inputs, std::span<S> registers) const {
+    for (const Input& input : stages_[stage].inputs) registers[input.to] = inputs[input.position];
+    run(stage, registers);
+  }
+  /// Runs a stage whose inputs are in their registers already.
+  template <class S>
+  void run(std::size_t stage, std::span<S> registers) const;
+  /// Runs start() and all stages.
+  template <class S>
+  void run_all(std::span<const S> inputs, std::span<S> registers) const {
+    start<S>(registers);
+    for (std::size_t stage = 0; stage < stages_.size(); ++stage) run<S>(stage, inputs, registers);
+  }
+  template <class S>
+  void run_all(std::span<const S> inputs, std::vector<S>& registers) const {
+    registers.resize(registers_);
+    run_all<S>(inputs, std::span<S>(registers));
+  }
+
+ private:
+  std::vector<Stage> stages_;
+  std::vector<std::pair<std::uint32_t, double>> numbers_;  ///< register and value of each constant
+  std::vector<std::uint32_t> outputs_;
+  std::vector<int> stage_of_;
+  std::size_t registers_ = 0;
+};
+
+}  // namespace pkm::expression

@@ -1,0 +1,256 @@
+#include "engine/generic/bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/expression/derivative.hpp"
+#include "engine/generic/clearance.hpp"
+#include "engine/generic/pose_conditions.hpp"
+#include "engine/workspace/bounds/pose_box.hpp"
+#include "engine/workspace/bounds/proof.hpp"
+
+namespace pkm::generic {
+namespace {
+
+using bounds::Conditions, bounds::Ranges;
+
+void refuse_clearance_of_boxes(const Model& model, const LimitSpec& limits) {
+  refuse_clearance(model, limits,
+                   "has no certain bounds under a clearance (clearance_min), because the distance of two links is no "
+                   "formula of the pose; take voxels, or leave the clearance out");
+}
+
+/// The graph's inputs for a design, with the held coordinates where they are held.
+std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
+                                const WorkspacePlan& plan, std::size_t mode) {
+  const std::vector<Interval> design(parameters.begin(), parameters.end());
+  std::vector<Interval> inputs(e.model.inputs.count());
+  e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
+  for (const int coordinate : sweep_of(mechanism.info(), plan).held)
+    inputs[e.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
+        fixed_value(mechanism, parameters, plan, coordinate);
+  return inputs;
+}
+
+}  // namespace
+
+void refuse_bounds(const Model& model, const WorkspacePlan& plan) {
+  refuse_clearance_of_boxes(model, plan.limits);
+  for (const int coordinate : sweep_of(model.info, plan).held) {
+    const FixedCoordinate held = how_fixed(plan, coordinate);
+    const bool integrated = held.kind == FixedCoordinate::Kind::integrated;
+    if (integrated || (held.kind == FixedCoordinate::Kind::listed && held.values.size() > 1))
+      throw std::invalid_argument(
+          "bounds are of one value of " + model.info.coordinates[static_cast<std::size_t>(coordinate)].name +
+          (integrated ? ", which the survey integrates over" : ", of which the survey has several") +
+          ": hold it at a value");
+  }
+}
+
+VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
+                          const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options) {
+  refuse_bounds(e.model, plan);
+  const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
+  const Ranges given = e.search_box(parameters, plan, mode, swept);
+  for (std::size_t i = 0; i < swept.size(); ++i)
+    if (!(given[i][0] < given[i][1])) return {.innermost = swept[i]};
+  for (std::size_t i = 0; i < swept.size(); ++i)
+    if (!std::isfinite(given[i][1] - given[i][0]))
+      throw std::invalid_argument("has no certain bounds over a range of " +
+                                  mechanism.info().coordinates[static_cast<std::size_t>(swept[i])].name +
+                                  " that is longer than the largest double, 1.8e308");
+  const std::vector<Interval> inputs = inputs_of(mechanism, e, parameters, plan, mode);
+  const PoseConditions conditions = pose_conditions(e.model, inputs);
+
+  // each coordinate is tried as the innermost one
+  struct Order {
+    Conditions conditions;
+    Ranges ranges;
+    std::vector<std::size_t> coordinates;  ///< by axis
+  };
+  std::optional<Order> best;
+  double least = 0;
+  for (std::size_t last = swept.size(); last-- > 0;) {
+    std::vector<std::size_t> coordinates, positions;
+    Ranges ranges{};
+    for (std::size_t i = 0; i < swept.size(); ++i) {
+      const std::size_t axis = i == swept.size() - 1 ? last : i + (i >= last);
+      coordinates.push_back(static_cast<std::size_t>(swept[axis]));
+      positions.push_back(e.model.inputs.coordinate(coordinates.back()));
+      ranges[i] = given[axis];
+    }
+    Order order{Conditions(conditions.graph, conditions.all, positions, inputs), ranges, coordinates};
+    if (order.conditions.size() > bounds::kMostConditions)
+      throw std::invalid_argument("bounds are of at most " + std::to_string(bounds::kMostConditions) +
+                                  " conditions, and mechanism " + mechanism.info().name + " has " +
+                                  std::to_string(order.conditions.size()));
+    BoundsOptions few = options;
+    few.most_boxes = std::min<std::size_t>(options.most_boxes, 1024);
+    const VolumeBounds tried = bounds::volume_bounds(order.conditions, order.ranges, few);
+    if (best && tried.upper - tried.lower >= least) continue;
+    least = tried.upper - tried.lower;
+    best.emplace(std::move(order));
+  }
+  bounds::ProofTree tree;
+  VolumeBounds found = bounds::volume_bounds(best->conditions, best->ranges, options, options.proof ? &tree : nullptr);
+  found.innermost = static_cast<int>(best->coordinates.back());
+  if (!options.proof) return found;
+
+  const MechanismInfo& info = mechanism.info();
+  bounds::Statement statement{.graph = conditions.graph,
+                              .conditions = best->conditions,
+                              .axes = {},
+                              .positions = {},
+                              .ranges = best->ranges,
+                              .inputs = inputs,
+                              .input_names = std::vector<std::string>(inputs.size()),
+                              .title = info.name + ", " + info.title};
+  for (const std::size_t coordinate : best->coordinates) {
+    statement.axes.push_back(info.coordinates[coordinate].name);
+    statement.positions.push_back(e.model.inputs.coordinate(coordinate));
+  }
+  for (std::size_t i = 0; i < info.parameters.size(); ++i) statement.input_names[i] = info.parameters[i].name;
+  for (std::size_t i = 0; i < e.model.inputs.limits; ++i)
+    statement.input_names[e.model.inputs.limit(i)] = "limit " + info.limits[i].name;
+  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
+    statement.input_names[e.model.inputs.coordinate(i)] = info.coordinates[i].name;
+  *options.proof = bounds::proof_text(statement, found, tree);
+  return found;
+}
+
+namespace {
+
+/// The closures' derivatives by the coordinates and by the joints, at the joints that a pose has.
+std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std::vector<Interval>& inputs) {
+  const Inputs& at = model.inputs;
+  std::vector<Node> roots = model.closures;
+  roots.insert(roots.end(), model.joints.begin(), model.joints.end());
+  std::vector<double> numbers;
+  graph = expression::without_numbers(
+      model.graph, inputs.size(), [](std::size_t) { return Groups{1}; }, numbers, roots);
+  inputs.insert(inputs.end(), numbers.begin(), numbers.end());
+  const std::span<const Node> closures = std::span(roots).first(model.closures.size());
+  const std::string det_G = at.joints == at.coordinates ? "det G" : "det(G^T G)";
+  std::vector<bounds::NamedMatrix> matrices = {
+      {"the parallel singularity (" + det_G + " = 0)", at.joints, at.coordinates, {}},
+      {"the serial singularity (det Jq = 0)", at.joints, at.joints, {}}};
+  std::vector<Node> entries;
+  for (bounds::NamedMatrix& matrix : matrices)
+    for (const Node closure : closures)
+      for (std::size_t j = 0; j < matrix.columns; ++j) {
+        const bool by_pose = &matrix == &matrices.front();
+        const Node variable = graph.input(by_pose ? at.coordinate(j) : at.joint(j));
+        matrix.entries.push_back(expression::derivative(graph, closure, variable));
+        entries.push_back(matrix.entries.back());
+      }
+  // joints as formulas of the pose
+  std::vector<std::optional<Node>> joints(at.count());
+  for (std::size_t i = 0; i < at.joints; ++i) joints[at.joint(i)] = roots[closures.size() + i];
+  graph = expression::substitute_nodes(graph, joints, entries);
+  auto entry = entries.begin();
+  for (bounds::NamedMatrix& matrix : matrices)
+    for (Node& node : matrix.entries) node = *entry++;
+  return matrices;
+}
+
+/// The graph's inputs for a design at no pose.
+std::vector<Interval> inputs_of(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
+                                std::size_t mode) {
+  refuse_clearance_of_boxes(e.model, limits);
+  const std::vector<Interval> design(parameters.begin(), parameters.end());
+  std::vector<Interval> inputs(e.model.inputs.count());
+  e.fill_inputs<Interval>(design, limits, mode, inputs);
+  return inputs;
+}
+
+/// Puts a motion's formulas in place of the coordinates. @return  the position of the time among the inputs
+std::size_t put_motion(const Motion& motion, const Inputs& at, Graph& graph, std::vector<Interval>& inputs,
+                       std::vector<Node>& roots) {
+  TimeGraph time(graph, inputs);
+  const std::vector<Node> pose = motion.write(time);
+  std::vector<std::optional<Node>> coordinates(at.coordinate(0) + pose.size());
+  std::ranges::copy(pose, coordinates.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
+  graph = expression::substitute_nodes(graph, coordinates, roots);
+  return time.position;
+}
+
+/// Why singularities are not examined; none: they are.
+Unsupported refuse_jacobians(const Inputs& at) {
+  if (at.joints >= at.coordinates) return {};
+  return "the mechanism has fewer joints (" + std::to_string(at.joints) + ") than coordinates (" +
+         std::to_string(at.coordinates) + "), so that every pose is singular";
+}
+
+bounds::Matrices jacobians_along(const Motion& motion, const Model& model, std::vector<Interval> inputs) {
+  Graph graph;
+  std::vector<bounds::NamedMatrix> named = jacobians(model, graph, inputs);
+  std::vector<Node> entries;
+  for (const auto& matrix : named) entries.insert(entries.end(), matrix.entries.begin(), matrix.entries.end());
+  const std::size_t time = put_motion(motion, model.inputs, graph, inputs, entries);
+  auto entry = entries.begin();
+  for (auto& matrix : named)
+    for (Node& node : matrix.entries) node = *entry++;
+  return {graph, named, {time}, inputs};
+}
+
+}  // namespace
+
+PosesCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const WorkspacePlan& plan,
+                             std::size_t mode, std::span<const std::array<double, 2>> ranges,
+                             const BoundsOptions& options) {
+  std::vector<Interval> inputs = inputs_of(e, parameters, plan.limits, mode);
+  std::vector<std::size_t> axes;
+  for (std::size_t i = 0; i < ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
+  const PoseConditions all = pose_conditions(e.model, inputs);
+  const Conditions conditions(all.graph, all.all, axes, inputs);
+  Graph graph;
+  std::optional<bounds::Matrices> matrices;
+  const Unsupported not_examined = refuse_jacobians(e.model.inputs);
+  if (!not_examined) {
+    const auto named = jacobians(e.model, graph, inputs);
+    matrices.emplace(graph, named, axes, inputs);
+  }
+  PosesCertificate found = bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
+  if (not_examined) found.regular.what = *not_examined;
+  return found;
+}
+
+PosesCertificate certify_motion(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
+                                std::size_t mode, const Motion& motion, const BoundsOptions& options) {
+  const std::vector<Interval> design = inputs_of(e, parameters, limits, mode);
+  PoseConditions all = pose_conditions(e.model, design);
+  std::vector<Node> roots;
+  for (const auto& condition : all.all) roots.push_back(condition.node);
+  std::vector<Interval> inputs = design;
+  const std::size_t time = put_motion(motion, e.model.inputs, all.graph, inputs, roots);
+  for (std::size_t i = 0; i < roots.size(); ++i) all.all[i].node = roots[i];
+  const Conditions conditions(all.graph, all.all, {time}, inputs);
+  std::optional<bounds::Matrices> matrices;
+  const Unsupported not_examined = refuse_jacobians(e.model.inputs);
+  if (!not_examined) matrices = jacobians_along(motion, e.model, design);
+
+  const auto until = [&](double end, const bounds::Matrices* regular) {
+    const std::array<double, 2> times = {0, end};
+    return bounds::certify(conditions, regular, {&times, 1}, options);
+  };
+  PosesCertificate found = until(motion.duration(), matrices ? &*matrices : nullptr);
+  const auto first = [](const PosesFinding& verdict) { return (*verdict.where)[0]; };
+  // an instant at which it is infeasible lies behind the first one
+  double later = motion.duration();
+  while (found.feasible.kind == PosesFinding::Kind::fails && later - first(found.feasible) > 1e-6 * motion.duration()) {
+    later = first(found.feasible);
+    PosesCertificate before = until(later, nullptr);
+    found.boxes += before.boxes;
+    if (before.feasible.kind == PosesFinding::Kind::fails) found.feasible = before.feasible;
+  }
+  if (not_examined) found.regular.what = *not_examined;
+  for (PosesFinding* const verdict : {&found.feasible, &found.regular})
+    if (verdict->where) {
+      verdict->time = first(*verdict);
+      verdict->where = motion.at(*verdict->time).pose;
+    }
+  return found;
+}
+
+}  // namespace pkm::generic

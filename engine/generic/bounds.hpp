@@ -1,0 +1,19 @@
+// What is certain of a description's workspace, by its graph over intervals.
+#pragma once
+
+#include "engine/generic/evaluation.hpp"
+
+namespace pkm::generic {
+
+/// Throws std::invalid_argument with a sentence where there are no bounds of a plan's workspace.
+void refuse_bounds(const Model& model, const WorkspacePlan& plan);
+VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& evaluation, std::span<const double> parameters,
+                          const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options);
+PosesCertificate certify_box(const Evaluation& evaluation, std::span<const double> parameters,
+                             const WorkspacePlan& plan, std::size_t mode, std::span<const std::array<double, 2>> ranges,
+                             const BoundsOptions& options);
+PosesCertificate certify_motion(const Evaluation& evaluation, std::span<const double> parameters,
+                                const LimitSpec& limits, std::size_t mode, const Motion& motion,
+                                const BoundsOptions& options);
+
+}  // namespace pkm::generic

@@ -1,0 +1,46 @@
+// When a place in a section is feasible, by the signs of surfaces there: one bit each, set where the surface is >= 0.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pkm::generic {
+
+using Signs = std::uint64_t;
+inline constexpr std::size_t kMostSurfaces = 64;
+
+/// limbs::CrankRange, by the surfaces' bits.
+struct CrankSigns {
+  Signs at_min, at_max, after_min, before_max, reach;
+  std::uint32_t half_turn;  ///< register
+  bool is_first;            ///< the joint is the first of the two angles that assemble
+};
+
+struct Formula {
+  Signs all = 0;           ///< have to hold
+  std::vector<Signs> any;  ///< of each at least one has to hold
+  std::vector<CrankSigns> cranks;
+
+  bool is_simple() const { return any.empty() && cranks.empty(); }
+  /// @param registers  of the program
+  bool holds(Signs signs, const double* registers) const {
+    if ((signs & all) != all) return false;
+    for (const Signs one_of : any)
+      if ((signs & one_of) == 0) return false;
+    for (const CrankSigns& crank : cranks)
+      if (!holds(crank, signs, registers)) return false;
+    return true;
+  }
+
+ private:
+  static bool holds(const CrankSigns& crank, Signs signs, const double* registers) {
+    const auto is = [&](Signs bits) { return (signs & bits) == bits; };
+    const bool f1 = is(crank.at_min), f2 = is(crank.at_max), p1 = is(crank.after_min), p2 = is(crank.before_max);
+    if (f1 != f2) return crank.is_first ? f1 : f2;
+    if (!is(crank.reach)) return false;
+    const bool half = registers[crank.half_turn] >= 0;
+    return f1 ? (half ? p1 && p2 : p1 || p2) : (half ? !p1 && !p2 : !p1 || !p2);
+  }
+};
+
+}  // namespace pkm::generic

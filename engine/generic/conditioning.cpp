@@ -1,0 +1,133 @@
+#include "engine/generic/conditioning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/SVD>
+
+#include "engine/core/unit.hpp"
+#include "engine/generic/eigen_matrix.hpp"
+#include "engine/generic/lengths.hpp"
+#include "engine/geometry/mixed_units.hpp"
+#include "engine/workspace/pose_quantities.hpp"
+
+namespace pkm::generic {
+namespace {
+
+/// A turn's angular velocity by the rates of three angles about moving axes, inverted: rates for an angular velocity.
+/// Of fewer rotations the rates are the components themselves, for their axes are normal to each other.
+template <class S>
+AxisMatrix<S> rates_of_turns(const Model& model, const Pose<S>& pose) {
+  const std::size_t n = pose.size();
+  AxisMatrix<S> rates = AxisMatrix<S>::identity(n);
+  std::array<std::size_t, 3> turns{};  // there are no more
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (model.turns_about[i]) turns[count++] = i;
+  if (count < 3) return rates;
+  using Fixed3 = Matrix<S, 3, 3>;
+  Fixed3 R = Fixed3::identity(), axes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t axis = *model.turns_about[turns[k]], i = (axis + 1) % 3, j = (axis + 2) % 3;
+    for (std::size_t row = 0; row < 3; ++row) axes(row, k) = R(row, axis);
+    const auto [sine, cosine] = sincos(pose[turns[k]]);
+    Fixed3 turn = Fixed3::identity();
+    turn(i, i) = turn(j, j) = cosine;
+    turn(i, j) = -sine;
+    turn(j, i) = sine;
+    R = R * turn;
+  }
+  const Fixed3 inverse = solve(axes, Fixed3::identity());
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) rates(turns[i], turns[j]) = inverse(i, j);
+  return rates;
+}
+
+/// Least over greatest singular value of A, with derivatives d sigma = u^T dA v.
+template <class S>
+S singular_ratio(const AxisMatrix<S>& A) {
+  constexpr unsigned kVectors = Derivative<S> ? Eigen::ComputeThinU | Eigen::ComputeThinV : 0;
+  const Eigen::JacobiSVD<EigenMatrix> decomposition(eigen(A), kVectors);
+  const auto singular = [&](Eigen::Index k) {
+    S value(decomposition.singularValues()(k));
+    if constexpr (Derivative<S>)
+      for (std::size_t i = 0; i < A.rows(); ++i)
+        for (std::size_t j = 0; j < A.cols(); ++j)
+          value.v = value.v + A(i, j).v * (decomposition.matrixU()(static_cast<Eigen::Index>(i), k) *
+                                           decomposition.matrixV()(static_cast<Eigen::Index>(j), k));
+    return value;
+  };
+  const S greatest = singular(0), least = singular(decomposition.singularValues().size() - 1);
+  return A.rows() >= A.cols() && value_of(greatest) > 0 ? S(least / greatest) : S(0.0);
+}
+
+/// The coordinate of a column that counts.
+std::size_t counted(const Model& model, std::size_t column) {
+  return model.conditioned.empty() ? column : model.conditioned[column];
+}
+template <class S>
+AxisMatrix<S> columns_that_count(const Model& model, const AxisMatrix<S>& J) {
+  if (model.conditioned.empty()) return J;
+  AxisMatrix<S> found(J.rows(), model.conditioned.size());
+  for (std::size_t i = 0; i < found.rows(); ++i)
+    for (std::size_t j = 0; j < found.cols(); ++j) found(i, j) = J(i, model.conditioned[j]);
+  return found;
+}
+
+template <class S>
+bool is_positive(const std::optional<S>& length) {
+  return length && value_of(*length) > 0 && std::isfinite(value_of(*length));
+}
+
+template <class S>
+void check(const MechanismInfo& info, const CharacteristicLengths<S>& lengths) {
+  const auto check_one = [](const char* key, bool is_needed, const std::optional<S>& length) {
+    if (is_needed && length && !is_positive(length))
+      throw std::domain_error(std::string("the conditioning is undefined: ") + key + " is " +
+                              with_unit(value_of(*length), "m") + "; expected a positive length");
+  };
+  check_one("characteristic_length", mixes_units(info.coordinates), lengths.length);
+  check_one("characteristic_radius", mixes_units(info.joints), lengths.radius);
+}
+
+}  // namespace
+
+void check_lengths(const Evaluation& evaluation, std::span<const double> parameters) {
+  check(evaluation.model.info, characteristic_lengths(evaluation, parameters));
+}
+
+template <class S>
+std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths<S>& lengths, const Pose<S>& pose,
+                                 const AxisMatrix<S>& J) {
+  const MechanismInfo& info = model.info;
+  const bool mixed = mixes_units(info.coordinates), mixed_drives = mixes_units(info.joints);
+  if ((mixed && !is_positive(lengths.length)) || (mixed_drives && !is_positive(lengths.radius))) return {};
+  AxisMatrix<S> scaled = columns_that_count<S>(model, AxisMatrix<S>(J * rates_of_turns<S>(model, pose)));
+  for (std::size_t i = 0; i < scaled.rows(); ++i)
+    for (std::size_t j = 0; j < scaled.cols(); ++j) {
+      if (mixed && info.coordinates[counted(model, j)].turns()) scaled(i, j) /= *lengths.length;
+      if (mixed_drives && info.joints[i].turns()) scaled(i, j) *= *lengths.radius;
+      if (!std::isfinite(value_of(scaled(i, j)))) return {};
+    }
+  return singular_ratio<S>(scaled);
+}
+
+template <class S>
+S SampleConditioning::at(const Pose<S>& pose, Room<S>& room) const {
+  rows_.run<S>(pose, room.registers);
+  const Inputs& of = e_.model.inputs;
+  AxisMatrix<S> J(of.joints, of.coordinates);
+  for (std::size_t i = 0; i < J.size(); ++i) J[i] = room.registers[rows_.outputs()[i]];
+  const std::optional<S> found = conditioning_of<S>(e_.model, room.lengths, pose, J);
+  if (found && std::isfinite(value_of(*found))) return *found;
+  check(e_.model.info, room.lengths);
+  return S(kConditioning.without_value);  // J is infinite: the pose is singular
+}
+
+template std::optional<double> conditioning_of(const Model&, const CharacteristicLengths<double>&, const Pose<double>&,
+                                               const AxisMatrix<double>&);
+template double SampleConditioning::at(const Pose<double>&, Room<double>&) const;
+template Dual4 SampleConditioning::at(const Pose<Dual4>&, Room<Dual4>&) const;
+
+}  // namespace pkm::generic

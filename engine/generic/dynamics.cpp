@@ -1,0 +1,142 @@
+#include "engine/generic/dynamics.hpp"
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "engine/core/unit.hpp"
+#include "engine/math/lanes.hpp"
+
+namespace pkm::generic {
+namespace {
+
+/// What a program gives, in the order of its outputs. @param value_of_register  [](std::uint32_t)
+template <class ValueOf>
+class Outputs {
+ public:
+  Outputs(const expression::Program& program, ValueOf value_of_register)
+      : next_(program.outputs().begin()), value_(value_of_register) {}
+  auto operator()() { return value_(*next_++); }
+  template <SmallMatrix M>
+  void fill(M& matrix) {
+    for (auto& element : matrix) element = (*this)();
+  }
+
+ private:
+  std::vector<std::uint32_t>::const_iterator next_;
+  ValueOf value_;
+};
+
+/// @return  whether the pose assembles
+template <class S, class ValueOf>
+bool read(const Inputs& at, std::size_t domains, Outputs<ValueOf> next, PoseDynamics<S>& d) {
+  const std::size_t n = at.coordinates, m = at.joints;
+  d.q = AxisVector<S>(m);
+  next.fill(d.q);
+  bool assembles = std::ranges::all_of(d.q, [](const S& q) { return std::isfinite(value_of(q)); });
+  for (std::size_t i = 0; i < domains; ++i) assembles = assembles & (value_of(next()) >= 0);
+  if (!assembles) return false;
+  d.J = AxisMatrix<S>(m, n);
+  d.J_rate_X = AxisVector<S>(m);
+  d.M_X = AxisMatrix<S>(n, n);
+  d.h_X = d.G_X = AxisVector<S>(n);
+  d.J_wrench = MatrixUpTo<S, 6, kMaxJoints>(6, n);
+  next.fill(d.J);
+  next.fill(d.J_rate_X);
+  next.fill(d.M_X);
+  next.fill(d.h_X);
+  next.fill(d.G_X);
+  next.fill(d.J_wrench);
+  return true;
+}
+
+}  // namespace
+
+template <class S>
+void check_masses(const Evaluation& e, std::span<const S> parameters) {
+  const Inputs& at = e.model.inputs;
+  with_scratch<S>(at.count() + e.masses.registers(), [&](std::span<S> room) {
+    const std::span<S> inputs = room.first(at.count()), registers = room.subspan(at.count());
+    e.fill_inputs<S>(parameters, no_limits(e.model.info), 0, inputs);
+    e.masses.template run_all<S>(inputs, registers);
+    Outputs next(e.masses, [registers](std::uint32_t at_register) { return registers[at_register]; });
+    for (const MassCheck& check : e.model.masses) {
+      const double value = value_of(next());
+      const bool finite = std::isfinite(value);
+      if (finite && (value > 0 || (check.may_vanish && value == 0))) continue;
+      throw std::domain_error(check.name + " is not " + (finite ? "positive" : "finite") + ": " +
+                              with_unit(value, check.unit));
+    }
+  });
+}
+
+namespace {
+
+/// States of whole rows side by side.
+void find_row(const Evaluation& e, std::span<const double> registers, std::span<const MotionState<double>> states,
+              double* rows, std::span<PoseDynamics<double>> found) {
+  const Inputs& at = e.model.inputs;
+  const std::size_t count = states.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
+  const auto& inputs = e.motion.stages()[1].inputs;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    double* const row = rows + e.motions->inputs()[i] * expression::kRow;
+    const std::size_t position = inputs[i].position;
+    const bool is_rate = position >= at.rate(0);
+    for (std::size_t k = 0; k < whole; ++k) {  // beyond the last state: it again
+      const MotionState<double>& state = states[std::min(k, count - 1)];
+      row[k] = is_rate ? state.velocity[position - at.rate(0)] : state.pose[position - at.coordinate(0)];
+    }
+  }
+  e.motions->run(registers.data(), rows, whole);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto value = [&, k](std::uint32_t at_register) {
+      const expression::Operand of = e.motions->operand(at_register);
+      return of.row ? rows[of.index * expression::kRow + k] : registers[of.index];
+    };
+    found[k].assembles = read(at, e.model.domains.size(), Outputs(e.motion, value), found[k]);
+  }
+}
+
+}  // namespace
+
+template <class S>
+void find_dynamics(const Evaluation& e, std::span<const S> parameters, std::size_t mode,
+                   std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found) {
+  constexpr std::size_t kFewest = 4;  // that are worth a row
+  check_masses(e, parameters);
+  const Inputs& at = e.model.inputs;
+  with_scratch<S>(at.count() + e.motion.registers(), [&](std::span<S> room) {
+    const std::span<S> inputs = room.first(at.count()), registers = room.subspan(at.count());
+    e.fill_inputs<S>(parameters, no_limits(e.model.info), mode, inputs);
+    e.motion.template start<S>(registers);
+    e.motion.template run<S>(0, inputs, registers);
+    if constexpr (std::is_same_v<S, double>) {
+      if (states.size() >= kFewest) {
+        const auto rows = std::make_unique_for_overwrite<double[]>(e.motions->slots() * expression::kRow);
+        for (std::size_t first = 0; first < states.size(); first += expression::kRow) {
+          const std::size_t count = std::min(expression::kRow, states.size() - first);
+          find_row(e, registers, states.subspan(first, count), rows.get(), found.subspan(first, count));
+        }
+        return;
+      }
+    }
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      for (std::size_t i = 0; i < at.coordinates; ++i) {
+        inputs[at.coordinate(i)] = states[k].pose[i];
+        inputs[at.rate(i)] = states[k].velocity[i];
+      }
+      e.motion.template run<S>(1, inputs, registers);
+      const Outputs next(e.motion, [registers](std::uint32_t at_register) { return registers[at_register]; });
+      found[k].assembles = read(at, e.model.domains.size(), next, found[k]);
+    }
+  });
+}
+
+template void check_masses(const Evaluation&, std::span<const double>);
+template void check_masses(const Evaluation&, std::span<const Dual4>);
+template void find_dynamics(const Evaluation&, std::span<const double>, std::size_t,
+                            std::span<const MotionState<double>>, std::span<PoseDynamics<double>>);
+template void find_dynamics(const Evaluation&, std::span<const Dual4>, std::size_t, std::span<const MotionState<Dual4>>,
+                            std::span<PoseDynamics<Dual4>>);
+
+}  // namespace pkm::generic

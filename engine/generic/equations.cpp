@@ -1,0 +1,170 @@
+#include "engine/generic/equations.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "engine/dynamics/pose_dynamics.hpp"
+#include "engine/expression/derivative.hpp"
+
+namespace pkm::generic {
+namespace {
+
+using expression::Rates, expression::Term;
+using limbs::Vector3;
+
+class Equations {
+ public:
+  explicit Equations(Model& model) : model_(model), along_(model.graph), n_(model.inputs.coordinates) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Node coordinate = model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
+      by_.emplace_back(model.graph).move(coordinate, model.graph.number(1));
+      along_.move(coordinate, model.graph.input(model.inputs.rate(i), Inputs::kRates));
+    }
+    for (const ArmNodes& arm : model.arms) turns_.push_back(turn_of(arm));
+  }
+
+  std::vector<Node> jacobian() {
+    std::vector<Node> J;
+    for (const Node joint : model_.joints)
+      for (Rates& by : by_) J.push_back(by.of(joint).node());
+    return J;
+  }
+
+  EquationNodes found() {
+    EquationNodes e{.J = jacobian()};
+    for (const Node joint : model_.joints) e.J_rate_X.push_back(along_.of(along_.of(joint)).node());
+    std::vector<Term> G(n_, number(0));
+    for (const BodyNodes& body : model_.bodies) {
+      for (std::size_t i = 0; i < n_; ++i) G[i] = G[i] + model_.term(body.mass) * kGravity * by_[i].of(body.centre[2]);
+      add(body);
+    }
+    put(G, e.G_X);
+    add_inertia(e);
+    for (const Node place : *model_.wrench_point)
+      for (Rates& by : by_) e.J_wrench.push_back(by.of(place).node());
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t i = 0; i < n_; ++i) e.J_wrench.push_back(model_.turn_axes[i][axis]);
+    return e;
+  }
+
+ private:
+  /// What has a rate: its derivatives by the coordinates, and the rate itself.
+  struct Moving {
+    std::vector<Term> by;
+    Term rate;
+  };
+  /// Numbers of Movings, f <= g, and their weight.
+  using Products = std::map<std::pair<std::size_t, std::size_t>, Term>;
+
+  Term number(double value) { return {model_.graph, value}; }
+  Vector3 vector(const std::array<Node, 3>& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
+  static void put(const std::vector<Term>& terms, std::vector<Node>& to) {
+    for (const Term& term : terms) to.push_back(term.node());
+  }
+
+  /// Tells all derivatives how the arm moves.
+  Moving turn_of(const ArmNodes& arm) {
+    const Vector3 at = vector(arm.arm), rod = vector(arm.rod), tangent = cross(vector(arm.axis), at);
+    const Term lever = number(1) / dot(rod, tangent);
+    const auto turn_along = [&](Rates& derivative) {
+      Term sum = number(0);
+      for (std::size_t k = 0; k < 3; ++k) sum = sum + rod[k] * derivative.of(arm.B[k]);
+      const Term turn = sum * lever;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!model_.graph[arm.arm[k]].is_number()) derivative.move(arm.arm[k], (tangent[k] * turn).node());
+      if (arm.joint) derivative.move(*arm.joint, turn.node());
+      return turn;
+    };
+    Moving moving{{}, turn_along(along_)};
+    for (Rates& by : by_) moving.by.push_back(turn_along(by));
+    return moving;
+  }
+
+  /// The number of a Moving that has not been there, or of the one that has the same derivatives.
+  std::optional<std::size_t> add(const Moving& moving) {
+    std::vector<Node> key;
+    put(moving.by, key);
+    if (std::ranges::all_of(moving.by, [](const Term& term) { return term.is(0); })) return {};
+    const auto [place, is_new] = known_.try_emplace(key, moving_.size());
+    if (is_new) moving_.push_back(moving);
+    return place->second;
+  }
+  std::optional<std::size_t> add(Node node) {
+    Moving moving{{}, along_.of(node)};
+    for (Rates& by : by_) moving.by.push_back(by.of(node));
+    return add(moving);
+  }
+  void add_product(std::optional<std::size_t> f, std::optional<std::size_t> g, const Term& weight) {
+    if (!f || !g) return;
+    const auto [place, is_new] = products_.try_emplace(std::minmax(*f, *g), weight);
+    if (!is_new) place->second = place->second + weight;
+  }
+
+  void add(const BodyNodes& body) {
+    for (const BodyNodes::Product& product : body.products)
+      for (std::size_t k = 0; k < 3; ++k)
+        add_product(add(product.f[k]), add(product.g[k]), model_.term(product.weight));
+    for (const BodyNodes::ArmTurn& turn : body.arm_turns) {
+      const auto f = add(turns_[turn.arm]);
+      add_product(f, f, model_.term(turn.weight));
+    }
+    for (const BodyNodes::LineTurn& turn : body.line_turns) {
+      const Vector3 d = vector(turn.d);
+      const Term per_square = number(1) / dot(d, d);
+      const auto omega = [&](Rates& derivative) {
+        return cross(d, Vector3{derivative.of(d[0]), derivative.of(d[1]), derivative.of(d[2])}) * per_square;
+      };
+      std::vector<Vector3> by;
+      for (Rates& each : by_) by.push_back(omega(each));
+      const Vector3 rate = omega(along_);
+      for (std::size_t k = 0; k < 3; ++k) {
+        Moving moving{{}, rate[k]};
+        for (const Vector3& each : by) moving.by.push_back(each[k]);
+        const auto f = add(moving);
+        add_product(f, f, model_.term(turn.weight));
+      }
+    }
+  }
+
+  /// M_X and h_X.
+  void add_inertia(EquationNodes& e) {
+    std::vector<Term> M(n_ * n_, number(0)), h(n_, number(0));
+    const auto add_to = [](Term& sum, const Term& x) { sum = sum + x; };
+    for (const auto& [pair, weight] : products_) {
+      const Moving &f = moving_[pair.first], &g = moving_[pair.second];
+      const bool square = pair.first == pair.second;
+      const Term w = square ? weight : weight * 0.5;
+      const Term f_second = along_.of(f.rate), g_second = along_.of(g.rate);
+      for (std::size_t i = 0; i < n_; ++i) {
+        const Term wf = w * f.by[i], wg = w * g.by[i];
+        for (std::size_t j = i; j < n_; ++j) {
+          add_to(M[i * n_ + j], wf * g.by[j]);
+          if (!square) add_to(M[i * n_ + j], wg * f.by[j]);
+        }
+        add_to(h[i], wf * g_second);
+        if (!square) add_to(h[i], wg * f_second);
+      }
+    }
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t j = 0; j < i; ++j) M[i * n_ + j] = M[j * n_ + i];
+    put(M, e.M_X);
+    put(h, e.h_X);
+  }
+
+  Model& model_;
+  std::vector<Rates> by_;  ///< by each coordinate
+  Rates along_;            ///< the velocity
+  std::size_t n_;
+  std::vector<Moving> turns_;  ///< by arm
+  std::map<std::vector<Node>, std::size_t> known_;
+  std::vector<Moving> moving_;
+  Products products_;
+};
+
+}  // namespace
+
+EquationNodes equations_of(Model& model) { return Equations(model).found(); }
+
+std::vector<Node> jacobian_of(Model& model) { return Equations(model).jacobian(); }
+
+}  // namespace pkm::generic

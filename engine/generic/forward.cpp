@@ -1,0 +1,238 @@
+#include "engine/generic/forward.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/generic/rigid_pose.hpp"
+
+namespace pkm::generic {
+namespace {
+
+bool finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
+}
+
+/// What is 0 where the limbs meet the platform, for given joints as a function of the pose. Allocates once.
+class Closures {
+ public:
+  Closures(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, std::size_t mode)
+      : program_(e.closures),
+        first_(e.model.inputs.coordinate(0)),
+        inputs_(e.inputs(parameters, no_limits(e.model.info), mode)) {
+    std::ranges::copy(joints, inputs_.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.joint(0)));
+    moving_.assign(inputs_.begin(), inputs_.end());
+    registers_.resize(program_.registers());
+    moving_registers_.resize(program_.registers());
+  }
+
+  AxisVector<double> at(const Pose<double>& pose) {
+    std::ranges::copy(pose, inputs_.begin() + static_cast<std::ptrdiff_t>(first_));
+    program_.run_all<double>(inputs_, std::span(registers_));
+    AxisVector<double> f(program_.outputs().size());
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] = registers_[program_.outputs()[i]];
+    return f;
+  }
+  /// Derivatives by the pose, of four coordinates at a time.
+  AxisMatrix<double> slopes(const Pose<double>& pose) {
+    constexpr std::size_t kTogether = 4;
+    AxisMatrix<double> G(program_.outputs().size(), pose.size());
+    for (std::size_t from = 0; from < pose.size(); from += kTogether) {
+      const std::size_t count = std::min(kTogether, pose.size() - from);
+      for (std::size_t j = 0; j < pose.size(); ++j) moving_[first_ + j] = pose[j];
+      for (std::size_t j = 0; j < count; ++j) moving_[first_ + from + j].v[static_cast<int>(j)] = 1;
+      program_.run_all<Dual4>(moving_, std::span(moving_registers_));
+      for (std::size_t i = 0; i < G.rows(); ++i)
+        for (std::size_t j = 0; j < count; ++j)
+          G(i, from + j) = moving_registers_[program_.outputs()[i]].v[static_cast<int>(j)];
+    }
+    return G;
+  }
+
+ private:
+  const expression::Program& program_;
+  std::size_t first_;  ///< coordinate among the inputs
+  std::vector<double> inputs_, registers_;
+  std::vector<Dual4> moving_, moving_registers_;
+};
+
+struct Solution {
+  std::optional<Pose<double>> pose;  ///< none: it did not converge
+  bool started = false;              ///< closures have values where it began
+};
+
+Solution solve_closures(Closures& closures, Pose<double> pose) {
+  constexpr int kSteps = 60, kHalvings = 10;
+  double last = std::numeric_limits<double>::infinity();
+  AxisVector<double> f = closures.at(pose);
+  const bool started = finite(f);
+  for (int step = 0; step < kSteps && finite(f); ++step) {
+    const AxisVector<double> change = solve(closures.slopes(pose), f * -1.0);
+    if (!finite(change)) break;
+    double size = 0;
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      size = std::max(size, std::fabs(change[i]) / (1 + std::fabs(pose[i])));
+    // far away, a step of at most 0.5 m or rad; none to where formulas are undefined
+    double share = std::min(1.0, 0.5 / std::max(size, 1e-300));
+    const Pose<double> before = pose;
+    for (int halved = 0; halved < kHalvings; ++halved, share /= 2) {
+      pose = before + change * share;
+      f = closures.at(pose);
+      if (finite(f)) break;
+    }
+    if (size < 1e-9 && size >= last / 2) return {pose, true};  // rounding alone is left
+    if (size == 0) return {pose, true};
+    last = size;
+  }
+  return {{}, started};
+}
+
+/// The working mode that has these joints at a pose; "": no limb reaches it so.
+std::string mode_with(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                      const AxisVector<double>& joints) {
+  const MechanismInfo& info = e.model.info;
+  for (std::size_t mode = 0; mode < info.modes.size(); ++mode) {
+    std::vector<double> inputs = e.inputs(parameters, no_limits(info), mode);
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.coordinate(0)));
+    const auto same = [](double x, double y) { return std::fabs(x - y) <= 1e-7 * (1 + std::fabs(y)); };
+    if (std::ranges::equal(outputs_of(e.joints, inputs), joints, same)) return info.modes[mode];
+  }
+  return "";
+}
+
+/// Working modes with closures of their own: formulas may have signs in theirs, the limbs in closed form have none.
+std::vector<std::size_t> modes_of_closures(const Model& model) {
+  const auto is_sign = [&](Node node) {
+    const auto input = static_cast<std::size_t>(model.graph[node].input);
+    return model.graph[node].input >= 0 && input >= model.inputs.sign(0) && input < model.inputs.coordinate(0);
+  };
+  const bool signs = std::ranges::any_of(model.graph.reachable(model.closures), is_sign);
+  std::vector<std::size_t> modes(signs ? model.info.modes.size() : 1);
+  std::iota(modes.begin(), modes.end(), std::size_t{0});
+  return modes;
+}
+
+/// Poses by their numbers, from the middle of the description's box on: a Kronecker sequence.
+class Starts {
+ public:
+  Starts(const Evaluation& e, std::span<const double> parameters) {
+    for (std::size_t i = 0; i < e.model.inputs.coordinates; ++i)
+      ranges_.push_back(e.range(parameters, no_limits(e.model.info), 0, i).value_or(std::array{-1.0, 1.0}));
+  }
+  Pose<double> operator[](std::size_t number) const {
+    Pose<double> pose(ranges_.size());
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      const double place =
+          0.5 + static_cast<double>(number) * std::sqrt(static_cast<double>(std::array{2, 3, 5, 7, 11, 13}[i]));
+      pose[i] = ranges_[i][0] + (place - std::floor(place)) * (ranges_[i][1] - ranges_[i][0]);
+    }
+    return pose;
+  }
+
+ private:
+  std::vector<std::array<double, 2>> ranges_;
+};
+
+/// The distinct rigid-body poses found so far.
+class Found {
+ public:
+  enum class Angles { principal, as_found };
+
+  Found(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, Angles angles)
+      : e_(e), parameters_(parameters), joints_(joints), angles_(angles) {}
+
+  /// @return whether the pose has the joints in a working mode, and no earlier one is the same rigid-body pose
+  bool add(Pose<double> pose) {
+    const Model& model = e_.model;
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      if (model.turns_about[i]) pose[i] = wrapped(pose[i]);
+    std::string working_mode = mode_with(e_, parameters_, pose, joints_);
+    if (working_mode.empty()) return false;
+    const RigidPose rigid = rigid_pose(e_, inputs(pose, working_mode));
+    const auto is_same = [&](std::size_t k) {
+      return is_same_pose(model, modes_[k].pose, rigid_[k], pose, rigid, kSamePose);
+    };
+    for (std::size_t k = 0; k < modes_.size(); ++k)
+      if (is_same(k)) return false;
+    if (angles_ == Angles::principal) make_principal(pose, rigid, working_mode);
+    const double size = std::fabs(*std::ranges::max_element(pose, {}, [](double x) { return std::fabs(x); }));
+    for (double& x : pose)
+      if (std::fabs(x) < 1e-14 * size) x = 0;  // rounding alone
+    modes_.push_back(
+        {.pose = pose, .mode = "found " + std::to_string(modes_.size() + 1), .working_mode = working_mode});
+    rigid_.push_back(rigid);
+    return true;
+  }
+
+  const std::vector<AssemblyMode>& modes() const { return modes_; }
+  /// Of one of them.
+  std::optional<Pose<double>> mirrored(std::size_t k) const {
+    return mirror_image(e_, inputs(modes_[k].pose, modes_[k].working_mode));
+  }
+
+ private:
+  static constexpr double kSamePose = 1e-6;  // [m, 1], a thousand times what the method leaves
+
+  /// Of the triples of angles that are one rotation, takes that of the principal ranges.
+  void make_principal(Pose<double>& pose, const RigidPose& rigid, std::string& working_mode) const {
+    Pose<double> principal = pose;
+    set_angles(e_.model, rigid.rotation, principal);
+    const auto is_near = [](double x, double y) { return std::fabs(wrapped(x - y)) < kSamePose; };
+    if (std::ranges::equal(principal, pose, is_near)) return;
+    const std::string mode = mode_with(e_, parameters_, principal, joints_);
+    if (mode.empty() ||
+        !is_same_pose(e_.model, principal, rigid_pose(e_, inputs(principal, mode)), pose, rigid, kSamePose))
+      return;
+    pose = principal;
+    working_mode = mode;
+  }
+
+  std::vector<double> inputs(const Pose<double>& pose, const std::string& mode) const {
+    const MechanismInfo& info = e_.model.info;
+    std::vector<double> inputs = e_.inputs(parameters_, no_limits(info), number_of_mode(info, mode));
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+    return inputs;
+  }
+
+  const Evaluation& e_;
+  std::span<const double> parameters_;
+  const AxisVector<double>& joints_;
+  Angles angles_;
+  std::vector<AssemblyMode> modes_;
+  std::vector<RigidPose> rigid_;  ///< of these modes
+};
+
+}  // namespace
+
+std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const double> parameters,
+                                        const AxisVector<double>& joints) {
+  const Starts poses(e, parameters);
+  Found found(e, parameters, joints, Found::Angles::principal);
+  std::vector<Closures> closures;
+  for (const std::size_t mode : modes_of_closures(e.model)) {
+    Closures& of_mode = closures.emplace_back(e, parameters, joints, mode);
+    std::size_t idle = 0;  // starts since the last new pose, where closures have values
+    for (std::size_t tried = 0; tried < kMostStarts && idle < kIdleStarts; ++tried) {
+      const Solution solution = solve_closures(of_mode, poses[tried]);
+      idle += solution.started;
+      if (solution.pose && found.add(*solution.pose)) idle = 0;
+    }
+  }
+  for (std::size_t k = 0; k < found.modes().size(); ++k)  // mirror images of mirror images, too
+    if (const auto start = found.mirrored(k))
+      for (Closures& of_mode : closures)
+        if (const Solution solution = solve_closures(of_mode, *start); solution.pose) found.add(*solution.pose);
+  return found.modes();
+}
+
+std::vector<AssemblyMode> assemblies_near(const Evaluation& e, std::span<const double> parameters,
+                                          const AxisVector<double>& joints, const Pose<double>& from) {
+  Found found(e, parameters, joints, Found::Angles::as_found);
+  for (const std::size_t mode : modes_of_closures(e.model)) {
+    Closures closures(e, parameters, joints, mode);
+    if (const Solution solution = solve_closures(closures, from); solution.pose) found.add(*solution.pose);
+  }
+  return found.modes();
+}
+
+}  // namespace pkm::generic

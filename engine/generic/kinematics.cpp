@@ -1,0 +1,246 @@
+#include "engine/generic/kinematics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "engine/generic/clearance.hpp"
+#include "engine/generic/conditioning.hpp"
+#include "engine/generic/eigen_matrix.hpp"
+#include "engine/geometry/singular.hpp"
+#include "engine/math/satisfied.hpp"
+
+namespace pkm::generic {
+namespace {
+
+using expression::Program;
+
+/// Derivatives of a program's outputs by the inputs from `first` on, count of them.
+AxisMatrix<double> derivatives(const Program& program, std::span<const double> inputs, std::size_t first,
+                               std::size_t count) {
+  return with_scratch<Taylor>(inputs.size() + program.registers(), [&](std::span<Taylor> room) {
+    const std::span<Taylor> moving = room.first(inputs.size()), registers = room.subspan(inputs.size());
+    std::ranges::copy(inputs, moving.begin());
+    AxisMatrix<double> D(program.outputs().size(), count);
+    for (std::size_t j = 0; j < count; ++j) {
+      moving[first + j].d = 1;
+      program.run_all<Taylor>(moving, registers);
+      for (std::size_t i = 0; i < D.rows(); ++i) D(i, j) = registers[program.outputs()[i]].d;
+      moving[first + j].d = 0;
+    }
+    return D;
+  });
+}
+
+AxisVector<double> as_axes(std::span<const double> values) {
+  AxisVector<double> axes(values.size());
+  std::ranges::copy(values, axes.begin());
+  return axes;
+}
+
+/// PoseReport::T. @param inputs  with the pose
+AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inputs) {
+  constexpr std::size_t kAxes = 12;  // among the outputs of the frame
+  const std::size_t n = e.model.inputs.coordinates;
+  const std::vector<double> frame = outputs_of(e.frame, inputs);
+  const AxisMatrix<double> rates = derivatives(e.origin, inputs, e.model.inputs.coordinate(0), n);
+  AxisMatrix<double> T(6, n);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t j = 0; j < n; ++j) {
+      T(k, j) = rates(k, j);
+      T(3 + k, j) = frame[kAxes + 3 * j + k];
+    }
+  return T;
+}
+
+/// Inputs of a pose.
+std::vector<double> inputs_at(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                              std::size_t mode, const LimitSpec& limits) {
+  std::vector<double> inputs = e.inputs(parameters, limits, mode);
+  std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.coordinate(0)));
+  return inputs;
+}
+
+/// The first condition that does not hold, with `words`; "": all do.
+std::string first_broken(const NamedValues& conditions, const std::string& words) {
+  for (const auto& [name, margin] : conditions)
+    if (!is_satisfied(margin)) return name + words;
+  return "";
+}
+
+/// The margins as they are reported. @param shown  values of ReportedMargin::shown, in order
+NamedValues reported_margins(const Model& model, const NamedValues& margins,
+                             std::vector<double>::const_iterator shown) {
+  NamedValues list;
+  std::size_t next = 0;
+  for (const ReportedMargin& group : model.reported_margins) {
+    list.insert(list.end(), margins.begin() + static_cast<std::ptrdiff_t>(next),
+                margins.begin() + static_cast<std::ptrdiff_t>(group.first));
+    next = group.first + group.count;
+    double least = group.shown ? *shown++ : margins[group.first].second;
+    for (std::size_t i = group.first; !group.shown && i < next; ++i) least = std::fmin(least, margins[i].second);
+    list.emplace_back(group.name, least);
+  }
+  list.insert(list.end(), margins.begin() + static_cast<std::ptrdiff_t>(next), margins.end());
+  return list;
+}
+
+/// Adds the quantities of the pose: angles and lengths to the angles, the others to the indices; those of the design
+/// and of motions are none of the pose's.
+void add_quantities(const Model& model, std::vector<double>::const_iterator values, PoseReport& report) {
+  for (const QuantityInfo& quantity : model.info.quantities) {
+    const double value = *values++;
+    if (quantity.of_design || quantity.of_motion) continue;
+    const bool is_length_or_angle = quantity.unit == "rad" || quantity.unit == "m";
+    (is_length_or_angle ? report.angles : report.indices).emplace_back(quantity.name, value);
+  }
+}
+
+void add_clearance(const Model& model, const NearestBodies<double>& nearest, const LimitSpec& limits,
+                   PoseReport& report) {
+  report.angles.emplace_back("clearance", nearest.clearance);
+  const auto least = clearance_of(model, limits);
+  if (!least) return;
+  report.margins.emplace_back(kClearanceLimit, nearest.clearance - *least);
+  if (nearest.clearance >= *least || !report.reason.empty()) return;
+  report.reason = std::string(kClearanceLimit) + " is violated";
+  if (nearest.clearance == nearest.clearance)
+    report.reason +=
+        ": " + nearest.first + " and " + nearest.second + (nearest.clearance < 0 ? " overlap" : " are too near");
+}
+
+/// Adds Jq, G, J and what follows from them. @param inputs  with the pose and its joints
+void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                   std::span<const double> inputs, PoseReport& report);
+
+}  // namespace
+
+PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                        std::size_t mode, const LimitSpec& limits) {
+  const Model& model = e.model;
+  const Inputs& at = model.inputs;
+  std::vector<double> inputs = inputs_at(e, parameters, pose, mode, limits);
+  const std::vector<double> values = outputs_of(e.conditions, inputs);
+  auto next = values.begin();
+  const auto named = [&](const std::vector<Result>& results) {
+    NamedValues list;
+    for (const Result& result : results) list.emplace_back(result.name, *next++);
+    return list;
+  };
+  PoseReport report;
+  report.joints = as_axes({values.data(), at.joints});
+  next += static_cast<std::ptrdiff_t>(at.joints);
+  report.margins = named(model.domains);
+  report.reason = first_broken(report.margins, " does not hold: the pose does not assemble");
+  const NamedValues margins = named(model.margins);
+  report.angles = named(model.angles);
+  for (std::size_t i = 0; i < at.joints && report.reason.empty(); ++i)
+    if (!std::isfinite(values[i])) report.reason = model.info.joints[i].name + " is undefined";
+  report.assembles = report.reason.empty();
+  const std::vector<double> shown = outputs_of(e.reported, inputs);
+  const auto quantities = shown.end() - std::ssize(model.quantities);
+  const NamedValues listed = reported_margins(model, margins, shown.begin());
+  report.margins.insert(report.margins.end(), listed.begin(), listed.end());
+  if (!report.assembles) return report;
+  add_quantities(model, quantities, report);
+  report.reason = first_broken(margins, " is violated");
+  if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles)) add_clearance(model, *nearest, limits, report);
+  report.feasible = report.reason.empty();
+
+  std::ranges::copy(*report.joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
+  add_jacobians(e, parameters, pose, inputs, report);
+  report.T = twist_at(e, inputs);
+  return report;
+}
+
+namespace {
+
+void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                   std::span<const double> inputs, PoseReport& report) {
+  const Inputs& at = e.model.inputs;
+  const AxisMatrix<double> Jq =
+      AxisMatrix<double>::zero(at.joints, at.joints) - derivatives(e.closures, inputs, at.joint(0), at.joints);
+  const AxisMatrix<double> G = derivatives(e.closures, inputs, at.coordinate(0), at.coordinates);
+  report.Jq = Jq;
+  report.G = G;
+  report.det_Jq = eigen(Jq).determinant();
+  if (at.joints == at.coordinates) report.det_G = eigen(G).determinant();
+  if (is_singular(Jq)) return;
+  report.J = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
+  report.conditioning = conditioning_of(e.model, characteristic_lengths(e, parameters), pose, *report.J);
+}
+
+}  // namespace
+
+PoseReport report_of_sample(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                            std::span<double> inputs) {
+  const Inputs& at = e.model.inputs;
+  PoseReport report;
+  report.assembles = report.feasible = true;
+  report.joints = with_scratch<double>(e.joints.registers(), [&](std::span<double> registers) {
+    e.joints.run_all<double>(inputs, registers);
+    AxisVector<double> joints(at.joints);
+    for (std::size_t i = 0; i < at.joints; ++i) joints[i] = registers[e.joints.outputs()[i]];
+    return joints;
+  });
+  std::ranges::copy(*report.joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
+  add_jacobians(e, parameters, pose, inputs, report);
+  return report;
+}
+
+bool assembles_at(const Evaluation& e, const std::vector<double>& inputs) {
+  const std::vector<double> values = outputs_of(e.conditions, inputs);
+  const auto joints = values.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.joints),
+             domains = joints + std::ssize(e.model.domains);
+  return std::all_of(values.begin(), joints, [](double q) { return std::isfinite(q); }) &&
+         std::all_of(joints, domains, is_satisfied);
+}
+
+std::vector<double> quantities_at(const Evaluation& e, std::span<const double> parameters, std::size_t mode,
+                                  const LimitSpec& limits, const MotionSample& at) {
+  const Inputs& of = e.model.inputs;
+  if (e.model.quantities.empty()) return {};
+  std::vector<double> inputs = e.inputs(parameters, limits, mode);
+  const auto put = [&](const auto& values, std::size_t position) {
+    std::ranges::copy(values, inputs.begin() + static_cast<std::ptrdiff_t>(position));
+  };
+  put(at.pose, of.coordinate(0));
+  put(at.velocity, of.rate(0));
+  put(at.acceleration, of.acceleration(0));
+  for (std::size_t i = 0; i < at.inputs.size(); ++i) {
+    inputs[of.extra(i)] = at.inputs[i].value;
+    inputs[of.extra_rate(i)] = at.inputs[i].rate;
+    inputs[of.extra_acceleration(i)] = at.inputs[i].acceleration;
+  }
+  const std::vector<double> reported = outputs_of(e.reported, inputs);
+  return {reported.end() - std::ssize(e.model.quantities), reported.end()};
+}
+
+std::optional<Influence<double>> influence_at(const Evaluation& e, std::span<const double> parameters,
+                                              const Pose<double>& pose, std::size_t mode) {
+  const Inputs& at = e.model.inputs;
+  const std::vector<double> inputs = inputs_at(e, parameters, pose, mode, no_limits(e.model.info));
+  if (!assembles_at(e, inputs)) return {};
+  Influence<double> found;
+  found.G = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
+  for (std::size_t i = 0; i < at.joints; ++i) found.H[i] = AxisMatrix<double>::zero(at.coordinates, at.coordinates);
+  // second derivatives along each coordinate and each sum of two
+  std::vector<Taylor> moving(inputs.begin(), inputs.end());
+  for (std::size_t j = 0; j < at.coordinates; ++j)
+    for (std::size_t k = 0; k <= j; ++k) {
+      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 1;
+      const std::vector<Taylor> values = outputs_of(e.joints, moving);
+      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 0;
+      for (std::size_t i = 0; i < at.joints; ++i) found.H[i](j, k) = found.H[i](k, j) = values[i].dd;
+    }
+  for (std::size_t i = 0; i < at.joints; ++i) {
+    AxisMatrix<double>& H = found.H[i];
+    for (std::size_t j = 0; j < at.coordinates; ++j)
+      for (std::size_t k = 0; k < j; ++k) H(j, k) = H(k, j) = (H(j, k) - H(j, j) - H(k, k)) / 2;
+    if (!std::ranges::all_of(H, [](double x) { return std::isfinite(x); })) return {};
+  }
+  return found;
+}
+
+}  // namespace pkm::generic

@@ -1,0 +1,261 @@
+#include "engine/generic/mechanism.hpp"
+
+#include <algorithm>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/generic/bounds.hpp"
+#include "engine/generic/clearance.hpp"
+#include "engine/generic/columns/survey.hpp"
+#include "engine/generic/design_checks.hpp"
+#include "engine/generic/dynamics.hpp"
+#include "engine/generic/equations.hpp"
+#include "engine/generic/forward.hpp"
+#include "engine/generic/joints.hpp"
+#include "engine/generic/kinematics.hpp"
+#include "engine/generic/mobility.hpp"
+#include "engine/generic/pose_margins.hpp"
+#include "engine/generic/voxels.hpp"
+#include "engine/mechanism/both_scalars.hpp"
+
+namespace pkm::generic {
+namespace {
+
+/// Its abilities are those that the description has what for.
+class GenericMechanism final : public Mechanism,
+                               public std::enable_shared_from_this<GenericMechanism>,
+                               Voxels,
+                               Columns,
+                               RigorousBounds,
+                               Velocities,
+                               ForwardKinematics,
+                               Links,
+                               DesignTests,
+                               Size,
+                               JointReactions,
+                               PoseMarginsOf<GenericMechanism>,
+                               DynamicsOf<GenericMechanism> {
+ public:
+  GenericMechanism(Model model, Accelerators accelerators)
+      : e_(std::move(model)),
+        accelerators_(std::move(accelerators)),
+        why_no_columns_(accelerators_.columns ? "" : generic::why_no_columns(*this, e_)) {}
+
+  const Evaluation& evaluation() const { return e_; }
+
+  const MechanismInfo& info() const override { return e_.model.info; }
+  Unsupported refuse(std::span<const double> parameters) const override {
+    if (Unsupported outside = Mechanism::refuse(parameters)) return outside;
+    return refuse_design(e_, parameters);
+  }
+  std::vector<double> quantities(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
+                                 const MotionSample& at) const override {
+    return quantities_at(e_, parameters, number_of_mode(info(), mode), limits, at);
+  }
+  PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
+                     const LimitSpec& limits) const override {
+    return inspect_pose(e_, parameters, pose, number_of_mode(info(), mode), limits);
+  }
+  std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double> parameters) const override {
+    std::vector<std::array<double, 2>> all;
+    for (std::size_t i = 0; i < e_.model.inputs.coordinates; ++i) {
+      const auto range = e_.range(parameters, no_limits(info()), 0, i);
+      if (!range) return {};
+      all.push_back(*range);
+    }
+    return all;
+  }
+  /// Only what the file says: the box of [survey] may be less than what the limbs reach.
+  std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const override {
+    const auto i = static_cast<std::size_t>(coordinate);
+    const auto from = e_.of_design<double>(e_.reach_lower[i], parameters),
+               to = e_.of_design<double>(e_.reach_upper[i], parameters);
+    return from && to ? std::optional(std::array{*from, *to}) : std::nullopt;
+  }
+  std::optional<double> middle(std::span<const double> parameters, int coordinate) const override {
+    return e_.of_design<double>(e_.middle[static_cast<std::size_t>(coordinate)], parameters);
+  }
+  void thresholds(std::span<const double> parameters, const LimitSpec& limits,
+                  std::span<double> values) const override {
+    e_.thresholds(parameters, limits, values);
+  }
+  void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const override {
+    e_.thresholds(parameters, limits, values);
+  }
+
+  const Voxels* voxels() const override { return this; }
+  const Columns* columns() const override { return why_no_columns_.empty() ? this : nullptr; }
+  std::string why_no_columns() const override { return why_no_columns_; }
+  const RigorousBounds* bounds() const override { return this; }
+  const Velocities* velocities() const override { return this; }
+  const ForwardKinematics* forward() const override {
+    if (accelerators_.forward) return accelerators_.forward.get();
+    return e_.model.inputs.joints == e_.model.inputs.coordinates ? this : nullptr;
+  }
+  const Links* links() const override { return e_.model.links.empty() ? nullptr : this; }
+  const DesignTests* design_tests() const override { return e_.model.tests.empty() ? nullptr : this; }
+  const PoseMargins* pose_margins() const override { return this; }
+  const Size* size() const override { return e_.model.size ? this : nullptr; }
+  const Dynamics* dynamics() const override { return e_.model.equations ? this : nullptr; }
+  const JointReactions* reactions() const override { return e_.model.why_no_reactions.empty() ? this : nullptr; }
+  std::string why_no_reactions() const override { return e_.model.why_no_reactions; }
+
+ private:
+  friend DynamicsOf<GenericMechanism>;
+  friend PoseMarginsOf<GenericMechanism>;
+
+  std::string common_margin_unit() const { return e_.model.margin_unit; }
+  template <class S>
+  void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,
+                    std::span<const Pose<double>> poses, std::vector<S>& margins) const {
+    append_margins(e_, parameters, number_of_mode(info(), mode), limits, poses, margins);
+  }
+  template <class S>
+  void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
+                     std::span<PoseDynamics<S>> found) const {
+    generic::find_dynamics(e_, parameters, number_of_mode(info(), mode), states, found);
+  }
+  const std::vector<std::string>& mass_models() const override { return e_.model.mass_models; }
+  const std::string& mass_model() const override { return e_.model.mass_model; }
+  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
+    if (model == mass_model()) return shared_from_this();
+    return contains(mass_models(), model) ? e_.model.with_masses(model) : nullptr;
+  }
+
+  Reactions find(std::span<const double> parameters, const std::string& mode, const MotionState<double>& state,
+                 const AxisVector<double>& acceleration, const Wrench<double>& wrench) const override {
+    const PoseReport report = inspect(parameters, state.pose, mode, no_limits(info()));
+    if (report.assembles)
+      return pkm::reactions(newton_euler(e_, parameters, number_of_mode(info(), mode), state, acceleration, wrench));
+    Reactions none;
+    none.reason = report.reason;
+    return none;
+  }
+
+  std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
+                                                const Demand& demand) const override {
+    if (accelerators_.voxels && accelerators_.voxels->serves(plan, voxels, demand))
+      return accelerators_.voxels->prepare(plan, voxels, demand);
+    return prepare_voxels(*this, e_, plan, voxels, demand, accelerated_box(plan, demand));
+  }
+  /// The box of the accelerator's voxels, so that the generic engine counts the same cells; null: there is none.
+  BoxOfDesign accelerated_box(const WorkspacePlan& plan, const Demand& demand) const {
+    WorkspacePlan unlimited = plan;
+    unlimited.limits = no_limits(info());
+    const VoxelOptions no_box;
+    const Demand of_mode{.mode = demand.mode};
+    if (!accelerators_.voxels || !accelerators_.voxels->serves(unlimited, no_box, of_mode)) return {};
+    for (std::size_t i = 0; i < unlimited.limits.given.size(); ++i)
+      if (i != e_.model.clearance_limit) {
+        unlimited.limits.given[i] = plan.limits.given[i];
+        unlimited.limits.derived[i] = plan.limits.derived[i];
+      }
+    const std::shared_ptr<const VoxelEvaluator> voxels = accelerators_.voxels->prepare(unlimited, no_box, of_mode);
+    return [voxels](std::span<const double> parameters) {
+      const VoxelMap map = voxels->map(parameters);
+      Box box;
+      for (std::size_t axis = 0; axis < 3; ++axis) box[axis] = {map.lower[axis], map.upper[axis]};
+      return box;
+    };
+  }
+  bool take_rotors() const override { return true; }
+  bool take_obstacles() const override { return true; }
+  std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
+                                                    const Demand& demand) const override {
+    if (accelerators_.columns && accelerators_.columns->serves(plan, columns, demand))
+      return accelerators_.columns->prepare(plan, columns, demand);
+    return prepare_columns(*this, e_, plan, columns, demand);
+  }
+  bool take_box() const override { return true; }
+  void refuse_bounds(const WorkspacePlan& plan) const override { generic::refuse_bounds(e_.model, plan); }
+  VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                      const BoundsOptions& options) const override {
+    return bound_volume(*this, e_, parameters, plan, number_of_mode(info(), mode), options);
+  }
+  PosesCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                       std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
+    return certify_box(e_, parameters, plan, number_of_mode(info(), mode), ranges, options);
+  }
+  PosesCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
+                          const Motion& motion, const BoundsOptions& options) const override {
+    return certify_motion(e_, parameters, limits, number_of_mode(info(), mode), motion, options);
+  }
+  std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
+                                             const std::string& mode) const override {
+    return influence_at(e_, parameters, pose, number_of_mode(info(), mode));
+  }
+  std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
+                                       const AxisVector<double>& joints) const override {
+    return assemblies_of(e_, parameters, joints);
+  }
+  std::vector<AssemblyMode> assemblies_near(std::span<const double> parameters, const AxisVector<double>& joints,
+                                            const Pose<double>& from) const override {
+    return generic::assemblies_near(e_, parameters, joints, from);
+  }
+  ForwardGuarantee guarantee() const override {
+    return {false, "found by Newton's method from poses over the survey's box, until " + std::to_string(kIdleStarts) +
+                       " in a row led to no new one (at most " + std::to_string(kMostStarts) +
+                       "), and from mirror images; there may be others"};
+  }
+  ForwardStatus status(std::span<const double>, const AxisVector<double>&,
+                       const std::vector<AssemblyMode>& found) const override {
+    if (found.empty()) return {"NO_POSE", "no pose was found from any of the starting poses"};
+    return {};
+  }
+  std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
+                                const std::string& mode) const override {
+    std::vector<double> inputs = e_.inputs(parameters, no_limits(info()), number_of_mode(info(), mode));
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+    if (!assembles_at(e_, inputs)) return {};
+    const std::vector<Capsule<double>> capsules = capsules_at(e_, inputs);
+    std::vector<PlacedLink> links;
+    for (std::size_t i = 0; i < capsules.size(); ++i)
+      links.push_back({e_.model.links[i].name, e_.model.links[i].part, capsules[i]});
+    return links;
+  }
+
+  std::vector<JoinedLinks> joined() const override { return joined_links(e_.model); }
+
+  const std::vector<DesignMarginInfo>& list() const override { return e_.model.tests; }
+  void test(std::span<const double> parameters, const LimitSpec& limits, std::span<double> margins) const override {
+    find_tests(parameters, limits, margins);
+  }
+  void test(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> margins) const override {
+    find_tests(parameters, limits, margins);
+  }
+  template <class S>
+  void find_tests(std::span<const S> parameters, const LimitSpec& limits, std::span<S> margins) const {
+    const std::size_t inputs = e_.model.inputs.count();
+    with_scratch<S>(inputs + e_.tests.registers(), [&](std::span<S> room) {
+      e_.fill_inputs<S>(parameters, limits, 0, room.first(inputs));
+      const std::span<S> registers = room.subspan(inputs);
+      e_.tests.run_all<S>(room.first(inputs), registers);
+      for (std::size_t i = 0; i < margins.size(); ++i) margins[i] = registers[e_.tests.outputs()[i]];
+    });
+  }
+
+  std::string unit() const override { return e_.model.size->unit; }
+  std::string meaning() const override { return e_.model.size->meaning; }
+  double of(std::span<const double> parameters) const override { return *e_.of_design(e_.size, parameters); }
+  Dual4 of(std::span<const Dual4> parameters) const override { return *e_.of_design(e_.size, parameters); }
+
+  Evaluation e_;
+  Accelerators accelerators_;
+  std::string why_no_columns_;
+};
+
+}  // namespace
+
+std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, std::span<const double> parameters,
+                                                  const Pose<double>& pose, const std::string& mode) {
+  const auto* const described = dynamic_cast<const GenericMechanism*>(&mechanism);
+  if (!described || !described->evaluation().model.jointed) return {};
+  return mobility_at(described->evaluation(), parameters, pose, number_of_mode(mechanism.info(), mode));
+}
+
+std::shared_ptr<const Mechanism> make_mechanism(Model model, Accelerators accelerators) {
+  if (!model.bodies.empty()) model.equations = equations_of(model);
+  model.jacobian = model.equations ? model.equations->J : jacobian_of(model);
+  return std::make_shared<const GenericMechanism>(std::move(model), std::move(accelerators));
+}
+
+}  // namespace pkm::generic

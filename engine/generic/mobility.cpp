@@ -1,0 +1,198 @@
+// Velocity constraints of a mechanism of rigid bodies. With the twist (v, omega) of each body at the platform's origin
+// and the rates of the drives as unknowns, a joint in point p between two bodies gives
+//
+//   v_p = s a,            v_p = (v + omega x p) of one body less that of the other, s the rate of a drive along a
+//   c . (omega - t a) = 0 for every direction c of a couple that the joint carries, t the rate of a drive about a
+//
+// The twists of the platform in the null space are its degrees of freedom. Lengths are divided by the size of the
+// mechanism, so that ranks do not depend on units.
+//
+// Reference: Hunt, Kinematic Geometry of Mechanisms, 1978 (mobility by screw systems).
+#include "engine/generic/mobility.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+namespace pkm::generic {
+namespace {
+
+using Eigen::Index, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
+using Place = std::array<Node, 3>;
+
+constexpr double kRankThreshold = 1e-9;  // relative to the greatest singular value
+
+Eigen::JacobiSVD<MatrixXd> decomposed(const MatrixXd& A) {
+  Eigen::JacobiSVD<MatrixXd> decomposition(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  decomposition.setThreshold(kRankThreshold);
+  return decomposition;
+}
+Index rank(const MatrixXd& A) { return A.cols() == 0 ? 0 : decomposed(A).rank(); }
+MatrixXd beside(const MatrixXd& A, const MatrixXd& B) {
+  MatrixXd both(A.rows(), A.cols() + B.cols());
+  both << A, B;
+  return both;
+}
+/// Whether a vector is in the column space of A, whose rank is known.
+bool spans(const MatrixXd& A, Index rank_of_A, const Eigen::VectorXd& vector) {
+  return rank(beside(A, vector)) == rank_of_A;
+}
+Matrix3d cross_matrix(const Vector3d& p) {
+  Matrix3d m;
+  m << 0, -p[2], p[1], p[2], 0, -p[0], -p[1], p[0], 0;
+  return m;
+}
+
+/// The places and directions of the joints at a pose, and their rates by each coordinate.
+class JointsAtPose {
+ public:
+  JointsAtPose(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
+      : of_(*e.model.jointed),
+        turn_(e.model.turn),
+        platform_(static_cast<std::size_t>(std::ranges::find(of_.solids, true, &SolidNodes::with_platform) -
+                                           of_.solids.begin())),
+        drives_(e.model.inputs.joints) {
+    const Inputs& inputs = e.model.inputs;
+    std::vector<Taylor> design(parameters.begin(), parameters.end());
+    std::vector<Taylor> at = e.inputs<Taylor>(design, no_limits(e.model.info), mode);
+    std::ranges::copy(pose, at.begin() + static_cast<std::ptrdiff_t>(inputs.coordinate(0)));
+    const std::vector<Node> nodes = needed();
+    const expression::Program program(e.model.graph, nodes);
+    for (std::size_t j = 0; j < pose.size(); ++j) {
+      at[inputs.coordinate(j)].d = 1;
+      const std::vector<Taylor> values = outputs_of(program, at);
+      at[inputs.coordinate(j)].d = 0;
+      std::map<Node, Taylor>& by_node = values_.emplace_back();
+      for (std::size_t i = 0; i < nodes.size(); ++i) by_node.emplace(nodes[i], values[i]);
+    }
+    origin_ = value(of_.solids[platform_].place);
+    for (const JointNodes& joint : of_.joints)
+      size_ = std::max(size_, (value(joint.point) - origin_).lpNorm<Eigen::Infinity>());
+    if (size_ == 0) size_ = 1;
+  }
+
+  /// Orthonormal columns: the twists of the platform that the joints allow, (v / size, omega).
+  MatrixXd allowed() const {
+    const auto bodies = static_cast<Index>(6 * of_.solids.size());
+    MatrixXd A = MatrixXd::Zero(static_cast<Index>(6 * of_.joints.size()), bodies + static_cast<Index>(drives_));
+    for (Index row = 0; const JointNodes& joint : of_.joints) {
+      const Vector3d p = (value(joint.point) - origin_) / size_;
+      const Matrix3d couples = couples_of(joint);
+      const auto add = [&](std::size_t solid, double sign) {
+        const auto column = static_cast<Index>(6 * solid);
+        A.block<3, 3>(row, column) += sign * Matrix3d::Identity();
+        A.block<3, 3>(row, column + 3) -= sign * cross_matrix(p);
+        A.block<3, 3>(row + 3, column + 3) += sign * couples;
+      };
+      add(joint.on, 1);
+      if (joint.from) add(*joint.from, -1);
+      if (joint.drive) {
+        const Vector3d axis = value(joint.drive->axis).normalized();
+        const Index column = bodies + static_cast<Index>(joint.drive->joint);
+        if (joint.drive->turns)
+          A.block<3, 1>(row + 3, column) -= couples * axis;
+        else
+          A.block<3, 1>(row, column) -= axis;
+      }
+      row += 6;
+    }
+    const auto decomposition = decomposed(A);
+    const Index nullity = A.cols() - decomposition.rank();
+    if (nullity == 0) return MatrixXd(6, 0);
+    const MatrixXd twists = decomposition.matrixV().rightCols(nullity).middleRows(static_cast<Index>(6 * platform_), 6);
+    const auto of_platform = decomposed(twists);
+    // Absolute, for null vectors are of length 1 and the platform may stand still in all of them.
+    Index count = 0;
+    while (count < of_platform.singularValues().size() && of_platform.singularValues()[count] > kRankThreshold) ++count;
+    return of_platform.matrixU().leftCols(count);
+  }
+
+  /// The platform's twist by each coordinate, (v / size, omega); none where the ends of the limbs, given by formulas,
+  /// do not move with the platform's frame.
+  std::optional<MatrixXd> described() const {
+    MatrixXd twists(6, static_cast<Index>(values_.size()));
+    for (std::size_t j = 0; j < values_.size(); ++j) {
+      Matrix3d R, rate;
+      for (std::size_t i = 0; i < 3; ++i) {
+        R.row(static_cast<Index>(i)) = value(turn_[i]);
+        rate.row(static_cast<Index>(i)) = rate_of(turn_[i], j);
+      }
+      const Matrix3d spin = rate * R.transpose();
+      const Vector3d v = rate_of(of_.solids[platform_].place, j), omega(spin(2, 1), spin(0, 2), spin(1, 0));
+      for (const JointNodes& joint : of_.joints) {
+        if (joint.on != platform_ && joint.from != platform_) continue;
+        const Vector3d carried = v + omega.cross(value(joint.point) - origin_);
+        if ((rate_of(joint.point, j) - carried).norm() > kRankThreshold * std::max(size_, 1.0)) return {};
+      }
+      twists.col(static_cast<Index>(j)) << v / size_, omega;
+    }
+    return twists;
+  }
+
+ private:
+  std::vector<Node> needed() const {
+    std::vector<Node> nodes;
+    const auto add = [&nodes](const Place& place) { nodes.insert(nodes.end(), place.begin(), place.end()); };
+    add(of_.solids[platform_].place);
+    for (const Place& row : turn_) add(row);
+    for (const JointNodes& joint : of_.joints) {
+      add(joint.point);
+      for (const Place& axis : joint.axes) add(axis);
+      if (joint.drive) add(joint.drive->axis);
+    }
+    return nodes;
+  }
+  Vector3d value(const Place& place) const {
+    const auto at = [&](std::size_t k) { return values_.front().at(place[k]).a; };
+    return {at(0), at(1), at(2)};
+  }
+  Vector3d rate_of(const Place& place, std::size_t coordinate) const {
+    const auto at = [&](std::size_t k) { return values_[coordinate].at(place[k]).d; };
+    return {at(0), at(1), at(2)};
+  }
+  /// Projection of a relative angular velocity on the directions of the couples that a joint carries.
+  Matrix3d couples_of(const JointNodes& joint) const {
+    MatrixXd axes(3, static_cast<Index>(joint.axes.size()));
+    for (std::size_t k = 0; k < joint.axes.size(); ++k)
+      axes.col(static_cast<Index>(k)) = value(joint.axes[k]).normalized();
+    Matrix3d along = Matrix3d::Zero();
+    if (axes.cols() > 0) {
+      const auto decomposition = decomposed(axes);
+      const MatrixXd basis = decomposition.matrixU().leftCols(decomposition.rank());
+      along = basis * basis.transpose();
+    }
+    return joint.couples == JointNodes::Couples::along ? along : Matrix3d(Matrix3d::Identity() - along);
+  }
+
+  const JointedBodies& of_;
+  const std::array<Place, 3>& turn_;  ///< of the platform, by rows
+  std::size_t platform_, drives_;
+  std::vector<std::map<Node, Taylor>> values_;  ///< by coordinate
+  Vector3d origin_;
+  double size_ = 0;
+};
+
+}  // namespace
+
+PlatformMobility mobility_at(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
+                             std::size_t mode) {
+  const JointsAtPose joints(evaluation, parameters, pose, mode);
+  const MatrixXd allowed = joints.allowed();
+  PlatformMobility found{.of_joints = static_cast<std::size_t>(allowed.cols()), .of_coordinates = {}, .assumed = {}};
+  const std::optional<MatrixXd> described = joints.described();
+  if (!described) return found;
+  const Index of_described = rank(*described);
+  found.of_coordinates = static_cast<std::size_t>(allowed.cols() + of_described - rank(beside(allowed, *described)));
+  std::vector<std::string> assumed;
+  for (Index k = 0; k < 6; ++k) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(6, k);
+    if (spans(allowed, allowed.cols(), unit) && !spans(*described, of_described, unit))
+      assumed.push_back((k < 3 ? "translation along " : "rotation about ") + std::string(1, "xyz"[k % 3]));
+  }
+  if (assumed.size() + *found.of_coordinates == found.of_joints) found.assumed = assumed;
+  return found;
+}
+
+}  // namespace pkm::generic

@@ -1,0 +1,48 @@
+#include "engine/generic/pose_margins.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/generic/clearance.hpp"
+
+namespace pkm::generic {
+
+template <class S>
+void append_margins(const Evaluation& e, std::span<const S> parameters, std::size_t mode, const LimitSpec& limits,
+                    std::span<const Pose<double>> poses, std::vector<S>& margins) {
+  const Model& model = e.model;
+  const auto& outputs = e.conditions.outputs();
+  const std::size_t joints = model.inputs.joints, conditions = model.domains.size() + model.margins.size();
+  const std::optional<double> least_clearance = clearance_of(model, limits);
+  std::vector<S> inputs = e.inputs(parameters, limits, mode), registers;
+  for (const Pose<double>& pose : poses) {
+    for (std::size_t i = 0; i < pose.size(); ++i) inputs[model.inputs.coordinate(i)] = S(pose[i]);
+    e.conditions.run_all<S>(inputs, registers);
+    bool all_finite = true, assembles = true, one_is_negative = false;
+    const auto add = [&](const S& margin) {
+      const double value = value_of(margin);
+      one_is_negative = one_is_negative || value < 0;
+      if (std::isfinite(value))
+        margins.push_back(margin);
+      else
+        all_finite = false;
+      return value >= 0;
+    };
+    for (std::size_t i = 0; i < joints; ++i) assembles = assembles && std::isfinite(value_of(registers[outputs[i]]));
+    for (std::size_t i = 0; i < conditions; ++i) {
+      const bool holds = add(registers[outputs[joints + i]]);
+      if (i < model.domains.size()) assembles = assembles && holds;
+    }
+    if (assembles && least_clearance)
+      if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles))
+        add(S(nearest->clearance - *least_clearance));
+    if (!(assembles && all_finite) && !one_is_negative) margins.push_back(S(-1.0));
+  }
+}
+
+template void append_margins(const Evaluation&, std::span<const double>, std::size_t, const LimitSpec&,
+                             std::span<const Pose<double>>, std::vector<double>&);
+template void append_margins(const Evaluation&, std::span<const Dual4>, std::size_t, const LimitSpec&,
+                             std::span<const Pose<double>>, std::vector<Dual4>&);
+
+}  // namespace pkm::generic

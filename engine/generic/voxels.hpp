@@ -1,0 +1,22 @@
+// Voxel analyses of a mechanism file: loop-invariant code motion over the swept coordinates, batches of cells in SIMD.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "engine/generic/evaluation.hpp"
+
+namespace pkm::generic {
+
+/// The box for a design, for plans that give none.
+using BoxOfDesign = std::function<Box(std::span<const double> parameters)>;
+
+/// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
+/// @param mechanism, evaluation  outlive the evaluator
+/// @param default_box            null: that of the file
+std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism, const Evaluation& evaluation,
+                                                     const WorkspacePlan& plan, const VoxelOptions& voxels,
+                                                     const Demand& demand, BoxOfDesign default_box = {});
+
+}  // namespace pkm::generic

@@ -1,0 +1,46 @@
+// Links of a mechanism placed in the world frame at one pose, as capsules, for drawing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/geometry/obstacle.hpp"
+
+namespace pkm {
+
+inline constexpr const char* kFramePart = "frame";        ///< part of links that do not move
+inline constexpr const char* kPlatformPart = "platform";  ///< part of links that move with the platform
+inline constexpr const char* kObstaclePart = "obstacle";  ///< part of obstacles
+
+/// One capsule in the world frame.
+struct PlacedLink {
+  std::string name;  ///< "rod 12"; capsules that form one body have the same name
+  std::string part;  ///< "limb 1", one of the above, or another one defined by the mechanism ("carriage")
+  Capsule<double> body;
+};
+
+/// Obstacles for drawing with the links: a capsule as it is, a box as its twelve edges.
+inline std::vector<PlacedLink> drawn_obstacles(const Obstacles& obstacles) {
+  constexpr double kEdgeRadius = 0.02;  // relative to the smallest half size of the box
+  std::vector<PlacedLink> drawn;
+  for (const Obstacle& obstacle : obstacles) {
+    const auto* const box = std::get_if<SolidBox>(&obstacle.shape);
+    if (!box) {
+      drawn.push_back({obstacle.name, kObstaclePart, std::get<Capsule<double>>(obstacle.shape)});
+      continue;
+    }
+    const auto vertex = [box](std::size_t bits) {
+      Point3<double> at = box->centre;
+      for (std::size_t i = 0; i < 3; ++i) at[i] += bits >> i & 1 ? box->half[i] : -box->half[i];
+      return at;
+    };
+    const double radius = kEdgeRadius * std::ranges::min(box->half);
+    for (std::size_t bits = 0; bits < 8; ++bits)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (const std::size_t next = bits | std::size_t{1} << i; next != bits)
+          drawn.push_back({obstacle.name, kObstaclePart, {{vertex(bits), vertex(next)}, radius}});
+  }
+  return drawn;
+}
+
+}  // namespace pkm

@@ -1,0 +1,86 @@
+// Factory functions of the built-in kinds of motions: point to point, oscillation, pick and place, formulas of time.
+// All values are in SI units.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "engine/expression/formula.hpp"
+#include "engine/motion/motion.hpp"
+#include "engine/motion/time_law.hpp"
+
+namespace pkm {
+
+/// A pause, then a rest-to-rest move on a straight line in the space of the coordinates.
+struct Move {
+  double wait = 0;        ///< pause before the move [s]
+  AxisVector<double> to;  ///< pose at its end
+  double duration = 0;    ///< [s], > 0
+};
+
+/// A sequence of moves, at rest at each point.
+/// @param wait  pause at the last point [s]
+std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, const std::vector<Move>& moves,
+                                             double wait, TimeLaw law);
+
+/// Upper bounds of peak speeds and accelerations of a move, for the position and for each angle; infinite: unlimited.
+struct PeakRates {
+  double acceleration = std::numeric_limits<double>::infinity();          ///< [m/s^2]
+  double angular_acceleration = std::numeric_limits<double>::infinity();  ///< [rad/s^2]
+  double speed = std::numeric_limits<double>::infinity();                 ///< [m/s]
+  double angular_speed = std::numeric_limits<double>::infinity();         ///< [rad/s]
+};
+
+/// The shortest duration [s] of a move that satisfies the limits; 0 if no limited coordinate moves.
+/// @param limits  the position is the vector of all lengths
+double min_move_duration(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
+                         const AxisVector<double>& to, const PeakRates& limits);
+
+/// Indices of the coordinates x, y, z and of the rotation of the platform; std::nullopt if there is none.
+struct SpaceAxes {
+  std::optional<std::size_t> x, y, z, turn;
+};
+/// Finds the lengths named x, y, z, and the first angle as `turn`.
+SpaceAxes space_axes(std::span<const AxisInfo> coordinates);
+
+/// Harmonic oscillation x = x0 + A sin wt, y = y0 + A cos wt, z = z0 + A sin wt of those coordinates that the platform
+/// has, the others being constant; w = 2 pi / period. Source: Transactions of the Chinese Society for Agricultural
+/// Machinery 54 (9), 2023, 448-458, eq 35.
+std::shared_ptr<const Motion> oscillation(const SpaceAxes& axes, const AxisVector<double>& centre, double amplitude,
+                                          double period, double cycles);
+
+/// Pick-and-place cycle: lift, move along a horizontal line and rotate, lower. With t_h = T_v - o, t_d = t_h + T_h - o,
+///   z = z0 + Q(t, T_v, lift) - Q(t - t_d, T_v, lift)
+///   (x, y) = (x0, y0) + (cos d, sin d) Q(t - t_h, T_h, reach),   rotation = rotation0 + Q(t - t_h, T_h, turn)
+/// where Q(t, T, s) is the time law: it increases from 0 to s for t from 0 to T. One way takes t_d + T_v. Axes that the
+/// cycle does not move may be missing.
+struct PickAndPlace {
+  SpaceAxes axes;
+  AxisVector<double> start;
+  double lift = 0.025, reach = 0.305;  ///< [m]
+  double lift_time = 0.1;              ///< T_v [s], > 0
+  double reach_time = 0.3;             ///< T_h [s], > 0
+  double overlap = 0;                  ///< o [s], in [0, min(T_v, T_h)]; 0: it stops at the corners
+  double direction = 0;                ///< d [rad], from x towards y
+  double turn = 0;                     ///< [rad]
+  double wait = 0;                     ///< pause at the end of each way [s]
+  bool back = false;                   ///< whole cycle: returns the same way
+  TimeLaw law = TimeLaw::quintic;
+};
+std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);
+
+/// A motion with a formula of the time t [s] for each coordinate; derivatives by automatic differentiation. Undefined
+/// values are NaN in the samples.
+std::shared_ptr<const Motion> motion_from_formulas(const std::vector<Formula>& coordinates, double duration);
+
+/// A copy of a motion with the mechanism's inputs (MechanismInfo::inputs, in their order, SI units) as formulas of the
+/// time.
+std::shared_ptr<const Motion> with_inputs(std::shared_ptr<const Motion> motion, const std::vector<Formula>& inputs);
+
+/// The variables of formulas of time: "t".
+inline const std::vector<std::string>& time_name() {
+  static const std::vector<std::string> names = {"t"};
+  return names;
+}
+
+}  // namespace pkm

@@ -1,0 +1,33 @@
+// Expression graph of a motion over time. Evaluated with interval arithmetic over a time interval, it encloses the
+// motion at every instant, so that constraints can be certified between samples.
+#pragma once
+
+#include "engine/expression/graph.hpp"
+#include "engine/math/interval.hpp"
+
+namespace pkm {
+
+/// The graph to which a motion adds its pose. Constants that the motion computes from its data, such as the distance
+/// between two points, become inputs whose intervals enclose the exact values.
+struct TimeGraph {
+  expression::Graph& graph;
+  std::vector<Interval>& inputs;  ///< values of the graph's inputs
+  std::size_t position;           ///< index of the time among the inputs
+  expression::Term time;
+
+  /// @param known  values of the inputs that the graph has already; the time and the constants are appended
+  TimeGraph(expression::Graph& to, std::vector<Interval>& known)
+      : graph(to), inputs(known), position(known.size()), time(input(0.0)) {}
+
+  /// A new input with a value.
+  expression::Term input(const Interval& value) {
+    inputs.push_back(value);
+    return {graph, graph.input(inputs.size() - 1)};
+  }
+  /// A constant: a node of the graph if it is exact, otherwise a new input.
+  expression::Term number(const Interval& value) {
+    return value.is_number() ? expression::Term(graph, value.lower) : input(value);
+  }
+};
+
+}  // namespace pkm

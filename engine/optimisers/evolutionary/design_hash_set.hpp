@@ -1,0 +1,37 @@
+// Hash set of the designs of an evaluation table, compared bit by bit, so that no design is evaluated twice.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/problem/evaluation.hpp"
+
+namespace pkm {
+
+class DesignHashSet {
+ public:
+  /// Returns the row whose design equals `design` bit for bit, or -1. `table` is the table passed to `insert`.
+  std::int64_t find(const EvaluationTable& table, std::span<const double> design) const;
+  /// Prefetches the hash slot that find(design) will read, which is rarely in the processor's cache.
+  void prefetch(std::span<const double> design) const;
+  /// Inserts a row whose design is not yet in the set.
+  void insert(const EvaluationTable& table, std::size_t row);
+
+ private:
+  /// The hash is stored with the row, so that designs, which are far apart in memory, are rarely compared in vain.
+  struct Slot {
+    std::uint32_t hash = 0, row = kEmpty;
+  };
+  static constexpr std::uint32_t kEmpty = 0xffffffff;
+
+  /// Linear probing: index of the first slot, beginning at the hash, that is empty or satisfies matches(slot).
+  template <class Predicate>
+  std::size_t find_slot(std::uint32_t hash, const Predicate& matches) const;
+
+  std::vector<Slot> slots_ =
+      std::vector<Slot>(64);  // open addressing; the size is a power of two, the load at most 1/2
+  std::size_t count_ = 0;
+};
+
+}  // namespace pkm

@@ -1,0 +1,68 @@
+// Merges the evaluations of concurrent multistart runs into the stage table in start order, so that results do not
+// depend on timing. The evaluations of a run are buffered until all earlier runs have finished and been merged.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "engine/optimisers/pareto_archive.hpp"
+#include "engine/optimisers/solvers/start_run.hpp"
+
+namespace pkm {
+
+class MultistartMerger {
+ public:
+  /// @param table  the stage table, initially empty
+  MultistartMerger(const SolverPlan& plan, const StageInput& input, EvaluationTable& table);
+
+  const Scalarisation& scalarisation() const { return scalarisation_; }
+  bool has_front() const { return archive_.has_value(); }
+  std::vector<StartRun>& starts() { return starts_; }
+  bool stopped() const { return stopped_; }
+  void stop() { stopped_ = true; }
+  /// Protects starts() and merge().
+  std::mutex& mutex() { return mutex_; }
+
+  /// Appends all rows that are next in start order to the stage table, and reports each to the monitor. Rank 0 merges
+  /// during the stage, the other ranks at its end.
+  /// @return false if the stage was stopped, for example by the monitor
+  bool merge();
+  /// Takes over the evaluations, and the outcome if there is one, of a start that another rank works on.
+  void receive(UnmergedStart&& remote);
+  /// Copy of the evaluations of a start and, if it has finished, of its outcome.
+  UnmergedStart snapshot(std::size_t k) const;
+  StageResult result() const;
+
+ private:
+  /// Appends row `source` of the start being merged. @return false if the monitor requests a stop
+  bool append_and_report(const EvaluationTable& run_table, std::size_t source);
+  /// Records the outcome of a start whose rows have all been merged, and proceeds to the next start.
+  void finish(StartRun& run);
+  /// Maximum number of evaluations still to be made. Cached: recounted after every starts / 16 rows.
+  std::int64_t evaluations_left();
+  /// Snapshots of the starts with evaluations that are not in the stage table.
+  std::vector<UnmergedStart> unmerged_starts() const;
+  /// The stop reason of all starts if they agree, otherwise StopReason::starts.
+  StopReason common_stop_reason() const;
+
+  const StageInput& input_;
+  std::int64_t max_evaluations_;  ///< per start
+  EvaluationTable& table_;
+  Scalarisation scalarisation_;
+  std::vector<StartRun> starts_;
+  std::mutex mutex_;
+  std::size_t next_ = 0;         ///< index of the start being merged
+  std::size_t merged_rows_ = 0;  ///< number of its rows that have been merged
+  std::atomic<bool> stopped_ = false;
+  std::optional<ScalarisedProblem> scalarised_;  ///< of the start being merged
+  RankKey best_, best_of_start_;
+  std::int64_t evaluations_left_ = 0;
+  std::size_t next_count_size_ = 0;  ///< table size at which they are recounted
+  std::vector<StartOutcome> finished_;
+  std::vector<std::int64_t> population_;  ///< best row of the start being merged
+  std::optional<ParetoArchive> archive_;  ///< several objectives: the results of the starts
+};
+
+}  // namespace pkm

@@ -1,0 +1,23 @@
+#include "engine/problem/volume_check.hpp"
+
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+
+VolumeBounds verify_volume(const DesignProblem& problem, DesignReport& report, double gap,
+                           const std::function<bool()>& stop) {
+  constexpr double kRoundoff = 1e-9;  // relative; rounding errors of closed forms, not part of the error estimate
+  const ProblemParts& parts = problem.parts();
+  const VolumeBounds bounds =
+      parts.mechanism->bounds()->volume(report.parameters, parts.plan, parts.demand.mode, {.gap = gap, .stop = stop});
+  const double volume = report.survey.volume, error = (report.survey.error + kRoundoff) * volume;
+  if (bounds.lower <= volume + error && bounds.upper >= volume - error) return bounds;
+  const std::string unit = volume_unit(parts.mechanism->info(), parts.plan);
+  report.status = Status::failed;
+  report.reason = "the volume by columns, " + with_unit(volume, unit) + ", lies outside its certified bounds, " +
+                  with_unit(bounds.lower, unit) + " to " + with_unit(bounds.upper, unit) + ": " +
+                  (volume < bounds.lower ? "a part of the workspace was missed" : "infeasible poses were included");
+  return bounds;
+}
+
+}  // namespace pkm

@@ -1,0 +1,40 @@
+// Computes the JSON data of each panel of the HTML page.
+//
+// Each function returns null if its panel has no content; the page then omits the panel. Numbers that are displayed as
+// values have full precision; long columns are packed (engine/report/packed_array.hpp). The file of the same name in
+// engine/report/page/ draws the panel.
+#pragma once
+
+#include "engine/report/json_text.hpp"
+#include "engine/report/shown_designs.hpp"
+
+namespace pkm {
+
+/// Names and units of the study's problem, used by all panels: mechanism, parameters, variables, objectives,
+/// constraints, outputs.
+Json problem_data(const PageStudy& page);
+/// State of the study, table of designs, active constraints, computing time per stage, reproduction of the study.
+Json summary_data(const PageStudy& page);
+/// Per stage over its generations: best, median and quartiles of the objectives, feasible share, diversity, indicators
+/// of the front; multistart runs of solvers.
+Json convergence_data(const StudyContents& contents);
+/// The designs of each generation, or of each multistart run, subsampled.
+Json populations_data(const StudyContents& contents);
+/// The Pareto fronts with knees and compromise, and the data of the panels below for some of their designs.
+Json front_data(const PageStudy& page);
+
+/// The parameters of a single design, for a page without a study.
+Json design_data(const ShownDesigns& shown);
+/// The feasible cells of each design with their fields, and the boundary surface with the fields at its vertices.
+Json workspace_data(const ShownDesigns& shown);
+/// The feasible cells and the boundary surface from the map in the study file; it has no fields.
+Json workspace_data(const StudyContents& contents);
+/// The links of each design at all positions of the page's sliders and along the motions, and its dimensions.
+Json mechanism_data(const ShownDesigns& shown);
+/// Statistics of the coupling indices over the first rotational coordinate, if there is one. Null unless the study
+/// requests coupling. Maps and histograms are drawn from the fields of the workspace.
+Json coupling_data(const ShownDesigns& shown);
+/// Positions, speeds, forces and power of the joints along the study's motions.
+Json motions_data(const ShownDesigns& shown);
+
+}  // namespace pkm

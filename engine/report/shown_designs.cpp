@@ -1,0 +1,158 @@
+#include "engine/report/shown_designs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <numbers>
+#include <stdexcept>
+
+#include "engine/core/error.hpp"
+#include "engine/problem/front.hpp"
+#include "engine/report/comparison.hpp"
+#include "engine/report/thinning.hpp"
+#include "engine/workspace/picture_plan.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kFrontDesigns = 10;  // designs of the front that a page includes in addition to the best one
+constexpr PageDetail kFrontDetail = {16, 5, 3, false};  // resolution of these designs
+
+/// The study's plan with voxels, at most max_cells per axis.
+WorkspacePlan page_plan(const MechanismInfo& info, const WorkspacePlan& plan, std::int64_t max_cells) {
+  WorkspacePlan picture = picture_plan(info, plan, {max_cells, max_cells, max_cells});
+  for (std::int64_t& cells : std::get<VoxelOptions>(picture.method).cells) cells = std::min(cells, max_cells);
+  return picture;
+}
+
+/// The range of a fixed coordinate around its value in which at least one of a sample of feasible poses remains
+/// feasible, found by stepping outwards.
+std::array<double, 2> feasible_range(const WorkspaceAxis& fixed, const ShownDesigns& shown, const ShownDesign& design) {
+  constexpr std::size_t kPoses = 100;  // sampled poses
+  constexpr int kSteps = 60;           // in each direction
+  const WorkspaceFields& workspace = *design.workspace;
+  const std::vector<std::size_t> cells = workspace.feasible_cells();
+  std::vector<Pose<double>> poses;
+  for (const std::size_t i : Thinning(cells.size(), kPoses).indices) poses.push_back(workspace.pose(cells[i]));
+
+  double reach = std::numbers::pi;  // largest displacement: half a turn; for a length twice the largest extent
+  if (fixed.unit == "m") {
+    reach = 0;
+    for (const WorkspaceAxis& axis : workspace.axes)
+      if (axis.unit == "m") reach = std::fmax(reach, 2 * (axis.upper - axis.lower));
+  }
+  const auto any_feasible = [&](double value) {
+    return std::ranges::any_of(poses, [&](Pose<double> pose) {
+      pose[static_cast<std::size_t>(fixed.coordinate)] = value;
+      return shown.mechanism.inspect(design.parameters, pose, shown.mode, shown.limits).feasible;
+    });
+  };
+  std::array<double, 2> range = {fixed.lower, fixed.lower};
+  for (const int side : {0, 1})
+    for (int k = 1; k <= kSteps; ++k) {
+      const double value = fixed.lower + (side ? k : -k) * reach / kSteps;
+      if (!any_feasible(value)) break;
+      range[static_cast<std::size_t>(side)] = value;
+    }
+  return range;
+}
+
+/// Motions per page: in a study with a front each one needs up to 0.7 MB of the page.
+constexpr std::size_t kMaxMotions = 6;
+
+/// The settings that the designs of a page share; `designs` is empty.
+ShownDesigns prepare_designs(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,
+                             const std::vector<NamedMotion>& motions, const PageDetail& detail = {}) {
+  const MechanismInfo& info = mechanism.info();
+  const std::size_t motion_count = std::min(motions.size(), kMaxMotions);
+  return {.mechanism = mechanism,
+          .plan = page_plan(info, plan, detail.cells),
+          .limits = workspace_limits(info, plan.limits),
+          .mode = mode.empty() ? info.modes.front() : mode,
+          .motions = {motions.begin(), motions.begin() + static_cast<std::ptrdiff_t>(motion_count)},
+          .omitted_motions = motions.size() - motion_count,
+          .designs = {},
+          .detail = detail};
+}
+
+/// A study uses masses if it computes a quantity of inertia or loads, selects a mass model other than the mechanism's
+/// default, or sets or varies a mass. Otherwise its page does not show coupling.
+bool uses_masses(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const Dynamics* const dynamics = parts.mechanism->dynamics();
+  if (!dynamics) return false;
+  if (dynamics->mass_model() != dynamics->mass_models().front() || parts.demand.needs_inertia() ||
+      std::ranges::any_of(parts.regions, [](const Region& region) { return region.demand.needs_inertia(); }))
+    return true;
+  for (const auto* const entries : {&study.objectives, &study.constraints, &study.reports})
+    if (std::ranges::any_of(*entries, [](const StudyEntry& entry) { return entry.type.starts_with("peak-"); }))
+      return true;
+  const auto& infos = parts.mechanism->info().parameters;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const bool changed = parts.parameters[i] != infos[i].nominal || std::ranges::count(parts.varies, i) > 0;
+    if (changed && infos[i].unit.starts_with("kg")) return true;
+  }
+  return false;
+}
+
+ShownDesigns prepare_study_designs(const PageStudy& page, const PageDetail& detail) {
+  const ProblemParts& parts = page.study->problem->parts();
+  ShownDesigns shown = prepare_designs(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions, detail);
+  shown.coupling = uses_masses(*page.study);
+  return shown;
+}
+
+void add_design(ShownDesigns& shown, const std::string& name, const std::vector<double>& parameters) {
+  ShownDesign design{name, parameters, {}};
+  try {
+    design.workspace = workspace_fields(shown.mechanism, parameters, shown.plan, shown.mode);
+    for (const auto& fixed : design.workspace->held) design.fixed_range.push_back(feasible_range(fixed, shown, design));
+    if (!(design.workspace->volume > 0)) {
+      design.workspace.reset();
+      design.problem = "it has no feasible pose";
+    }
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {  // for example: not a mechanism, or a mass is not positive
+    design.workspace.reset();
+    design.problem = message_of(error);
+  }
+  shown.designs.push_back(std::move(design));
+}
+
+}  // namespace
+
+ShownDesigns evaluate_shown_designs(const PageStudy& page) {
+  const StudyContents& contents = page.contents;
+  ShownDesigns shown = prepare_study_designs(page, {});
+  if (contents.best.row >= 0)
+    add_design(shown, best_design_label(contents), page.study->problem->parameters(contents.best_design()));
+  if (page.study->baseline) add_design(shown, "baseline", *page.study->baseline);
+  return shown;
+}
+
+ShownDesigns evaluate_front_designs(const PageStudy& page) {
+  const StudyContents& contents = page.contents;
+  ShownDesigns shown = prepare_study_designs(page, kFrontDetail);
+  const auto last = std::ranges::find_if(contents.stages.rbegin(), contents.stages.rend(), &StageRecord::has_front);
+  if (last == contents.stages.rend() || contents.problem.objectives.size() < 2) return shown;
+  const std::vector<std::int64_t>& rows = last->front->rows;
+  const std::int64_t stage = contents.stages.rend() - last;  // from 1
+  for (const std::size_t point :
+       select_representatives(scores_of(contents.problem.objectives, last->table, rows), kFrontDesigns)) {
+    if (contents.best.stage == stage - 1 && contents.best.row == rows[point]) continue;
+    add_design(shown, "point " + std::to_string(point + 1) + " of stage " + std::to_string(stage),
+               page.study->problem->parameters(last->table.design(static_cast<std::size_t>(rows[point]))));
+  }
+  return shown;
+}
+
+ShownDesigns evaluate_shown_designs(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,
+                                    const std::vector<NamedMotion>& motions,
+                                    const std::pair<std::string, std::vector<double>>& design) {
+  ShownDesigns shown = prepare_designs(mechanism, plan, mode, motions);
+  add_design(shown, design.first, design.second);
+  return shown;
+}
+
+}  // namespace pkm

@@ -1,0 +1,124 @@
+// Data of the panel "Workspace": feasible cells, their fields, and the boundary surface of each design.
+#include <algorithm>
+#include <optional>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/report/isosurface.hpp"
+#include "engine/report/packed_array.hpp"
+#include "engine/report/panels.hpp"
+#include "engine/workspace/pose_quantities.hpp"
+
+namespace pkm {
+namespace {
+
+/// Whether the page includes a field. Quantities of inertia need ShownDesigns::coupling, margins and joint positions
+/// need PageDetail::joints.
+bool is_shown(const ShownDesigns& shown, const std::string& field) {
+  for (const PoseQuantity* const quantity : pose_quantities()) {
+    const std::string name = quantity->name;
+    if (field == name || field.starts_with(name + "_")) return shown.coupling || !quantity->needs_inertia();
+  }
+  return shown.detail.joints;
+}
+
+/// The boundary surface: one packed column per coordinate of the vertices, and the fields at the vertices by name.
+/// @param shown, design  null: only the cells are known, vertices are interpolated and there are no fields
+Json surface_json(const ShownDesigns* shown, const ShownDesign* design, const WorkspaceFields& workspace) {
+  std::optional<PoseMargin> margin;
+  if (shown) margin.emplace(shown->mechanism, design->parameters, shown->plan.limits);
+  const Isosurface found = isosurface(workspace, margin ? &*margin : nullptr);
+  std::vector<std::int64_t> indices;
+  for (const auto& triangle : found.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
+  Json vertices = Json::array();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const auto& vertex : found.vertices) values.push_back(vertex[axis]);
+    vertices.push_back(packed_quantised(values));
+  }
+  Json json = {{"vertices", vertices}, {"triangles", packed_integers(indices)}, {"values", Json::object()}};
+  if (!shown) return json;
+  std::vector<Pose<double>> poses;
+  for (const auto& point : found.inside) poses.push_back(workspace.pose(point));
+  for (const WorkspaceField& field :
+       fields_at(shown->mechanism, design->parameters, shown->plan.limits, shown->mode, poses))
+    if (is_shown(*shown, field.name)) json["values"][field.name] = packed_quantised(field.values);
+  return json;
+}
+
+Json axis_json(const WorkspaceAxis& axis) {
+  Json json = axis_data(axis.name, axis.unit);
+  json["coordinate"] = axis.coordinate;
+  return json;
+}
+
+/// @param shown, design  null: only the cells are known
+Json workspace_json(const std::string& name, const WorkspaceFields& found, const ShownDesigns* shown,
+                    const ShownDesign* design) {
+  Json json = {{"name", name}, {"axes", Json::array()}, {"fixed", Json::array()}};
+  for (const WorkspaceAxis& axis : found.axes) {
+    json["axes"].push_back(axis_json(axis));
+    json["axes"].back().update({{"lower", axis.lower}, {"upper", axis.upper}, {"cells", axis.cells}});
+  }
+  for (std::size_t i = 0; i < found.held.size(); ++i) {
+    json["fixed"].push_back(axis_json(found.held[i]));
+    json["fixed"].back().update({{"value", found.held[i].lower}, {"note", found.fixed_note[i]}});
+  }
+  json["volume"] = found.volume;
+  json["volume_unit"] = found.volume_unit;
+  const std::vector<double>& feasible = found.field("feasible").values;
+  json["feasible"] = packed_bits(std::vector<std::uint8_t>(feasible.begin(), feasible.end()));
+  json["fields"] = Json::array();
+  for (const WorkspaceField& field : found.fields) {
+    if (field.name == "feasible" || (shown && !is_shown(*shown, field.name))) continue;
+    std::vector<double> values;
+    for (const std::size_t cell : found.feasible_cells()) values.push_back(field.values[cell]);
+    json["fields"].push_back(
+        {{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}, {"values", packed_quantised(values)}});
+  }
+  if (!surface_unsupported(names_of(found.axes))) json["surface"] = surface_json(shown, design, found);
+  return json;
+}
+
+/// Converts the map in a study file, which has the feasible cells of the best design but not the values of the fixed
+/// coordinates. The margin is 1 or -1, so that the isosurface runs half-way between feasible and infeasible cells.
+WorkspaceFields fields_of_map(const MapRecord& map, const DesignRecord& best, const std::string& volume_unit) {
+  WorkspaceFields found;
+  for (std::size_t i = 0; i < map.axes.size() && !map.axes[i].empty(); ++i)
+    found.axes.push_back({static_cast<int>(i), map.axes[i], map.units[i], map.voxels.lower[i], map.voxels.upper[i],
+                          map.voxels.cells[i]});
+  found.volume = best.volume;
+  found.volume_unit = volume_unit;
+  std::vector<double> margin;
+  for (const std::uint8_t feasible : map.voxels.feasible) margin.push_back(feasible ? 1 : -1);
+  found.fields.push_back({"feasible", "1", "", {map.voxels.feasible.begin(), map.voxels.feasible.end()}});
+  found.fields.push_back({"margin", "1", "", std::move(margin)});
+  return found;
+}
+
+}  // namespace
+
+Json workspace_data(const ShownDesigns& shown) {
+  const WorkspacePlan& plan = shown.plan;
+  const MechanismInfo& info = shown.mechanism.info();
+  Json json = {{"column", info.coordinates[static_cast<std::size_t>(sweep_of(info, plan).column)].name},
+               {"designs", Json::array()},
+               {"problems", Json::array()}};
+  for (const ShownDesign& design : shown.designs) {
+    if (!design.workspace) {
+      json["problems"].push_back("The design “" + design.name + "” is not shown: " + design.problem + ".");
+      continue;
+    }
+    json["designs"].push_back(workspace_json(design.name, *design.workspace, &shown, &design));
+  }
+  return json;
+}
+
+Json workspace_data(const StudyContents& contents) {
+  if (!contents.final || !contents.final->map || !contents.final->best) return {};
+  const FinalRecord& final = *contents.final;
+  Json best = workspace_json("best", fields_of_map(*final.map, *final.best, final.volume_unit), nullptr, nullptr);
+  best["fields"].clear();  // the margin is not meaningful, see fields_of_map()
+  return {{"column", best["axes"].back()["name"]}, {"designs", {best}}, {"problems", Json::array()}};
+}
+
+}  // namespace pkm

@@ -1,0 +1,71 @@
+#include "engine/runner/design_record.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "engine/core/stop.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/problem/volume_check.hpp"
+
+namespace pkm {
+
+DesignRecord evaluate_design(const DesignProblem& problem, std::span<const double> parameters) {
+  const DesignReport r = problem.report(parameters);
+  const bool box_matters = problem.parts().plan.box().has_value();  // the default box contains all reachable poses
+  return {.parameters = r.parameters,
+          .objectives = r.objectives,
+          .margins = r.margins,
+          .reports = r.reports,
+          .status = r.status,
+          .reason = r.reason,
+          .volume = r.survey.volume,
+          .cells = r.survey.cells,
+          .feasible_cells = r.survey.feasible_cells,
+          .cell_volume = r.survey.cell_volume,
+          .touches_box = box_matters && r.survey.touches_box};
+}
+
+void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord& record) {
+  if (record.status == Status::failed) return;
+  DesignReport r = problem.report(record.parameters);
+  try {
+    record.certain = verify_volume(problem, r, gap, stop_requested);
+    check_stop();  // bounds of an interrupted computation are discarded
+  } catch (const std::invalid_argument& reason) {
+    r.status = Status::failed;
+    r.reason = reason.what();
+  } catch (const Stopped&) {
+    record.certain.reset();
+    throw;
+  }
+  if (r.status != Status::failed) return;
+  record.status = r.status;
+  record.reason = r.reason + (record.reason.empty() ? "" : "; ") + record.reason;
+}
+
+DesignRecord evaluate_rounded_design(const DesignProblem& problem, const std::vector<double>& parameters) {
+  const ProblemParts& parts = problem.parts();
+  if (const Unsupported refusal = parts.mechanism->refuse(parameters)) {
+    const auto undefined = [](std::size_t size) {
+      return std::vector<double>(size, std::numeric_limits<double>::quiet_NaN());
+    };
+    return {.parameters = parameters,
+            .objectives = undefined(problem.objectives().size()),
+            .margins = undefined(problem.margins().size()),
+            .reports = undefined(problem.reports().size()),
+            .status = Status::failed,
+            .reason = *refusal};
+  }
+  DesignRecord record = evaluate_design(problem, parameters);
+  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    const Variable& v = parts.space[i];
+    const double value = parameters[parts.varies[i]], roundoff = 1e-12 * std::fabs(value);
+    if (value >= v.lower - roundoff && value <= v.upper + roundoff) continue;
+    record.reason +=
+        (record.reason.empty() ? "" : "; ") + v.name + " = " + with_unit(value, v.unit) + " lies outside its bounds";
+  }
+  return record;
+}
+
+}  // namespace pkm

@@ -1,0 +1,25 @@
+// Evaluates single designs completely: all objectives, margins and outputs, and certified bounds of the volume.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/problem/design_problem.hpp"
+#include "engine/storage/study_contents.hpp"
+
+namespace pkm {
+
+/// @param parameters  all parameters of the mechanism
+DesignRecord evaluate_design(const DesignProblem& problem, std::span<const double> parameters);
+
+/// Evaluates a rounded design. `reason` lists the variables that rounding has moved out of their bounds. If the rounded
+/// parameters are outside the range in which the mechanism is defined, nothing is evaluated and the status is failed.
+DesignRecord evaluate_rounded_design(const DesignProblem& problem, const std::vector<double>& parameters);
+
+/// Adds certified bounds of the volume to the record, unless its evaluation failed. Sets the status to failed if the
+/// computed volume lies outside them. Throws Stopped.
+/// @param gap  requested relative width of the bounds
+void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord& record);
+
+}  // namespace pkm

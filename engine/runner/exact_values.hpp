@@ -1,0 +1,40 @@
+// Evaluates designs of a voxel study by the exact method (columns), if the mechanism supports it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/unsupported.hpp"
+#include "engine/problem/design_problem.hpp"
+#include "engine/storage/study_contents.hpp"
+
+namespace pkm {
+
+class ExactValues {
+ public:
+  static constexpr const char* kNoValues = "no exact values of the ";  ///< beginning of the notes added by evaluate()
+
+  /// @param parts  of the problem of the voxel study; must outlive this object
+  explicit ExactValues(const ProblemParts& parts);
+
+  /// Evaluates one design.
+  /// @param name   of the design, for the note
+  /// @param notes  receives the reason if there are no exact values, but only for mechanisms that support the method
+  std::optional<DesignRecord> evaluate(const char* name, std::span<const double> parameters,
+                                       std::vector<std::string>& notes) const;
+
+ private:
+  /// Checks whether the box of the study contains all reachable poses, because columns are not cut by it.
+  /// @return the ranges of the reachable poses if it does not; empty if it does, or if columns are cut by the box
+  Unsupported poses_beyond_box(std::span<const double> parameters) const;
+  /// Sets values that depend on a region evaluated on voxels to NaN, because they are not exact.
+  void discard_voxel_values(const std::vector<NamedQuantity>& quantities, std::vector<double>& values) const;
+
+  const ProblemParts& parts_;
+  std::unique_ptr<const DesignProblem> problem_;
+};
+
+}  // namespace pkm

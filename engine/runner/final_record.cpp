@@ -1,0 +1,186 @@
+#include "engine/runner/final_record.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <span>
+
+#include "engine/core/stop.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/runner/design_record.hpp"
+#include "engine/runner/exact_values.hpp"
+#include "engine/runner/progress.hpp"
+#include "engine/workspace/picture_plan.hpp"
+#include "engine/workspace/survey_set.hpp"
+
+namespace pkm {
+namespace {
+
+// Beginnings of notes, by which the notes of an earlier run are recognised and replaced.
+constexpr const char* kWideBounds = "certified bounds of the ";
+constexpr const char* kAlong = "along the motion ";
+
+constexpr std::size_t kMaxMotionBoxes = 200'000;  // time intervals examined per motion; takes some seconds
+
+/// Number of cells of the voxel map of a study whose workspace is analysed by columns.
+constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
+
+/// The voxel map of a design's workspace.
+MapRecord map_record(const ProblemParts& parts, std::span<const double> parameters) {
+  const MechanismInfo& info = parts.mechanism->info();
+  MapRecord map;
+  map.voxels = voxel_map(*parts.mechanism, parameters, picture_plan(info, parts.plan, kMapCells));
+  for (const int swept : sweep_of(info, parts.plan).swept) {
+    const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(swept)];
+    map.axes.push_back(axis.name);
+    map.units.push_back(axis.unit);
+  }
+  map.axes.resize(3);  // pad unused axes with empty names
+  map.units.resize(3, "1");
+  return map;
+}
+
+/// @return one sentence per active bound, and per active or violated constraint
+std::vector<std::string> active_sentences(const DesignProblem& problem, const DesignRecord& best) {
+  std::vector<std::string> sentences;
+  const ProblemParts& parts = problem.parts();
+  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    const Variable& v = parts.space[i];
+    const double value = best.parameters[parts.varies[i]], tolerance = 1e-6 * (v.upper - v.lower);
+    if (value - v.lower <= tolerance) sentences.push_back(v.name + " at its lower bound " + with_unit(v.lower, v.unit));
+    if (v.upper - value <= tolerance) sentences.push_back(v.name + " at its upper bound " + with_unit(v.upper, v.unit));
+  }
+  for (std::size_t i = 0; i < best.margins.size(); ++i) {
+    const MarginInfo& m = problem.margins()[i];
+    if (!(best.margins[i] <= 1e-4)) continue;
+    char margin[32];
+    std::snprintf(margin, sizeof margin, "%.3g", best.margins[i]);
+    sentences.push_back(m.name + (best.margins[i] < 0 ? " is violated" : " is active") + ", margin " + margin +
+                        (m.unit == "1" ? "" : " " + m.unit));
+  }
+  return sentences;
+}
+
+/// Certifies by interval arithmetic that a feasible design satisfies all pose-level limits along the motions that it
+/// has to follow, also between their samples. If a limit is proven to be violated, the design's status becomes failed;
+/// other results are added to the notes.
+void certify_motions(const ProblemParts& parts, const std::string& name, DesignRecord& design,
+                     std::vector<std::string>& notes) {
+  using Kind = PosesFinding::Kind;
+  for (const FollowedMotion& along : parts.followed) {
+    if (design.status != Status::feasible) return;
+    const std::string begin = kAlong + along.name + " the " + name + " ";
+    try {
+      const PosesCertificate found =
+          parts.mechanism->bounds()->motion(design.parameters, parts.plan.limits, along.mode, *along.motion,
+                                            {.most_boxes = kMaxMotionBoxes, .stop = [] { return stop_requested(); }});
+      check_stop();
+      const PosesFinding& verdict = found.feasible;
+      const std::string when = verdict.time ? "t = " + with_unit(*verdict.time, "s") : "";
+      if (verdict.kind == Kind::holds)
+        notes.push_back(begin + "satisfies every limit of a pose at every instant (certified)");
+      else if (verdict.kind == Kind::undecided)
+        notes.push_back(begin + "may violate " + verdict.what + " near " + when + ": undecided");
+      else {
+        design.status = Status::failed;
+        design.reason = kAlong + along.name + ", " + verdict.what + " is violated at " + when + ", between its samples";
+      }
+    } catch (const std::invalid_argument& reason) {
+      notes.push_back(begin + "cannot be certified: " + reason.what());
+    }
+  }
+}
+
+/// Computes the exact values of the best design, then of the baseline. Notes on the baseline precede those on the best
+/// design.
+void add_exact_values(const Study& study, StudyContents& contents,
+                      const std::function<void(const std::string&)>& begin) {
+  FinalRecord& f = *contents.final;
+  const std::string bound = duration_text(study.exact_seconds);
+  begin("exact values of the best design" + std::string(f.baseline ? " and the baseline" : "") + ", at most " + bound);
+  std::vector<std::string> notes_on_best, notes_on_baseline;
+  bool has_best = !f.best, has_baseline = !f.baseline;
+  const StopScope limit(study.exact_seconds);
+  try {
+    const ExactValues exact(study.problem->parts());
+    if (f.best) f.best_exact = exact.evaluate("best design", f.best->parameters, notes_on_best);
+    has_best = true;
+    if (f.baseline) f.baseline_exact = exact.evaluate("baseline", f.baseline->parameters, notes_on_baseline);
+    has_baseline = true;
+  } catch (const Stopped&) {
+    if (limit.is_requested_by_outer_scope()) throw;
+    const auto missing = [&](const char* name) {
+      return std::string(ExactValues::kNoValues) + name + ": they take longer than " + bound + " ([workspace] exact)";
+    };
+    if (!has_best) notes_on_best = {missing("best design")};
+    if (!has_baseline) notes_on_baseline = {missing("baseline")};
+  }
+  for (const auto* notes : {&notes_on_baseline, &notes_on_best})
+    contents.notes.insert(contents.notes.end(), notes->begin(), notes->end());
+}
+
+}  // namespace
+
+double rounded_to(double value, double step) {
+  // Dividing by an integer rounds once; multiplying by a step such as 0.1, which is itself rounded, would round twice.
+  const double per_unit = std::nearbyint(1 / step);
+  if (per_unit >= 1 && std::fabs(1 / step - per_unit) <= 1e-9 * per_unit)
+    return std::nearbyint(value * per_unit) / per_unit;
+  return std::nearbyint(value / step) * step;
+}
+
+FinalRecord final_record(const Study& study, const StudyContents& contents) {
+  const DesignProblem& problem = *study.problem;
+  const ProblemParts& parts = problem.parts();
+  FinalRecord f;
+  f.volume_unit = volume_unit(parts.mechanism->info(), parts.plan);
+  if (study.baseline) f.baseline = evaluate_design(problem, *study.baseline);
+  if (contents.best.row < 0) return f;
+  const auto best = problem.parameters(contents.best_design());
+  f.best = evaluate_design(problem, best);
+  f.active = active_sentences(problem, *f.best);
+  if (study.round) {
+    auto rounded = best;
+    for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
+    f.rounded = evaluate_rounded_design(problem, rounded);
+  }
+  return f;
+}
+
+bool has_exact_step(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  return parts.plan.voxels() && parts.mechanism->columns() && study.exact_seconds > 0;
+}
+
+void complete_final_record(const Study& study, StudyContents& contents,
+                           const std::function<void(const std::string&)>& begin) {
+  const DesignProblem& problem = *study.problem;
+  const ProblemParts& parts = problem.parts();
+  FinalRecord& f = *contents.final;
+  std::erase_if(contents.notes, [](const std::string& note) {
+    return note.starts_with(ExactValues::kNoValues) || note.starts_with(kWideBounds) || note.starts_with(kAlong);
+  });
+  if (f.best) {
+    begin("map of the best design's workspace");
+    f.map = map_record(parts, f.best->parameters);
+  }
+  if (const ColumnOptions* const columns = parts.plan.columns(); columns && columns->certain) {
+    const double requested = *columns->certain;
+    for (const auto& [name, design] :
+         {std::pair("baseline", &f.baseline), {"best design", &f.best}, {"rounded design", &f.rounded}}) {
+      if (!*design) continue;
+      begin("certified bounds of the " + std::string(name));
+      add_certified_bounds(problem, requested, **design);
+      if (const auto& bounds = (*design)->certain; bounds && bounds->gap() > requested)
+        contents.notes.push_back(kWideBounds + std::string(name) + " have the gap " + shortest(bounds->gap()) +
+                                 ", requested " + shortest(requested) + ": " + std::to_string(bounds->boxes) +
+                                 " boxes");
+      if (parts.followed.empty()) continue;
+      begin("motions of the " + std::string(name));
+      certify_motions(parts, name, **design, contents.notes);
+    }
+  }
+  if (has_exact_step(study)) add_exact_values(study, contents, begin);
+}
+
+}  // namespace pkm

@@ -1,0 +1,25 @@
+// Provenance of a run as text for the study file: processor, system, threads, hosts and time.
+#pragma once
+
+#include <string>
+
+namespace pkm {
+
+/// Model name of the processor: "AMD EPYC".
+std::string describe_processor();
+
+/// "AMD EPYC, 2 cores, avx2, Linux 6.1.0 x86_64"; avx2 is the instruction set of the vectorised kernels.
+std::string describe_machine();
+
+/// "2 threads", "4 ranks x 16 threads".
+/// @param threads        of this rank
+/// @param total_threads  of all ranks together
+std::string describe_team(int threads, int total_threads);
+
+/// The hosts of the ranks: "node1, node2".
+std::string describe_hosts();
+
+/// Current time, ISO 8601 in UTC: "2026-01-31T12:00:00Z".
+std::string utc_now();
+
+}  // namespace pkm

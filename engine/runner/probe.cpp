@@ -1,0 +1,88 @@
+#include "engine/runner/probe.hpp"
+
+#include <algorithm>
+
+#include "engine/core/stop.hpp"
+#include "engine/optimisers/sampling.hpp"
+#include "engine/problem/evaluator.hpp"
+#include "engine/workspace/survey_set.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kMaxDesigns = 64, kMinDesigns = 4;
+constexpr double kBudget = 50e-3, kMaxCost = 0.5;  // estimated time of all designs, and of one [s]
+
+// Approximate costs of a workspace analysis [s].
+constexpr double kCell = 0.1e-9;       // per voxel, counted in batches
+constexpr double kSample = 0.1e-6;     // per pose at which pose quantities are evaluated
+constexpr double kPlain = 2e-6;        // per pose with the full inverse kinematics, or with distances between links
+constexpr double kQuantity = 20e-6;    // per quantity that does not depend on a workspace analysis
+constexpr double kColumnNodes = 5000;  // typical number of quadrature nodes of the exact method
+
+/// Estimated time of one workspace analysis [s].
+double cost(const Mechanism& mechanism, const WorkspacePlan& plan, const Demand& demand) {
+  double poses = kColumnNodes;
+  if (const VoxelOptions* const voxels = plan.voxels()) {
+    poses = 1;
+    for (const std::int64_t cells : voxels->cells) poses *= static_cast<double>(cells);
+  }
+  for (const FixedCoordinate& held : plan.held)
+    poses *=
+        static_cast<double>(std::max({std::int64_t{1}, held.cells, static_cast<std::int64_t>(held.values.size())}));
+  const auto& limits = mechanism.info().limits;
+  bool clearance = false;
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    clearance = clearance || (limits[i].group == "clearance" && asks_clearance(plan, i));
+  const bool plain = plan.voxels() && (!mechanism.voxels() || of_cells_only(demand));
+  return poses * (plain || clearance ? kPlain : demand.needs_samples() ? kSample : kCell);
+}
+
+}  // namespace
+
+std::size_t Probe::feasible() const {
+  return static_cast<std::size_t>(std::ranges::count(table.status, Status::feasible));
+}
+
+std::size_t probe_size(const DesignProblem& problem) {
+  const ProblemParts& parts = problem.parts();
+  double one = cost(*parts.mechanism, parts.plan, parts.demand);
+  for (const Region& region : parts.regions) one += cost(*parts.mechanism, region.plan, region.demand);
+  one += kQuantity * static_cast<double>(parts.design_margins.size());
+  if (one > kMaxCost) return 0;
+  return std::clamp(static_cast<std::size_t>(kBudget / one), kMinDesigns, kMaxDesigns);
+}
+
+Probe probe(const Study& study) {
+  const DesignProblem& problem = *study.problem;
+  const DesignSpace& space = problem.space();
+  Probe probe{EvaluationTable(problem.shape()), {}, false};
+  const std::size_t count = space.dimension() > 0 ? probe_size(problem) : 0;
+  if (count == 0) return probe;
+  const std::vector<double> points = unit_cube_samples(Start::sobol, count, space.dimension(), study.seed);
+  probe.table.extend(count);
+  for (std::size_t row = 0; row < count; ++row)
+    for (std::size_t v = 0; v < space.dimension(); ++v)
+      probe.table.design(row)[v] = space.from_unit(v, points[row * space.dimension() + v]);
+  {
+    const StopScope limit(Probe::kLongest);
+    try {
+      ParallelEvaluator().evaluate(problem, probe.table, 0);
+    } catch (const Stopped&) {  // the table contains the designs evaluated so far
+      if (limit.is_requested_by_outer_scope()) throw;
+      probe.is_cut_off = true;
+    }
+  }
+  if (probe.table.size() == 0) return probe;
+  probe.verdict = diagnose({&probe.table}, problem.objectives(), problem.margins(), &problem);
+  return probe;
+}
+
+std::string words(const Probe& probe) {
+  if (probe.table.size() == 0) return "no sample designs were evaluated, because one takes too long";
+  return std::to_string(probe.feasible()) + " of " + std::to_string(probe.table.size()) +
+         " designs spread over the bounds are feasible" +
+         (probe.is_cut_off ? "; more would take longer than 10 s" : "");
+}
+
+}  // namespace pkm

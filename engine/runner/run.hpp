@@ -1,0 +1,100 @@
+// One run of a study: executes the stages in sequence, writes checkpoints and computes the final results.
+//
+// Resuming is deterministic replay: every stage restarts its optimiser from the beginning, and evaluations recorded in
+// the study file are returned (ReplayEvaluator) before new ones are computed.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/config/study.hpp"
+#include "engine/core/ranks.hpp"
+#include "engine/runner/progress.hpp"
+#include "engine/runner/run_outcome.hpp"
+#include "engine/runner/study_output.hpp"
+#include "engine/runner/timed_evaluator.hpp"
+#include "engine/storage/checkpoint_clock.hpp"
+
+namespace pkm {
+
+class Run final : public Monitor {
+ public:
+  /// @param contents  of the study file so far, which the run replays and continues
+  /// @param output    null on worker ranks, which write nothing
+  Run(const Study& study, StudyContents contents, StudyOutput* output, const RunOptions& options, Progress& progress);
+
+  /// Writes the file of a new study, before its first evaluation.
+  void begin();
+  /// Runs the stages with one team of threads. Collective: all ranks must call it. Throws StorageError,
+  /// UnwrittenOutcome and ReplayMismatch.
+  RunOutcome operator()();
+
+  // Monitor: called by the optimisers
+  bool generation(const Generation& generation) override;
+  bool goes_on() override;
+  void warn(const std::string& sentence) override;
+
+ private:
+  void run_stages();
+  /// @return false if the run has to stop
+  bool run_stage(std::size_t index);
+  StageInput stage_input(std::size_t index);
+  /// Makes a row of the current stage the best evaluation of the study if it is better than that of earlier stages.
+  void update_best(const EvaluationTable& table, std::int64_t row);
+
+  /// Rank 0 only: reports progress, checks for stop requests and writes a checkpoint if one is due.
+  void process_generation(const Generation& generation);
+  /// Distributes rank 0's decision whether to stop, and verifies that all ranks have the same evaluations.
+  void synchronise_ranks(const Generation& generation);
+  ProgressReport progress_report(const Generation& generation);
+
+  /// Rank 0 only: computes the final results unless stopped, writes the file and returns the outcome.
+  RunOutcome complete();
+  /// @return the outcome's statistics on evaluations, parallel efficiency and messages
+  RunOutcome statistics() const;
+  /// Computes the final results.
+  void compute_final_results();
+  /// @return true after a signal or when the time limit is reached. Thread-safe.
+  bool has_stop_request() const;
+  /// @return true if a stop was requested so long ago that evaluations in progress are to be aborted. They are repeated
+  /// when the run is resumed.
+  bool is_grace_period_over();
+  void write(StudyState state);
+  /// After std::bad_alloc: releases memory, writes the complete generations as a checkpoint and throws StorageError.
+  [[noreturn]] void save_after_out_of_memory();
+
+  double seconds() const { return steady_seconds() - start_; }
+
+  const Study& study_;
+  StudyOutput* output_;
+  RunOptions options_;
+  Progress& progress_;
+  CheckpointClock clock_;
+  TimedEvaluator evaluator_;
+  StudyContents contents_;
+  std::vector<StageRecord> recorded_;  ///< stages as read from the study file, to be replayed
+  double earlier_seconds_;             ///< wall time of the previous runs
+  double start_ = steady_seconds();
+  std::size_t stage_ = 0;                              ///< index of the current stage
+  std::int64_t limit_ = 0;                             ///< maximum number of evaluations of the current stage
+  std::int64_t made_ = 0;                              ///< new evaluations of this run up to the last generation
+  std::function<std::vector<UnmergedStart>()> ahead_;  ///< current solver stage: state of runs that are ahead
+  bool replaying_;                                     ///< all results so far are recorded in the study file
+  std::optional<std::size_t> complete_rows_;  ///< of the current stage; empty while a generation is being recorded
+  std::string stopped_;                       ///< reason for stopping; "": the run continues
+  std::exception_ptr failure_;                ///< rank 0: exception that ends the run on all ranks
+  bool failed_ = false;                       ///< all ranks: rank 0 has a failure
+  /// Time of the first stop request [s of this run].
+  std::atomic<double> stop_requested_at_ = std::numeric_limits<double>::infinity();
+  std::optional<RemainingTime> remaining_;                    ///< rank 0
+  int threads_ = 0;                                           ///< of all ranks together
+  double initial_exchange_ = ranks::communication_seconds();  ///< time spent in messages before this run [s]
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace pkm

@@ -1,0 +1,53 @@
+// Options and results of a run of a study.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "engine/runner/remaining_time.hpp"
+#include "engine/storage/study_contents.hpp"
+
+namespace pkm {
+
+/// Version of the numerical behaviour of optimisers and workspace analyses. A study is resumed only by a program of the
+/// same version. To be increased with every change that alters the sequence of evaluations of a given seed.
+inline constexpr std::int64_t kAlgorithms = 7;
+
+/// Program version and arguments, which must be the same on all ranks.
+struct ProgramVersion {
+  std::string version, revision;
+  std::string arguments = {};  ///< of the command line, on one line
+};
+
+struct RunOptions {
+  int threads = 0;                   ///< per rank, as for team_size(); 0: ranks::threads()
+  std::optional<double> time_limit;  ///< wall time of this run [s], after which it stops with a checkpoint
+  ProgramVersion program;
+  RunCost cost = {};  ///< for the estimate of the remaining time in progress reports
+};
+
+struct RunOutcome {
+  StudyContents contents;
+  /// Reason for stopping before the end of the study ("SIGINT", "time limit"); "" if the study is finished.
+  std::string stopped;
+  double seconds = 0;                 ///< wall time of this run
+  std::int64_t evaluations = 0;       ///< evaluations of this run, excluding replayed ones
+  double checkpoint_share = 0;        ///< share of the run time spent on checkpoints (first and final write excluded)
+  double parallel_efficiency = 0;     ///< sum of the evaluation times / (number of threads * wall time of evaluating)
+  std::string team;                   ///< "2 threads", "4 ranks x 16 threads"
+  double exchange_share = 0;          ///< share of the run time that rank 0 spent in messages, including waiting
+  std::vector<std::string> warnings;  ///< sentences for the user; also in the file
+};
+
+/// The final write of a run failed. The exception carries the results, which are not in the study file.
+class UnwrittenOutcome : public StorageError {
+ public:
+  UnwrittenOutcome(const std::string& why, RunOutcome found) : StorageError(why), outcome(std::move(found)) {}
+  RunOutcome outcome;
+};
+
+}  // namespace pkm

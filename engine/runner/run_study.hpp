@@ -1,0 +1,47 @@
+// Runs a new study, resumes an interrupted one, or extends a finished one, and writes the results to the study file.
+// All three use class Run (run.hpp).
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "engine/config/study.hpp"
+#include "engine/runner/extension.hpp"
+#include "engine/runner/progress.hpp"
+#include "engine/runner/run_outcome.hpp"
+#include "engine/runner/stop_request.hpp"
+#include "engine/storage/study_file.hpp"
+#include "engine/storage/study_lock.hpp"
+
+namespace pkm {
+
+/// Runs a new study and writes it to `path`. Throws StorageError, in particular if `path` exists and `overwrite` is
+/// false.
+RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
+                     Progress& progress);
+
+/// A study file that this process has locked and read in order to resume it. While it lives, SIGINT, SIGTERM and SIGHUP
+/// request a stop.
+struct LockedStudy {
+  /// Throws StorageError.
+  explicit LockedStudy(std::string file) : path(std::move(file)), lock(path), contents(read_study(path)) {}
+
+  const StopRequest stop_request = {};
+  std::string path;
+  StudyLock lock;
+  StudyContents contents;
+};
+
+/// Resumes a study, or extends a finished one. Throws StorageError, also if the file was written with another algorithm
+/// version or its recorded evaluations are not reproduced, and ConfigError if its problem cannot be built or the
+/// extension is invalid.
+/// @param locked  its contents are moved to the outcome
+RunOutcome resume_study(LockedStudy& locked, const Catalogues& catalogues, const ExtensionRequest& extension,
+                        const RunOptions& options, Progress& progress);
+inline RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
+                               const RunOptions& options, Progress& progress) {
+  LockedStudy locked(path);
+  return resume_study(locked, catalogues, extension, options, progress);
+}
+
+}  // namespace pkm

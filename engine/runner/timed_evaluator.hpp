@@ -1,0 +1,39 @@
+// Evaluator of a run: evaluates in parallel, counts evaluations, and measures the parallel efficiency.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+#include "engine/problem/evaluator.hpp"
+
+namespace pkm {
+
+class TimedEvaluator final : public Evaluator {
+ public:
+  /// @param threads  as for ParallelEvaluator
+  explicit TimedEvaluator(int threads) : inner_(threads) {}
+  void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
+
+  int threads() const { return inner_.threads(); }
+  std::int64_t made() const { return made_; }  ///< number of evaluations
+  /// @return sum of the evaluation times / (threads * wall time during which at least one call was active)
+  double efficiency(int threads) const { return wall_ > 0 ? busy_ / (wall_ * threads) : 0; }
+  /// Releases the scratch memory of the evaluations.
+  void release_memory() { inner_ = ParallelEvaluator(inner_.threads()); }
+
+ private:
+  /// Ends a call that has evaluated rows [first, table.size()): adds their number and times.
+  void end_call(const EvaluationTable& table, std::size_t first);
+  /// Changes the number of active calls and measures the wall time during which there are any.
+  void change_active_calls(int change);
+
+  ParallelEvaluator inner_;
+  std::mutex mutex_;
+  int active_calls_ = 0;
+  double begin_ = 0;            ///< begin of the current period with active calls [s]
+  double wall_ = 0, busy_ = 0;  ///< wall time with active calls, and sum of the evaluation times [s]
+  std::atomic<std::int64_t> made_ = 0;
+};
+
+}  // namespace pkm

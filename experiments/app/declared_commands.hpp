@@ -1,0 +1,34 @@
+// The declared commands and options as data, from which shell completion and manual pages are generated.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/app/commands.hpp"
+
+namespace pkm {
+
+/// An option or a positional argument.
+struct DeclaredOption {
+  std::string name;        ///< "--output"; for an argument, its type
+  std::string short_name;  ///< "-o"; "": none
+  std::string type;        ///< placeholder of its value: "F.h5"; "": the option takes no value
+  std::string meaning;
+  bool required = false;
+};
+
+struct DeclaredCommand {
+  std::string name, meaning, footer;
+  std::vector<DeclaredOption> options, arguments;
+};
+
+/// All commands with their options and arguments.
+std::vector<DeclaredCommand> declared_commands(Session& session);
+
+/// Names of the shells for which completion is available.
+std::vector<std::string> shells();
+
+/// The words, separated by spaces.
+std::string join_words(const std::vector<std::string>& words);
+
+}  // namespace pkm

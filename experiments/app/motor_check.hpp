@@ -1,0 +1,20 @@
+// Checks which motors of a table can perform a motion.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/dynamics/motor.hpp"
+#include "engine/mechanism/trajectory.hpp"
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+
+/// Reports for each motor, mounted at every joint, the smallest reserve (capacity / demand) and the joint and quantity
+/// that limit it, the mean coupling index, and whether all samples of the motion are feasible. A motor is sufficient if
+/// its reserve is at least 1.
+/// @param trajectory  with forces at all samples; the mechanism has drive trains
+void report_motor_check(const Target& target, const std::string& mode, const Trajectory& trajectory,
+                        const std::vector<Motor>& motors, Printout& out);
+
+}  // namespace pkm

@@ -1,0 +1,152 @@
+// What the joints of the limbs hold: planes of `across` that poses leave are refused, and `check` counts the degrees of
+// freedom that the joints leave the platform.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "engine/core/error.hpp"
+#include "tests/unit/generic/files.hpp"
+
+namespace pkm {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Reads a file's text with some of it replaced. @param from  a regular expression that is there
+std::string rewritten(std::string text, const std::string& from, const std::string& to) {
+  const std::regex pattern(from);
+  EXPECT_TRUE(std::regex_search(text, pattern)) << from;
+  return std::regex_replace(text, pattern, to);
+}
+
+std::string refusal_of(const std::string& text) {
+  try {
+    read_mechanism_toml(text, "robot.toml");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "it is accepted";
+}
+
+/// The line on mobility of `pkmopt check`.
+std::string mobility_of(const std::string& text) {
+  const std::string all = describe_mechanism(*read_mechanism_toml(text, "robot.toml"));
+  const std::size_t at = all.find("  mobility: ");
+  EXPECT_NE(at, std::string::npos) << all;
+  return all.substr(at + 12, all.find('\n', at) - at - 12);
+}
+
+const std::string kDrives = "the drives determine ";
+
+std::string robot(const std::string& name) {
+  std::ostringstream text;
+  text << std::ifstream(PKM_TEST_DATA "/robots/" + name + ".toml").rdbuf();
+  return text.str();
+}
+
+/// Three legs between universal and ball joints.
+std::string three_legs(const std::string& coordinates, const std::string& more = "") {
+  return "[mechanism]\nname = \"legs\"\n[parameters]\nR = { default = 0.3, min = 0.1, max = 1, unit = \"m\" }\n"
+         "[platform]\ncoordinates = " +
+         coordinates + "\ncharacteristic_length = 0.1\n[survey]\n" +
+         "box = { x = [-0.2, 0.2], y = [-0.2, 0.2], z = [0.4, 0.7] }\n"
+         "[[limb]]\nname = \"leg\"\ncopies = { number = 3, about = \"z\" }\ndrive = \"telescope\"\n"
+         "base = [\"R\", 0, 0]\nplatform = [\"R/2\", 0.05, 0]\n" +
+         more;
+}
+
+/// Two cranks and two rods in a plane whose normal is n, with coordinates of two of the axes.
+std::string plane(const std::string& coordinates, const std::string& across, const std::string& more = "") {
+  return "[mechanism]\nname = \"plane\"\n[parameters]\na = { default = 0.2, min = 0.1, max = 1, unit = \"m\" }\n"
+         "h = { default = 0, min = -1, max = 1, unit = \"m\" }\n[platform]\ncoordinates = " +
+         coordinates +
+         "\ncharacteristic_length = 0.1\n[[limb]]\nname = \"arm\"\ndrive = \"telescope\"\nbase = [0, 0, \"h\"]\n" +
+         "across = " + across + "\n" + more;
+}
+
+TEST(Across, ARodThatLeavesItsPlaneIsRefused) {
+  const std::string message = refusal_of(robot("3-prs-across"));
+  EXPECT_THAT(
+      message,
+      HasSubstr("robot.toml:21: limb[1].across: the component of B - A along `across` changes with the pose ("));
+  EXPECT_THAT(message, HasSubstr("write the platform's dependent coordinates as formulas in `origin` or `end`"));
+  EXPECT_EQ(refusal_of(rewritten(robot("3-prs-across"), "across = [^\n]*\n", "")), "it is accepted");
+}
+
+TEST(Across, OffsetsThatNoPoseChangesArePlanar) {
+  const std::string point = "platform = [0.1, 0, 0]\n";
+  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]", point)),
+            "it is accepted");
+  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]",
+                             "across_in = \"platform\"\n" + point)),
+            "it is accepted");
+  EXPECT_THAT(refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]", point)),
+              HasSubstr("limb[1].across: the component"));
+  // a slide along `across` carries the end: the limb ends in its plane
+  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]",
+                             "end = [\"x\", \"y\", 0]\n")),
+            "it is accepted");
+  // in no plane of the axes, with rounding
+  EXPECT_EQ(refusal_of(plane("{ s = \"along x\", t = \"along y\" }", "[1, 1, 1]",
+                             "end = [\"s/3\", \"t/7\", \"-s/3 - t/7\"]\n")),
+            "it is accepted");
+}
+
+TEST(Across, OtherDesignsThanTheDefaultCount) {
+  const std::string tilted = "{ x = \"along x\", z = \"along z\", beta = \"about x\" }";
+  const std::string message = refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, \"h\", 0]\n"));
+  EXPECT_THAT(message, HasSubstr("for another design than the default"));
+  EXPECT_EQ(refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, 0, 0]\n")), "it is accepted");
+}
+
+TEST(Across, HasNoEffectOnASlideWithoutRod) {
+  const std::string slide = rewritten(
+      plane("{ x = \"along x\", y = \"along y\" }", "[0, 0, 1]", "platform = [0, 0, 0]\ndirection = [1, 0, 0]\n"),
+      "telescope", "slider");
+  EXPECT_THAT(refusal_of(slide), HasSubstr("limb[1].across: `across` has no effect on a slide without `rod`"));
+}
+
+TEST(Mobility, ThreeLegsDoNotHoldTheRotations) {
+  const std::string translations = "{ x = \"along x\", y = \"along y\", z = \"along z\" }";
+  EXPECT_EQ(mobility_of(three_legs(translations)),
+            kDrives +
+                "3 of 6 degrees of freedom there: no joint that the file describes prevents rotation about x, rotation "
+                "about y, rotation about z, and the platform is assumed not to move so");
+}
+
+TEST(Mobility, JointsThatHoldThePlatformAreCounted) {
+  for (const char* name : {"3-rrr", "rotary-delta", "linear-delta", "orthoglide"})
+    EXPECT_EQ(mobility_of(test::text_of_mechanism(name)), kDrives + "3 of 3 degrees of freedom there") << name;
+  for (const char* name : {"3crr-r-cru", "quadrupteron"})
+    EXPECT_EQ(mobility_of(test::text_of_mechanism(name)), kDrives + "4 of 4 degrees of freedom there") << name;
+  EXPECT_EQ(mobility_of(test::text_of_mechanism("gough")), kDrives + "6 of 6 degrees of freedom there");
+}
+
+TEST(Mobility, SingleRodsDoNotHoldTheRotationsOfADelta) {
+  EXPECT_THAT(mobility_of(rewritten(test::text_of_mechanism("rotary-delta"), "\npair [^\n]*", "")),
+              HasSubstr("3 of 6 degrees of freedom there: no joint that the file describes prevents rotation about x"));
+}
+
+TEST(Mobility, LegsInAPlaneHoldThePlatformIfTheirJointsAreParallel) {
+  const std::string balls = test::text_of_mechanism("3-rpr");
+  EXPECT_THAT(mobility_of(balls),
+              HasSubstr("3 of 6 degrees of freedom there: no joint that the file describes prevents "
+                        "translation along z, rotation about x, rotation about y"));
+  EXPECT_EQ(mobility_of(rewritten(balls, "\nradius ", "\nacross = [0, 0, 1]\nradius ")),
+            kDrives + "3 of 3 degrees of freedom there");
+}
+
+TEST(Mobility, WhatTheFileDoesNotDescribeIsUnknown) {
+  const std::string unknown =
+      "the drives determine the coordinates there; unknown whether joints hold the platform's "
+      "other degrees of freedom: limb ";
+  EXPECT_EQ(mobility_of(test::text_of_mechanism("4ppa-2par")),
+            unknown + "sliders is a formula, which does not say what its links are");
+  EXPECT_THAT(mobility_of(test::text_of_mechanism("par4")), HasSubstr(unknown + "arm1 ends at `end`"));
+  EXPECT_THAT(mobility_of(robot("crank-and-slide")), HasSubstr(unknown + "slide has neither `rod` nor `links`"));
+}
+
+}  // namespace
+}  // namespace pkm

@@ -1,0 +1,180 @@
+// Contract of the workspace analysis, for every mechanism of the catalogue, of tests/own_mechanisms and from files, as
+// far as it supports the tested capability.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/problem/expression.hpp"
+#include "engine/workspace/plain_voxels.hpp"
+#include "tests/unit/contracts/mechanism_contract.hpp"
+
+namespace pkm {
+namespace {
+
+using test::survey;
+
+/// The mechanism's own, faster voxel evaluator finds the same cells as the generic one, which tests every cell.
+TEST_P(MechanismContract, VoxelAnalysisEqualsTestingEveryCell) {
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    SCOPED_TRACE(test::words(info(), sweep));
+    WorkspacePlan plan = test::voxels(info(), sweep, 11);
+    plan.limits = workspace_limits(info(), plan.limits);
+    const VoxelMap map = voxel_map(mechanism(), parameters(), plan);
+    VoxelOptions voxels = *plan.voxels();
+    voxels.box.emplace();
+    for (std::size_t i = 0; i < 3; ++i) (*voxels.box)[i] = {map.lower[i], map.upper[i]};
+    EXPECT_EQ(prepare_plain_voxels(mechanism(), plan, voxels, {})->map(parameters()).feasible, map.feasible);
+    const Demand demand = test::demand_of_all_fields(mechanism());
+    const Survey<double> fast = survey(mechanism(), parameters(), plan, demand);
+    Survey<double> plain;
+    evaluate_once<double>(*prepare_plain_voxels(mechanism(), plan, voxels, demand), parameters(), plain);
+    EXPECT_EQ(plain.cells, fast.cells);
+    EXPECT_EQ(plain.feasible_cells, fast.feasible_cells);
+    EXPECT_NEAR(plain.volume / fast.volume, 1, 1e-12);
+    const auto expect_same_mean = [&](const std::vector<double>& a, const std::vector<double>& b) {
+      EXPECT_NEAR(weighted_mean(plain.weight, a), weighted_mean(fast.weight, b), 1e-9);
+    };
+    for (const PoseQuantity* const quantity : demand.fields)
+      for (std::size_t i = 0; i < (quantity->per_joint ? info().joints.size() : 1); ++i) {
+        SCOPED_TRACE(quantity->name);
+        EXPECT_GT(fast.of(*quantity, i).size(), 0u);
+        expect_same_mean(plain.of(*quantity, i), fast.of(*quantity, i));
+      }
+  }
+}
+
+TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
+  if (!mechanism().columns()) GTEST_SKIP() << "no columns";
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    if (!test::has_columns(mechanism(), sweep)) continue;
+    SCOPED_TRACE(test::words(info(), sweep));
+    const double exact = survey(mechanism(), parameters(), test::columns(info(), sweep)).volume;
+    ASSERT_GT(exact, 0);
+    const auto voxels = [&](std::int64_t cells) {
+      return survey(mechanism(), parameters(), test::voxels(info(), sweep, cells)).volume;
+    };
+    // Tolerance factor by dimension: rounding to whole cells averages out in a volume, less in an area, not in a
+    // length.
+    const double factors[] = {2, 1.2, 1};
+    EXPECT_NEAR(voxels(30) / exact, 1, factors[sweep.swept.size() - 1] * 0.05);
+    EXPECT_NEAR(voxels(240) / exact, 1, factors[sweep.swept.size() - 1] * 0.005);
+  }
+}
+
+TEST_P(MechanismContract, ColumnsAreClippedByABoxOrRejectIt) {
+  if (!mechanism().columns()) GTEST_SKIP() << "no columns";
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    if (!test::has_columns(mechanism(), sweep)) continue;
+    SCOPED_TRACE(test::words(info(), sweep));
+    const VoxelMap all = voxel_map(mechanism(), parameters(), test::voxels(info(), sweep, 1));
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k) box[k] = {all.lower[k], all.upper[k]};
+    WorkspacePlan columns = test::columns(info(), sweep);
+    const double whole = survey(mechanism(), parameters(), columns).volume;
+    columns.method = ColumnOptions{.tolerance = 1e-8, .nodes = {}, .box = box};
+    if (!mechanism().columns()->take_box()) {
+      EXPECT_THROW(prepare_workspace(mechanism(), columns, {}), std::invalid_argument);
+      continue;
+    }
+    EXPECT_NEAR(survey(mechanism(), parameters(), columns).volume / whole, 1, 1e-7);
+    box[0][1] = (box[0][0] + box[0][1]) / 2;
+    std::get<ColumnOptions>(columns.method).box = box;
+    WorkspacePlan voxels = test::voxels(info(), sweep, 90);
+    std::get<VoxelOptions>(voxels.method).box = box;
+    const double cut = survey(mechanism(), parameters(), columns).volume;
+    EXPECT_LT(cut, 0.9 * whole);
+    EXPECT_NEAR(survey(mechanism(), parameters(), voxels).volume, cut, 0.03 * cut);  // may be empty
+  }
+}
+
+TEST_P(MechanismContract, InactiveLimitsLieInTheirRangeAndDoNotReduceTheWorkspace) {
+  for (const Sweep& sweep : test::sweeps(mechanism()))
+    for (WorkspacePlan& p : test::plans(mechanism(), sweep, 30)) {
+      if (info().limits.empty()) continue;
+      const auto free = survey(mechanism(), parameters(), p);
+      for (std::size_t i = 0; i < info().limits.size(); ++i) {
+        const LimitInfo& limit = info().limits[i];
+        EXPECT_LE(limit.lower, limit.inactive) << limit.name;
+        EXPECT_LE(limit.inactive, limit.upper) << limit.name;
+        p.limits = no_limits(info());
+        p.limits.given[i] = limit.inactive;
+        const auto limited = survey(mechanism(), parameters(), p);
+        EXPECT_EQ(limited.feasible_cells, free.feasible_cells) << limit.name;
+        EXPECT_NEAR(limited.volume / free.volume, 1, 1e-8) << limit.name;
+      }
+    }
+}
+
+TEST_P(MechanismContract, InfeasibleLimitsGiveAnEmptyWorkspace) {
+  if (info().limits.empty()) GTEST_SKIP() << "no limits";
+  for (const Sweep& sweep : test::sweeps(mechanism()))
+    for (WorkspacePlan& p : test::plans(mechanism(), sweep, 10)) {
+      p.limits = test::infeasible_limits(mechanism(), p);
+      if (p.limits.given == no_limits(info()).given) continue;  // columns do not support the only limit, a clearance
+      const auto empty = survey(mechanism(), parameters(), p, test::demand_without_inertia(mechanism()));
+      EXPECT_EQ(empty.volume, 0);
+      EXPECT_EQ(empty.feasible_cells, 0);
+      EXPECT_FALSE(empty.touches_box);
+      EXPECT_TRUE(std::isfinite(empty.error));
+    }
+}
+
+/// Exponent of the metre in a unit such as "m^2 rad".
+int length_exponent(const std::string& unit) {
+  if (unit.starts_with("m^")) return unit[2] - '0';
+  return unit == "m" || unit.starts_with("m ") ? 1 : 0;
+}
+
+TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeByTheExponentOfItsUnit) {
+  constexpr double kScale = 4;  // a power of two: exact, so that no cell centre changes its side of a limit by rounding
+  auto larger = parameters();
+  for (std::size_t i = 0; i < larger.size(); ++i)
+    if (info().parameters[i].unit == "m") larger[i] *= kScale;
+  if (const Size* const size = mechanism().size()) {
+    EXPECT_NEAR(size->of(larger) / size->of(parameters()), std::pow(kScale, length_exponent(size->unit())), 1e-12);
+  }
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    SCOPED_TRACE(test::words(info(), sweep));
+    const WorkspacePlan p = test::best_plan(mechanism(), sweep);
+    const Demand demand = test::demand_without_inertia(mechanism());
+    const auto small = survey(mechanism(), parameters(), p, demand), large = survey(mechanism(), larger, p, demand);
+    EXPECT_NEAR(large.volume / small.volume, std::pow(kScale, length_exponent(volume_unit(info(), p))), 1e-7);
+    ASSERT_EQ(large.of(kConditioning).size(), small.of(kConditioning).size());
+    for (std::size_t i = 0; i < small.of(kConditioning).size(); ++i)
+      EXPECT_NEAR(large.of(kConditioning)[i], small.of(kConditioning)[i], 1e-7) << i;
+  }
+}
+
+TEST_P(MechanismContract, ExpressionNamesAreDistinctAndHaveTheRightValues) {
+  const WorkspacePlan p = test::best_plan(mechanism());
+  const auto design = parameters();
+  std::set<std::string> distinct;
+  for (const ExpressionName& known : expression_names(mechanism(), p)) {
+    SCOPED_TRACE(known.name);
+    EXPECT_TRUE(distinct.insert(known.name).second) << "twice";
+    EXPECT_NE(known.unit, "");
+    EXPECT_NE(known.meaning, "");
+    Options options = default_options(expression_options());
+    options.set("expression", known.name);
+    const EntryContext context{mechanism(), p, options};
+    const Expression expression(context);
+    Demand demand;
+    expression.add_demand(context, demand);
+    const auto found = survey(mechanism(), design, p, demand);
+    Scratch scratch;
+    std::vector<double> thresholds(info().limits.size());
+    mechanism().thresholds(design, p.limits, thresholds);
+    using Origin = ExpressionName::Origin;
+    EXPECT_EQ(expression.needs_workspace(), known.origin == Origin::survey);
+    const double expected = known.origin == Origin::parameter   ? design[known.index]
+                            : known.origin == Origin::threshold ? thresholds[known.index]
+                            : known.origin == Origin::size      ? mechanism().size()->of(design)
+                                                           : analysis_results()[known.index].value(found, 1, scratch);
+    EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found, scratch}), expected);
+  }
+}
+
+}  // namespace
+}  // namespace pkm

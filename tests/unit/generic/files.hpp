@@ -1,0 +1,66 @@
+// Mechanism files: those of experiments/mechanisms, and those of the catalogue, evaluated by the generic engine alone.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/config/built_in_mechanisms.hpp"
+#include "engine/config/mechanism_file.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+namespace pkm::test {
+
+inline const std::string kMechanismFolder = PKM_TEST_DATA "/../../experiments/mechanisms/";
+
+/// "3-rpr", ..: names of the files, sorted.
+inline const std::vector<std::string>& mechanism_files() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(kMechanismFolder))
+      if (entry.path().extension() == ".toml") all.push_back(entry.path().stem().string());
+    std::ranges::sort(all);
+    return all;
+  }();
+  return names;
+}
+
+/// Of a file of experiments/mechanisms, or of the catalogue.
+inline std::string text_of_mechanism(const std::string& name) {
+  if (std::ranges::any_of(all_mechanisms(), [&](const MechanismEntry& entry) { return entry.name() == name; }))
+    return mechanism_file_text(name);
+  std::ostringstream text;
+  text << std::ifstream(kMechanismFolder + name + ".toml").rdbuf();
+  return text.str();
+}
+
+/// Read once.
+inline const std::shared_ptr<const Mechanism>& described(const std::string& name) {
+  static std::map<std::string, std::shared_ptr<const Mechanism>> read;
+  auto& mechanism = read[name];
+  if (!mechanism) mechanism = read_mechanism_toml(text_of_mechanism(name), name + ".toml");
+  return mechanism;
+}
+
+/// The defaults, and what JSON gives in their place.
+inline std::vector<double> design_with(const MechanismInfo& info, const nlohmann::json& given) {
+  std::vector<double> design;
+  for (const Parameter& p : info.parameters) design.push_back(given.value(p.name, p.nominal));
+  return design;
+}
+
+inline LimitSpec limits_with(const MechanismInfo& info, const nlohmann::json& given) {
+  LimitSpec limits = no_limits(info);
+  for (std::size_t i = 0; i < info.limits.size(); ++i)
+    if (given.contains(info.limits[i].name)) limits.given[i] = given[info.limits[i].name].get<double>();
+  return limits;
+}
+
+}  // namespace pkm::test

@@ -1,0 +1,149 @@
+// Obstacles in surveys and in margins of poses: voxels of each kind against reports of single poses, what they cut, and
+// margins with derivatives.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/math/dual.hpp"
+#include "engine/workspace/plain_voxels.hpp"
+#include "tests/unit/contracts/mechanism_fixtures.hpp"
+
+namespace pkm {
+namespace {
+
+/// A clearance, and what stands in the way of a pose: beside it a ball, a post and a table.
+LimitSpec limits_about(const MechanismInfo& info, const Pose<double>& pose, double least) {
+  LimitSpec limits = no_limits(info);
+  for (std::size_t i = 0; i < info.limits.size(); ++i)
+    if (info.limits[i].group == "clearance") limits.given[i] = least;
+  Point3<double> at{};
+  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (info.coordinates[i].name == std::string(1, "xyz"[axis])) at[axis] = pose[i];
+  const Point3<double> ball = {at[0] + 0.05, at[1] + 0.03, at[2]};
+  limits.obstacles = {
+      {"ball", Capsule<double>{{ball, ball}, 0.02}},
+      {"post", Capsule<double>{{{at[0] - 0.1, at[1], -1}, {at[0] - 0.1, at[1], 1}}, 0.01}},
+      {"table", SolidBox{{at[0], at[1] + 0.1, at[2]}, {0.2, 0.02, 0.05}}},
+  };
+  return limits;
+}
+
+std::vector<std::shared_ptr<const Mechanism>> with_links() {
+  std::vector<std::shared_ptr<const Mechanism>> all;
+  for (const std::string& name : test::mechanisms_and_files()) {
+    const auto& mechanism = test::test_mechanism(name);
+    const auto& limits = mechanism->info().limits;
+    if (std::ranges::find(limits, "clearance", &LimitInfo::group) != limits.end()) all.push_back(mechanism);
+  }
+  return all;
+}
+
+TEST(Obstacles, CutWhatReportsOfPosesSay) {
+  std::int64_t cut = 0, left = 0;
+  ASSERT_GE(with_links().size(), 7u);
+  for (const auto& mechanism : with_links()) {
+    const MechanismInfo& info = mechanism->info();
+    SCOPED_TRACE(info.name);
+    const std::vector<double> design = test::nominal(info);
+    WorkspacePlan plan = test::voxels(info, 9);
+    for (FixedCoordinate& held : plan.held) {
+      held.kind = FixedCoordinate::Kind::value;
+      held.value = *mechanism->middle(design, held.coordinate) + 0.01;
+    }
+    plan.limits = limits_about(info, test::reference_pose(*mechanism), -0.01);
+    const VoxelMap own = voxel_map(*mechanism, design, plan);
+    const VoxelMap plain = prepare_plain_voxels(*mechanism, plan, *plan.voxels(), {})->map(design);
+    EXPECT_EQ(own.feasible, plain.feasible);
+    WorkspacePlan free = plan;
+    free.limits.obstacles.clear();
+    const VoxelMap without = voxel_map(*mechanism, design, free);
+    for (std::size_t i = 0; i < own.feasible.size(); ++i) {
+      EXPECT_LE(own.feasible[i], without.feasible[i]);
+      cut += without.feasible[i] - own.feasible[i];
+      left += own.feasible[i];
+    }
+    const Survey<double> survey = test::survey(*mechanism, design, plan, {.fields = {&kConditioning}});
+    EXPECT_EQ(survey.feasible_cells, std::ranges::count(own.feasible, 1));
+  }
+  EXPECT_GT(cut, 100);
+  EXPECT_GT(left, 100);
+}
+
+TEST(Obstacles, AreNamedByReportsOfPoses) {
+  for (const auto& mechanism : with_links()) {
+    const MechanismInfo& info = mechanism->info();
+    SCOPED_TRACE(info.name);
+    const Pose<double> pose = test::reference_pose(*mechanism);
+    LimitSpec limits = limits_about(info, pose, -0.01);
+    limits.obstacles = {{"a wall", SolidBox{{0, 0, 0}, {9, 9, 9}}}};
+    const PoseReport report = mechanism->inspect(test::nominal(info), pose, info.modes.front(), limits);
+    EXPECT_TRUE(report.assembles);
+    EXPECT_FALSE(report.feasible);
+    EXPECT_TRUE(report.reason.ends_with(" and a wall overlap")) << report.reason;
+  }
+}
+
+TEST(Obstacles, AreNothingWhereNobodyAsksForAClearance) {
+  for (const auto& mechanism : with_links()) {
+    const MechanismInfo& info = mechanism->info();
+    SCOPED_TRACE(info.name);
+    WorkspacePlan plan = test::voxels(info, 5);
+    const std::vector<double> design = test::nominal(info);
+    const VoxelMap without = voxel_map(*mechanism, design, plan);
+    plan.limits.obstacles = {{"a wall", SolidBox{{0, 0, 0}, {9, 9, 9}}}};
+    EXPECT_EQ(voxel_map(*mechanism, design, plan).feasible, without.feasible);
+  }
+}
+
+TEST(Obstacles, MarginsHaveDerivatives) {
+  int compared = 0;
+  for (const auto& mechanism : with_links()) {
+    const PoseMargins* const margins = mechanism->pose_margins();
+    if (!margins) continue;
+    const MechanismInfo& info = mechanism->info();
+    SCOPED_TRACE(info.name);
+    const Pose<double> pose = test::reference_pose(*mechanism);
+    const LimitSpec limits = limits_about(info, pose, -0.01);
+    const std::vector<double> design = test::nominal(info);
+    for (std::size_t p = 0; p < design.size(); ++p) {
+      constexpr double kStep = 1e-6;
+      const auto at = [&](double by) {
+        std::vector<double> moved = design, found;
+        moved[p] += by;
+        margins->append(std::span<const double>(moved), "", limits, {&pose, 1}, found);
+        return found.back();
+      };
+      std::vector<Dual4> moving(design.begin(), design.end()), found;
+      moving[p].v[0] = 1;
+      margins->append(std::span<const Dual4>(moving), "", limits, {&pose, 1}, found);
+      EXPECT_EQ(found.back().a, at(0));
+      const double before = at(-kStep), after = at(kStep);
+      if (std::fabs(before + after - 2 * at(0)) > 1e-10) continue;  // another link or obstacle takes over
+      EXPECT_NEAR(found.back().v[0], (after - before) / (2 * kStep), 1e-6) << info.parameters[p].name;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 30);
+}
+
+TEST(Obstacles, AreRefusedByColumns) {
+  for (const auto& mechanism : with_links()) {
+    if (!mechanism->columns()) continue;
+    const MechanismInfo& info = mechanism->info();
+    SCOPED_TRACE(info.name);
+    WorkspacePlan plan = test::columns(info);
+    plan.limits = limits_about(info, test::reference_pose(*mechanism), 0);
+    try {
+      prepare_workspace(*mechanism, plan, {});
+      ADD_FAILURE() << "accepted";
+    } catch (const std::invalid_argument& refused) {
+      EXPECT_NE(std::string(refused.what()).find("has no column surveys under a clearance (clearance_min)"),
+                std::string::npos)
+          << refused.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pkm
