@@ -29,6 +29,9 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
   check_stop();
   if (++room.halvings > room.most_halvings) throw TooManyHalvings();
   set_z<Interval>({from, to}, room.intervals);
+  const double middle = 0.5 * (from + to);
+  // A range of few units in the last place, or NaN, has no middle.
+  const bool is_narrow = to - from <= narrow || !(from < middle && middle < to);
   Signs monotone = 0, undecided = 0;
   for (Signs rest = curves; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
@@ -37,7 +40,7 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
     if (f.is_certified_satisfied() || f.is_certified_violated()) continue;
     const bool has_one =
         f.is_defined() && f.is_continuous() && slope.is_defined() && (slope.lower > 0 || slope.upper < 0);
-    (has_one || !(to - from > narrow) ? monotone : undecided) |= bit(k);  // a range may be NaN
+    (has_one || is_narrow ? monotone : undecided) |= bit(k);
   }
   for (; monotone != 0; monotone &= monotone - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(monotone));
@@ -49,7 +52,6 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
       room.flat.emplace_back(root_between(k, from, to, registers), static_cast<EndLabel>(2 * k + (below ? 1 : 0)));
   }
   if (undecided == 0) return;
-  const double middle = 0.5 * (from + to);
   isolate(undecided, from, middle, narrow, registers, room);
   isolate(undecided, middle, to, narrow, registers, room);
 }

@@ -164,6 +164,21 @@ TEST(GenericColumns, OfAnyFormulasAreThoseOfPolynomials) {
   }
 }
 
+/// A line of one unit in the last place cannot be halved: its ends are searched no further.
+TEST(GenericColumns, OfALineThatCannotBeHalvedEnd) {
+  std::ostringstream file;
+  file << std::ifstream(PKM_TEST_DATA "/generic/three-cylinders-by-exponentials.toml").rdbuf();
+  const std::string touching =
+      "[[margin]]\nname = \"c4\"\nformula = \"-abs(exp(x + y + z) - exp(0.9))\"\nunit = \"1\"\n";
+  const auto mechanism = read_mechanism_toml(file.str() + touching, "touching.toml");
+  const std::array<double, 2> line = {0.3, std::nextafter(0.3, 1)};
+  WorkspacePlan plan{
+      .method = ColumnOptions{.box = Box{line, line, line}}, .held = {}, .limits = no_limits(mechanism->info())};
+  const double volume = test::survey(*mechanism, test::nominal(mechanism->info()), plan).volume;
+  EXPECT_GE(volume, 0);
+  EXPECT_LE(volume, 1e-48);
+}
+
 /// Where they cannot, they say what stands in the way.
 TEST(GenericColumns, SayWhyThereAreNone) {
   std::ostringstream file;
