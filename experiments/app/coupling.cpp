@@ -91,7 +91,7 @@ CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
 std::string coupling(const Target& target, const CouplingArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
   if (const Unsupported reason = no_joint_forces(*target.mechanism))
-    throw ConfigError({"", 0, "coupling"}, *reason + ", so no coupling indices");
+    throw ConfigError({"", 0, "coupling"}, *reason + ", so it has no coupling indices");
   const Demand demand{.fields = {&kCouplingIndex}, .poses = true, .mode = parse_mode(info, {arguments.mode, ""})};
   const WorkspacePlan plan = plan_of(target, arguments);
   // Runs an action and converts std::invalid_argument into ConfigError.

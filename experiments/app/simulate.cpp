@@ -87,7 +87,7 @@ std::string simulate_target(const Target& target, const SimulateArguments& argum
   const MechanismInfo& info = target.info();
   const Dynamics& dynamics = require_capability(target.mechanism->dynamics(), "simulate", "dynamics", info);
   if (const Unsupported reason = no_joint_forces(*target.mechanism))
-    throw ConfigError({"", 0, "simulate"}, *reason + ", so no dynamics");
+    throw ConfigError({"", 0, "simulate"}, *reason + ", so it cannot be simulated");
   const std::string mode = parse_mode(info, arguments);
   const MotionSample at = parse_motion(*target.mechanism, arguments);
   const auto setup = simulation_setup(target, dynamics, mode, arguments);
