@@ -10,6 +10,7 @@
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/mechanism_mobility.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
@@ -114,7 +115,7 @@ std::string why_no_masses(const Mechanism& mechanism) {
   for (const Parameter& p : mechanism.info().parameters) nominal.push_back(p.nominal);
   try {
     mechanism.dynamics()->equations(std::span<const double>(nominal), mechanism.info().modes.front(), {}, {});
-  } catch (const std::domain_error& reason) {
+  } catch (const DesignError& reason) {
     return std::string("not with the default parameters: ") + reason.what();
   }
   return "";

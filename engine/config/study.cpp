@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <new>
 
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/sections.hpp"
 #include "engine/config/text_file.hpp"
+#include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/diagnosis.hpp"
@@ -82,9 +82,7 @@ void warn_of_empty_workspace(Study& study) {
   } catch (const Stopped&) {
     if (limit.is_requested_by_outer_scope()) throw;
     return;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
+  } catch (const DesignError&) {
     return;  // a mass that is not positive has a message of its own when the design is evaluated
   }
   std::string where;

@@ -69,9 +69,8 @@ std::string message_of(const std::exception& error) {
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
     return displayed(file->path1().string(), kMaxFile) + ": " + file->code().message();
   if (const auto* system = dynamic_cast<const std::system_error*>(&error)) return system->code().message();
-  const bool is_own = dynamic_cast<const std::runtime_error*>(&error) ||
-                      dynamic_cast<const std::invalid_argument*>(&error) ||
-                      dynamic_cast<const std::domain_error*>(&error);
+  const bool is_own =
+      dynamic_cast<const std::runtime_error*>(&error) || dynamic_cast<const std::invalid_argument*>(&error);
   if (is_own) return displayed(error.what(), kMaxMessage);
   return "internal error: an unexpected exception occurred in the program; please report it with the command line and "
          "the input files";

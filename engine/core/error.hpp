@@ -29,6 +29,13 @@ class ConfigError : public std::runtime_error {
   SourceLocation place_;
 };
 
+/// A design that cannot be evaluated, for example because a mass is not positive; what() is one sentence that says why.
+/// Problem::evaluate() turns it into a failed design. Every other exception ends the run.
+class DesignError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A study file that cannot be read, written or locked, or whose content is invalid. what() is one sentence with the
 /// file's name, limited in length and printable like that of ConfigError.
 class StorageError : public std::runtime_error {

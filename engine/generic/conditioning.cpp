@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include <Eigen/SVD>
 
+#include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/generic/eigen_matrix.hpp"
 #include "engine/generic/lengths.hpp"
@@ -84,8 +84,8 @@ template <class S>
 void check(const MechanismInfo& info, const CharacteristicLengths<S>& lengths) {
   const auto check_one = [](const char* key, bool is_needed, const std::optional<S>& length) {
     if (is_needed && length && !is_positive(length))
-      throw std::domain_error(std::string("the conditioning is undefined: ") + key + " is " +
-                              with_unit(value_of(*length), "m") + "; expected a positive length");
+      throw DesignError(std::string("the conditioning is undefined: ") + key + " is " +
+                        with_unit(value_of(*length), "m") + "; expected a positive length");
   };
   check_one("characteristic_length", mixes_units(info.coordinates), lengths.length);
   check_one("characteristic_radius", mixes_units(info.joints), lengths.radius);

@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <memory>
-#include <stdexcept>
 
+#include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/math/lanes.hpp"
 
@@ -64,8 +64,8 @@ void check_masses(const Evaluation& e, std::span<const S> parameters) {
       const double value = value_of(next());
       const bool finite = std::isfinite(value);
       if (finite && (value > 0 || (check.may_vanish && value == 0))) continue;
-      throw std::domain_error(check.name + " is not " + (finite ? "positive" : "finite") + ": " +
-                              with_unit(value, check.unit));
+      throw DesignError(check.name + " is not " + (finite ? "positive" : "finite") + ": " +
+                        with_unit(value, check.unit));
     }
   });
 }

@@ -6,11 +6,11 @@
 
 namespace pkm::generic {
 
-/// Throws std::domain_error with a sentence where a mass or an inertia is not positive.
+/// Throws DesignError with a sentence where a mass or an inertia is not positive.
 template <class S>
 void check_masses(const Evaluation& evaluation, std::span<const S> parameters);
 
-/// Of double and Dual4. Throws std::domain_error as check_masses. @param evaluation  of a model with bodies
+/// Of double and Dual4. Throws DesignError as check_masses. @param evaluation  of a model with bodies
 template <class S>
 void find_dynamics(const Evaluation& evaluation, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found);

@@ -6,7 +6,7 @@
 
 namespace pkm::generic {
 
-/// At a pose that assembles, of a model that is jointed. Throws std::domain_error where a mass is not positive.
+/// At a pose that assembles, of a model that is jointed. Throws DesignError where a mass is not positive.
 /// @param wrench  on the platform, where the model says
 NewtonEuler newton_euler(const Evaluation& evaluation, std::span<const double> parameters, std::size_t mode,
                          const MotionState<double>& state, const AxisVector<double>& acceleration,

@@ -5,7 +5,7 @@
 
 namespace pkm::generic {
 
-/// Throws std::domain_error with a sentence where one that the conditioning needs is not a positive number.
+/// Throws DesignError with a sentence where one that the conditioning needs is not a positive number.
 void check_lengths(const Evaluation& evaluation, std::span<const double> parameters);
 
 }  // namespace pkm::generic

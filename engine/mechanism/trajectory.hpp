@@ -51,7 +51,7 @@ struct Trajectory {
 /// Follows `count` samples, both ends included.
 ///
 /// Speeds and accelerations of the joints are exact; a mechanism without dynamics and influence coefficients has none.
-/// Throws std::domain_error where a mass is not positive.
+/// Throws DesignError where a mass is not positive.
 /// @param parameters  all parameters of the design
 /// @param mode        one of MechanismInfo::modes
 /// @param wrench      on the platform, the same all the time

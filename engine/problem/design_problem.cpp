@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
+#include "engine/core/error.hpp"
 #include "engine/workspace/survey_set.hpp"
 
 namespace pkm {
@@ -168,9 +168,7 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
     all.assign(parts_.parameters.begin(), parts_.parameters.end());
     for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
     result.status = compute(all, scratch, result);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
+  } catch (const DesignError&) {
     result.status = Status::failed;
   }
 }
@@ -215,9 +213,7 @@ std::string DesignProblem::failure_reason(std::span<const double> design, Detail
     if (std::ranges::all_of(report.margins, is_finite) && std::ranges::all_of(report.objectives, is_finite))
       return "a derivative is not a finite number";
     return failure_reason(report);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
+  } catch (const DesignError& error) {
     return message_of(error);
   }
 }
@@ -235,9 +231,7 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
       if (std::ranges::any_of(design_margins, [](double margin) { return std::isfinite(margin) && margin < 0; }))
         report.status = Status::rejected;
     }
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
+  } catch (const DesignError& error) {
     report.status = Status::failed;
     report.reason = message_of(error);
   }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <numeric>
 #include <string>
 
@@ -41,11 +40,7 @@ void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t f
     try {
       problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, slot);
       if (is_inconsistent(slot)) slot.status = Status::failed;
-    } catch (const std::bad_alloc&) {  // a property of the machine, not of this design
-      throw;
-    } catch (const Stopped&) {
-      throw;
-    } catch (...) {  // any other error concerns this design only
+    } catch (const DesignError&) {
       constexpr double nan = std::numeric_limits<double>::quiet_NaN();
       for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::ranges::fill(part, nan);
       slot.status = Status::failed;

@@ -41,8 +41,9 @@ class Problem {
   virtual const std::vector<MarginInfo>& margins() const = 0;
   virtual const std::vector<OutputInfo>& reports() const = 0;
 
-  /// Evaluates one design. Thread-safe if each thread passes its own scratch memory. A design whose evaluation throws
-  /// or gives NaN gets the status `failed`.
+  /// Evaluates one design. Thread-safe if each thread passes its own scratch memory. A design whose evaluation
+  /// throws DesignError or gives NaN gets the status `failed`; other exceptions are errors of the program and end the
+  /// run.
   /// @param design  one value per variable, in the units of space()
   /// @param result  receives the values; result.detail selects what is computed. With Detail::enough, the evaluation
   ///                may end as soon as a design-level constraint is violated.

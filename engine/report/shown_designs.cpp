@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <numbers>
 #include <stdexcept>
 
@@ -111,9 +110,7 @@ void add_design(ShownDesigns& shown, const std::string& name, const std::vector<
       design.workspace.reset();
       design.problem = "it has no feasible pose";
     }
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {  // for example: not a mechanism, or a mass is not positive
+  } catch (const DesignError& error) {
     design.workspace.reset();
     design.problem = message_of(error);
   }

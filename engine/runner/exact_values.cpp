@@ -46,7 +46,7 @@ Unsupported ExactValues::poses_beyond_box(std::span<const double> parameters) co
   VoxelMap reachable;
   try {
     reachable = voxel_map(*parts_.mechanism, parameters, plan);
-  } catch (const std::exception& reason) {
+  } catch (const DesignError& reason) {
     return reason.what();
   }
   const MechanismInfo& info = parts_.mechanism->info();

@@ -10,10 +10,10 @@
 #pragma once
 
 #include <span>
-#include <stdexcept>
 #include <string>
 
 #include "engine/accelerators/crr_cru/model.hpp"
+#include "engine/core/error.hpp"
 
 namespace pkm::crr_cru {
 
@@ -52,7 +52,7 @@ struct Masses {
   std::array<double, 4> rotors{};  ///< inertia of drive trains at the joints [kg], in M_q alone
 };
 
-/// Throws std::domain_error with a sentence where a mass or an inertia is not positive.
+/// Throws DesignError with a sentence where a mass or an inertia is not positive.
 template <class S>
 Masses<S> masses(MassModel model, std::span<const S> p) {
   Masses<S> b;
@@ -67,8 +67,8 @@ Masses<S> masses(MassModel model, std::span<const S> p) {
       I = table ? p[kRodInertia + rod] : S(p[kKappa] * m * l * l * (1.0 / 12));
       if (value_of(m) > 0 && value_of(I) > 0) continue;
       const std::string name = std::to_string(i + 1) + std::to_string(k + 1);
-      throw std::domain_error("rod " + name + " has no positive mass and inertia (m_" + name + " = " +
-                              std::to_string(value_of(m)) + " kg)");
+      throw DesignError("rod " + name + " has no positive mass and inertia (m_" + name + " = " +
+                        std::to_string(value_of(m)) + " kg)");
     }
   const S r2 = p[kR] * p[kR], l2 = p[kL] * p[kL];
   b.m = table ? p[kMass] : S(p[kDensity] * l2);

@@ -1,8 +1,9 @@
 #include "engine/accelerators/four_ppa_two_par/masses.hpp"
 
 #include <cstdio>
-#include <stdexcept>
 #include <string>
+
+#include "engine/core/error.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {
@@ -11,7 +12,7 @@ void check(const char* link, const char* quantity, double value, const char* uni
   if (value > 0) return;
   char text[200];
   std::snprintf(text, sizeof text, "%s no positive %s: %s = %g %s", link, quantity, formula, value, unit);
-  throw std::domain_error(text);
+  throw DesignError(text);
 }
 
 }  // namespace

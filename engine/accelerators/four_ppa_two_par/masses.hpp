@@ -30,10 +30,10 @@ struct Masses {
   std::array<double, 4> rotors{};  ///< inertia of drive trains at the sliders [kg], in M_q alone
 };
 
-/// Throws std::domain_error with a sentence when a link's mass or inertia is not positive.
+/// Throws DesignError with a sentence when a link's mass or inertia is not positive.
 void check_positive(const Masses<double>& b);
 
-/// Throws std::domain_error with a sentence when a link's mass or inertia is not positive.
+/// Throws DesignError with a sentence when a link's mass or inertia is not positive.
 /// @param p  all parameters
 template <class S>
 Masses<S> masses(std::span<const S> p) {

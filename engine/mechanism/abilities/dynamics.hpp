@@ -23,7 +23,7 @@ class Dynamics {
   virtual std::shared_ptr<const Mechanism> with_masses(const std::string& model) const = 0;
 
   /// Equations of motion at states of one design, with its masses. Where a state does not assemble,
-  /// PoseDynamics::assembles is false. Throws std::domain_error where a mass is not positive.
+  /// PoseDynamics::assembles is false. Throws DesignError where a mass is not positive.
   /// @param mode  one of MechanismInfo::modes
   virtual void equations(std::span<const double> parameters, const std::string& mode,
                          std::span<const MotionState<double>> states, std::span<PoseDynamics<double>> found) const = 0;

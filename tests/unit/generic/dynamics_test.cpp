@@ -279,7 +279,7 @@ TEST(DescribedBodies, WhatIsNotPositiveIsRefusedByName) {
   try {
     dynamics_of<double>(*mechanism, {0.5, -2}, "unique", {Pose<double>(6), AxisVector<double>(6)});
     FAIL() << "a negative mass is taken";
-  } catch (const std::domain_error& error) {
+  } catch (const DesignError& error) {
     EXPECT_STREQ(error.what(), "the mass of the platform is not positive: -2 kg");
   }
   EXPECT_TRUE(no_joint_forces(*read_mechanism_toml(gantry(""), "gantry.toml")));

@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
 #include "tests/unit/optimisers/known_problems.hpp"
 #include "tests/unit/optimisers/stage.hpp"
@@ -45,10 +46,10 @@ TEST(Evaluator, DoesNotChangeEarlierRows) {
   }
 }
 
-TEST(Evaluator, AnExceptionFailsOnlyItsOwnRow) {
+TEST(Evaluator, ADesignErrorFailsOnlyItsOwnRow) {
   const FunctionProblem problem(box(1, 0, 1), 1, [](std::span<const double> x, std::span<double> g) {
     g[0] = 1;
-    if (x[0] > 0.0125 && x[0] < 0.0135) throw std::runtime_error("no");
+    if (x[0] > 0.0125 && x[0] < 0.0135) throw DesignError("no");
     return x[0];
   });
   for (const int threads : {1, 2, 7}) {
@@ -65,15 +66,22 @@ TEST(Evaluator, AnExceptionFailsOnlyItsOwnRow) {
   }
 }
 
-TEST(Evaluator, OutOfMemoryIsRethrown) {
-  const FunctionProblem problem(box(1, 0, 1), 0, [](std::span<const double> x, std::span<double>) {
-    if (x[0] > 0.0125 && x[0] < 0.0135) throw std::bad_alloc();
+template <class Error>
+void expect_rethrown(const Error& error) {
+  const FunctionProblem problem(box(1, 0, 1), 0, [&](std::span<const double> x, std::span<double>) {
+    if (x[0] > 0.0125 && x[0] < 0.0135) throw error;
     return x[0];
   });
   for (const int threads : {1, 2, 7}) {
     EvaluationTable table = unevaluated(problem, 100);
-    EXPECT_THROW(ParallelEvaluator(threads).evaluate(problem, table, 0), std::bad_alloc);
+    EXPECT_THROW(ParallelEvaluator(threads).evaluate(problem, table, 0), Error);
   }
+}
+
+TEST(Evaluator, OtherExceptionsAreRethrown) {
+  expect_rethrown(std::bad_alloc());
+  expect_rethrown(std::logic_error("a bug"));
+  expect_rethrown(std::invalid_argument("a wrong argument"));
 }
 
 TEST(Evaluator, AStoppedBatchKeepsCompleteRowsAndCanBeResumed) {

@@ -224,7 +224,7 @@ std::string complaint(MassIndex index, const Use& use) {
   p[index] = 0;
   try {
     use(p);
-  } catch (const std::domain_error& error) {
+  } catch (const DesignError& error) {
     return error.what();
   }
   return "";
@@ -254,7 +254,7 @@ TEST(FourPpaDynamics, LinksWithoutMassAreRefusedByTheAccelerator) {
   auto p = nominal();
   p[kLambdaU] = 0;  // without fields of inertia, masses do not matter
   EXPECT_GT(survey(p, columns(no_limits(four_ppa().info()))).volume, 0);
-  EXPECT_THROW(survey(p, columns(no_limits(four_ppa().info())), {.fields = {&kCouplingIndex}}), std::domain_error);
+  EXPECT_THROW(survey(p, columns(no_limits(four_ppa().info())), {.fields = {&kCouplingIndex}}), DesignError);
 }
 
 }  // namespace
