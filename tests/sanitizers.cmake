@@ -43,7 +43,7 @@ set(PKM_TESTS_OF_RELEASE
   PoseAndForwardOfGolden DifferentSeedsGiveDifferentDesigns/ipopt CliErrors UndefinedConditioning CliJointForces
   MechanismFile.InvalidFiles LimbParameter.UnknownNames IsNotOverwrittenByOutputs OverwritesOnlyWithForce
   ExistingFilesAreNotOverwritten NewFilesAreShort Obstacle.InvalidDefinitions CheckReportsIncompatibleSettings
-  TooManyCellsAreRejected ADeviationFromTheRecord AHigherEvaluationLimitResumes ThreadsDoNotMatter/ipopt
+  TooManyCellsAreRejected ADeviationFromTheRecord LongLinesTakeNoTime AHigherEvaluationLimitResumes ThreadsDoNotMatter/ipopt
   NanIsFailedAndNeverBest/ipopt RespectsBounds/ipopt CatalogueMdIsUpToDate NumberOfThreadsFromEnvironment)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.
