@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "engine/config/mechanism_draft.hpp"
+#include "engine/expression/program.hpp"
 #include "engine/math/random.hpp"
 
 namespace pkm {

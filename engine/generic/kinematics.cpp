@@ -222,24 +222,18 @@ std::optional<Influence<double>> influence_at(const Evaluation& e, std::span<con
   const Inputs& at = e.model.inputs;
   const std::vector<double> inputs = inputs_at(e, parameters, pose, mode, no_limits(e.model.info));
   if (!assembles_at(e, inputs)) return {};
-  Influence<double> found;
-  found.G = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
-  for (std::size_t i = 0; i < at.joints; ++i) found.H[i] = AxisMatrix<double>::zero(at.coordinates, at.coordinates);
-  // second derivatives along each coordinate and each sum of two
   std::vector<Taylor> moving(inputs.begin(), inputs.end());
-  for (std::size_t j = 0; j < at.coordinates; ++j)
-    for (std::size_t k = 0; k <= j; ++k) {
-      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 1;
-      const std::vector<Taylor> values = outputs_of(e.joints, moving);
-      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 0;
-      for (std::size_t i = 0; i < at.joints; ++i) found.H[i](j, k) = found.H[i](k, j) = values[i].dd;
-    }
-  for (std::size_t i = 0; i < at.joints; ++i) {
-    AxisMatrix<double>& H = found.H[i];
-    for (std::size_t j = 0; j < at.coordinates; ++j)
-      for (std::size_t k = 0; k < j; ++k) H(j, k) = H(k, j) = (H(j, k) - H(j, j) - H(k, k)) / 2;
-    if (!std::ranges::all_of(H, [](double x) { return std::isfinite(x); })) return {};
-  }
+  const auto second_derivatives = [&](const AxisVector<double>& velocity) {
+    for (std::size_t j = 0; j < at.coordinates; ++j) moving[at.coordinate(j)].d = velocity[j];
+    const std::vector<Taylor> joints = outputs_of(e.joints, moving);
+    AxisVector<double> terms(at.joints);
+    for (std::size_t i = 0; i < at.joints; ++i) terms[i] = joints[i].dd;
+    return terms;
+  };
+  const Influence<double> found{derivatives(e.joints, inputs, at.coordinate(0), at.coordinates),
+                                quadratic_form_matrices(at.coordinates, second_derivatives)};
+  for (std::size_t i = 0; i < at.joints; ++i)
+    if (!std::ranges::all_of(found.H[i], [](double x) { return std::isfinite(x); })) return {};
   return found;
 }
 
