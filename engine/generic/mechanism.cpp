@@ -106,8 +106,8 @@ class GenericMechanism final : public Mechanism,
   std::string common_margin_unit() const { return e_.model.margin_unit; }
   template <class S>
   void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,
-                    std::span<const Pose<double>> poses, std::vector<S>& margins) const {
-    append_margins(e_, parameters, number_of_mode(info(), mode), limits, poses, margins);
+                    std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) const {
+    append_margins(e_, parameters, number_of_mode(info(), mode), limits, poses, scratch, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,

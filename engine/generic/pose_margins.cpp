@@ -6,15 +6,25 @@
 #include "engine/generic/clearance.hpp"
 
 namespace pkm::generic {
+namespace {
+
+template <class S>
+struct MarginScratch {
+  std::vector<S> inputs, registers;
+};
+
+}  // namespace
 
 template <class S>
 void append_margins(const Evaluation& e, std::span<const S> parameters, std::size_t mode, const LimitSpec& limits,
-                    std::span<const Pose<double>> poses, std::vector<S>& margins) {
+                    std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) {
   const Model& model = e.model;
   const auto& outputs = e.conditions.outputs();
   const std::size_t joints = model.inputs.joints, conditions = model.domains.size() + model.margins.size();
   const std::optional<double> least_clearance = clearance_of(model, limits);
-  std::vector<S> inputs = e.inputs(parameters, limits, mode), registers;
+  auto& [inputs, registers] = scratch.get<MarginScratch<S>>();
+  inputs.resize(model.inputs.count());
+  e.fill_inputs<S>(parameters, limits, mode, inputs);
   for (const Pose<double>& pose : poses) {
     for (std::size_t i = 0; i < pose.size(); ++i) inputs[model.inputs.coordinate(i)] = S(pose[i]);
     e.conditions.run_all<S>(inputs, registers);
@@ -41,8 +51,8 @@ void append_margins(const Evaluation& e, std::span<const S> parameters, std::siz
 }
 
 template void append_margins(const Evaluation&, std::span<const double>, std::size_t, const LimitSpec&,
-                             std::span<const Pose<double>>, std::vector<double>&);
+                             std::span<const Pose<double>>, Scratch&, std::vector<double>&);
 template void append_margins(const Evaluation&, std::span<const Dual4>, std::size_t, const LimitSpec&,
-                             std::span<const Pose<double>>, std::vector<Dual4>&);
+                             std::span<const Pose<double>>, Scratch&, std::vector<Dual4>&);
 
 }  // namespace pkm::generic

@@ -9,6 +9,7 @@ namespace pkm::generic {
 /// that have a value. A pose is infeasible where one has no finite value; where no other margin says so, it has -1.
 template <class S>
 void append_margins(const Evaluation& evaluation, std::span<const S> parameters, std::size_t mode,
-                    const LimitSpec& limits, std::span<const Pose<double>> poses, std::vector<S>& margins);
+                    const LimitSpec& limits, std::span<const Pose<double>> poses, Scratch& scratch,
+                    std::vector<S>& margins);
 
 }  // namespace pkm::generic
