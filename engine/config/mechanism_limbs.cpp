@@ -182,7 +182,8 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   MechanismDraft& draft = copy.draft;
   generic::Model& model = draft.model;
   for (const auto& condition : limb.conditions) {
-    model.domains.push_back({copy.name + " " + condition.reason, condition.unit, condition.margin.node()});
+    model.domains.push_back({copy.name + " " + condition.reason, condition.unit, condition.margin.node(),
+                             copy.name + " cannot reach the pose"});
     draft.scope.known_to_exist(condition.margin.node());
   }
   draft.scope.known_to_exist(limb.joint.node());

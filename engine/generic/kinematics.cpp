@@ -62,13 +62,6 @@ std::vector<double> inputs_at(const Evaluation& e, std::span<const double> param
   return inputs;
 }
 
-/// The first condition that does not hold, with `words`; "": all do.
-std::string first_broken(const NamedValues& conditions, const std::string& words) {
-  for (const auto& [name, margin] : conditions)
-    if (!is_satisfied(margin)) return name + words;
-  return "";
-}
-
 /// The margins as they are reported. @param shown  values of ReportedMargin::shown, in order
 NamedValues reported_margins(const Model& model, const NamedValues& margins,
                              std::vector<double>::const_iterator shown) {
@@ -132,7 +125,11 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   report.joints = as_axes({values.data(), at.joints});
   next += static_cast<std::ptrdiff_t>(at.joints);
   report.margins = named(model.domains);
-  report.reason = first_broken(report.margins, " does not hold: the pose does not assemble");
+  const auto first_violated = [](const NamedValues& margins) {
+    return std::ranges::find_if_not(margins, is_satisfied, &NamedValues::value_type::second);
+  };
+  if (const auto domain = first_violated(report.margins); domain != report.margins.end())
+    report.reason = model.domains[static_cast<std::size_t>(domain - report.margins.begin())].consequence;
   const NamedValues margins = named(model.margins);
   report.angles = named(model.angles);
   for (std::size_t i = 0; i < at.joints && report.reason.empty(); ++i)
@@ -144,7 +141,8 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   report.margins.insert(report.margins.end(), listed.begin(), listed.end());
   if (!report.assembles) return report;
   add_quantities(model, quantities, report);
-  report.reason = first_broken(margins, " is violated");
+  if (const auto margin = first_violated(margins); margin != margins.end())
+    report.reason = margin->first + " is violated";
   if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles)) add_clearance(model, *nearest, limits, report);
   report.feasible = report.reason.empty();
 

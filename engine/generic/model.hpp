@@ -43,6 +43,7 @@ struct Result {
   std::string name;
   std::string unit;
   Node node{};
+  std::string consequence{};  ///< of a violated domain: "limb1 cannot reach the pose"
 };
 
 /// Margins that are reported as one: the value of `shown`, else the minimum of margins [first, first + count).
