@@ -16,7 +16,7 @@ std::vector<Node> nodes_of(const std::vector<Result>& results) {
 Program program_of(const Graph& graph, const std::optional<Node>& node) {
   return node ? Program(graph, {&*node, 1}) : Program();
 }
-/// Programs of some of the nodes, one each.
+/// One program for each node.
 template <class NodeOf>
 std::vector<Program> programs_of(const Graph& graph, std::size_t count, const NodeOf& node_of) {
   std::vector<Program> programs;
@@ -26,12 +26,12 @@ std::vector<Program> programs_of(const Graph& graph, std::size_t count, const No
 
 }  // namespace
 
-Evaluation::Evaluation(Model described) : model(std::move(described)) {
+Evaluation::Evaluation(Model source) : model(std::move(source)) {
   const Graph& graph = model.graph;
   std::vector<Node> all = model.joints;
   for (const auto* const list : {&model.domains, &model.margins, &model.angles})
     std::ranges::copy(nodes_of(*list), std::back_inserter(all));
-  conditions = Program(graph, all);
+  constraints = Program(graph, all);
   std::vector<Node> reported_nodes;
   for (const ReportedMargin& margin : model.reported_margins)
     if (margin.shown) reported_nodes.push_back(*margin.shown);
@@ -53,8 +53,8 @@ Evaluation::Evaluation(Model described) : model(std::move(described)) {
   links = Program(graph, placed);
   origin = Program(graph, model.origin);
   std::vector<Node> framed(model.origin.begin(), model.origin.end());
-  for (const auto& row : model.turn) std::ranges::copy(row, std::back_inserter(framed));
-  for (const auto& axis : model.turn_axes) std::ranges::copy(axis, std::back_inserter(framed));
+  for (const auto& row : model.rotation) std::ranges::copy(row, std::back_inserter(framed));
+  for (const auto& axis : model.rotation_directions) std::ranges::copy(axis, std::back_inserter(framed));
   frame = Program(graph, framed);
   std::vector<Node> of_rods;
   for (const RodNodes& rod : model.rods)
@@ -68,7 +68,7 @@ Evaluation::Evaluation(Model described) : model(std::move(described)) {
       std::ranges::copy(*list, std::back_inserter(of_motion));
     const std::array<Groups, 2> stages = {Inputs::kDesign, ~Inputs::kDesign};
     motion = Program(graph, of_motion, stages);
-    motions.emplace(motion, 1, motion.outputs());
+    motion_batch.emplace(motion, 1, motion.outputs());
     std::vector<Node> checked;
     for (const MassCheck& check : model.masses) checked.push_back(check.node);
     masses = Program(graph, checked);
@@ -83,7 +83,7 @@ Evaluation::Evaluation(Model described) : model(std::move(described)) {
   derived = programs_of(graph, model.derived.size(), [&](std::size_t i) { return model.derived[i]; });
   lower = programs_of(graph, coordinates, [&](std::size_t i) { return end(i, 0); });
   upper = programs_of(graph, coordinates, [&](std::size_t i) { return end(i, 1); });
-  middle = programs_of(graph, coordinates, [&](std::size_t i) { return model.middle[i]; });
+  default_values = programs_of(graph, coordinates, [&](std::size_t i) { return model.default_values[i]; });
   const auto reach = [&](std::size_t i, std::size_t side) {
     return model.reach[i] ? std::optional((*model.reach[i])[side]) : std::nullopt;
   };
@@ -94,7 +94,7 @@ Evaluation::Evaluation(Model described) : model(std::move(described)) {
 template <class S>
 void Evaluation::thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto& parameter = model.replaced[i];
+    const auto& parameter = model.limit_parameters[i];
     values[i] = parameter && !limits.given[i] ? parameters[*parameter]
                                               : S(limits.given[i].value_or(model.info.limits[i].inactive));
     if (limits.derived[i] && !limits.given[i])
@@ -117,11 +117,12 @@ template <class S>
 std::optional<S> Evaluation::of_design(const Program& program, std::span<const S> parameters) const {
   if (program.outputs().empty()) return {};
   const Inputs& at = model.inputs;
-  return with_scratch<S>(at.count() + program.registers(), [&](std::span<S> room) {
-    const std::span<S> values = room.first(at.count()), registers = room.subspan(at.count());
+  return with_scratch<S>(at.count() + program.registers(), [&](std::span<S> scratch) {
+    const std::span<S> values = scratch.first(at.count()), registers = scratch.subspan(at.count());
     std::ranges::copy(parameters, values.begin());
     for (std::size_t i = 0; i < at.limits; ++i)
-      values[at.limit(i)] = model.replaced[i] ? parameters[*model.replaced[i]] : S(model.info.limits[i].inactive);
+      values[at.limit(i)] =
+          model.limit_parameters[i] ? parameters[*model.limit_parameters[i]] : S(model.info.limits[i].inactive);
     for (std::size_t i = 0; i < at.signs; ++i) values[at.sign(i)] = S(model.signs.front()[i]);
     program.run_all<S>(values, registers);
     return std::optional<S>(registers[program.outputs().front()]);
@@ -132,8 +133,8 @@ std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> p
                                                        std::size_t mode, std::size_t coordinate) const {
   const auto end = [&](const Program& program) -> std::optional<double> {
     if (program.outputs().empty()) return {};
-    return with_scratch<double>(model.inputs.count() + program.registers(), [&](std::span<double> room) {
-      const std::span<double> values = room.first(model.inputs.count()), registers = room.subspan(values.size());
+    return with_scratch<double>(model.inputs.count() + program.registers(), [&](std::span<double> scratch) {
+      const std::span<double> values = scratch.first(model.inputs.count()), registers = scratch.subspan(values.size());
       fill_inputs<double>(parameters, limits, mode, values);
       program.run_all<double>(values, registers);
       return registers[program.outputs().front()];
@@ -144,8 +145,8 @@ std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> p
   return {{*from, *to}};
 }
 
-std::array<double, 2> Evaluation::needed_range(std::span<const double> parameters, const LimitSpec& limits,
-                                               std::size_t mode, std::size_t coordinate) const {
+std::array<double, 2> Evaluation::required_range(std::span<const double> parameters, const LimitSpec& limits,
+                                                 std::size_t mode, std::size_t coordinate) const {
   if (const auto known = range(parameters, limits, mode, coordinate)) return *known;
   throw std::invalid_argument("mechanism " + model.info.name + " has no [survey] box for " +
                               model.info.coordinates[coordinate].name + "; give a box");
@@ -157,7 +158,7 @@ Box Evaluation::search_box(std::span<const double> parameters, const WorkspacePl
   Box box;
   box.fill({0, 1});
   for (std::size_t axis = 0; axis < swept.size(); ++axis)
-    box[axis] = needed_range(parameters, plan.limits, mode, static_cast<std::size_t>(swept[axis]));
+    box[axis] = required_range(parameters, plan.limits, mode, static_cast<std::size_t>(swept[axis]));
   return box;
 }
 

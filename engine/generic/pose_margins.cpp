@@ -19,15 +19,15 @@ template <class S>
 void append_margins(const Evaluation& e, std::span<const S> parameters, std::size_t mode, const LimitSpec& limits,
                     std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) {
   const Model& model = e.model;
-  const auto& outputs = e.conditions.outputs();
-  const std::size_t joints = model.inputs.joints, conditions = model.domains.size() + model.margins.size();
-  const std::optional<double> least_clearance = clearance_of(model, limits);
+  const auto& outputs = e.constraints.outputs();
+  const std::size_t joints = model.inputs.joints, constraints = model.domains.size() + model.margins.size();
+  const std::optional<double> clearance_limit = clearance_of(model, limits);
   auto& [inputs, registers] = scratch.get<MarginScratch<S>>();
   inputs.resize(model.inputs.count());
   e.fill_inputs<S>(parameters, limits, mode, inputs);
   for (const Pose<double>& pose : poses) {
     for (std::size_t i = 0; i < pose.size(); ++i) inputs[model.inputs.coordinate(i)] = S(pose[i]);
-    e.conditions.run_all<S>(inputs, registers);
+    e.constraints.run_all<S>(inputs, registers);
     bool all_finite = true, assembles = true, one_is_negative = false;
     const auto add = [&](const S& margin) {
       const double value = value_of(margin);
@@ -39,13 +39,13 @@ void append_margins(const Evaluation& e, std::span<const S> parameters, std::siz
       return value >= 0;
     };
     for (std::size_t i = 0; i < joints; ++i) assembles = assembles && std::isfinite(value_of(registers[outputs[i]]));
-    for (std::size_t i = 0; i < conditions; ++i) {
-      const bool holds = add(registers[outputs[joints + i]]);
-      if (i < model.domains.size()) assembles = assembles && holds;
+    for (std::size_t i = 0; i < constraints; ++i) {
+      const bool is_satisfied = add(registers[outputs[joints + i]]);
+      if (i < model.domains.size()) assembles = assembles && is_satisfied;
     }
-    if (assembles && least_clearance)
+    if (assembles && clearance_limit)
       if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles))
-        add(S(nearest->clearance - *least_clearance));
+        add(S(nearest->clearance - *clearance_limit));
     if (!(assembles && all_finite) && !one_is_negative) margins.push_back(S(-1.0));
   }
 }
