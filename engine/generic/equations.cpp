@@ -17,8 +17,8 @@ class Equations {
   explicit Equations(Model& model) : model_(model), along_(model.graph), n_(model.inputs.coordinates) {
     for (std::size_t i = 0; i < n_; ++i) {
       const Node coordinate = model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
-      by_.emplace_back(model.graph).move(coordinate, model.graph.number(1));
-      along_.move(coordinate, model.graph.input(model.inputs.rate(i), Inputs::kRates));
+      by_.emplace_back(model.graph).set_rate(coordinate, model.graph.number(1));
+      along_.set_rate(coordinate, model.graph.input(model.inputs.rate(i), Inputs::kRates));
     }
     for (const ArmNodes& arm : model.arms) arm_angles_.push_back(angle_of(arm));
   }
@@ -71,8 +71,8 @@ class Equations {
       for (std::size_t k = 0; k < 3; ++k) sum = sum + rod[k] * derivative.of(arm.B[k]);
       const Term rate = sum * lever;
       for (std::size_t k = 0; k < 3; ++k)
-        if (!model_.graph[arm.arm[k]].is_number()) derivative.move(arm.arm[k], (tangent[k] * rate).node());
-      if (arm.joint) derivative.move(*arm.joint, rate.node());
+        if (!model_.graph[arm.arm[k]].is_number()) derivative.set_rate(arm.arm[k], (tangent[k] * rate).node());
+      if (arm.joint) derivative.set_rate(*arm.joint, rate.node());
       return rate;
     };
     Derivatives angle{{}, set_rates(along_)};

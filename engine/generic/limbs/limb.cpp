@@ -73,7 +73,7 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
   const Term h = sqrt(u * u + w * w), k = (dot(v, v) + crank * crank - rod * rod) / (crank * 2.0);
   const Term centre = range ? ((*range)[0] + (*range)[1]) * 0.5 : Term(q.graph(), 0.0);
   const Term angle = atan2(w, u) + branch * acos(k / h);
-  const Term joint = centre + call(expression::turn(), angle - centre);
+  const Term joint = centre + call(expression::angle_wrapping(), angle - centre);
   const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
   // cosine and sine of the angle, times h^2
   const Term root = branch * sqrt(h * h - k * k), cosine = u * k - w * root, sine = w * k + u * root;
