@@ -20,7 +20,7 @@ namespace pkm::generic {
 namespace {
 
 using Eigen::Index, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
-using Point = std::array<Node, 3>;
+using VectorNodes = std::array<Node, 3>;
 
 constexpr double kRankThreshold = 1e-9;  // relative to the greatest singular value
 
@@ -134,21 +134,21 @@ class JointsAtPose {
  private:
   std::vector<Node> needed() const {
     std::vector<Node> nodes;
-    const auto add = [&nodes](const Point& point) { nodes.insert(nodes.end(), point.begin(), point.end()); };
+    const auto add = [&nodes](const VectorNodes& point) { nodes.insert(nodes.end(), point.begin(), point.end()); };
     add(of_.solids[platform_].point);
-    for (const Point& row : rotation_) add(row);
+    for (const VectorNodes& row : rotation_) add(row);
     for (const JointNodes& joint : of_.joints) {
       add(joint.point);
-      for (const Point& axis : joint.axes) add(axis);
+      for (const VectorNodes& axis : joint.axes) add(axis);
       if (joint.drive) add(joint.drive->axis);
     }
     return nodes;
   }
-  Vector3d value(const Point& point) const {
+  Vector3d value(const VectorNodes& point) const {
     const auto at = [&](std::size_t k) { return values_.front().at(point[k]).a; };
     return {at(0), at(1), at(2)};
   }
-  Vector3d rate_of(const Point& point, std::size_t coordinate) const {
+  Vector3d rate_of(const VectorNodes& point, std::size_t coordinate) const {
     const auto at = [&](std::size_t k) { return values_[coordinate].at(point[k]).d; };
     return {at(0), at(1), at(2)};
   }
@@ -167,7 +167,7 @@ class JointsAtPose {
   }
 
   const JointedBodies& of_;
-  const std::array<Point, 3>& rotation_;  ///< of the platform, by rows
+  const std::array<VectorNodes, 3>& rotation_;  ///< of the platform, by rows
   std::size_t platform_, drives_;
   std::vector<std::map<Node, Taylor>> values_;  ///< by coordinate
   Vector3d origin_;

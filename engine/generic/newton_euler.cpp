@@ -11,10 +11,10 @@ namespace {
 
 using Vec = Vector<double, 3>;
 using Mat = Matrix<double, 3, 3>;
-using Point = std::array<Node, 3>;
+using VectorNodes = std::array<Node, 3>;
 
 /// A point or vector with its first and second time derivative.
-struct Motion {
+struct MovingVector {
   Vec x, v, a;
 };
 
@@ -52,9 +52,9 @@ class System {
  private:
   std::vector<Node> needed() const {
     std::vector<Node> nodes;
-    const auto add = [&nodes](const Point& point) { nodes.insert(nodes.end(), point.begin(), point.end()); };
+    const auto add = [&nodes](const VectorNodes& point) { nodes.insert(nodes.end(), point.begin(), point.end()); };
     add(*model_.wrench_point);
-    for (const Point& row : model_.rotation) add(row);
+    for (const VectorNodes& row : model_.rotation) add(row);
     for (const BodyNodes& body : model_.bodies) {
       add(body.centre);
       nodes.push_back(body.mass);
@@ -67,15 +67,15 @@ class System {
     }
     for (const JointNodes& joint : model_.jointed->joints) {
       add(joint.point);
-      for (const Point& axis : joint.axes) add(axis);
+      for (const VectorNodes& axis : joint.axes) add(axis);
       if (joint.drive) add(joint.drive->axis);
     }
     return nodes;
   }
 
   double number(Node node) const { return value_.at(node).a; }
-  Motion at(const Point& point) const {
-    Motion moving;
+  MovingVector at(const VectorNodes& point) const {
+    MovingVector moving;
     for (std::size_t k = 0; k < 3; ++k) {
       const Taylor& value = value_.at(point[k]);
       moving.x[k] = value.a;
@@ -89,7 +89,7 @@ class System {
   void find_rotation_of_platform() {
     Mat first, second;  // derivatives of R
     for (std::size_t i = 0; i < 3; ++i) {
-      const Motion row = at(model_.rotation[i]);
+      const MovingVector row = at(model_.rotation[i]);
       for (std::size_t k = 0; k < 3; ++k) {
         R_(i, k) = row.x[k];
         first(i, k) = row.v[k];
@@ -110,7 +110,7 @@ class System {
       body.epsilon = epsilon_;
     } else if (solid.line) {
       // omega = d x d' / |d|^2, without component along d, and its derivative
-      const Motion d = at(*solid.line);
+      const MovingVector d = at(*solid.line);
       const double square = dot(d.x, d.x);
       body.omega = cross(d.x, d.v) * (1 / square);
       body.epsilon = cross(d.x, d.a) * (1 / square) - body.omega * (2 * dot(d.x, d.v) / square);
@@ -136,7 +136,7 @@ class System {
     Vec first_moment, inertia_force;
     for (const std::size_t i : solid.bodies) {
       const double mass = number(model_.bodies[i].mass) * solid.share;
-      const Motion of = at(model_.bodies[i].centre);
+      const MovingVector of = at(model_.bodies[i].centre);
       body.mass += mass;
       first_moment += of.x * mass;
       inertia_force += of.a * mass;
@@ -157,7 +157,7 @@ class System {
   Joint joint_of(const JointNodes& nodes) const {
     Joint joint{nodes.name, at(nodes.point).x, nodes.on, nodes.from, {}, {}};
     std::vector<Vec> axes;
-    for (const Point& axis : nodes.axes) axes.push_back(unit(at(axis).x));
+    for (const VectorNodes& axis : nodes.axes) axes.push_back(unit(at(axis).x));
     joint.couples = nodes.couples == JointNodes::Couples::along ? axes : normal_to(axes);
     if (const auto& drive = nodes.drive) {
       joint.actuator = Actuator{.joint = drive->joint, .axis = unit(at(drive->axis).x), .turns = drive->turns};

@@ -40,8 +40,8 @@ void append_margins(const Evaluation& e, std::span<const S> parameters, std::siz
     };
     for (std::size_t i = 0; i < joints; ++i) assembles = assembles && std::isfinite(value_of(registers[outputs[i]]));
     for (std::size_t i = 0; i < constraints; ++i) {
-      const bool is_satisfied = add(registers[outputs[joints + i]]);
-      if (i < model.domains.size()) assembles = assembles && is_satisfied;
+      const bool satisfied = add(registers[outputs[joints + i]]);
+      if (i < model.domains.size()) assembles = assembles && satisfied;
     }
     if (assembles && clearance_limit)
       if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles))
