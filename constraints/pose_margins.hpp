@@ -32,7 +32,7 @@ const std::vector<S>& margins_of(const DesignView<S>& design, const MarginPoses&
   std::vector<S>& margins = design.scratch.template get<MarginsOfPoses<S>>().all;
   margins.clear();
   if (const PoseMargins* const ability = mechanism.pose_margins()) {
-    ability->append(design.parameters, of.mode, of.limits, of.poses, margins);
+    ability->append(design.parameters, of.mode, of.limits, of.poses, design.scratch, margins);
   } else if constexpr (std::is_same_v<S, double>) {
     for (const Pose<double>& pose : of.poses) {
       const PoseReport report = mechanism.inspect(design.parameters, pose, of.mode, of.limits);

@@ -73,7 +73,7 @@ void add_square(const std::array<expression::Node, 3>& f, const Term& weight, Bo
 /// its turns, else the second moments of its mass along its axes.
 void add_turns_of_platform(const std::array<Term, 3>& inertia, BodyNodes& body, MechanismDraft& draft) {
   const auto turns = [](const auto& axis) { return axis.has_value(); };
-  const auto& about = draft.model.turns_about;
+  const auto& about = draft.model.rotation_axes;
   const auto count = std::ranges::count_if(about, turns);
   const expression::Node zero = draft.zero().node();
   if (count == 1) {
@@ -127,13 +127,13 @@ BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia,
   BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
   if (part.on_arm && part.on_arm->is_arm) {  // from its pivot, which moves along the axis
     add_square(nodes(part.from), mass, body);
-    body.arm_turns.push_back({part.on_arm->arm, (mass * 0.25 * *part.length * *part.length + inertia).node()});
+    body.arm_rotations.push_back({part.on_arm->arm, (mass * 0.25 * *part.length * *part.length + inertia).node()});
     return body;
   }
   const Term square = quarter + turning;
   if (part.on_arm) {
     add_square(nodes(part.on_arm->pivot), square, body);
-    body.arm_turns.push_back({part.on_arm->arm, (square * part.on_arm->length * part.on_arm->length).node()});
+    body.arm_rotations.push_back({part.on_arm->arm, (square * part.on_arm->length * part.on_arm->length).node()});
   } else {
     add_square(nodes(part.from), square, body);
   }
@@ -195,7 +195,8 @@ void add_link_body(const ConfigValue& table, const std::string& name, const Vect
   BodyNodes body = body_at((from + to) * Term(draft.model.graph, 0.5), m, name);
   if (inertia) {
     const Term I = draft.scope.positive(*inertia, "kg m^2", name, true);
-    body.line_turns.push_back({nodes(to - from), checked(draft, I, "the inertia of " + name, "kg m^2", true).node()});
+    body.line_rotations.push_back(
+        {nodes(to - from), checked(draft, I, "the inertia of " + name, "kg m^2", true).node()});
     body.inertia = {draft.zero().node(), I.node(), I.node()};
   }
   draft.model.bodies.push_back(std::move(body));
@@ -246,7 +247,7 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
               "a body that turns with a link has no spin about it: [along the link, across, across], "
               "the last two the same formula");
         const LimbPart& link = *find_named(turning, rotation->text("a name"));
-        if (link.line) body.line_turns.push_back({nodes(*link.line), inertia[1].node()});
+        if (link.line) body.line_rotations.push_back({nodes(*link.line), inertia[1].node()});
       }
     }
     draft.model.bodies.push_back(std::move(body));

@@ -70,7 +70,7 @@ struct MechanismDraft {
   generic::Model model;
   MechanismScope scope{model};
   limbs::Vector3 origin{zero(), zero(), zero()};  ///< of the platform's frame
-  limbs::Rotation turn{limbs::turn_about(2, zero(), limbs::Term(model.graph, 1.0))};
+  limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
   std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: x, y, z

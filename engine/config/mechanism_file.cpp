@@ -123,15 +123,15 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
     const Term coordinate = model.term(model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i)));
     draft.scope.add(value, name, coordinate.node());
     model.info.coordinates.push_back({name, turns ? "rad" : "m"});
-    model.turns_about.push_back(turns ? std::optional(axis) : std::nullopt);
-    model.moves_along.push_back(turns ? std::nullopt : std::optional(axis));
+    model.rotation_axes.push_back(turns ? std::optional(axis) : std::nullopt);
+    model.translation_axes.push_back(turns ? std::nullopt : std::optional(axis));
     const expression::Node none = model.graph.number(0);
-    model.turn_axes.push_back({none, none, none});
+    model.rotation_directions.push_back({none, none, none});
     if (turns) {
-      for (std::size_t row = 0; row < 3; ++row) model.turn_axes.back()[row] = draft.turn[row][axis].node();
-      if (std::ranges::count_if(model.turns_about, [](const auto& each) { return each.has_value(); }) > 3)
+      for (std::size_t row = 0; row < 3; ++row) model.rotation_directions.back()[row] = draft.turn[row][axis].node();
+      if (std::ranges::count_if(model.rotation_axes, [](const auto& each) { return each.has_value(); }) > 3)
         throw value.refusal("a platform has at most three rotations");
-      draft.turn = draft.turn * limbs::turn_about(axis, sin(coordinate), cos(coordinate));
+      draft.turn = draft.turn * limbs::rotation_about(axis, sin(coordinate), cos(coordinate));
     } else {
       if (!draft.origin[axis].is(0)) throw value.refusal("there is already a coordinate " + kind);
       draft.origin[axis] = coordinate;
@@ -172,7 +172,7 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   generic::Model& model = draft.model;
   if (const auto origin = platform.find("origin")) draft.origin = draft.scope.point(*origin, "origin");
   model.origin = nodes(draft.origin);
-  for (std::size_t row = 0; row < 3; ++row) model.turn[row] = nodes(draft.turn[row]);
+  for (std::size_t row = 0; row < 3; ++row) model.rotation[row] = nodes(draft.turn[row]);
   if (const auto length = platform.find("characteristic_length")) {
     model.length = draft.scope.of_design(*length, "m", "characteristic_length").node();
     model.info.characteristic_length = length->is_text() ? length->text("a formula") : shortest(length->number("m"));
@@ -182,10 +182,11 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
     for (const ConfigValue& each : list->elements(kExpected)) {
       const std::string& name = each.word(names_of(model.info.coordinates));
       const auto i = static_cast<std::size_t>(find_named(model.info.coordinates, name) - model.info.coordinates.data());
-      if (std::ranges::count(model.conditioned, i) > 0) throw each.refusal("'" + name + "' is in the list already");
-      model.conditioned.push_back(i);
+      if (std::ranges::count(model.conditioning_coordinates, i) > 0)
+        throw each.refusal("'" + name + "' is in the list already");
+      model.conditioning_coordinates.push_back(i);
     }
-    if (model.conditioned.empty()) throw list->error(kExpected);
+    if (model.conditioning_coordinates.empty()) throw list->error(kExpected);
   }
   if (const auto radius = platform.find("characteristic_radius"))
     model.radius = draft.scope.of_design(*radius, "m", "characteristic_radius").node();

@@ -39,11 +39,11 @@ class JointReader {
   /// The bodies and joints that the file describes, without masses.
   generic::JointedBodies read(const std::vector<ConfigValue>& tables) {
     for (const ConfigValue& table : tables) table.allow({"name", "bodies", "at", "about"});
-    add_solid("platform", {.name = "platform", .place = nodes(draft_.origin), .with_platform = true});
+    add_solid("platform", {.name = "platform", .point = nodes(draft_.origin), .with_platform = true});
     for (const BodyNodes& body : model_.bodies) {
       if (!body.part_of.empty() || is_of_limb(body.name) || body.name == "platform") continue;
-      add_solid(body.name, {.name = body.name, .place = body.centre});
-      if (!body.line_turns.empty()) solids_.back().line = body.line_turns.front().d;
+      add_solid(body.name, {.name = body.name, .point = body.centre});
+      if (!body.line_rotations.empty()) solids_.back().line = body.line_rotations.front().d;
     }
     for (const NamedLimb& limb : draft_.limbs) add_limb(limb);
     for (const ConfigValue& table : tables) add_joint(table);
@@ -99,7 +99,7 @@ class JointReader {
     const std::string name = part.name + " of " + limb.name;
     Vector3 line = *part.line;
     if (limb.revolute) line = line - *limb.revolute * dot(line, *limb.revolute);
-    return add_solid(name, {.name = name, .place = nodes(part.from), .line = nodes(line)});
+    return add_solid(name, {.name = name, .point = nodes(part.from), .line = nodes(line)});
   }
 
   void add_limb(const NamedLimb& limb) {
@@ -120,8 +120,8 @@ class JointReader {
     const LimbPart &first = limb.parts[limb.parts.size() - 2], &last = limb.parts.back();
     std::vector<Vector3> turns;
     if (found->with_platform)
-      for (std::size_t i = 0; i < model_.turns_about.size(); ++i)
-        if (model_.turns_about[i]) turns.push_back(vector(model_.turn_axes[i]));
+      for (std::size_t i = 0; i < model_.rotation_axes.size(); ++i)
+        if (model_.rotation_axes[i]) turns.push_back(vector(model_.rotation_directions[i]));
 
     const bool telescope = limb.drive == "telescope", slides = limb.drive == "slider",
                has_links = first.name != "slider" && slides;
@@ -154,7 +154,7 @@ class JointReader {
         far = far + beside;
         solids_[outer].name = "rod" + number + " of " + limb.name;
         solids_[outer].share = 0.5;
-        solids_[outer].beside = nodes(beside);
+        solids_[outer].centre_offset = nodes(beside);
       }
       if (inner) {
         joints_.push_back(limb_joint(limb, limb.name + ".C" + number, near, *inner, outer, last.line));

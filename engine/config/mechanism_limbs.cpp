@@ -47,7 +47,7 @@ void refuse_known(const ConfigValue& table, const std::string& name, const Mecha
 std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) {
   const auto number = [&draft](double x) { return Term(draft.model.graph, x); };
   const auto copies = table.find("copies");
-  if (!copies) return {limbs::turn_about(2, number(0), number(1))};
+  if (!copies) return {limbs::rotation_about(2, number(0), number(1))};
   copies->expect_table("a table { number = .., about = \"z\" }").allow({"number", "angles", "about"});
   const auto about =
       static_cast<std::size_t>(copies->at("about", "an axis, \"x\", \"y\" or \"z\"").word({"x", "y", "z"})[0] - 'x');
@@ -67,7 +67,7 @@ std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) 
   std::vector<Rotation> turns;
   for (const double angle : angles) {
     const auto [sine, cosine] = sincos(angle);
-    turns.push_back(limbs::turn_about(about, number(exact(sine)), number(exact(cosine))));
+    turns.push_back(limbs::rotation_about(about, number(exact(sine)), number(exact(cosine))));
   }
   return turns;
 }
@@ -133,7 +133,7 @@ std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
     throw pair->refusal("a pair is of rods with ball joints: of a `rod` without `across`");
   const auto along = pair->find("along");
   if (is_crank && along) throw along->refusal("the rods of a pair are side by side along the crank's axis");
-  const auto& about = copy.draft.model.turns_about;
+  const auto& about = copy.draft.model.rotation_axes;
   if (limb.end_on == "platform" && std::ranges::any_of(about, [](const auto& axis) { return axis.has_value(); }))
     throw pair->refusal("a pair of rods stays parallel where the platform does not turn, and this one does");
   const Vector3 side =
@@ -160,30 +160,31 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
   return limb;
 }
 
-/// What surveys know of a crank's range and of what it reaches with its rod, in place of the conditions that say so.
-void add_surfaces(const limbs::Limb& limb, generic::Model& model) {
-  std::vector<expression::Node> conditions;
-  for (const auto& condition : limb.conditions) conditions.push_back(condition.margin.node());
-  if (limb.folds) {
-    generic::CoveredFolds folds{{(*limb.folds)[0].node(), (*limb.folds)[1].node()}, conditions, {}};
-    if (limb.crank_range) folds.crank_range = model.crank_ranges.size();
-    model.folds.push_back(folds);
+/// Adds the polynomial constraints that are equivalent to those of a crank's range and reach.
+void add_polynomial_constraints(const limbs::Limb& limb, generic::Model& model) {
+  std::vector<expression::Node> constraints;
+  for (const limbs::Constraint& constraint : limb.constraints) constraints.push_back(constraint.margin.node());
+  if (limb.annulus) {
+    generic::AnnulusNodes annulus{{(*limb.annulus)[0].node(), (*limb.annulus)[1].node()}, constraints, {}};
+    if (limb.crank_range) annulus.crank_range = model.crank_ranges.size();
+    model.annuli.push_back(annulus);
   }
   if (limb.crank_range) {
     const limbs::CrankRange& r = *limb.crank_range;
     for (std::size_t i = model.margins.size() - 2; i < model.margins.size(); ++i)  // those of the range
-      conditions.push_back(model.margins[i].node);
+      constraints.push_back(model.margins[i].node);
     model.crank_ranges.push_back({r.at_min.node(), r.at_max.node(), r.after_min.node(), r.before_max.node(),
-                                  r.half_turn.node(), r.reach.node(), r.branch.node(), conditions});
+                                  r.half_turn.node(), r.reach.node(), r.branch.node(), constraints});
   }
 }
 
 void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends& at, const DrivenLimb& limb) {
   MechanismDraft& draft = copy.draft;
   generic::Model& model = draft.model;
-  for (const auto& condition : limb.conditions) {
-    model.domains.push_back({copy.name + " " + condition.reason, condition.unit, condition.margin.node()});
-    draft.scope.known_to_exist(condition.margin.node());
+  for (const limbs::Constraint& constraint : limb.constraints) {
+    model.domains.push_back({copy.name + " " + constraint.name, constraint.unit, constraint.margin.node(),
+                             copy.name + " cannot reach the pose"});
+    draft.scope.known_to_exist(constraint.margin.node());
   }
   draft.scope.known_to_exist(limb.joint.node());
   draft.scope.known_to_exist(limb.C[0].node());
@@ -192,7 +193,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   model.closures.push_back(limb.closure.node());
   model.info.closed_forms.push_back(copy.drive + ": " + limb.form);
   add_range(copy.table, copy.group, joint, model.info.joints.back().unit, limb.joint, draft);
-  add_surfaces(limb, model);
+  add_polynomial_constraints(limb, model);
   if (copy.drive != "slider" || copy.table.has("rod")) model.rods.push_back({nodes(limb.C), nodes(at.B)});
   add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);

@@ -45,7 +45,7 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft) {
     if (table.has("meaning")) limit.meaning = text_of(table, "meaning");
     if (const auto owner = table.find("constraint")) limit.group = owner->word({"interference", "singularity-margin"});
     const auto node = model.graph.input(model.inputs.limit(model.inputs.limits++), Inputs::kDesign);
-    model.replaced.push_back(
+    model.limit_parameters.push_back(
         parameter ? std::optional(static_cast<std::size_t>(parameter - model.info.parameters.data())) : std::nullopt);
     std::optional<expression::Node> derived;
     if (const auto formula = table.find("derived"))

@@ -66,7 +66,7 @@ void add_clearance(MechanismDraft& draft) {
   model.info.limits.push_back({generic::kClearanceLimit, "m", kInactiveClearance, kInactiveClearance, 100, "clearance",
                                "", "least distance of links that are not joined; < 0: they may overlap that far"});
   model.derived.emplace_back();
-  model.replaced.emplace_back();
+  model.limit_parameters.emplace_back();
 }
 
 }  // namespace pkm

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "engine/config/mechanism_draft.hpp"
+#include "engine/expression/program.hpp"
 #include "engine/math/random.hpp"
 
 namespace pkm {
@@ -41,7 +42,8 @@ class RandomPoses {
       inputs_[i] = design == 0 ? p.nominal : between(p.lower, p.upper);
     }
     for (std::size_t i = 0; i < model.inputs.limits; ++i)
-      inputs_[model.inputs.limit(i)] = model.replaced[i] ? inputs_[*model.replaced[i]] : model.info.limits[i].inactive;
+      inputs_[model.inputs.limit(i)] =
+          model.limit_parameters[i] ? inputs_[*model.limit_parameters[i]] : model.info.limits[i].inactive;
     for (std::size_t i = 0; i < model.inputs.signs; ++i) inputs_[model.inputs.sign(i)] = model.signs.front()[i];
     for (const auto& range : model.box) {
       std::array<double, 2> ends = {-1, 1};

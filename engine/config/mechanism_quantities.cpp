@@ -63,8 +63,8 @@ void read_quantities(const ConfigValue& root, MechanismDraft& draft) {
   const std::vector<Moving> moving = moving_inputs(model);
   expression::Rates rates(model.graph);
   for (const Moving& each : moving) {
-    rates.move(each.value, each.rate);
-    rates.move(each.rate, each.acceleration);
+    rates.set_rate(each.value, each.rate);
+    rates.set_rate(each.rate, each.acceleration);
   }
   const auto add_rate = [&](const ConfigValue& at, const std::string& name, Node node) {
     if (!draft.scope.knows(name + "_rate")) draft.scope.add(at, name + "_rate", rates.of(node).node());

@@ -125,7 +125,7 @@ void MechanismScope::watch(Node root, const std::string& what) {
   for (const Node node : unseen(root)) {
     seen_.insert(node);
     if (has_domain(model_.graph[node].operation))
-      watched_.push_back({node, what + (++count > 1 ? " exists (" + std::to_string(count) + ")" : " exists")});
+      watched_.push_back({node, what, what + (++count > 1 ? " exists (" + std::to_string(count) + ")" : " exists")});
   }
 }
 
@@ -133,12 +133,18 @@ void MechanismScope::note_domains() {
   std::vector<Node> used = model_.joints;
   for (const generic::Result& margin : model_.margins) used.push_back(margin.node);
   const std::vector<Node> reachable = model_.graph.reachable(used);
-  for (const auto& [node, name] : watched_) {
+  std::vector<std::vector<Node>> of_joints;
+  for (const Node& joint : model_.joints) of_joints.push_back(model_.graph.reachable({&joint, 1}));
+  for (const auto& [node, what, name] : watched_) {
     if (!std::ranges::binary_search(reachable, node)) continue;
+    std::string consequence = what + " has no real value";
+    for (std::size_t i = of_joints.size(); i-- > 0;)
+      if (std::ranges::binary_search(of_joints[i], node))
+        consequence = what + " has no real value, so " + model_.info.joints[i].name + " is undefined";
     const expression::Entry entry = model_.graph[node];
     const Term argument = model_.term(entry.arguments[0]), one(model_.graph, 1.0);
     const bool of_circle = entry.operation->name == "asin" || entry.operation->name == "acos";
-    model_.domains.push_back({name, "", (of_circle ? one - abs(argument) : argument).node()});
+    model_.domains.push_back({name, "", (of_circle ? one - abs(argument) : argument).node(), consequence});
   }
 }
 

@@ -59,7 +59,7 @@ class MechanismScope {
 
   struct Watched {
     expression::Node node;
-    std::string name;
+    std::string what, name;
   };
 
   generic::Model& model_;

@@ -49,7 +49,7 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
   const std::size_t count = model.inputs.coordinates;
   model.box.resize(count);
   model.reach.resize(count);
-  model.middle.resize(count);
+  model.default_values.resize(count);
   std::vector<int> swept, columns_along;
   for (std::size_t i = 0; i < std::min<std::size_t>(count, 3); ++i) swept.push_back(static_cast<int>(i));
   const auto survey = root.find("survey");
@@ -69,7 +69,7 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         const ConfigValue value = *hold->find(name);
         const auto i =
             static_cast<std::size_t>(find_named(model.info.coordinates, name) - model.info.coordinates.data());
-        model.middle[i] = draft.scope.of_design(value, model.info.coordinates[i].unit, name).node();
+        model.default_values[i] = draft.scope.of_design(value, model.info.coordinates[i].unit, name).node();
       }
     }
     read_ranges(*survey, "box", draft, model.box);
@@ -81,7 +81,7 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
   }
   // What the file leaves out: turns once around, places within the reach of all limbs that say theirs.
   for (std::size_t i = 0; i < count; ++i) {
-    if (!model.box[i] && model.turns_about[i]) model.box[i] = {model.graph.number(-kPi), model.graph.number(kPi)};
+    if (!model.box[i] && model.rotation_axes[i]) model.box[i] = {model.graph.number(-kPi), model.graph.number(kPi)};
     if (!model.box[i])
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (draft.origin[axis].node() != model.graph.input(model.inputs.coordinate(i))) continue;
@@ -95,8 +95,8 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         if (common && of_design((*common)[0]) && of_design((*common)[1]))
           model.box[i] = {(*common)[0].node(), (*common)[1].node()};
       }
-    if (!model.middle[i] && model.box[i])
-      model.middle[i] = ((model.term((*model.box[i])[0]) + model.term((*model.box[i])[1])) * 0.5).node();
+    if (!model.default_values[i] && model.box[i])
+      model.default_values[i] = ((model.term((*model.box[i])[0]) + model.term((*model.box[i])[1])) * 0.5).node();
   }
   model.info.sweeps = all_sweeps(model.info.coordinates, swept);
   for (Sweep& sweep : model.info.sweeps) {

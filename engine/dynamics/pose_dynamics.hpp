@@ -31,44 +31,32 @@ inline const std::vector<std::string>& wrench_names() {
   return names;
 }
 
-/// Pose and velocity at which the equations of motion are evaluated. N as in PoseDynamics.
-template <class S, std::size_t N = 0>
+/// Pose and velocity at which the equations of motion are evaluated.
+template <class S>
 struct MotionState {
   Pose<S> pose;
   AxisVector<S> velocity;  ///< Xdot [m/s, rad/s]
-
-  operator MotionState<S, 4>() const { return {schoenflies(pose), fixed<4>(velocity)}; }
 };
+
+/// The equations of motion in the coordinates of the platform.
 template <class S>
-struct MotionState<S, 4> {
-  SchoenfliesPose<S> pose;
-  Vector<S, 4> velocity;
-};
-
-/// The equations of motion in the coordinates of the platform. For N coordinates and N joints; N = 0: numbers known at
-/// run time only.
-template <class S, std::size_t N = 0>
 struct PoseDynamics {
-  using Vec = AxisVector<S, N>;
-  using Mat = AxisMatrix<S, N>;
   bool assembles = false;  ///< false: the pose does not assemble, and nothing below is set
-  Vec q;                   ///< joint positions [m, rad]
-  Mat J;                   ///< qdot = J Xdot
-  Vec J_rate_X;            ///< Jdot Xdot
-  Mat M_X;                 ///< inertia matrix: kinetic energy = Xdot^T M_X Xdot / 2
-  Vec h_X;                 ///< centrifugal and Coriolis forces at the given velocity
-  Vec G_X;                 ///< gravity: gradient of the potential energy
+  AxisVector<S> q;         ///< joint positions [m, rad]
+  AxisMatrix<S> J;         ///< joints x coordinates: qdot = J Xdot
+  AxisVector<S> J_rate_X;  ///< Jdot Xdot
+  AxisMatrix<S> M_X;       ///< inertia matrix: kinetic energy = Xdot^T M_X Xdot / 2
+  AxisVector<S> h_X;       ///< centrifugal and Coriolis forces at the given velocity
+  AxisVector<S> G_X;       ///< gravity: gradient of the potential energy
   /// Jacobian J_w of the point where a wrench acts: its velocity and angular velocity are J_w Xdot.
-  MatrixOf<S, 6, N ? N : kMaxJoints, N != 0> J_wrench;
-
-  operator PoseDynamics<S>() const requires(N != 0) { return {assembles, q, J, J_rate_X, M_X, h_X, G_X, J_wrench}; }
+  MatrixUpTo<S, 6, kMaxJoints> J_wrench;
 };
 
 /// The equations of motion in joint space; NaN if J is singular to working precision.
-template <class S, std::size_t N = 0>
+template <class S>
 struct JointSpace {
-  AxisMatrix<S, N> M_q;       ///< inertia matrix [kg, kg m, kg m^2]
-  AxisVector<S, N> c_q, G_q;  ///< Coriolis and centrifugal forces, gravity [N, N m]
+  AxisMatrix<S> M_q;       ///< inertia matrix [kg, kg m, kg m^2]
+  AxisVector<S> c_q, G_q;  ///< Coriolis and centrifugal forces, gravity [N, N m]
 };
 
 /// A matrix of the same size whose elements are NaN, for quantities that do not exist at singularities.
@@ -79,8 +67,8 @@ M undetermined(M like) {
 }
 
 /// Joint forces J^-T f for forces f in the coordinates of the platform; NaN if J is singular to working precision.
-template <class S, std::size_t N>
-AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& f) {
+template <class S>
+AxisVector<S> at_joints(const PoseDynamics<S>& d, const AxisVector<S>& f) {
   auto eliminated = transpose(d.J);
   auto forces = f;
   eliminate(eliminated, forces);
@@ -91,42 +79,42 @@ AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& 
 
 /// Inverse dynamics: forces tau of the actuators for an acceleration Xddot under a wrench on the platform [N, N m]; NaN
 /// if J is singular to working precision.
-template <class S, std::size_t N>
-AxisVector<S, N> drive_forces(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& acceleration,
-                              const Wrench<S>& wrench) {
-  return at_joints<S, N>(d, d.M_X * acceleration + d.h_X + d.G_X - transpose(d.J_wrench) * wrench);
+template <class S>
+AxisVector<S> drive_forces(const PoseDynamics<S>& d, const std::type_identity_t<AxisVector<S>>& acceleration,
+                           const Wrench<S>& wrench) {
+  return at_joints<S>(d, d.M_X * acceleration + d.h_X + d.G_X - transpose(d.J_wrench) * wrench);
 }
 
 /// Joint-space inertia matrix M_q [kg, kg m, kg m^2], exactly symmetric. NaN if J is singular to working precision.
-template <class S, std::size_t N>
-AxisMatrix<S, N> joint_inertia(const PoseDynamics<S, N>& d) {
+template <class S>
+AxisMatrix<S> joint_inertia(const PoseDynamics<S>& d) {
   auto eliminated = transpose(d.J);
-  AxisMatrix<S, N> half = d.M_X;
+  AxisMatrix<S> half = d.M_X;
   eliminate(eliminated, half);
   if (is_singular(d.J, eliminated)) return undetermined(d.M_X);
-  substitute_back(eliminated, half);                            // J^-T M_X
-  AxisMatrix<S, N> M = solve(transpose(d.J), transpose(half));  // J^-T (J^-T M_X)^T
+  substitute_back(eliminated, half);                         // J^-T M_X
+  AxisMatrix<S> M = solve(transpose(d.J), transpose(half));  // J^-T (J^-T M_X)^T
   for (std::size_t i = 0; i < M.rows(); ++i)
     for (std::size_t j = 0; j < i; ++j) M(i, j) = M(j, i) = (M(i, j) + M(j, i)) * S(0.5);
   return M;
 }
 
 /// Transforms the equations of motion to joint space.
-template <class S, std::size_t N>
-JointSpace<S, N> joint_space(const PoseDynamics<S, N>& d) {
-  return {joint_inertia(d), at_joints<S, N>(d, d.h_X - d.M_X * solve(d.J, d.J_rate_X)), at_joints<S, N>(d, d.G_X)};
+template <class S>
+JointSpace<S> joint_space(const PoseDynamics<S>& d) {
+  return {joint_inertia(d), at_joints<S>(d, d.h_X - d.M_X * solve(d.J, d.J_rate_X)), at_joints<S>(d, d.G_X)};
 }
 
 /// Forward dynamics: acceleration Xddot under forces tau of the actuators and a wrench on the platform.
-template <class S, std::size_t N>
-AxisVector<S, N> acceleration(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& tau,
-                              const Wrench<S>& wrench) {
+template <class S>
+AxisVector<S> acceleration(const PoseDynamics<S>& d, const std::type_identity_t<AxisVector<S>>& tau,
+                           const Wrench<S>& wrench) {
   return solve(d.M_X, transpose(d.J) * tau + transpose(d.J_wrench) * wrench - d.h_X - d.G_X);
 }
 
 /// Kinetic energy [J].
-template <class S, std::size_t N>
-S kinetic_energy(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& velocity) {
+template <class S>
+S kinetic_energy(const PoseDynamics<S>& d, const std::type_identity_t<AxisVector<S>>& velocity) {
   return dot(velocity, d.M_X * velocity) * S(0.5);
 }
 

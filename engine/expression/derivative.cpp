@@ -51,7 +51,7 @@ Term Rates::differentiate(Node node) {
       break;
   }
   if (entry.operation == &choice()) return choose(x, rate(1), rate(2));
-  if (entry.operation == &turn()) return dx;
+  if (entry.operation == &angle_wrapping()) return dx;
   const std::string& name = entry.operation->name;
   if (name == "sin") return cos(x) * dx;
   if (name == "cos") return -(sin(x) * dx);

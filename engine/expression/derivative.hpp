@@ -17,8 +17,8 @@ class Rates {
  public:
   explicit Rates(Graph& graph) : graph_(graph) {}
 
-  /// Sets the rate of change of an input, or of any other node, instead of deriving it. To be called before of().
-  void move(Node input, Node rate) { rates_.emplace(input, rate); }
+  /// Sets the rate of change of an input, or of another node that is then not differentiated. To be called before of().
+  void set_rate(Node node, Node rate) { rates_.emplace(node, rate); }
   /// The rate of change of a node. The rates of all nodes that it depends on are cached.
   Term of(Node node);
   Term of(const Term& term) { return of(term.node()); }
@@ -37,7 +37,7 @@ class Rates {
 /// continuous.
 inline Node derivative(Graph& graph, Node f, Node input) {
   Rates rates(graph);
-  rates.move(input, graph.number(1));
+  rates.set_rate(input, graph.number(1));
   return rates.of(f).node();
 }
 

@@ -6,9 +6,9 @@
 namespace pkm::expression {
 
 /// Runs those steps whose results are not up to date.
-/// @param now    version of the inputs, increased by the caller whenever they change
-/// @param since  by register: version for which it was computed last; updated
-void run_steps(std::span<const Program::Step> steps, std::uint64_t now, std::span<std::uint64_t> since,
+/// @param version   of the inputs, increased by the caller whenever they change
+/// @param computed  by register: version of the inputs for which it was computed last; updated
+void run_steps(std::span<const Program::Step> steps, std::uint64_t version, std::span<std::uint64_t> computed,
                std::span<Interval> registers);
 
 }  // namespace pkm::expression

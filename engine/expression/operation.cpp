@@ -246,9 +246,9 @@ const Operation& choice() {
   return choice;
 }
 
-const Operation& turn() {
-  static const Operation turn = make<1>("turn", [](const auto& x) { return wrapped(x); });
-  return turn;
+const Operation& angle_wrapping() {
+  static const Operation wrapping = make<1>("turn", [](const auto& x) { return wrapped(x); });
+  return wrapping;
 }
 
 const Operation& operation(const std::string& name) {

@@ -45,7 +45,7 @@ const Operation& negation();
 /// The conditional operator c ? x : y.
 const Operation& choice();
 /// Wraps an angle [rad] to (-pi, pi] by subtracting full turns; for internal use, formulas cannot call it.
-const Operation& turn();
+const Operation& angle_wrapping();
 
 /// Finds a function or a binary operator by its name. Throws std::logic_error if there is none.
 const Operation& operation(const std::string& name);

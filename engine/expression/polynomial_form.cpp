@@ -155,7 +155,46 @@ class NormalForm {
       }
     }
     if (auto found = clauses_of_form(node)) return found;
-    return squares_ ? clauses_of_squares(node) : std::nullopt;
+    if (auto found = squares_ ? clauses_of_squares(node) : std::nullopt) return found;
+    return clauses_of_multiple(node);
+  }
+
+  /// c f >= 0 and f / c >= 0, where c does not depend on z but f contains minima, maxima or absolute values: f >= 0 or
+  /// -c >= 0, and -f >= 0 or c >= 0. Also c x + c y and c x - c y.
+  Clauses clauses_of_multiple(Node node) {
+    const Entry entry = graph_[node];
+    if (!entry.operation) return {};
+    const Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+    const auto multiple = [&](const Term& c, const Term& f) {
+      if (c.is(0)) return Clauses();
+      if (graph_[c.node()].is_number()) return graph_[c.node()].number > 0 ? clauses(f.node()) : clauses_of_negative(f);
+      return conjunction(disjunction(clauses(f.node()), clauses((-c).node())),
+                         disjunction(clauses_of_negative(f), clauses(c.node())));
+    };
+    const Code code = entry.operation->code;
+    if (code == Code::negate) return clauses_of_negative(x);
+    if (code == Code::multiply && is_independent(x)) return multiple(x, y);
+    if ((code == Code::multiply || code == Code::divide) && is_independent(y)) return multiple(y, x);
+    const Entry p = graph_[x.node()], q = graph_[y.node()];
+    const auto is_product = [](const Entry& e) { return e.operation && e.operation->code == Code::multiply; };
+    if ((code != Code::add && code != Code::subtract) || !is_product(p) || !is_product(q)) return {};
+    for (const std::size_t i : {0, 1})
+      for (const std::size_t j : {0, 1})
+        if (const Term c(graph_, p.arguments[i]); c.node() == q.arguments[j] && is_independent(c)) {
+          const Term a(graph_, p.arguments[1 - i]), b(graph_, q.arguments[1 - j]);
+          return multiple(c, code == Code::add ? a + b : a - b);
+        }
+    return {};
+  }
+  /// -f >= 0 for a difference, minimum or maximum f.
+  Clauses clauses_of_negative(const Term& f) {
+    const Entry entry = graph_[f.node()];
+    const Code code = entry.operation ? entry.operation->code : Code::other;
+    const Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+    if (code == Code::subtract) return clauses((y - x).node());
+    if (code == Code::min) return disjunction(clauses((-x).node()), clauses((-y).node()));
+    if (code == Code::max) return conjunction(clauses((-x).node()), clauses((-y).node()));
+    return {};
   }
 
   /// Sufficient test: true if a node is >= 0 for all inputs, because it is composed of non-negative constants, squares,

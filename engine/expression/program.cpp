@@ -116,12 +116,12 @@ namespace {
 
 }  // namespace
 
-[[gnu::flatten]] void run_steps(std::span<const Program::Step> steps, std::uint64_t now, std::span<std::uint64_t> since,
-                                std::span<Interval> registers) {
+[[gnu::flatten]] void run_steps(std::span<const Program::Step> steps, std::uint64_t version,
+                                std::span<std::uint64_t> computed, std::span<Interval> registers) {
   for (const Program::Step& step : steps) {
-    if (since[step.to] == now) continue;
+    if (computed[step.to] == version) continue;
     run_step(step, registers);
-    since[step.to] = now;
+    computed[step.to] = version;
   }
 }
 

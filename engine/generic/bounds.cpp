@@ -6,7 +6,7 @@
 
 #include "engine/expression/derivative.hpp"
 #include "engine/generic/clearance.hpp"
-#include "engine/generic/pose_conditions.hpp"
+#include "engine/generic/interval_constraints.hpp"
 #include "engine/workspace/bounds/pose_box.hpp"
 #include "engine/workspace/bounds/proof.hpp"
 
@@ -17,11 +17,11 @@ using bounds::Conditions, bounds::Ranges;
 
 void refuse_clearance_of_boxes(const Model& model, const LimitSpec& limits) {
   refuse_clearance(model, limits,
-                   "has no certain bounds under a clearance (clearance_min), because the distance of two links is no "
-                   "formula of the pose; take voxels, or leave the clearance out");
+                   "has no certified bounds with a clearance limit (clearance_min), because the distance of two links "
+                   "is not given by a formula; use voxels, or remove the limit");
 }
 
-/// The graph's inputs for a design, with the held coordinates where they are held.
+/// The graph's inputs for a design and the fixed coordinates.
 std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
                                 const WorkspacePlan& plan, std::size_t mode) {
   const std::vector<Interval> design(parameters.begin(), parameters.end());
@@ -41,10 +41,10 @@ void refuse_bounds(const Model& model, const WorkspacePlan& plan) {
     const FixedCoordinate held = how_fixed(plan, coordinate);
     const bool integrated = held.kind == FixedCoordinate::Kind::integrated;
     if (integrated || (held.kind == FixedCoordinate::Kind::listed && held.values.size() > 1))
-      throw std::invalid_argument(
-          "bounds are of one value of " + model.info.coordinates[static_cast<std::size_t>(coordinate)].name +
-          (integrated ? ", which the survey integrates over" : ", of which the survey has several") +
-          ": hold it at a value");
+      throw std::invalid_argument("certified bounds need a single value of " +
+                                  model.info.coordinates[static_cast<std::size_t>(coordinate)].name +
+                                  ", but the workspace analysis " +
+                                  (integrated ? "integrates over it" : "has several") + "; fix it at one value");
   }
 }
 
@@ -57,20 +57,20 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
     if (!(given[i][0] < given[i][1])) return {.innermost = swept[i]};
   for (std::size_t i = 0; i < swept.size(); ++i)
     if (!std::isfinite(given[i][1] - given[i][0]))
-      throw std::invalid_argument("has no certain bounds over a range of " +
+      throw std::invalid_argument("certified bounds: the range of " +
                                   mechanism.info().coordinates[static_cast<std::size_t>(swept[i])].name +
-                                  " that is longer than the largest double, 1.8e308");
+                                  " is longer than the largest double, 1.8e308");
   const std::vector<Interval> inputs = inputs_of(mechanism, e, parameters, plan, mode);
-  const PoseConditions conditions = pose_conditions(e.model, inputs);
+  const IntervalConstraints constraints = interval_constraints(e.model, inputs);
 
-  // each coordinate is tried as the innermost one
+  // Try each coordinate as the innermost one with few boxes, and use the one that gives the smallest gap.
   struct Order {
     Conditions conditions;
     Ranges ranges;
     std::vector<std::size_t> coordinates;  ///< by axis
   };
   std::optional<Order> best;
-  double least = 0;
+  double min_gap = 0;
   for (std::size_t last = swept.size(); last-- > 0;) {
     std::vector<std::size_t> coordinates, positions;
     Ranges ranges{};
@@ -80,16 +80,16 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
       positions.push_back(e.model.inputs.coordinate(coordinates.back()));
       ranges[i] = given[axis];
     }
-    Order order{Conditions(conditions.graph, conditions.all, positions, inputs), ranges, coordinates};
+    Order order{Conditions(constraints.graph, constraints.all, positions, inputs), ranges, coordinates};
     if (order.conditions.size() > bounds::kMostConditions)
-      throw std::invalid_argument("bounds are of at most " + std::to_string(bounds::kMostConditions) +
-                                  " conditions, and mechanism " + mechanism.info().name + " has " +
+      throw std::invalid_argument("certified bounds support at most " + std::to_string(bounds::kMostConditions) +
+                                  " constraints, but mechanism " + mechanism.info().name + " has " +
                                   std::to_string(order.conditions.size()));
     BoundsOptions few = options;
     few.most_boxes = std::min<std::size_t>(options.most_boxes, 1024);
     const VolumeBounds tried = bounds::volume_bounds(order.conditions, order.ranges, few);
-    if (best && tried.upper - tried.lower >= least) continue;
-    least = tried.upper - tried.lower;
+    if (best && tried.upper - tried.lower >= min_gap) continue;
+    min_gap = tried.upper - tried.lower;
     best.emplace(std::move(order));
   }
   bounds::ProofTree tree;
@@ -98,7 +98,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
   if (!options.proof) return found;
 
   const MechanismInfo& info = mechanism.info();
-  bounds::Statement statement{.graph = conditions.graph,
+  bounds::Statement statement{.graph = constraints.graph,
                               .conditions = best->conditions,
                               .axes = {},
                               .positions = {},
@@ -121,7 +121,9 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
 
 namespace {
 
-/// The closures' derivatives by the coordinates and by the joints, at the joints that a pose has.
+/// Jacobians of the loop-closure equations by the coordinates (G) and by the joints (Jq), as functions of the pose.
+/// @param graph   receives the graph of the entries, in which inputs replace all constants
+/// @param inputs  the values of these inputs are appended
 std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std::vector<Interval>& inputs) {
   const Inputs& at = model.inputs;
   std::vector<Node> roots = model.closures;
@@ -144,7 +146,7 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
         matrix.entries.push_back(expression::derivative(graph, closure, variable));
         entries.push_back(matrix.entries.back());
       }
-  // joints as formulas of the pose
+  // substitute the joint coordinates as functions of the pose
   std::vector<std::optional<Node>> joints(at.count());
   for (std::size_t i = 0; i < at.joints; ++i) joints[at.joint(i)] = roots[closures.size() + i];
   graph = expression::substitute_nodes(graph, joints, entries);
@@ -154,7 +156,7 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
   return matrices;
 }
 
-/// The graph's inputs for a design at no pose.
+/// The graph's inputs for a design; coordinates are set to 0.
 std::vector<Interval> inputs_of(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
                                 std::size_t mode) {
   refuse_clearance_of_boxes(e.model, limits);
@@ -164,9 +166,9 @@ std::vector<Interval> inputs_of(const Evaluation& e, std::span<const double> par
   return inputs;
 }
 
-/// Puts a motion's formulas in place of the coordinates. @return  the position of the time among the inputs
-std::size_t put_motion(const Motion& motion, const Inputs& at, Graph& graph, std::vector<Interval>& inputs,
-                       std::vector<Node>& roots) {
+/// Substitutes the formulas of a motion for the coordinates. @return index of the time among the inputs
+std::size_t substitute_motion(const Motion& motion, const Inputs& at, Graph& graph, std::vector<Interval>& inputs,
+                              std::vector<Node>& roots) {
   TimeGraph time(graph, inputs);
   const std::vector<Node> pose = motion.write(time);
   std::vector<std::optional<Node>> coordinates(at.coordinate(0) + pose.size());
@@ -175,7 +177,7 @@ std::size_t put_motion(const Motion& motion, const Inputs& at, Graph& graph, std
   return time.position;
 }
 
-/// Why singularities are not examined; none: they are.
+/// Why singularities are not examined; empty if they are.
 Unsupported refuse_jacobians(const Inputs& at) {
   if (at.joints >= at.coordinates) return {};
   return "the mechanism has fewer joints (" + std::to_string(at.joints) + ") than coordinates (" +
@@ -187,7 +189,7 @@ bounds::Matrices jacobians_along(const Motion& motion, const Model& model, std::
   std::vector<bounds::NamedMatrix> named = jacobians(model, graph, inputs);
   std::vector<Node> entries;
   for (const auto& matrix : named) entries.insert(entries.end(), matrix.entries.begin(), matrix.entries.end());
-  const std::size_t time = put_motion(motion, model.inputs, graph, inputs, entries);
+  const std::size_t time = substitute_motion(motion, model.inputs, graph, inputs, entries);
   auto entry = entries.begin();
   for (auto& matrix : named)
     for (Node& node : matrix.entries) node = *entry++;
@@ -202,8 +204,8 @@ PosesCertificate certify_box(const Evaluation& e, std::span<const double> parame
   std::vector<Interval> inputs = inputs_of(e, parameters, plan.limits, mode);
   std::vector<std::size_t> axes;
   for (std::size_t i = 0; i < ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
-  const PoseConditions all = pose_conditions(e.model, inputs);
-  const Conditions conditions(all.graph, all.all, axes, inputs);
+  const IntervalConstraints constraints = interval_constraints(e.model, inputs);
+  const Conditions conditions(constraints.graph, constraints.all, axes, inputs);
   Graph graph;
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
@@ -219,36 +221,37 @@ PosesCertificate certify_box(const Evaluation& e, std::span<const double> parame
 PosesCertificate certify_motion(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
                                 std::size_t mode, const Motion& motion, const BoundsOptions& options) {
   const std::vector<Interval> design = inputs_of(e, parameters, limits, mode);
-  PoseConditions all = pose_conditions(e.model, design);
+  IntervalConstraints constraints = interval_constraints(e.model, design);
   std::vector<Node> roots;
-  for (const auto& condition : all.all) roots.push_back(condition.node);
+  for (const auto& constraint : constraints.all) roots.push_back(constraint.node);
   std::vector<Interval> inputs = design;
-  const std::size_t time = put_motion(motion, e.model.inputs, all.graph, inputs, roots);
-  for (std::size_t i = 0; i < roots.size(); ++i) all.all[i].node = roots[i];
-  const Conditions conditions(all.graph, all.all, {time}, inputs);
+  const std::size_t time = substitute_motion(motion, e.model.inputs, constraints.graph, inputs, roots);
+  for (std::size_t i = 0; i < roots.size(); ++i) constraints.all[i].node = roots[i];
+  const Conditions conditions(constraints.graph, constraints.all, {time}, inputs);
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
   if (!not_examined) matrices = jacobians_along(motion, e.model, design);
 
-  const auto until = [&](double end, const bounds::Matrices* regular) {
+  const auto certify_until = [&](double end, const bounds::Matrices* regular) {
     const std::array<double, 2> times = {0, end};
     return bounds::certify(conditions, regular, {&times, 1}, options);
   };
-  PosesCertificate found = until(motion.duration(), matrices ? &*matrices : nullptr);
-  const auto first = [](const PosesFinding& verdict) { return (*verdict.where)[0]; };
-  // an instant at which it is infeasible lies behind the first one
+  PosesCertificate found = certify_until(motion.duration(), matrices ? &*matrices : nullptr);
+  const auto time_of = [](const PosesFinding& finding) { return (*finding.where)[0]; };
+  // The infeasible instant that was found need not be the first one: search before it until it stays there.
   double later = motion.duration();
-  while (found.feasible.kind == PosesFinding::Kind::fails && later - first(found.feasible) > 1e-6 * motion.duration()) {
-    later = first(found.feasible);
-    PosesCertificate before = until(later, nullptr);
+  while (found.feasible.kind == PosesFinding::Kind::fails &&
+         later - time_of(found.feasible) > 1e-6 * motion.duration()) {
+    later = time_of(found.feasible);
+    PosesCertificate before = certify_until(later, nullptr);
     found.boxes += before.boxes;
     if (before.feasible.kind == PosesFinding::Kind::fails) found.feasible = before.feasible;
   }
   if (not_examined) found.regular.what = *not_examined;
-  for (PosesFinding* const verdict : {&found.feasible, &found.regular})
-    if (verdict->where) {
-      verdict->time = first(*verdict);
-      verdict->where = motion.at(*verdict->time).pose;
+  for (PosesFinding* const finding : {&found.feasible, &found.regular})
+    if (finding->where) {
+      finding->time = time_of(*finding);
+      finding->where = motion.at(*finding->time).pose;
     }
   return found;
 }

@@ -1,11 +1,12 @@
-// What is certain of a description's workspace, by its graph over intervals.
+// Rigorous bounds for a mechanism file, by interval arithmetic on its expression graph: workspace volume, and
+// feasibility and regularity of all poses of a box or of a motion. See mechanism/abilities/bounds.hpp.
 #pragma once
 
 #include "engine/generic/evaluation.hpp"
 
 namespace pkm::generic {
 
-/// Throws std::invalid_argument with a sentence where there are no bounds of a plan's workspace.
+/// Throws std::invalid_argument with a message if bounds do not support a plan.
 void refuse_bounds(const Model& model, const WorkspacePlan& plan);
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& evaluation, std::span<const double> parameters,
                           const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options);

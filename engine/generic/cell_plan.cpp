@@ -4,26 +4,26 @@
 #include <numeric>
 
 #include "engine/expression/polynomial_form.hpp"
-#include "engine/generic/conditions.hpp"
+#include "engine/generic/constraints.hpp"
 
 namespace pkm::generic {
 namespace {
 
 using expression::Program;
 
-using Surfaces = std::array<expression::Polynomial, 4>;  ///< of a crank's range, as CellPlan::Crank has them
+using Surfaces = std::array<expression::Polynomial, 4>;  ///< at_min, at_max, after_min, before_max of a crank's range
 
-/// What has to hold, taken apart along the coordinate of the innermost loop.
-struct Parts {
-  std::vector<Node> plain;                  ///< conditions that are tested as they are
-  std::vector<expression::Clause> clauses;  ///< of polynomials
+/// The constraints in polynomial normal form along the coordinate of the innermost loop.
+struct NormalisedConstraints {
+  std::vector<Node> plain;  ///< constraints without a normal form, or independent of the coordinate
+  std::vector<expression::Clause> clauses;
   struct Crank {
-    CoveredRange range;
+    CrankRangeNodes range;
     Surfaces surfaces;
   };
   std::vector<Crank> cranks;
 
-  /// Their nodes, in this order; of polynomials the coefficients.
+  /// All nodes, in the order of the members; of polynomials the coefficients.
   std::vector<Node> outputs() const {
     std::vector<Node> all = plain;
     const auto add = [&all](const expression::Polynomial& q) { all.insert(all.end(), q.c.begin(), q.c.begin() + 3); };
@@ -39,11 +39,11 @@ struct Parts {
 Shape shape_of(const expression::Graph& graph, Node leading) {
   const expression::Entry& entry = graph[leading];
   if (!entry.is_number()) return Shape::any;
-  return entry.number < 0 ? Shape::concave : entry.number > 0 ? Shape::convex : Shape::line;
+  return entry.number < 0 ? Shape::concave : entry.number > 0 ? Shape::convex : Shape::linear;
 }
 
-/// Leaves out clauses that others imply, makes one of those that differ in their constants alone, and moves those that
-/// do not depend on z to `plain`.
+/// Removes clauses that are implied by others, merges clauses that differ in the constant coefficient only, and moves
+/// those that do not depend on z to `plain`.
 void simplify(expression::Graph& graph, std::vector<expression::Clause>& clauses, std::vector<Node>& plain) {
   const Node zero = graph.number(0);
   std::vector<expression::Polynomial> single;
@@ -69,8 +69,8 @@ void simplify(expression::Graph& graph, std::vector<expression::Clause>& clauses
   }
 }
 
-/// The surfaces of a crank's range along z; none: they are no quadratics, or not along z.
-std::optional<Surfaces> surfaces_of(expression::Graph& graph, const CoveredRange& crank, Groups z) {
+/// The quadratics in z of a crank's range; std::nullopt if they are not quadratic or do not depend on z.
+std::optional<Surfaces> surfaces_of(expression::Graph& graph, const CrankRangeNodes& crank, Groups z) {
   if ((graph[crank.reach].groups & z) == 0 || (graph[crank.half_turn].groups & ~Inputs::kDesign) != 0 ||
       !graph[crank.branch].is_number())
     return {};
@@ -83,33 +83,33 @@ std::optional<Surfaces> surfaces_of(expression::Graph& graph, const CoveredRange
   return surfaces;
 }
 
-/// @param z  the group of the innermost loop
-Parts taken_apart(Conditions& known, Groups z) {
-  Parts parts;
-  std::vector<Node> conditions = known.all;
-  for (const CoveredRange& range : known.cranks) {
+/// @param z  group of the coordinate of the innermost loop
+NormalisedConstraints normalised(PoseConstraints& known, Groups z) {
+  NormalisedConstraints made;
+  std::vector<Node> constraints = known.all;
+  for (const CrankRangeNodes& range : known.crank_ranges) {
     const auto surfaces = surfaces_of(known.graph, range, z);
     if (!surfaces) continue;
-    parts.cranks.push_back({range, *surfaces});
-    std::erase_if(conditions,
-                  [&](Node node) { return std::ranges::find(range.conditions, node) != range.conditions.end(); });
+    made.cranks.push_back({range, *surfaces});
+    std::erase_if(constraints,
+                  [&](Node node) { return std::ranges::find(range.constraints, node) != range.constraints.end(); });
   }
-  for (const Node condition : conditions) {
-    const bool along = (known.graph[condition].groups & z) != 0;
-    const auto lower = along ? polynomial_clauses(known.graph, condition, z) : std::nullopt;
-    if (!lower) {
-      parts.plain.push_back(condition);
+  for (const Node constraint : constraints) {
+    const bool depends_on_z = (known.graph[constraint].groups & z) != 0;
+    const auto clauses = depends_on_z ? polynomial_clauses(known.graph, constraint, z) : std::nullopt;
+    if (!clauses) {
+      made.plain.push_back(constraint);
       continue;
     }
-    parts.clauses.insert(parts.clauses.end(), lower->begin(), lower->end());
-    for (const Node finite : finite_parts(known.graph, condition, z))
-      if (std::ranges::find(parts.plain, finite) == parts.plain.end()) parts.plain.push_back(finite);
+    made.clauses.insert(made.clauses.end(), clauses->begin(), clauses->end());
+    for (const Node finite : finiteness_constraints(known.graph, constraint, z))
+      if (std::ranges::find(made.plain, finite) == made.plain.end()) made.plain.push_back(finite);
   }
-  simplify(known.graph, parts.clauses, parts.plain);
-  return parts;
+  simplify(known.graph, made.clauses, made.plain);
+  return made;
 }
 
-/// The inputs that each stage brings.
+/// Groups of the inputs that each stage provides.
 std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector<std::size_t>& order) {
   std::array<Groups, 4> groups{~Groups{0}, 0, 0, 0};
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -120,20 +120,21 @@ std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector
   return groups;
 }
 
-/// Of two alternatives, one that is the same all along a column is said beside the other.
-/// @param all  a condition for each of the clause's polynomials
-CellPlan::Alternatives with_constant_aside(const expression::Clause& clause, CellPlan::Alternatives all, Node zero) {
+/// Merges a disjunction of two, one of which does not depend on z, into one ColumnConstraint with an alternative.
+/// @param all  one constraint per polynomial of the clause
+CellPlan::Disjunction merge_constant(const expression::Clause& clause, CellPlan::Disjunction all, Node zero) {
   if (clause.size() != 2) return all;
   const auto constant =
       std::ranges::find_if(clause, [&](const expression::Polynomial& q) { return q.c[1] == zero && q.c[2] == zero; });
   if (constant == clause.end()) return all;
-  ColumnCondition left = all[constant == clause.begin() ? 1 : 0];
-  left.has_unless = true;
-  left.unless = all[constant == clause.begin() ? 0 : 1].c[0];
-  return {left};
+  const std::size_t i = constant == clause.begin() ? 0 : 1;
+  ColumnConstraint merged = all[1 - i];
+  merged.has_alternative = true;
+  merged.alternative = all[i].c[0];
+  return {merged};
 }
 
-/// What a step takes, in additions.
+/// Estimated time of some steps, in units of an addition.
 double cost_of(const std::vector<Program::Step>& steps) {
   double sum = 0;
   for (const Program::Step& step : steps) {
@@ -150,33 +151,33 @@ double cost_of(const std::vector<Program::Step>& steps) {
 CellPlan::CellPlan(const Evaluation& evaluation, const std::vector<int>& swept, std::vector<std::size_t> axes,
                    std::size_t mode)
     : order(std::move(axes)) {
-  Conditions known = conditions_of(evaluation.model, mode);
+  PoseConstraints known = constraints_of(evaluation.model, mode);
   expression::Graph& graph = known.graph;
   const std::array<Groups, 4> groups = groups_of(swept, order);
-  const Parts parts = taken_apart(known, groups[kInner]);
-  program = Program(graph, parts.outputs(), groups);
-  set_loops(parts.plain.size());
+  const NormalisedConstraints constraints = normalised(known, groups[kInner]);
+  program = Program(graph, constraints.outputs(), groups);
+  set_loops(constraints.plain.size());
 
-  std::size_t output = parts.plain.size();  // of the program, to be read next
+  std::size_t output = constraints.plain.size();  // index of the next output to read
   const auto next = [&](const expression::Polynomial& q) {
-    ColumnCondition condition{.shape = shape_of(graph, q.c[2])};
-    for (expression::Operand& c : condition.c) c = middle->operand(program.outputs()[output++]);
-    return condition;
+    ColumnConstraint constraint{.shape = shape_of(graph, q.c[2])};
+    for (expression::Operand& c : constraint.c) c = middle->operand(program.outputs()[output++]);
+    return constraint;
   };
   const Node zero = graph.number(0);
-  for (const expression::Clause& clause : parts.clauses) {
-    Alternatives all;
+  for (const expression::Clause& clause : constraints.clauses) {
+    Disjunction all;
     for (const expression::Polynomial& q : clause) all.push_back(next(q));
-    all = with_constant_aside(clause, all, zero);
+    all = merge_constant(clause, all, zero);
     if (all.size() == 1)
       columns.push_back(all.front());
     else
-      alternatives.push_back(all);
+      disjunctions.push_back(all);
   }
-  std::ranges::stable_sort(columns, {}, &ColumnCondition::shape);
-  for (const auto& [range, surfaces] : parts.cranks) {
+  std::ranges::stable_sort(columns, {}, &ColumnConstraint::shape);
+  for (const auto& [range, surfaces] : constraints.cranks) {
     Crank& crank = cranks.emplace_back();
-    ColumnCondition* const ends[] = {&crank.at_min, &crank.at_max, &crank.after_min, &crank.before_max};
+    ColumnConstraint* const ends[] = {&crank.at_min, &crank.at_max, &crank.after_min, &crank.before_max};
     for (std::size_t k = 0; k < surfaces.size(); ++k) *ends[k] = next(surfaces[k]);
     crank.half_turn = program.outputs()[output++];
     crank.reach = program.outputs()[output++];
@@ -185,32 +186,34 @@ CellPlan::CellPlan(const Evaluation& evaluation, const std::vector<int>& swept, 
 }
 
 void CellPlan::set_loops(std::size_t count) {
-  std::vector<std::uint32_t> kept, tested;  // of the middle loop; of the inner one: conditions, and cranks' reaches
+  Registers retained_by_middle, retained_by_inner;
   for (std::size_t i = 0; i < program.outputs().size(); ++i) {
     const std::uint32_t at = program.outputs()[i];
     const int stage = program.stage_of()[at];
-    if (i < count) (stage == kInner ? of_inner : stage == kMiddle ? of_middle : early).push_back(at);
-    if (stage == kMiddle) kept.push_back(at);
-    if (stage == kInner) tested.push_back(at);
+    if (i < count)
+      (stage == kInner ? inner_constraints : stage == kMiddle ? middle_constraints : outer_constraints).push_back(at);
+    if (stage == kMiddle) retained_by_middle.push_back(at);
+    if (stage == kInner) retained_by_inner.push_back(at);
   }
   for (const auto& step : program.stages()[kInner].steps)
     for (std::size_t i = 0; i < step.count; ++i)
-      if (program.stage_of()[step.from[i]] == kMiddle) handed_down.push_back(step.from[i]);
-  std::ranges::sort(handed_down);
-  handed_down.erase(std::unique(handed_down.begin(), handed_down.end()), handed_down.end());
-  kept.insert(kept.end(), handed_down.begin(), handed_down.end());
-  middle.emplace(program, kMiddle, kept);
-  inner.emplace(program, kInner, tested);
+      if (program.stage_of()[step.from[i]] == kMiddle) passed_to_inner.push_back(step.from[i]);
+  std::ranges::sort(passed_to_inner);
+  passed_to_inner.erase(std::unique(passed_to_inner.begin(), passed_to_inner.end()), passed_to_inner.end());
+  retained_by_middle.insert(retained_by_middle.end(), passed_to_inner.begin(), passed_to_inner.end());
+  middle.emplace(program, kMiddle, retained_by_middle);
+  inner.emplace(program, kInner, retained_by_inner);
 }
 
 double CellPlan::cost(const std::array<std::int64_t, 3>& cells) const {
-  double passes = 1, sum = 0;
+  double iterations = 1, sum = 0;
   std::size_t stage = kInner + 1 - order.size();
   for (const std::size_t axis : order) {
-    passes *= static_cast<double>(cells[axis]);
-    sum += passes * cost_of(program.stages()[stage].steps) * (stage == kOuter ? 4 : 1);  // numbers are slower than rows
+    iterations *= static_cast<double>(cells[axis]);
+    sum += iterations * cost_of(program.stages()[stage].steps) *
+           (stage == kOuter ? 4 : 1);  // the outer loop is not vectorised
     if (stage == kMiddle)
-      sum += passes * 8 * static_cast<double>(columns.size() + 4 * alternatives.size() + 8 * cranks.size());
+      sum += iterations * 8 * static_cast<double>(columns.size() + 4 * disjunctions.size() + 8 * cranks.size());
     ++stage;
   }
   return sum;
@@ -221,12 +224,12 @@ CellPlan CellPlan::fastest(const Evaluation& evaluation, const std::vector<int>&
   std::vector<std::size_t> order(swept.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::optional<CellPlan> best;
-  double least = 0;
+  double min_cost = 0;
   do {
     CellPlan plan(evaluation, swept, order, mode);
     const double cost = plan.cost(cells);
-    if (best && cost >= least) continue;
-    least = cost;
+    if (best && cost >= min_cost) continue;
+    min_cost = cost;
     best.emplace(std::move(plan));
   } while (std::next_permutation(order.begin(), order.end()));
   return std::move(*best);

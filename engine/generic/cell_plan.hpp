@@ -1,5 +1,5 @@
-// How the cells of a grid are tested for one working mode: which conditions in which of three nested loops, and which
-// of them end the columns of the innermost loop in closed form.
+// Plan for testing the cells of a voxel grid in one working mode: loop-invariant code motion of the constraints into
+// three nested loops, and constraints that are quadratic along the innermost loop, whose roots are the ends of columns.
 #pragma once
 
 #include <array>
@@ -14,40 +14,41 @@
 
 namespace pkm::generic {
 
-/// Stages of the program: its loops. Stage 0 is what no swept coordinate changes.
+/// Stages of the program, one per loop. Stage 0 does not depend on the swept coordinates.
 inline constexpr std::size_t kOuter = 1, kMiddle = 2, kInner = 3;
 
+/// Immutable, shared by threads. Operands and registers are those of `program`.
 struct CellPlan {
   using Registers = std::vector<std::uint32_t>;
-  using Alternatives = std::vector<ColumnCondition>;  ///< one of them has to hold
+  using Disjunction = std::vector<ColumnConstraint>;  ///< at least one of them has to be satisfied
 
   /// limbs::CrankRange
   struct Crank {
-    ColumnCondition at_min, at_max, after_min, before_max;
+    ColumnConstraint at_min, at_max, after_min, before_max;
     std::uint32_t half_turn, reach;  ///< registers
-    bool is_first;                   ///< the joint is the first of the two angles that assemble
+    bool is_first;                   ///< the joint is the smaller one of the two angles that assemble
   };
 
-  /// @param swept  axes of the grid: their coordinates
-  /// @param order  axes from the outermost loop to the innermost
+  /// @param swept  coordinate of each axis of the grid
+  /// @param order  axes, from the outermost loop to the innermost one
   CellPlan(const Evaluation& evaluation, const std::vector<int>& swept, std::vector<std::size_t> order,
            std::size_t mode);
-  /// In the order in which a grid of these cells is estimated to take the least time.
+  /// The plan with the order of loops whose estimated time is the shortest for a grid of these cells.
   static CellPlan fastest(const Evaluation& evaluation, const std::vector<int>& swept,
                           const std::array<std::int64_t, 3>& cells, std::size_t mode);
 
-  std::vector<std::size_t> order;  ///< axes
+  std::vector<std::size_t> order;
   expression::Program program;
-  Registers early, of_middle, of_inner;  ///< conditions: of the outer loop and before it, of the other two
-  Registers handed_down;                 ///< what the inner loop reads of the middle one
-  std::vector<ColumnCondition> columns;  ///< lines first, which cost least
-  std::vector<Alternatives> alternatives;
+  Registers outer_constraints, middle_constraints, inner_constraints;  ///< by loop; outer: and those before all loops
+  Registers passed_to_inner;              ///< registers of the middle loop that the inner loop reads
+  std::vector<ColumnConstraint> columns;  ///< linear ones first, which are the cheapest
+  std::vector<Disjunction> disjunctions;
   std::vector<Crank> cranks;
   std::optional<expression::BatchStage> middle, inner;
 
  private:
-  /// Shares the conditions out among the loops.
-  /// @param count  of the program's first outputs, which they are
+  /// Distributes the constraints to the loops and prepares the batches.
+  /// @param count  number of constraints; they are the first outputs of the program
   void set_loops(std::size_t count);
   double cost(const std::array<std::int64_t, 3>& cells) const;
 };

@@ -1,6 +1,6 @@
-// Which cells of a grid are feasible. Conditions that are quadratic along the innermost coordinate end columns in
-// closed form, so that their cells are counted; what is left of the others is tested in rows, where columns have cells
-// at all.
+// Feasible cells of a voxel grid. Columns along the innermost coordinate are bounded in closed form by the constraints
+// that are quadratic along it; their cells are counted, not tested. The remaining constraints are tested for the cells
+// of these columns in SIMD batches.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace pkm::generic {
 
-/// What a worker overwrites.
-struct CellRoom {
+/// Scratch memory of CellTest. Bit sets have CellTest::words() words per column.
+struct CellScratch {
   std::vector<double> registers;
   expression::Rows middle_rows, rows;
-  std::vector<std::uint64_t> bits;  ///< of a slice, where they are asked for: words() words for each column
-  std::vector<std::uint64_t> some, hole, at_min, at_max, after_min, before_max;
+  std::vector<std::uint64_t> bits;  ///< feasible cells of a slice, if requested
+  std::vector<std::uint64_t> any, hole, at_min, at_max, after_min, before_max;
   std::vector<std::vector<std::uint64_t>> in_range, if_reached;  ///< by crank
   CellRanges ranges, other;
 };
@@ -26,48 +26,53 @@ struct CellRoom {
 /// Feasible cells of a slice.
 struct CellTally {
   std::int64_t cells = 0;
-  bool touches_box = false;
+  bool touches_box = false;  ///< a feasible cell lies at the border of the grid
 };
 
-/// Loops over the swept coordinates: the outer one of three, the middle one, and the innermost, along columns.
+/// Tests the cells of a grid slice by slice: a slice is one value of the outer loop of three; its columns are those of
+/// the middle loop, their cells those of the inner loop.
 class CellTest {
  public:
   explicit CellTest(CellPlan plan) : plan_(std::move(plan)) {}
 
-  /// Cells of the outer, the middle and the innermost loop; 1 where there is none.
+  /// Number of cells of the outer, middle and inner loop; 1 for a loop that does not exist.
   std::array<std::size_t, 3> shape(const VoxelGrid& grid) const;
-  /// The cell of the grid, by axis, of these three.
+  /// Indices of a cell by axis of the grid, from those by loop.
   std::array<std::int64_t, 3> cell(std::size_t outer, std::size_t middle, std::size_t inner) const;
   static std::size_t words(std::size_t cells) { return (cells + 63) / 64; }
-  /// Whether a column is on the box's outside.
+  /// True if a slice lies at the border of the grid.
   bool is_outermost(const VoxelGrid& grid, std::size_t outer) const;
+  /// True if a column lies at the border of the grid.
   bool at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const;
 
-  /// Computes what no swept coordinate changes.
-  /// @param inputs  of the design, with held coordinates
-  void start(const std::vector<double>& inputs, CellRoom& room) const;
-  /// Finds the cells of a slice, after start().
-  /// @param want_bits  whether room.bits is to be set, too
-  CellTally test(const VoxelGrid& grid, std::size_t outer, bool want_bits, CellRoom& room) const;
+  /// Computes everything that does not depend on the swept coordinates.
+  /// @param inputs  of the graph, with the fixed coordinates
+  void start(const std::vector<double>& inputs, CellScratch& scratch) const;
+  /// Finds the feasible cells of a slice, after start().
+  /// @param want_bits  whether to compute scratch.bits
+  CellTally test(const VoxelGrid& grid, std::size_t outer, bool want_bits, CellScratch& scratch) const;
 
  private:
   /// Columns [first, first + count) of a slice.
   CellTally test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count, bool want_bits,
-                         CellRoom& room) const;
-  /// Finds the ranges of columns that their conditions leave. True: with holes in room.hole.
-  bool narrow_ranges(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
-                     CellRoom& room) const;
+                         CellScratch& scratch) const;
+  /// Finds the ranges of cells that satisfy plan_.columns. @return true if scratch.hole contains holes in them
+  bool find_ranges(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
+                   CellScratch& scratch) const;
   CellTally tally_of_ranges(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
                             const CellRanges& ranges) const;
   CellTally tally_of_bits(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
                           const std::vector<std::uint64_t>& bits) const;
-  void find_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
-                 CellRoom& room) const;
-  /// The cells in which one condition holds, of `count` columns.
-  void bits_of(const ColumnCondition& condition, const ColumnGrid& column_grid, std::size_t count, CellRoom& room,
-               std::vector<std::uint64_t>& bits) const;
-  void find_crank_bits(std::size_t crank, const ColumnGrid& column_grid, std::size_t count, CellRoom& room) const;
-  void test_cells(const VoxelGrid& grid, std::size_t first, std::size_t column, CellRoom& room) const;
+  /// Clears the bits of cells that violate a disjunction, the range of a crank or a constraint of the inner loop.
+  void clear_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
+                  CellScratch& scratch) const;
+  /// The cells of `count` columns that satisfy one constraint.
+  void bits_of(const ColumnConstraint& constraint, const ColumnGrid& column_grid, std::size_t count,
+               CellScratch& scratch, std::vector<std::uint64_t>& bits) const;
+  /// Evaluates limbs::CrankRange for the cells of `count` columns.
+  void find_crank_bits(std::size_t crank, const ColumnGrid& column_grid, std::size_t count, CellScratch& scratch) const;
+  /// Tests the constraints of the inner loop for the cells of column first + column whose bit is set.
+  void test_cells(const VoxelGrid& grid, std::size_t first, std::size_t column, CellScratch& scratch) const;
 
   CellPlan plan_;
 };

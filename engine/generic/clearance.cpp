@@ -10,19 +10,19 @@
 namespace pkm::generic {
 namespace {
 
-constexpr std::size_t kNumbers = 7;  ///< of a link: its ends and its radius
+constexpr std::size_t kNumbers = 7;  // per link: two ends and the radius
 
 template <class ValueOf>
 auto capsule_of(const ValueOf& value) -> Capsule<decltype(value(0))> {
   return {{{value(0), value(1), value(2)}, {value(3), value(4), value(5)}}, value(6)};
 }
 
-bool stands_still(const Graph& graph, const LinkNodes& link) {
-  const auto still = [&](Node node) { return (graph[node].groups & ~Inputs::kDesign) == 0; };
-  return std::ranges::all_of(link.from, still) && std::ranges::all_of(link.to, still);
+bool is_fixed(const Graph& graph, const LinkNodes& link) {
+  const auto is_constant = [&](Node node) { return (graph[node].groups & ~Inputs::kDesign) == 0; };
+  return std::ranges::all_of(link.from, is_constant) && std::ranges::all_of(link.to, is_constant);
 }
 
-/// The groups of each link as ascending numbers: pairs are many, texts are slow to compare.
+/// The groups of each link as ascending numbers, which are faster to compare than strings.
 std::vector<std::vector<std::size_t>> numbered_groups(const std::vector<LinkNodes>& links) {
   std::unordered_map<std::string, std::size_t> numbers;
   std::vector<std::vector<std::size_t>> all;
@@ -58,45 +58,46 @@ std::vector<Node> nodes_of(const std::vector<LinkNodes>& links) {
   return nodes;
 }
 
-/// Sweep and prune: links in the order of the lower ends of their bounding boxes along the axis of greatest extent,
-/// each with those behind it that are not beyond the least distance so far. Of equal distances, that of the first pair.
+/// Finds the pair with the minimum clearance by sweep and prune: the links are sorted by the lower ends of their
+/// bounding boxes along the axis of largest extent, and each is compared with the following ones until their boxes are
+/// farther apart than the minimum so far. Among pairs of equal clearance the first one is returned.
 /// @param pairs  ascending
 template <class S>
 ClosestPair<S> nearest_pair(const std::vector<Capsule<S>>& links, const std::vector<LinkPair>& pairs) {
   ClosestPair<S> nearest{S(std::numeric_limits<double>::infinity())};
   if (pairs.empty()) return nearest;
-  std::vector<Bounds<S>> box;
-  double widest = 0;
+  std::vector<Bounds<S>> boxes;
+  double max_radius = 0;
   for (const Capsule<S>& link : links) {
-    box.push_back(bounds_of(link.axis));
-    widest = std::max(widest, value_of(link.radius));
+    boxes.push_back(bounds_of(link.axis));
+    max_radius = std::max(max_radius, value_of(link.radius));
   }
   const auto extent = [&](std::size_t axis) {
     const auto lower = [axis](const Bounds<S>& each) { return value_of(each.lower[axis]); };
-    const auto [least, greatest] = std::ranges::minmax(box, {}, lower);
-    return lower(greatest) - lower(least);
+    const auto [first, last] = std::ranges::minmax(boxes, {}, lower);
+    return lower(last) - lower(first);
   };
   std::size_t axis = 0;
   for (const std::size_t other : {1, 2})
     if (extent(other) > extent(axis)) axis = other;
   std::vector<std::size_t> order(links.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return value_of(box[i].lower[axis]); });
+  std::ranges::sort(order, {}, [&](std::size_t i) { return value_of(boxes[i].lower[axis]); });
   const auto ends = [](const LinkPair& pair) { return std::pair(pair.first, pair.second); };
   for (auto i = order.begin(); i != order.end(); ++i)
     for (auto k = i + 1; k != order.end(); ++k) {
-      const double apart = value_of(box[*k].lower[axis]) - value_of(box[*i].upper[axis]);
-      if (apart - (value_of(links[*i].radius) + widest) > value_of(nearest.clearance)) break;
+      const double apart = value_of(boxes[*k].lower[axis]) - value_of(boxes[*i].upper[axis]);
+      if (apart - (value_of(links[*i].radius) + max_radius) > value_of(nearest.clearance)) break;
       const LinkPair pair{std::min(*i, *k), std::max(*i, *k)};
-      // not nearer than their boxes are
+      // the distance of the boxes is a lower bound
       const double radii = value_of(links[pair.first].radius) + value_of(links[pair.second].radius);
-      if (value_of(distance_of_bounds(box[pair.first], box[pair.second])) - radii > value_of(nearest.clearance))
+      if (value_of(distance_of_bounds(boxes[pair.first], boxes[pair.second])) - radii > value_of(nearest.clearance))
         continue;
       if (!std::ranges::binary_search(pairs, ends(pair), {}, ends)) continue;
       const S found = capsule_distance(links[pair.first], links[pair.second]);
       const bool is_first = ends(pair) < std::pair(nearest.first, nearest.second);
-      if (const double least = value_of(nearest.clearance);
-          value_of(found) < least || (value_of(found) == least && is_first))
+      if (const double minimum = value_of(nearest.clearance);
+          value_of(found) < minimum || (value_of(found) == minimum && is_first))
         nearest = {found, pair.first, pair.second};
     }
   return nearest;
@@ -106,13 +107,13 @@ ClosestPair<S> nearest_pair(const std::vector<Capsule<S>>& links, const std::vec
 
 std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<LinkNodes>& links) {
   const std::vector<std::vector<std::size_t>> groups = numbered_groups(links);
-  std::vector<bool> still;
-  for (const LinkNodes& link : links) still.push_back(stands_still(graph, link));
+  std::vector<bool> fixed;
+  for (const LinkNodes& link : links) fixed.push_back(is_fixed(graph, link));
   std::vector<LinkPair> pairs;
   pairs.reserve(links.size() * links.size() / 2);
   for (std::size_t i = 0; i < links.size(); ++i)
     for (std::size_t k = i + 1; k < links.size(); ++k)
-      if (links[i].has_clearance && links[k].has_clearance && !(still[i] && still[k]) &&
+      if (links[i].has_clearance && links[k].has_clearance && !(fixed[i] && fixed[k]) &&
           !overlap(groups[i], groups[k]) && !share_a_joint(links[i], links[k]))
         pairs.push_back({i, k});
   return pairs;
@@ -121,7 +122,7 @@ std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<
 std::vector<std::size_t> moving_links(const Graph& graph, const std::vector<LinkNodes>& links) {
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < links.size(); ++i)
-    if (links[i].has_clearance && !stands_still(graph, links[i])) moving.push_back(i);
+    if (links[i].has_clearance && !is_fixed(graph, links[i])) moving.push_back(i);
   return moving;
 }
 
@@ -180,31 +181,31 @@ template std::optional<NearestBodies<double>> nearest_bodies(const Evaluation&, 
 template std::optional<NearestBodies<Dual4>> nearest_bodies(const Evaluation&, const std::vector<Dual4>&,
                                                             const Obstacles&);
 
-ClearanceRows::ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
-                             double least, const Obstacles& obstacles)
+ClearanceBatch::ClearanceBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
+                               double limit, const Obstacles& obstacles)
     : model_(evaluation.model),
-      least_(least),
+      limit_(limit),
       obstacles_(obstacles),
-      rows_(evaluation.model, nodes_of(evaluation.model.links), swept, mode) {
-  for (std::size_t i = 0; i < kNumbers * evaluation.model.links.size(); ++i) operands_.push_back(rows_.operand(i));
+      batch_(evaluation.model, nodes_of(evaluation.model.links), swept, mode) {
+  for (std::size_t i = 0; i < kNumbers * evaluation.model.links.size(); ++i) operands_.push_back(batch_.operand(i));
 }
 
-void ClearanceRows::start(const std::vector<double>& inputs, Room& room) const {
-  rows_.start(inputs, room.poses);
-  room.links.resize(operands_.size() / kNumbers);
-  room.box.resize(room.links.size());
+void ClearanceBatch::start(const std::vector<double>& inputs, ClearanceScratch& scratch) const {
+  batch_.start(inputs, scratch.poses);
+  scratch.links.resize(operands_.size() / kNumbers);
+  scratch.boxes.resize(scratch.links.size());
 }
 
-bool ClearanceRows::is_clear(std::size_t pose, Room& room) const {
+bool ClearanceBatch::is_clear(std::size_t pose, ClearanceScratch& scratch) const {
   bool finite = true;
-  for (std::size_t i = 0; i < room.links.size(); ++i)
-    room.links[i] = capsule_of([&](std::size_t k) {
-      const double value = PoseRows::value(operands_[i * kNumbers + k], pose, room.poses);
+  for (std::size_t i = 0; i < scratch.links.size(); ++i)
+    scratch.links[i] = capsule_of([&](std::size_t k) {
+      const double value = PoseBatch::value(operands_[i * kNumbers + k], pose, scratch.poses);
       finite = finite && std::isfinite(value);
       return value;
     });
-  return finite && respects_clearance(room.links, model_.link_pairs, least_, room.box) &&
-         respects_obstacle_clearance(obstacles_, room.links, model_.moving_links, least_);
+  return finite && respects_clearance(scratch.links, model_.link_pairs, limit_, scratch.boxes) &&
+         respects_obstacle_clearance(obstacles_, scratch.links, model_.moving_links, limit_);
 }
 
 }  // namespace pkm::generic

@@ -1,75 +1,78 @@
-// Clearance of the links of a description: which have to keep clear of each other, and how far they do.
+// Clearance: minimum distance between links, modelled as capsules, that are not joined, and between links and
+// obstacles.
 #pragma once
 
-#include "engine/generic/pose_rows.hpp"
+#include "engine/generic/pose_batch.hpp"
 
 namespace pkm::generic {
 
-/// All but links that stand still both, that have a group in common, or that end in the same point: a joint.
+/// The pairs of links whose clearance is tested: not two fixed links, links with a common group, or links with a common
+/// end, which are joined there. Ascending.
 std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<LinkNodes>& links);
 
-/// The links that do not stand still.
+/// The links that move and whose clearance is tested.
 std::vector<std::size_t> moving_links(const Graph& graph, const std::vector<LinkNodes>& links);
 
-/// Of each link, in their order, those that it need not keep clear of; empty where there are no pairs.
+/// For each link, the links from which its clearance is not tested; empty if no clearance is tested.
 std::vector<JoinedLinks> joined_links(const Model& model);
 
-/// The limit in force; none: nobody asks for a clearance.
+/// The clearance limit [m]; std::nullopt if there is none or it is inactive.
 std::optional<double> clearance_of(const Model& model, const LimitSpec& limits);
 
-/// Throws std::invalid_argument where a plan asks for a clearance. @param why  the sentence behind "mechanism .."
+/// Throws std::invalid_argument if the limits include a clearance. @param why  the message after "mechanism NAME"
 void refuse_clearance(const Model& model, const LimitSpec& limits, const std::string& why);
 
-/// All links of a pose that assembles; empty where the place of one has no value.
+/// All links of a pose that assembles; empty if a position is undefined.
 /// @param inputs  of the graph, with the pose
 template <class S>
 std::vector<Capsule<S>> capsules_at(const Evaluation& evaluation, const std::vector<S>& inputs);
 
-/// What is nearest to each other of what has to keep clear.
+/// Two links, or a link and an obstacle, with the minimum clearance.
 template <class S>
 struct NearestBodies {
-  S clearance;  ///< [m], negative where they overlap; not a number where the place of a link has no value
+  S clearance;  ///< [m], < 0 if they overlap; NaN if the position of a link is undefined
   std::string first, second;
 };
 
-/// Of links, and of links and obstacles. None: nothing has to keep clear.
+/// std::nullopt if no clearance is tested.
+/// @param inputs  as for capsules_at()
 template <class S>
 std::optional<NearestBodies<S>> nearest_bodies(const Evaluation& evaluation, const std::vector<S>& inputs,
                                                const Obstacles& obstacles);
 
-/// A clearance limit in a survey, 64 poses at a time.
-class ClearanceRows {
+struct ClearanceScratch {
+  PoseBatchScratch poses;
+  std::vector<Capsule<double>> links;
+  std::vector<Bounds<double>> boxes;
+};
+
+/// Tests a clearance limit for the poses of a workspace analysis, in SIMD batches.
+class ClearanceBatch {
  public:
-  struct Room {
-    PoseRowsRoom poses;
-    std::vector<Capsule<double>> links;
-    std::vector<Bounds<double>> box;
-  };
+  ClearanceBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode, double limit,
+                 const Obstacles& obstacles);
 
-  ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode, double least,
-                const Obstacles& obstacles);
-
-  void start(const std::vector<double>& inputs, Room& room) const;
-  /// @return  whether 64 poses wait
-  bool add(const Pose<double>& pose, Room& room) const { return rows_.add(pose, room.poses); }
-  /// Calls visit(k) for each of the poses that wait, in their order, at which links are too near.
+  /// As PoseBatch::start() and add().
+  void start(const std::vector<double>& inputs, ClearanceScratch& scratch) const;
+  bool add(const Pose<double>& pose, ClearanceScratch& scratch) const { return batch_.add(pose, scratch.poses); }
+  /// Calls visit(k) for each pose of the batch that violates the limit, in order, and empties the batch.
   template <class Visit>
-  void finish(Room& room, const Visit& visit) const {
-    if (room.poses.count == 0) return;
-    rows_.run(room.poses);
-    for (std::size_t k = 0; k < room.poses.count; ++k)
-      if (!is_clear(k, room)) visit(k);
-    room.poses.count = 0;
+  void finish(ClearanceScratch& scratch, const Visit& visit) const {
+    if (scratch.poses.count == 0) return;
+    batch_.run(scratch.poses);
+    for (std::size_t k = 0; k < scratch.poses.count; ++k)
+      if (!is_clear(k, scratch)) visit(k);
+    scratch.poses.count = 0;
   }
 
  private:
-  bool is_clear(std::size_t pose, Room& room) const;
+  bool is_clear(std::size_t pose, ClearanceScratch& scratch) const;
 
   const Model& model_;
-  double least_;
+  double limit_;
   Obstacles obstacles_;
-  PoseRows rows_;
-  std::vector<expression::Operand> operands_;  ///< seven of each link
+  PoseBatch batch_;
+  std::vector<expression::Operand> operands_;  ///< kNumbers per link
 };
 
 }  // namespace pkm::generic

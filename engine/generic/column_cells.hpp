@@ -1,4 +1,5 @@
-// Which cells of columns a quadratic condition holds in: columns side by side, cells counted, not tested.
+// Feasible cells of columns under a quadratic constraint, in closed form: the constraint's roots bound a range of
+// cells, or a hole in it. Columns are processed in SIMD batches; no cell is tested.
 #pragma once
 
 #include <array>
@@ -9,33 +10,35 @@
 
 namespace pkm::generic {
 
-/// Cells of a column: cell t has its centre at first + t step.
+/// Cell t of a column has its centre at first + t step.
 struct ColumnGrid {
   double first, step, cells;
 };
 
-/// What is known of a condition's leading coefficient: it is 0, a number < 0, a number > 0, or anything.
-enum class Shape { line, concave, convex, any };
+/// What is known of the leading coefficient c[2] of a quadratic: a constant 0, < 0 or > 0, or not a constant.
+enum class Shape { linear, concave, convex, any };
 
-/// c[0] + c[1] z + c[2] z^2 >= 0, or `unless` >= 0, which is the same all along a column.
-struct ColumnCondition {
+/// c[0] + c[1] z + c[2] z^2 >= 0; if has_alternative, this or `alternative` >= 0, which does not depend on z.
+struct ColumnConstraint {
   Shape shape = Shape::any;
   std::array<expression::Operand, 3> c{};
-  bool has_unless = false;
-  expression::Operand unless{};
+  bool has_alternative = false;
+  expression::Operand alternative{};
 };
 
-/// By column, whole numbers: cells [from, to) without those of the hole, [hole_from, hole_to).
+/// By column: the cells [from, to) except those in [hole_from, hole_to). Whole numbers.
 struct CellRanges {
   alignas(64) std::array<double, expression::kRow> from, to, hole_from, hole_to;
 };
 
-/// Narrows `from` and `to` to where a condition holds, for `count` columns, whole lanes; a condition that is undefined
-/// holds nowhere. True where a hole is left inside of some column's range: then holes are set, in all columns; holes of
-/// conditions that cannot have any stay as they are.
-/// @param registers, rows  as expression::BatchStage has them
+/// Contracts the ranges of `count` columns to the cells in which the constraint is satisfied; where it is undefined,
+/// it is violated. The holes of all columns are overwritten if the constraint can have any (convex, any), and otherwise
+/// left unchanged.
+/// @param count            a multiple of kLanes
+/// @param registers, rows  as for expression::BatchStage
+/// @return true if a column has a hole inside its range
 template <InstructionSet set>
-bool narrow(const ColumnCondition& condition, const double* registers, const double* rows, const ColumnGrid& grid,
-            std::size_t count, CellRanges& ranges);
+bool contract(const ColumnConstraint& constraint, const double* registers, const double* rows, const ColumnGrid& grid,
+              std::size_t count, CellRanges& ranges);
 
 }  // namespace pkm::generic

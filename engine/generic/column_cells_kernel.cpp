@@ -4,85 +4,85 @@
 namespace pkm::generic {
 
 template <InstructionSet set>
-bool narrow(const ColumnCondition& condition, const double* registers, const double* rows, const ColumnGrid& grid,
-            std::size_t count, CellRanges& ranges) {
+bool contract(const ColumnConstraint& constraint, const double* registers, const double* rows, const ColumnGrid& grid,
+              std::size_t count, CellRanges& ranges) {
   using L = LanesOf<set>;
-  const auto& [shape, c, has_unless, unless] = condition;
-  if (has_unless && !unless.row && registers[unless.index] >= 0) return false;  // it narrows nothing
+  const auto& [shape, c, has_alternative, alternative] = constraint;
+  if (has_alternative && !alternative.row && registers[alternative.index] >= 0) return false;  // satisfied everywhere
   const bool may_have_holes = shape == Shape::convex || shape == Shape::any;
   const L none(0.0), all(grid.cells);
   const double per_step = 1 / grid.step;
   const auto load = [&](const expression::Operand& operand, std::size_t k) __attribute__((always_inline)) {
     return operand.row ? L::load(rows + operand.index * expression::kRow + k) : L(registers[operand.index]);
   };
-  // in cells, beyond the column's ends by one at most
-  const auto place = [&](const L& z) __attribute__((always_inline)) {
+  // abscissa in cells, clamped to at most one cell outside of the column
+  const auto cell_at = [&](const L& z) __attribute__((always_inline)) {
     return lesser(greater((z - grid.first) * per_step, L(-1.0)), all);
   };
-  const auto first_at = [&](const L& t) __attribute__((always_inline)) { return ceil(greater(t, none)); };
-  const auto end_at = [&](const L& t) __attribute__((always_inline)) { return floor(lesser(t, all - 1.0)) + 1.0; };
-  const double leading = shape == Shape::any || shape == Shape::line ? 0 : registers[c[2].index];
+  const auto first_from = [&](const L& t) __attribute__((always_inline)) { return ceil(greater(t, none)); };
+  const auto end_after = [&](const L& t) __attribute__((always_inline)) { return floor(lesser(t, all - 1.0)) + 1.0; };
+  const double leading = shape == Shape::any || shape == Shape::linear ? 0 : registers[c[2].index];
   bool has_holes = false;
   for (std::size_t k = 0; k < count; k += kLanes) {
-    const L before_from = L::load(&ranges.from[k]), before_to = L::load(&ranges.to[k]);
+    const L previous_from = L::load(&ranges.from[k]), previous_to = L::load(&ranges.to[k]);
     if (may_have_holes) {
       none.store(&ranges.hole_from[k]);
       none.store(&ranges.hole_to[k]);
     }
-    if (!any(before_from < before_to)) continue;
+    if (!any(previous_from < previous_to)) continue;
     const L c0 = load(c[0], k), b = load(c[1], k);
     L from = none, to = all, hole_from = none, hole_to = none;
-    if (shape == Shape::line) {
-      const L end = place(-c0 / b);
-      from = select(b > 0.0, first_at(end), none);
-      to = select(b < 0.0, end_at(end), all);
-      const auto flat = (b <= 0.0) & (b >= 0.0);
-      to = select(flat, select(c0 >= 0.0, all, none), to);
-      const L number = c0 + b;
-      to = select(number >= number, to, none);
+    if (shape == Shape::linear) {
+      const L end = cell_at(-c0 / b);
+      from = select(b > 0.0, first_from(end), none);
+      to = select(b < 0.0, end_after(end), all);
+      const auto is_constant = (b <= 0.0) & (b >= 0.0);
+      to = select(is_constant, select(c0 >= 0.0, all, none), to);
+      const L sum = c0 + b;
+      to = select(sum >= sum, to, none);  // NaN: undefined
     } else if (shape != Shape::any) {
       const L discriminant = b * b - (4.0 * leading) * c0, root = sqrt_or_zero(discriminant);
       const double half = 0.5 / (leading < 0 ? -leading : leading);
       const L centre = b * (-0.5 / leading), reach = root * half;
-      const L low = place(centre - reach), high = place(centre + reach);
+      const L low = cell_at(centre - reach), high = cell_at(centre + reach);
       if (shape == Shape::concave) {
-        from = first_at(low);
-        to = select(discriminant >= 0.0, end_at(high), none);
+        from = first_from(low);
+        to = select(discriminant >= 0.0, end_after(high), none);
       } else {
-        const auto open = discriminant > 0.0;
-        hole_from = select(open, greater(floor(low) + 1.0, none), none);
-        hole_to = select(open, ceil(high), none);
+        const auto has_roots = discriminant > 0.0;
+        hole_from = select(has_roots, greater(floor(low) + 1.0, none), none);
+        hole_to = select(has_roots, ceil(high), none);
         to = select(discriminant >= discriminant, to, none);
       }
     } else {
-      // The roots q / a and c0 / q lose no digits; of a line, a = 0, the first is infinite.
+      // The roots q / a and c0 / q without cancellation; the first one is infinite if a = 0.
       const L a = load(c[2], k) + 0.0;
       const L discriminant = b * b - 4.0 * (a * c0), root = sqrt_or_zero(discriminant);
       const L q = (b + select(b < 0.0, -root, root)) * -0.5;
       const L r1 = q / a, r2 = c0 / q;
-      const L low = place(lesser(r1, r2)), high = place(greater(r1, r2));
-      const auto concave = a<0.0, open = discriminant> 0.0;
-      from = select(concave, first_at(low), none);
-      to = select(concave, select(discriminant >= 0.0, end_at(high), none), all);
-      hole_from = select(open, select(concave, none, greater(floor(low) + 1.0, none)), none);
-      hole_to = select(open, select(concave, none, ceil(high)), none);
-      const auto flat = (a <= 0.0) & (a >= 0.0) & (b <= 0.0) & (b >= 0.0);
-      to = select(flat, select(c0 >= 0.0, all, none), to);
+      const L low = cell_at(lesser(r1, r2)), high = cell_at(greater(r1, r2));
+      const auto concave = a<0.0, has_roots = discriminant> 0.0;
+      from = select(concave, first_from(low), none);
+      to = select(concave, select(discriminant >= 0.0, end_after(high), none), all);
+      hole_from = select(has_roots, select(concave, none, greater(floor(low) + 1.0, none)), none);
+      hole_to = select(has_roots, select(concave, none, ceil(high)), none);
+      const auto is_constant = (a <= 0.0) & (a >= 0.0) & (b <= 0.0) & (b >= 0.0);
+      to = select(is_constant, select(c0 >= 0.0, all, none), to);
       to = select(discriminant >= discriminant, to, none);
     }
-    if (has_unless) {
-      const auto always = load(unless, k) >= 0.0;
+    if (has_alternative) {
+      const auto always = load(alternative, k) >= 0.0;
       from = select(always, none, from);
       to = select(always, all, to);
       hole_to = select(always, none, hole_to);
     }
-    from = greater(before_from, from);
-    to = lesser(before_to, to);
-    if (may_have_holes) {  // what of the hole reaches over an end shortens the range
-      const auto is_hole = hole_from < hole_to;
-      from = select(is_hole & (hole_from <= from), greater(from, hole_to), from);
-      to = select(is_hole & (hole_to >= to), lesser(to, hole_from), to);
-      const auto inside = is_hole & (from < hole_from) & (hole_to < to);
+    from = greater(previous_from, from);
+    to = lesser(previous_to, to);
+    if (may_have_holes) {  // a hole that extends over an end of the range shortens the range
+      const auto has_hole = hole_from < hole_to;
+      from = select(has_hole & (hole_from <= from), greater(from, hole_to), from);
+      to = select(has_hole & (hole_to >= to), lesser(to, hole_from), to);
+      const auto inside = has_hole & (from < hole_from) & (hole_to < to);
       hole_from = select(inside, hole_from, none);
       hole_to = select(inside, hole_to, none);
       hole_from.store(&ranges.hole_from[k]);
@@ -95,7 +95,7 @@ bool narrow(const ColumnCondition& condition, const double* registers, const dou
   return has_holes;
 }
 
-template bool narrow<PKM_INSTRUCTION_SET>(const ColumnCondition&, const double*, const double*, const ColumnGrid&,
-                                          std::size_t, CellRanges&);
+template bool contract<PKM_INSTRUCTION_SET>(const ColumnConstraint&, const double*, const double*, const ColumnGrid&,
+                                            std::size_t, CellRanges&);
 
 }  // namespace pkm::generic

@@ -8,43 +8,42 @@
 #include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/generic/eigen_matrix.hpp"
-#include "engine/generic/lengths.hpp"
 #include "engine/geometry/mixed_units.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm::generic {
 namespace {
 
-/// A turn's angular velocity by the rates of three angles about moving axes, inverted: rates for an angular velocity.
-/// Of fewer rotations the rates are the components themselves, for their axes are normal to each other.
+/// Coordinate rates by the twist of the platform: for three rotations about moving axes, the angle rates by the angular
+/// velocity. The axes of one or two rotations are orthonormal, so that the rates are the components themselves.
 template <class S>
-AxisMatrix<S> rates_of_turns(const Model& model, const Pose<S>& pose) {
+AxisMatrix<S> rates_by_twist(const Model& model, const Pose<S>& pose) {
   const std::size_t n = pose.size();
   AxisMatrix<S> rates = AxisMatrix<S>::identity(n);
-  std::array<std::size_t, 3> turns{};  // there are no more
+  std::array<std::size_t, 3> rotations{};  // a mechanism has at most three rotations
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (model.turns_about[i]) turns[count++] = i;
+    if (model.rotation_axes[i]) rotations[count++] = i;
   if (count < 3) return rates;
   using Fixed3 = Matrix<S, 3, 3>;
   Fixed3 R = Fixed3::identity(), axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t axis = *model.turns_about[turns[k]], i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const std::size_t axis = *model.rotation_axes[rotations[k]], i = (axis + 1) % 3, j = (axis + 2) % 3;
     for (std::size_t row = 0; row < 3; ++row) axes(row, k) = R(row, axis);
-    const auto [sine, cosine] = sincos(pose[turns[k]]);
-    Fixed3 turn = Fixed3::identity();
-    turn(i, i) = turn(j, j) = cosine;
-    turn(i, j) = -sine;
-    turn(j, i) = sine;
-    R = R * turn;
+    const auto [sine, cosine] = sincos(pose[rotations[k]]);
+    Fixed3 rotation = Fixed3::identity();
+    rotation(i, i) = rotation(j, j) = cosine;
+    rotation(i, j) = -sine;
+    rotation(j, i) = sine;
+    R = R * rotation;
   }
   const Fixed3 inverse = solve(axes, Fixed3::identity());
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) rates(turns[i], turns[j]) = inverse(i, j);
+    for (std::size_t j = 0; j < 3; ++j) rates(rotations[i], rotations[j]) = inverse(i, j);
   return rates;
 }
 
-/// Least over greatest singular value of A, with derivatives d sigma = u^T dA v.
+/// Minimum over maximum singular value of A; derivatives of a singular value: d sigma = u^T dA v.
 template <class S>
 S singular_ratio(const AxisMatrix<S>& A) {
   constexpr unsigned kVectors = Derivative<S> ? Eigen::ComputeThinU | Eigen::ComputeThinV : 0;
@@ -58,20 +57,20 @@ S singular_ratio(const AxisMatrix<S>& A) {
                                            decomposition.matrixV()(static_cast<Eigen::Index>(j), k));
     return value;
   };
-  const S greatest = singular(0), least = singular(decomposition.singularValues().size() - 1);
-  return A.rows() >= A.cols() && value_of(greatest) > 0 ? S(least / greatest) : S(0.0);
+  const S maximum = singular(0), minimum = singular(decomposition.singularValues().size() - 1);
+  return A.rows() >= A.cols() && value_of(maximum) > 0 ? S(minimum / maximum) : S(0.0);
 }
 
-/// The coordinate of a column that counts.
-std::size_t counted(const Model& model, std::size_t column) {
-  return model.conditioned.empty() ? column : model.conditioned[column];
+/// The coordinate of a column of included_columns().
+std::size_t included_coordinate(const Model& model, std::size_t column) {
+  return model.conditioning_coordinates.empty() ? column : model.conditioning_coordinates[column];
 }
 template <class S>
-AxisMatrix<S> columns_that_count(const Model& model, const AxisMatrix<S>& J) {
-  if (model.conditioned.empty()) return J;
-  AxisMatrix<S> found(J.rows(), model.conditioned.size());
+AxisMatrix<S> included_columns(const Model& model, const AxisMatrix<S>& J) {
+  if (model.conditioning_coordinates.empty()) return J;
+  AxisMatrix<S> found(J.rows(), model.conditioning_coordinates.size());
   for (std::size_t i = 0; i < found.rows(); ++i)
-    for (std::size_t j = 0; j < found.cols(); ++j) found(i, j) = J(i, model.conditioned[j]);
+    for (std::size_t j = 0; j < found.cols(); ++j) found(i, j) = J(i, model.conditioning_coordinates[j]);
   return found;
 }
 
@@ -103,10 +102,10 @@ std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths
   const MechanismInfo& info = model.info;
   const bool mixed = mixes_units(info.coordinates), mixed_drives = mixes_units(info.joints);
   if ((mixed && !is_positive(lengths.length)) || (mixed_drives && !is_positive(lengths.radius))) return {};
-  AxisMatrix<S> scaled = columns_that_count<S>(model, AxisMatrix<S>(J * rates_of_turns<S>(model, pose)));
+  AxisMatrix<S> scaled = included_columns<S>(model, AxisMatrix<S>(J * rates_by_twist<S>(model, pose)));
   for (std::size_t i = 0; i < scaled.rows(); ++i)
     for (std::size_t j = 0; j < scaled.cols(); ++j) {
-      if (mixed && info.coordinates[counted(model, j)].turns()) scaled(i, j) /= *lengths.length;
+      if (mixed && info.coordinates[included_coordinate(model, j)].turns()) scaled(i, j) /= *lengths.length;
       if (mixed_drives && info.joints[i].turns()) scaled(i, j) *= *lengths.radius;
       if (!std::isfinite(value_of(scaled(i, j)))) return {};
     }
@@ -114,20 +113,20 @@ std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths
 }
 
 template <class S>
-S SampleConditioning::at(const Pose<S>& pose, Room<S>& room) const {
-  rows_.run<S>(pose, room.registers);
+S SampleConditioning::at(const Pose<S>& pose, ConditioningScratch<S>& scratch) const {
+  batch_.run<S>(pose, scratch.registers);
   const Inputs& of = e_.model.inputs;
   AxisMatrix<S> J(of.joints, of.coordinates);
-  for (std::size_t i = 0; i < J.size(); ++i) J[i] = room.registers[rows_.outputs()[i]];
-  const std::optional<S> found = conditioning_of<S>(e_.model, room.lengths, pose, J);
+  for (std::size_t i = 0; i < J.size(); ++i) J[i] = scratch.registers[batch_.outputs()[i]];
+  const std::optional<S> found = conditioning_of<S>(e_.model, scratch.lengths, pose, J);
   if (found && std::isfinite(value_of(*found))) return *found;
-  check(e_.model.info, room.lengths);
+  check(e_.model.info, scratch.lengths);
   return S(kConditioning.without_value);  // J is infinite: the pose is singular
 }
 
 template std::optional<double> conditioning_of(const Model&, const CharacteristicLengths<double>&, const Pose<double>&,
                                                const AxisMatrix<double>&);
-template double SampleConditioning::at(const Pose<double>&, Room<double>&) const;
-template Dual4 SampleConditioning::at(const Pose<Dual4>&, Room<Dual4>&) const;
+template double SampleConditioning::at(const Pose<double>&, ConditioningScratch<double>&) const;
+template Dual4 SampleConditioning::at(const Pose<Dual4>&, ConditioningScratch<Dual4>&) const;
 
 }  // namespace pkm::generic

@@ -1,11 +1,13 @@
-// Conditioning of a described mechanism's Jacobian, for numbers and for derivatives.
+// Conditioning of a mechanism: inverse condition number of the Jacobian with respect to the platform's twist, made
+// homogeneous in units by characteristic lengths.
 #pragma once
 
-#include "engine/generic/pose_rows.hpp"
+#include "engine/generic/pose_batch.hpp"
 
 namespace pkm::generic {
 
-/// Characteristic lengths of a design, where they are described: of the platform's turns, and of the drives'.
+/// The characteristic length, which scales rotations of the platform, and the characteristic radius, which scales
+/// revolute drives beside prismatic ones; std::nullopt if the file does not define it.
 template <class S>
 struct CharacteristicLengths {
   std::optional<S> length, radius;
@@ -16,37 +18,41 @@ CharacteristicLengths<S> characteristic_lengths(const Evaluation& evaluation, st
           evaluation.of_design<S>(evaluation.radius, parameters)};
 }
 
-/// Of the Jacobian by the twist, its turns in units of the characteristic length, turning drives of the radius. None
-/// where they are needed and not described, or J is not finite. S is double or Dual4.
+/// Throws DesignError with a message if the conditioning needs a length that is not a positive number.
+void check_lengths(const Evaluation& evaluation, std::span<const double> parameters);
+
+/// The conditioning at a pose. S is double or Dual4.
+/// @param J  joints x coordinates: joint rates by coordinate rates
+/// @return std::nullopt if a length that is needed is not defined, or if J is not finite
 template <class S>
 std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths<S>& lengths, const Pose<S>& pose,
                                  const AxisMatrix<S>& J);
 
-/// The conditioning of samples.
+template <class S>
+struct ConditioningScratch {
+  CharacteristicLengths<S> lengths;
+  std::vector<S> registers;
+};
+
+/// The conditioning of samples of a workspace analysis.
 class SampleConditioning {
  public:
-  template <class S>
-  struct Room {
-    CharacteristicLengths<S> lengths;
-    std::vector<S> registers;
-  };
-
   SampleConditioning(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode)
-      : e_(evaluation), rows_(evaluation.model, evaluation.model.jacobian, swept, mode) {}
+      : e_(evaluation), batch_(evaluation.model, evaluation.model.jacobian, swept, mode) {}
 
-  /// Computes what no swept coordinate changes. @param inputs  of the design, with held coordinates
+  /// As PoseBatch::start().
   template <class S>
-  void start(std::span<const S> parameters, const std::vector<S>& inputs, Room<S>& room) const {
-    room.lengths = characteristic_lengths(e_, parameters);
-    rows_.start<S>(inputs, room.registers);
+  void start(std::span<const S> parameters, const std::vector<S>& inputs, ConditioningScratch<S>& scratch) const {
+    scratch.lengths = characteristic_lengths(e_, parameters);
+    batch_.start<S>(inputs, scratch.registers);
   }
-  /// What a survey's field takes.
+  /// Value for the field kConditioning; that of a singular pose if J is not finite.
   template <class S>
-  S at(const Pose<S>& pose, Room<S>& room) const;
+  S at(const Pose<S>& pose, ConditioningScratch<S>& scratch) const;
 
  private:
   const Evaluation& e_;
-  PoseRows rows_;
+  PoseBatch batch_;
 };
 
 }  // namespace pkm::generic

@@ -1,11 +1,11 @@
-// Whether a design describes a mechanism: ranges of joints that are not empty, and the tests that a file requires.
+// Checks whether a design describes a mechanism: no joint range is empty, and the required constraints are satisfied.
 #pragma once
 
 #include "engine/generic/evaluation.hpp"
 
 namespace pkm::generic {
 
-/// Empty where the design describes a mechanism; else the first empty range of a joint or violated requirement.
+/// Empty if the design describes a mechanism, otherwise a message with the first empty range or violated constraint.
 Unsupported refuse_design(const Evaluation& evaluation, std::span<const double> parameters);
 
 }  // namespace pkm::generic

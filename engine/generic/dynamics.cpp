@@ -10,7 +10,7 @@
 namespace pkm::generic {
 namespace {
 
-/// What a program gives, in the order of its outputs. @param value_of_register  [](std::uint32_t)
+/// Reads the outputs of a program in their order. @param value_of_register  value_of_register(std::uint32_t)
 template <class ValueOf>
 class Outputs {
  public:
@@ -27,7 +27,7 @@ class Outputs {
   ValueOf value_;
 };
 
-/// @return  whether the pose assembles
+/// @return true if the pose assembles; otherwise `d` is incomplete
 template <class S, class ValueOf>
 bool read(const Inputs& at, std::size_t domains, Outputs<ValueOf> next, PoseDynamics<S>& d) {
   const std::size_t n = at.coordinates, m = at.joints;
@@ -55,8 +55,8 @@ bool read(const Inputs& at, std::size_t domains, Outputs<ValueOf> next, PoseDyna
 template <class S>
 void check_masses(const Evaluation& e, std::span<const S> parameters) {
   const Inputs& at = e.model.inputs;
-  with_scratch<S>(at.count() + e.masses.registers(), [&](std::span<S> room) {
-    const std::span<S> inputs = room.first(at.count()), registers = room.subspan(at.count());
+  with_scratch<S>(at.count() + e.masses.registers(), [&](std::span<S> scratch) {
+    const std::span<S> inputs = scratch.first(at.count()), registers = scratch.subspan(at.count());
     e.fill_inputs<S>(parameters, no_limits(e.model.info), 0, inputs);
     e.masses.template run_all<S>(inputs, registers);
     Outputs next(e.masses, [registers](std::uint32_t at_register) { return registers[at_register]; });
@@ -72,25 +72,25 @@ void check_masses(const Evaluation& e, std::span<const S> parameters) {
 
 namespace {
 
-/// States of whole rows side by side.
-void find_row(const Evaluation& e, std::span<const double> registers, std::span<const MotionState<double>> states,
-              double* rows, std::span<PoseDynamics<double>> found) {
+/// Evaluates up to kRow states in one SIMD batch.
+void find_batch(const Evaluation& e, std::span<const double> registers, std::span<const MotionState<double>> states,
+                double* rows, std::span<PoseDynamics<double>> found) {
   const Inputs& at = e.model.inputs;
-  const std::size_t count = states.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
+  const std::size_t count = states.size(), padded = (count + kLanes - 1) / kLanes * kLanes;
   const auto& inputs = e.motion.stages()[1].inputs;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    double* const row = rows + e.motions->inputs()[i] * expression::kRow;
+    double* const row = rows + e.motion_batch->inputs()[i] * expression::kRow;
     const std::size_t position = inputs[i].position;
     const bool is_rate = position >= at.rate(0);
-    for (std::size_t k = 0; k < whole; ++k) {  // beyond the last state: it again
+    for (std::size_t k = 0; k < padded; ++k) {  // padding: copies of the last state
       const MotionState<double>& state = states[std::min(k, count - 1)];
       row[k] = is_rate ? state.velocity[position - at.rate(0)] : state.pose[position - at.coordinate(0)];
     }
   }
-  e.motions->run(registers.data(), rows, whole);
+  e.motion_batch->run(registers.data(), rows, padded);
   for (std::size_t k = 0; k < count; ++k) {
     const auto value = [&, k](std::uint32_t at_register) {
-      const expression::Operand of = e.motions->operand(at_register);
+      const expression::Operand of = e.motion_batch->operand(at_register);
       return of.row ? rows[of.index * expression::kRow + k] : registers[of.index];
     };
     found[k].assembles = read(at, e.model.domains.size(), Outputs(e.motion, value), found[k]);
@@ -102,20 +102,20 @@ void find_row(const Evaluation& e, std::span<const double> registers, std::span<
 template <class S>
 void find_dynamics(const Evaluation& e, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found) {
-  constexpr std::size_t kFewest = 4;  // that are worth a row
+  constexpr std::size_t kMinBatch = 4;  // states; smaller batches are not faster than single states
   check_masses(e, parameters);
   const Inputs& at = e.model.inputs;
-  with_scratch<S>(at.count() + e.motion.registers(), [&](std::span<S> room) {
-    const std::span<S> inputs = room.first(at.count()), registers = room.subspan(at.count());
+  with_scratch<S>(at.count() + e.motion.registers(), [&](std::span<S> scratch) {
+    const std::span<S> inputs = scratch.first(at.count()), registers = scratch.subspan(at.count());
     e.fill_inputs<S>(parameters, no_limits(e.model.info), mode, inputs);
     e.motion.template start<S>(registers);
     e.motion.template run<S>(0, inputs, registers);
     if constexpr (std::is_same_v<S, double>) {
-      if (states.size() >= kFewest) {
-        const auto rows = std::make_unique_for_overwrite<double[]>(e.motions->slots() * expression::kRow);
+      if (states.size() >= kMinBatch) {
+        const auto rows = std::make_unique_for_overwrite<double[]>(e.motion_batch->slots() * expression::kRow);
         for (std::size_t first = 0; first < states.size(); first += expression::kRow) {
           const std::size_t count = std::min(expression::kRow, states.size() - first);
-          find_row(e, registers, states.subspan(first, count), rows.get(), found.subspan(first, count));
+          find_batch(e, registers, states.subspan(first, count), rows.get(), found.subspan(first, count));
         }
         return;
       }

@@ -1,4 +1,4 @@
-// A description's equations of motion at states of one design.
+// Equations of motion of a mechanism file, evaluated at states of one design.
 #pragma once
 
 #include "engine/dynamics/pose_dynamics.hpp"
@@ -6,11 +6,13 @@
 
 namespace pkm::generic {
 
-/// Throws DesignError with a sentence where a mass or an inertia is not positive.
+/// Throws DesignError with a message if a mass or an inertia is not positive.
 template <class S>
 void check_masses(const Evaluation& evaluation, std::span<const S> parameters);
 
-/// Of double and Dual4. Throws DesignError as check_masses. @param evaluation  of a model with bodies
+/// S is double or Dual4. Throws as check_masses().
+/// @param evaluation  of a model with bodies
+/// @param found       receives the equations of motion of each state; same size as `states`
 template <class S>
 void find_dynamics(const Evaluation& evaluation, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found);

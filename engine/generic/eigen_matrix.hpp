@@ -1,4 +1,4 @@
-// Small matrices as Eigen's.
+// Conversion of small matrices to Eigen.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,17 +7,17 @@
 
 namespace pkm::generic {
 
-/// Allocates nothing.
+/// Matrix of bounded size, without heap allocation.
 using EigenMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
 
-/// The values.
+/// The values of A, without derivatives.
 template <SmallMatrix M>
 EigenMatrix eigen(const M& A) {
-  EigenMatrix same(A.rows(), A.cols());
+  EigenMatrix copy(A.rows(), A.cols());
   for (std::size_t i = 0; i < A.rows(); ++i)
     for (std::size_t j = 0; j < A.cols(); ++j)
-      same(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = value_of(A(i, j));
-  return same;
+      copy(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = value_of(A(i, j));
+  return copy;
 }
 
 }  // namespace pkm::generic

@@ -17,10 +17,10 @@ class Equations {
   explicit Equations(Model& model) : model_(model), along_(model.graph), n_(model.inputs.coordinates) {
     for (std::size_t i = 0; i < n_; ++i) {
       const Node coordinate = model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
-      by_.emplace_back(model.graph).move(coordinate, model.graph.number(1));
-      along_.move(coordinate, model.graph.input(model.inputs.rate(i), Inputs::kRates));
+      by_.emplace_back(model.graph).set_rate(coordinate, model.graph.number(1));
+      along_.set_rate(coordinate, model.graph.input(model.inputs.rate(i), Inputs::kRates));
     }
-    for (const ArmNodes& arm : model.arms) turns_.push_back(turn_of(arm));
+    for (const ArmNodes& arm : model.arms) arm_angles_.push_back(angle_of(arm));
   }
 
   std::vector<Node> jacobian() {
@@ -38,78 +38,78 @@ class Equations {
       for (std::size_t i = 0; i < n_; ++i) G[i] = G[i] + model_.term(body.mass) * kGravity * by_[i].of(body.centre[2]);
       add(body);
     }
-    put(G, e.G_X);
+    append(G, e.G_X);
     add_inertia(e);
-    for (const Node place : *model_.wrench_point)
-      for (Rates& by : by_) e.J_wrench.push_back(by.of(place).node());
+    for (const Node component : *model_.wrench_point)
+      for (Rates& by : by_) e.J_wrench.push_back(by.of(component).node());
     for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t i = 0; i < n_; ++i) e.J_wrench.push_back(model_.turn_axes[i][axis]);
+      for (std::size_t i = 0; i < n_; ++i) e.J_wrench.push_back(model_.rotation_directions[i][axis]);
     return e;
   }
 
  private:
-  /// What has a rate: its derivatives by the coordinates, and the rate itself.
-  struct Moving {
-    std::vector<Term> by;
-    Term rate;
+  /// The derivatives of a function f of the pose.
+  struct Derivatives {
+    std::vector<Term> by;  ///< by the coordinates: f_X
+    Term rate;             ///< by time: f'
   };
-  /// Numbers of Movings, f <= g, and their weight.
+  /// Weights of products f' g', by the indices of f and g in functions_, f <= g.
   using Products = std::map<std::pair<std::size_t, std::size_t>, Term>;
 
   Term number(double value) { return {model_.graph, value}; }
   Vector3 vector(const std::array<Node, 3>& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
-  static void put(const std::vector<Term>& terms, std::vector<Node>& to) {
+  static void append(const std::vector<Term>& terms, std::vector<Node>& to) {
     for (const Term& term : terms) to.push_back(term.node());
   }
 
-  /// Tells all derivatives how the arm moves.
-  Moving turn_of(const ArmNodes& arm) {
+  /// Derivatives of the arm's angle q; also sets those of the arm's vector, arm' = q' axis x arm.
+  Derivatives angle_of(const ArmNodes& arm) {
     const Vector3 at = vector(arm.arm), rod = vector(arm.rod), tangent = cross(vector(arm.axis), at);
     const Term lever = number(1) / dot(rod, tangent);
-    const auto turn_along = [&](Rates& derivative) {
+    const auto set_rates = [&](Rates& derivative) {
       Term sum = number(0);
       for (std::size_t k = 0; k < 3; ++k) sum = sum + rod[k] * derivative.of(arm.B[k]);
-      const Term turn = sum * lever;
+      const Term rate = sum * lever;
       for (std::size_t k = 0; k < 3; ++k)
-        if (!model_.graph[arm.arm[k]].is_number()) derivative.move(arm.arm[k], (tangent[k] * turn).node());
-      if (arm.joint) derivative.move(*arm.joint, turn.node());
-      return turn;
+        if (!model_.graph[arm.arm[k]].is_number()) derivative.set_rate(arm.arm[k], (tangent[k] * rate).node());
+      if (arm.joint) derivative.set_rate(*arm.joint, rate.node());
+      return rate;
     };
-    Moving moving{{}, turn_along(along_)};
-    for (Rates& by : by_) moving.by.push_back(turn_along(by));
-    return moving;
+    Derivatives angle{{}, set_rates(along_)};
+    for (Rates& by : by_) angle.by.push_back(set_rates(by));
+    return angle;
   }
 
-  /// The number of a Moving that has not been there, or of the one that has the same derivatives.
-  std::optional<std::size_t> add(const Moving& moving) {
+  /// Index of a function in functions_, to which it is added if it has new derivatives; std::nullopt if it is constant.
+  std::optional<std::size_t> index_of(const Derivatives& function) {
     std::vector<Node> key;
-    put(moving.by, key);
-    if (std::ranges::all_of(moving.by, [](const Term& term) { return term.is(0); })) return {};
-    const auto [place, is_new] = known_.try_emplace(key, moving_.size());
-    if (is_new) moving_.push_back(moving);
-    return place->second;
+    append(function.by, key);
+    if (std::ranges::all_of(function.by, [](const Term& term) { return term.is(0); })) return {};
+    const auto [found, is_new] = indices_.try_emplace(key, functions_.size());
+    if (is_new) functions_.push_back(function);
+    return found->second;
   }
-  std::optional<std::size_t> add(Node node) {
-    Moving moving{{}, along_.of(node)};
-    for (Rates& by : by_) moving.by.push_back(by.of(node));
-    return add(moving);
+  std::optional<std::size_t> index_of(Node node) {
+    Derivatives function{{}, along_.of(node)};
+    for (Rates& by : by_) function.by.push_back(by.of(node));
+    return index_of(function);
   }
   void add_product(std::optional<std::size_t> f, std::optional<std::size_t> g, const Term& weight) {
     if (!f || !g) return;
-    const auto [place, is_new] = products_.try_emplace(std::minmax(*f, *g), weight);
-    if (!is_new) place->second = place->second + weight;
+    const auto [product, is_new] = products_.try_emplace(std::minmax(*f, *g), weight);
+    if (!is_new) product->second = product->second + weight;
   }
 
   void add(const BodyNodes& body) {
     for (const BodyNodes::Product& product : body.products)
       for (std::size_t k = 0; k < 3; ++k)
-        add_product(add(product.f[k]), add(product.g[k]), model_.term(product.weight));
-    for (const BodyNodes::ArmTurn& turn : body.arm_turns) {
-      const auto f = add(turns_[turn.arm]);
-      add_product(f, f, model_.term(turn.weight));
+        add_product(index_of(product.f[k]), index_of(product.g[k]), model_.term(product.weight));
+    for (const BodyNodes::ArmRotation& rotation : body.arm_rotations) {
+      const auto f = index_of(arm_angles_[rotation.arm]);
+      add_product(f, f, model_.term(rotation.weight));
     }
-    for (const BodyNodes::LineTurn& turn : body.line_turns) {
-      const Vector3 d = vector(turn.d);
+    for (const BodyNodes::LineRotation& rotation : body.line_rotations) {  // angular velocity d x d' / |d|^2
+      const Vector3 d = vector(rotation.d);
       const Term per_square = number(1) / dot(d, d);
       const auto omega = [&](Rates& derivative) {
         return cross(d, Vector3{derivative.of(d[0]), derivative.of(d[1]), derivative.of(d[2])}) * per_square;
@@ -118,10 +118,10 @@ class Equations {
       for (Rates& each : by_) by.push_back(omega(each));
       const Vector3 rate = omega(along_);
       for (std::size_t k = 0; k < 3; ++k) {
-        Moving moving{{}, rate[k]};
-        for (const Vector3& each : by) moving.by.push_back(each[k]);
-        const auto f = add(moving);
-        add_product(f, f, model_.term(turn.weight));
+        Derivatives component{{}, rate[k]};
+        for (const Vector3& each : by) component.by.push_back(each[k]);
+        const auto f = index_of(component);
+        add_product(f, f, model_.term(rotation.weight));
       }
     }
   }
@@ -131,7 +131,7 @@ class Equations {
     std::vector<Term> M(n_ * n_, number(0)), h(n_, number(0));
     const auto add_to = [](Term& sum, const Term& x) { sum = sum + x; };
     for (const auto& [pair, weight] : products_) {
-      const Moving &f = moving_[pair.first], &g = moving_[pair.second];
+      const Derivatives &f = functions_[pair.first], &g = functions_[pair.second];
       const bool square = pair.first == pair.second;
       const Term w = square ? weight : weight * 0.5;
       const Term f_second = along_.of(f.rate), g_second = along_.of(g.rate);
@@ -147,17 +147,17 @@ class Equations {
     }
     for (std::size_t i = 0; i < n_; ++i)
       for (std::size_t j = 0; j < i; ++j) M[i * n_ + j] = M[j * n_ + i];
-    put(M, e.M_X);
-    put(h, e.h_X);
+    append(M, e.M_X);
+    append(h, e.h_X);
   }
 
   Model& model_;
-  std::vector<Rates> by_;  ///< by each coordinate
-  Rates along_;            ///< the velocity
+  std::vector<Rates> by_;  ///< partial derivatives, by coordinate
+  Rates along_;            ///< time derivatives
   std::size_t n_;
-  std::vector<Moving> turns_;  ///< by arm
-  std::map<std::vector<Node>, std::size_t> known_;
-  std::vector<Moving> moving_;
+  std::vector<Derivatives> arm_angles_;
+  std::vector<Derivatives> functions_;
+  std::map<std::vector<Node>, std::size_t> indices_;  ///< of functions_, by their partial derivatives
   Products products_;
 };
 

@@ -1,12 +1,13 @@
-// The equations of motion of a description as nodes of its graph.
+// Equations of motion by the principle of virtual work, as nodes of the mechanism's expression graph.
 //
-// Twice a body's kinetic energy is a sum of weights times products of rates f' g' (BodyNodes). With the derivatives
-// f_X by the coordinates and the acceleration f'' where Xddot = 0,
+// Twice the kinetic energy of a body is a sum of weighted products of rates, w f' g' (BodyNodes). With the derivatives
+// f_X by the coordinates, and the acceleration f'' for Xddot = 0,
 //
 //   M_X = sum of w (f_X g_X^T + g_X f_X^T) / 2,   h_X = sum of w (f_X g'' + g_X f'') / 2,   G_X = g sum of m z_X
 //
-// by virtual work, and weights of what has the same derivatives are added first. Nothing but derivatives of the graph
-// is needed; those of arms follow from their turn.
+// All derivatives are symbolic. Those of an arm follow from its angular velocity (limbs::Arm), which is much shorter
+// than the derivative of its closed form. Functions with the same derivatives share one product, with the sum of their
+// weights.
 #pragma once
 
 #include "engine/generic/model.hpp"
@@ -15,7 +16,7 @@ namespace pkm::generic {
 
 EquationNodes equations_of(Model& model);
 
-/// EquationNodes::J alone.
+/// EquationNodes::J only, for models without bodies.
 std::vector<Node> jacobian_of(Model& model);
 
 }  // namespace pkm::generic

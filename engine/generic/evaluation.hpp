@@ -1,4 +1,4 @@
-// A description's formulas as programs, by what is asked for.
+// Evaluation of a mechanism file: the programs that are compiled from its formulas, one for each purpose.
 #pragma once
 
 #include "engine/expression/batch_stage.hpp"
@@ -9,27 +9,29 @@ namespace pkm::generic {
 
 /// Immutable, shared by threads.
 struct Evaluation {
-  explicit Evaluation(Model described);
+  explicit Evaluation(Model source);
 
   Model model;
-  expression::Program conditions;  ///< of a pose: joints, domains, margins, angles
-  expression::Program reported;    ///< of a pose: shown margins, then quantities
-  expression::Program joints, closures, links, tests;
-  expression::Program requirements;    ///< of a design: both ends of each range, then what is required
-  expression::Program origin;          ///< Model::origin
-  expression::Program frame;           ///< Model::origin, turn, and turn_axes by coordinate
-  expression::Program rods;            ///< C and B of each
-  expression::Program motion, masses;  ///< joints, domains and EquationNodes of a state, after the design; MassCheck
-  std::optional<expression::BatchStage> motions;  ///< `motion` of many states
-  expression::Program size, length, radius;       ///< of a design; without outputs: it is not described
-  std::vector<expression::Program> derived, lower, upper, middle, reach_lower,
-      reach_upper;  ///< by limit; the others by coordinate
 
-  /// Thresholds in force: given, derived from the parameters, or inactive.
+  // Programs of a pose or state. The outputs have the names of members of Model.
+  expression::Program constraints;  ///< joints, domains, margins, angles
+  expression::Program reported;     ///< ReportedMargin::shown, quantities
+  expression::Program joints, closures, links, origin, rods;
+  expression::Program frame;                           ///< origin, rotation, rotation_directions
+  expression::Program motion;                          ///< joints, domains, equations; the design is a stage of its own
+  std::optional<expression::BatchStage> motion_batch;  ///< the second stage of `motion`
+
+  // Programs of a design. Those of values that the file does not define have no outputs.
+  expression::Program requirements;  ///< both ends of each range, required
+  expression::Program tests, masses, size, length, radius;
+  std::vector<expression::Program> derived;                                                 ///< by limit
+  std::vector<expression::Program> lower, upper, default_values, reach_lower, reach_upper;  ///< by coordinate
+
+  /// The thresholds of limits: given, derived from the parameters, or inactive.
   template <class S>
   void thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const;
-  /// The graph's inputs for a design; coordinates and joints are 0.
-  /// @param values  as many as the graph has inputs
+  /// The graph's inputs for a design; coordinates and joints are set to 0.
+  /// @param values  size Inputs::count()
   template <class S>
   void fill_inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode, std::span<S> values) const;
   template <class S>
@@ -38,34 +40,33 @@ struct Evaluation {
     fill_inputs<S>(parameters, limits, mode, values);
     return values;
   }
-  /// What a program of the design alone gives in the default working mode; none where it has no output.
+  /// Value of a program that depends on the design only, in the default working mode; std::nullopt if it has no output.
   template <class S>
   std::optional<S> of_design(const expression::Program& program, std::span<const S> parameters) const;
-  /// Range of a coordinate that holds the workspace under limits, in a working mode.
+  /// Range of a coordinate in the search box of the file; std::nullopt if the file does not define it.
   std::optional<std::array<double, 2>> range(std::span<const double> parameters, const LimitSpec& limits,
                                              std::size_t mode, std::size_t coordinate) const;
-  /// The same; throws std::invalid_argument with a sentence where there is none.
-  std::array<double, 2> needed_range(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
-                                     std::size_t coordinate) const;
-  /// Where a survey looks, by its axes: in the box that is given, else in the ranges of the swept coordinates.
+  /// As range(); throws std::invalid_argument with a message if the file does not define it.
+  std::array<double, 2> required_range(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
+                                       std::size_t coordinate) const;
+  /// Search box of a workspace analysis, by axis: that of the plan, otherwise the ranges of the swept coordinates.
   Box search_box(std::span<const double> parameters, const WorkspacePlan& plan, std::size_t mode,
                  const std::vector<int>& swept) const;
 };
 
-/// Calls work(room) with `count` numbers, on the stack where they are not many: for what is computed per design or
-/// pose.
+/// Calls work(scratch) with memory for `count` scalars, which is on the stack if there are few.
 template <class S, class Work>
 auto with_scratch(std::size_t count, const Work& work) {
-  constexpr std::size_t kMost = 512;
-  if (count <= kMost) {
-    std::array<S, kMost> room;
-    return work(std::span<S>(room).first(count));
+  constexpr std::size_t kMaxOnStack = 512;
+  if (count <= kMaxOnStack) {
+    std::array<S, kMaxOnStack> scratch;
+    return work(std::span<S>(scratch).first(count));
   }
-  std::vector<S> room(count);
-  return work(std::span<S>(room));
+  std::vector<S> scratch(count);
+  return work(std::span<S>(scratch));
 }
 
-/// A program's outputs.
+/// The outputs of a program.
 template <class S>
 std::vector<S> outputs_of(const expression::Program& program, const std::vector<S>& inputs) {
   std::vector<S> registers, values;

@@ -9,21 +9,22 @@
 namespace pkm::generic {
 namespace {
 
-bool finite(std::span<const double> values) {
+bool is_finite(std::span<const double> values) {
   return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
 }
 
-/// What is 0 where the limbs meet the platform, for given joints as a function of the pose. Allocates once.
-class Closures {
+/// The loop-closure equations f(pose) = 0 for given joints. Allocates in the constructor only.
+class LoopClosure {
  public:
-  Closures(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, std::size_t mode)
+  LoopClosure(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints,
+              std::size_t mode)
       : program_(e.closures),
         first_(e.model.inputs.coordinate(0)),
         inputs_(e.inputs(parameters, no_limits(e.model.info), mode)) {
     std::ranges::copy(joints, inputs_.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.joint(0)));
-    moving_.assign(inputs_.begin(), inputs_.end());
+    dual_inputs_.assign(inputs_.begin(), inputs_.end());
     registers_.resize(program_.registers());
-    moving_registers_.resize(program_.registers());
+    dual_registers_.resize(program_.registers());
   }
 
   AxisVector<double> at(const Pose<double>& pose) {
@@ -33,61 +34,61 @@ class Closures {
     for (std::size_t i = 0; i < f.size(); ++i) f[i] = registers_[program_.outputs()[i]];
     return f;
   }
-  /// Derivatives by the pose, of four coordinates at a time.
-  AxisMatrix<double> slopes(const Pose<double>& pose) {
-    constexpr std::size_t kTogether = 4;
+  /// Derivatives of f by the coordinates, by forward-mode automatic differentiation in blocks of 4.
+  AxisMatrix<double> jacobian(const Pose<double>& pose) {
+    constexpr std::size_t kBlock = 4;
     AxisMatrix<double> G(program_.outputs().size(), pose.size());
-    for (std::size_t from = 0; from < pose.size(); from += kTogether) {
-      const std::size_t count = std::min(kTogether, pose.size() - from);
-      for (std::size_t j = 0; j < pose.size(); ++j) moving_[first_ + j] = pose[j];
-      for (std::size_t j = 0; j < count; ++j) moving_[first_ + from + j].v[static_cast<int>(j)] = 1;
-      program_.run_all<Dual4>(moving_, std::span(moving_registers_));
+    for (std::size_t from = 0; from < pose.size(); from += kBlock) {
+      const std::size_t count = std::min(kBlock, pose.size() - from);
+      for (std::size_t j = 0; j < pose.size(); ++j) dual_inputs_[first_ + j] = pose[j];
+      for (std::size_t j = 0; j < count; ++j) dual_inputs_[first_ + from + j].v[static_cast<int>(j)] = 1;
+      program_.run_all<Dual4>(dual_inputs_, std::span(dual_registers_));
       for (std::size_t i = 0; i < G.rows(); ++i)
         for (std::size_t j = 0; j < count; ++j)
-          G(i, from + j) = moving_registers_[program_.outputs()[i]].v[static_cast<int>(j)];
+          G(i, from + j) = dual_registers_[program_.outputs()[i]].v[static_cast<int>(j)];
     }
     return G;
   }
 
  private:
   const expression::Program& program_;
-  std::size_t first_;  ///< coordinate among the inputs
+  std::size_t first_;  ///< index of the first coordinate among the inputs
   std::vector<double> inputs_, registers_;
-  std::vector<Dual4> moving_, moving_registers_;
+  std::vector<Dual4> dual_inputs_, dual_registers_;
 };
 
 struct Solution {
-  std::optional<Pose<double>> pose;  ///< none: it did not converge
-  bool started = false;              ///< closures have values where it began
+  std::optional<Pose<double>> pose;  ///< std::nullopt: no convergence
+  bool is_defined_at_start = false;  ///< the closures are finite at the start pose
 };
 
-Solution solve_closures(Closures& closures, Pose<double> pose) {
-  constexpr int kSteps = 60, kHalvings = 10;
-  double last = std::numeric_limits<double>::infinity();
-  AxisVector<double> f = closures.at(pose);
-  const bool started = finite(f);
-  for (int step = 0; step < kSteps && finite(f); ++step) {
-    const AxisVector<double> change = solve(closures.slopes(pose), f * -1.0);
-    if (!finite(change)) break;
+/// Newton's method with bounded steps, to rounding accuracy.
+Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
+  constexpr int kMaxIterations = 60, kMaxHalvings = 10;
+  constexpr double kMaxStep = 0.5;     // [m, rad] relative to 1 + |coordinate|
+  constexpr double kConverged = 1e-9;  // step size below which the iteration ends as soon as it stagnates
+  double last_size = std::numeric_limits<double>::infinity();
+  AxisVector<double> f = closure.at(pose);
+  const bool is_defined_at_start = is_finite(f);
+  for (int i = 0; i < kMaxIterations && is_finite(f); ++i) {
+    const AxisVector<double> step = solve(closure.jacobian(pose), f * -1.0);
+    if (!is_finite(step)) break;
     double size = 0;
-    for (std::size_t i = 0; i < pose.size(); ++i)
-      size = std::max(size, std::fabs(change[i]) / (1 + std::fabs(pose[i])));
-    // far away, a step of at most 0.5 m or rad; none to where formulas are undefined
-    double share = std::min(1.0, 0.5 / std::max(size, 1e-300));
-    const Pose<double> before = pose;
-    for (int halved = 0; halved < kHalvings; ++halved, share /= 2) {
-      pose = before + change * share;
-      f = closures.at(pose);
-      if (finite(f)) break;
+    for (std::size_t k = 0; k < pose.size(); ++k) size = std::max(size, std::fabs(step[k]) / (1 + std::fabs(pose[k])));
+    double factor = std::min(1.0, kMaxStep / std::max(size, 1e-300));
+    const Pose<double> previous = pose;
+    for (int halvings = 0; halvings < kMaxHalvings; ++halvings, factor /= 2) {  // until the closures are defined
+      pose = previous + step * factor;
+      f = closure.at(pose);
+      if (is_finite(f)) break;
     }
-    if (size < 1e-9 && size >= last / 2) return {pose, true};  // rounding alone is left
-    if (size == 0) return {pose, true};
-    last = size;
+    if (size == 0 || (size < kConverged && size >= last_size / 2)) return {pose, true};
+    last_size = size;
   }
-  return {{}, started};
+  return {{}, is_defined_at_start};
 }
 
-/// The working mode that has these joints at a pose; "": no limb reaches it so.
+/// The working mode that has these joints at a pose; "" if there is none.
 std::string mode_with(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                       const AxisVector<double>& joints) {
   const MechanismInfo& info = e.model.info;
@@ -100,7 +101,8 @@ std::string mode_with(const Evaluation& e, std::span<const double> parameters, c
   return "";
 }
 
-/// Working modes with closures of their own: formulas may have signs in theirs, the limbs in closed form have none.
+/// Working modes with different closures. Closures of limbs in closed form do not depend on the mode; those of formulas
+/// may contain signs.
 std::vector<std::size_t> modes_of_closures(const Model& model) {
   const auto is_sign = [&](Node node) {
     const auto input = static_cast<std::size_t>(model.graph[node].input);
@@ -112,19 +114,19 @@ std::vector<std::size_t> modes_of_closures(const Model& model) {
   return modes;
 }
 
-/// Poses by their numbers, from the middle of the description's box on: a Kronecker sequence.
-class Starts {
+/// Start poses: a Kronecker sequence in the search box of the file, which begins at the centre.
+class StartPoses {
  public:
-  Starts(const Evaluation& e, std::span<const double> parameters) {
+  StartPoses(const Evaluation& e, std::span<const double> parameters) {
     for (std::size_t i = 0; i < e.model.inputs.coordinates; ++i)
       ranges_.push_back(e.range(parameters, no_limits(e.model.info), 0, i).value_or(std::array{-1.0, 1.0}));
   }
   Pose<double> operator[](std::size_t number) const {
     Pose<double> pose(ranges_.size());
     for (std::size_t i = 0; i < pose.size(); ++i) {
-      const double place =
+      const double fraction =
           0.5 + static_cast<double>(number) * std::sqrt(static_cast<double>(std::array{2, 3, 5, 7, 11, 13}[i]));
-      pose[i] = ranges_[i][0] + (place - std::floor(place)) * (ranges_[i][1] - ranges_[i][0]);
+      pose[i] = ranges_[i][0] + (fraction - std::floor(fraction)) * (ranges_[i][1] - ranges_[i][0]);
     }
     return pose;
   }
@@ -134,18 +136,18 @@ class Starts {
 };
 
 /// The distinct rigid-body poses found so far.
-class Found {
+class AssemblySet {
  public:
   enum class Angles { principal, as_found };
 
-  Found(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, Angles angles)
+  AssemblySet(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, Angles angles)
       : e_(e), parameters_(parameters), joints_(joints), angles_(angles) {}
 
   /// @return whether the pose has the joints in a working mode, and no earlier one is the same rigid-body pose
   bool add(Pose<double> pose) {
     const Model& model = e_.model;
     for (std::size_t i = 0; i < pose.size(); ++i)
-      if (model.turns_about[i]) pose[i] = wrapped(pose[i]);
+      if (model.rotation_axes[i]) pose[i] = wrapped(pose[i]);
     std::string working_mode = mode_with(e_, parameters_, pose, joints_);
     if (working_mode.empty()) return false;
     const RigidPose rigid = rigid_pose(e_, inputs(pose, working_mode));
@@ -165,15 +167,16 @@ class Found {
   }
 
   const std::vector<AssemblyMode>& modes() const { return modes_; }
-  /// Of one of them.
+  /// mirror_image() of pose k.
   std::optional<Pose<double>> mirrored(std::size_t k) const {
     return mirror_image(e_, inputs(modes_[k].pose, modes_[k].working_mode));
   }
 
  private:
-  static constexpr double kSamePose = 1e-6;  // [m, 1], a thousand times what the method leaves
+  static constexpr double kSamePose = 1e-6;  // [m, 1], larger than the error of Newton's method by a factor of 1000
 
-  /// Of the triples of angles that are one rotation, takes that of the principal ranges.
+  /// Replaces the angles by equivalent ones in the principal ranges (rigid_pose.hpp), if a working mode has the joints
+  /// there.
   void make_principal(Pose<double>& pose, const RigidPose& rigid, std::string& working_mode) const {
     Pose<double> principal = pose;
     set_angles(e_.model, rigid.rotation, principal);
@@ -206,31 +209,31 @@ class Found {
 
 std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const double> parameters,
                                         const AxisVector<double>& joints) {
-  const Starts poses(e, parameters);
-  Found found(e, parameters, joints, Found::Angles::principal);
-  std::vector<Closures> closures;
+  const StartPoses poses(e, parameters);
+  AssemblySet found(e, parameters, joints, AssemblySet::Angles::principal);
+  std::vector<LoopClosure> closures;  // by mode
   for (const std::size_t mode : modes_of_closures(e.model)) {
-    Closures& of_mode = closures.emplace_back(e, parameters, joints, mode);
-    std::size_t idle = 0;  // starts since the last new pose, where closures have values
-    for (std::size_t tried = 0; tried < kMostStarts && idle < kIdleStarts; ++tried) {
+    LoopClosure& of_mode = closures.emplace_back(e, parameters, joints, mode);
+    std::size_t idle = 0;  // starts since the last new pose, not counting those at which the closures are undefined
+    for (std::size_t tried = 0; tried < kMaxStarts && idle < kMaxIdleStarts; ++tried) {
       const Solution solution = solve_closures(of_mode, poses[tried]);
-      idle += solution.started;
+      idle += solution.is_defined_at_start;
       if (solution.pose && found.add(*solution.pose)) idle = 0;
     }
   }
-  for (std::size_t k = 0; k < found.modes().size(); ++k)  // mirror images of mirror images, too
+  for (std::size_t k = 0; k < found.modes().size(); ++k)  // the set grows: includes mirror images of mirror images
     if (const auto start = found.mirrored(k))
-      for (Closures& of_mode : closures)
+      for (LoopClosure& of_mode : closures)
         if (const Solution solution = solve_closures(of_mode, *start); solution.pose) found.add(*solution.pose);
   return found.modes();
 }
 
 std::vector<AssemblyMode> assemblies_near(const Evaluation& e, std::span<const double> parameters,
                                           const AxisVector<double>& joints, const Pose<double>& from) {
-  Found found(e, parameters, joints, Found::Angles::as_found);
+  AssemblySet found(e, parameters, joints, AssemblySet::Angles::as_found);
   for (const std::size_t mode : modes_of_closures(e.model)) {
-    Closures closures(e, parameters, joints, mode);
-    if (const Solution solution = solve_closures(closures, from); solution.pose) found.add(*solution.pose);
+    LoopClosure closure(e, parameters, joints, mode);
+    if (const Solution solution = solve_closures(closure, from); solution.pose) found.add(*solution.pose);
   }
   return found.modes();
 }

@@ -1,4 +1,4 @@
-// Forward kinematics of a description: poses for joint values, by Newton's method on the closures of its limbs.
+// Forward kinematics of a mechanism file: multistart Newton's method for the loop-closure equations of the limbs.
 #pragma once
 
 #include "engine/generic/evaluation.hpp"
@@ -6,15 +6,15 @@
 
 namespace pkm::generic {
 
-/// A search of assemblies_of() ends after so many starts in a row that lead to no new pose, or after kMostStarts.
-inline constexpr std::size_t kIdleStarts = 64, kMostStarts = 1024;
+/// assemblies_of() stops after kMaxIdleStarts consecutive starts without a new pose, or after kMaxStarts.
+inline constexpr std::size_t kMaxIdleStarts = 64, kMaxStarts = 1024;
 
-/// Distinct rigid-body poses, from starts over the description's box for each working mode that has formulas of its
-/// own, and from the mirror image of each pose found. Those that are found need not be all.
+/// Finds distinct rigid-body poses with these joint values, starting from poses in the search box of the file, for each
+/// working mode with closures of its own, and from the mirror image of each pose found. Need not find all.
 std::vector<AssemblyMode> assemblies_of(const Evaluation& evaluation, std::span<const double> parameters,
                                         const AxisVector<double>& joints);
 
-/// What the method ends in from one pose, in each such mode.
+/// The poses to which Newton's method converges from one pose, one for each such mode at most.
 std::vector<AssemblyMode> assemblies_near(const Evaluation& evaluation, std::span<const double> parameters,
                                           const AxisVector<double>& joints, const Pose<double>& from);
 

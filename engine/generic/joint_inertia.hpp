@@ -1,4 +1,4 @@
-// The inertia that joints feel, and coupling indices, of many poses side by side.
+// SIMD evaluation of the joint-space inertia matrix and of the coupling indices, for a batch of poses.
 #pragma once
 
 #include <cstddef>
@@ -7,20 +7,20 @@
 
 namespace pkm::generic {
 
-/// Poses whose J and M_X are rows. Nothing but numbers, so that kernels share no code with files that are compiled for
-/// another instruction set.
-struct InertiaRow {
-  const expression::Operand *J, *M_X;  ///< n x n, by rows
-  const double *registers, *rows;
-  std::size_t n, count;  ///< poses: whole lanes
-  const double* rotors;  ///< n numbers, added to the diagonal of M_q
-  double* M_q;           ///< n x n rows of expression::kRow
-  double* indices;       ///< n rows
-  double* found;         ///< 1 where they are found; 0: one by one (nearly singular, infinite)
+/// Input and output of the kernel. A plain struct, so that kernels share no inline functions with files that are
+/// compiled for another instruction set.
+struct InertiaKernelData {
+  const expression::Operand *J, *M_X;  ///< n x n, row-major
+  const double *registers, *rows;      ///< as for expression::BatchStage
+  std::size_t n, count;                ///< joints; poses, a multiple of kLanes
+  const double* rotors;                ///< n numbers that are added to the diagonal of M_q
+  double* M_q;                         ///< n x n rows of expression::kRow numbers
+  double* indices;                     ///< coupling indices, n rows
+  double* found;  ///< by pose: 1, or 0 if it has to be evaluated alone (nearly singular or infinite)
 };
 
-/// The same bits as those of joint_inertia() and coupling_indices() of each pose.
+/// The results have the same bits as those of joint_inertia() and coupling_indices() for each pose.
 template <InstructionSet set>
-void find_joint_inertia(const InertiaRow& row);
+void find_joint_inertia(const InertiaKernelData& data);
 
 }  // namespace pkm::generic

@@ -1,4 +1,5 @@
-// Solves as engine/math/small_matrix.hpp does.
+// The operations have the order of eliminate() and substitute_back() in engine/math/small_matrix.hpp, so that the
+// results have the same bits.
 #include "engine/dynamics/coupling_indices.hpp"
 #include "engine/generic/joint_inertia.hpp"
 #include "engine/geometry/singular.hpp"
@@ -8,45 +9,46 @@ namespace pkm::generic {
 namespace {
 
 template <class L>
-[[gnu::always_inline]] inline L value_at(const expression::Operand& operand, const InertiaRow& row, std::size_t k) {
-  return operand.row ? L::load(row.rows + operand.index * expression::kRow + k) : L(row.registers[operand.index]);
+[[gnu::always_inline]] inline L value_at(const expression::Operand& operand, const InertiaKernelData& data,
+                                         std::size_t k) {
+  return operand.row ? L::load(data.rows + operand.index * expression::kRow + k) : L(data.registers[operand.index]);
 }
 
-/// All lanes of a mask.
+/// True if a mask is set in all lanes.
 template <class L, class Mask>
 [[gnu::always_inline]] inline bool all(const Mask& mask) {
   return least(select(mask, L(1.0), L(0.0))) > 0;
 }
 
-/// Upper triangle, factors and exchanges of an elimination.
+/// LU decomposition with partial pivoting of one matrix per lane.
 template <class L, class Mask, int n>
-struct Eliminated {
+struct LuDecomposition {
   L u[n][n], factor[n][n];
-  int lead[n];       ///< of all lanes; -1: each its own
-  Mask leads[n][n];  ///< by step and row, where each has its own
+  int pivot[n];         ///< by step: pivot row of all lanes; -1: lanes have different ones
+  Mask is_pivot[n][n];  ///< by step and row, if the lanes have different pivot rows
 
-  /// Exchanges row k of the columns from `first` on with the row that leads step k.
+  /// Exchanges row k with the pivot row of step k, in the columns from `first` on.
   [[gnu::always_inline]] inline void exchange(L (&m)[n][n], int k, int first) const {
     for (int i = k + 1; i < n; ++i)
-      for (int j = first; j < n && (lead[k] == i || lead[k] < 0); ++j) {
+      for (int j = first; j < n && (pivot[k] == i || pivot[k] < 0); ++j) {
         const L upper = m[k][j], lower = m[i][j];
-        m[k][j] = lead[k] == i ? lower : select(leads[k][i], lower, upper);
-        m[i][j] = lead[k] == i ? upper : select(leads[k][i], upper, lower);
+        m[k][j] = pivot[k] == i ? lower : select(is_pivot[k][i], lower, upper);
+        m[i][j] = pivot[k] == i ? upper : select(is_pivot[k][i], upper, lower);
       }
   }
-  /// Takes `u` as it is.
+  /// Decomposes the matrix in `u`.
   [[gnu::always_inline]] inline void run() {
     for (int k = 0; k < n; ++k) {
-      L greatest_yet = magnitude(u[k][k]), row(static_cast<double>(k));
+      L max_so_far = magnitude(u[k][k]), row(static_cast<double>(k));
       for (int i = k + 1; i < n; ++i) {
-        const auto greater = magnitude(u[i][k]) > greatest_yet;
-        greatest_yet = select(greater, magnitude(u[i][k]), greatest_yet);
+        const auto greater = magnitude(u[i][k]) > max_so_far;
+        max_so_far = select(greater, magnitude(u[i][k]), max_so_far);
         row = select(greater, L(static_cast<double>(i)), row);
       }
       const double first = least(row);
-      lead[k] = first >= greatest(row) ? static_cast<int>(first) : -1;
-      for (int i = k + 1; i < n && lead[k] < 0; ++i)
-        leads[k][i] = (row >= static_cast<double>(i)) & (row <= static_cast<double>(i));
+      pivot[k] = first >= greatest(row) ? static_cast<int>(first) : -1;
+      for (int i = k + 1; i < n && pivot[k] < 0; ++i)
+        is_pivot[k][i] = (row >= static_cast<double>(i)) & (row <= static_cast<double>(i));
       exchange(u, k, k);
       const L inverse = 1.0 / u[k][k];
       for (int i = k + 1; i < n; ++i) {
@@ -55,7 +57,7 @@ struct Eliminated {
       }
     }
   }
-  /// b becomes X of A X = b.
+  /// Replaces b by the solution X of A X = b.
   [[gnu::always_inline]] inline void solve(L (&b)[n][n]) const {
     for (int k = 0; k < n; ++k) {
       exchange(b, k, 0);
@@ -70,77 +72,77 @@ struct Eliminated {
   }
 };
 
-/// Lanes from pose k on. False where they need to be found one by one.
+/// Evaluates kLanes poses from pose k on. @return false if one of them has to be evaluated alone
 template <class L, int n>
-[[gnu::always_inline]] inline bool find_lanes(const InertiaRow& row, std::size_t k) {
-  Eliminated<L, decltype(L() < L()), n> e;
+[[gnu::always_inline]] inline bool find_lanes(const InertiaKernelData& data, std::size_t k) {
+  LuDecomposition<L, decltype(L() < L()), n> lu;
   L size(0.0), half[n][n], M[n][n];
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      e.u[i][j] = value_at<L>(row.J[j * n + i], row, k);
-      half[i][j] = value_at<L>(row.M_X[i * n + j], row, k);
-      size += magnitude(e.u[i][j]);
+      lu.u[i][j] = value_at<L>(data.J[j * n + i], data, k);
+      half[i][j] = value_at<L>(data.M_X[i * n + j], data, k);
+      size += magnitude(lu.u[i][j]);
     }
-  e.run();
-  // is_clearly_regular()
+  lu.run();
+  // as is_clearly_regular()
   L beside(0.0), inverse(0.0);
   for (int i = 0; i < n; ++i) {
-    for (int j = i + 1; j < n; ++j) beside += magnitude(e.u[i][j]);
-    inverse += 1.0 / magnitude(e.u[i][i]);
+    for (int j = i + 1; j < n; ++j) beside += magnitude(lu.u[i][j]);
+    inverse += 1.0 / magnitude(lu.u[i][i]);
   }
   L bound = static_cast<double>(n * n) * size * inverse;
   for (int i = 1; i < n; ++i) bound = bound * (2.0 * (1.0 + beside * inverse));
   if (!all<L>(bound <= 0.1 / kSingularRcond)) return false;
 
-  e.solve(half);
+  lu.solve(half);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) M[i][j] = half[j][i];
-  e.solve(M);
-  L nothing(0.0), smallest = M[0][0];  // 0 times finite numbers
+  lu.solve(M);
+  L zero(0.0), smallest = M[0][0];  // zero: 0 if all elements are finite, else NaN
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < i; ++j) M[i][j] = M[j][i] = (M[i][j] + M[j][i]) * 0.5;
-    M[i][i] = M[i][i] + row.rotors[i];
-    for (int j = 0; j <= i; ++j) nothing += M[i][j] * 0.0;
+    M[i][i] = M[i][i] + data.rotors[i];
+    for (int j = 0; j <= i; ++j) zero += M[i][j] * 0.0;
     smallest = lesser(smallest, M[i][i]);
   }
-  if (!all<L>(nothing >= 0.0) || !all<L>(smallest > 0.0)) return false;
+  if (!all<L>(zero >= 0.0) || !all<L>(smallest > 0.0)) return false;
   for (int i = 0; i < n; ++i) {
     L off(0.0);
     for (int j = 0; j < n; ++j) {
-      M[i][j].store(row.M_q + static_cast<std::size_t>(i * n + j) * expression::kRow + k);
+      M[i][j].store(data.M_q + static_cast<std::size_t>(i * n + j) * expression::kRow + k);
       if (j != i) off += magnitude(M[i][j]);
     }
-    coupling_index(off, M[i][i]).store(row.indices + static_cast<std::size_t>(i) * expression::kRow + k);
+    coupling_index(off, M[i][i]).store(data.indices + static_cast<std::size_t>(i) * expression::kRow + k);
   }
   return true;
 }
 
 template <class L, int n>
-[[gnu::always_inline]] inline void find_row(const InertiaRow& row) {
-  for (std::size_t k = 0; k < row.count; k += kLanes) L(find_lanes<L, n>(row, k) ? 1.0 : 0.0).store(row.found + k);
+[[gnu::always_inline]] inline void find_batch(const InertiaKernelData& data) {
+  for (std::size_t k = 0; k < data.count; k += kLanes) L(find_lanes<L, n>(data, k) ? 1.0 : 0.0).store(data.found + k);
 }
 
 }  // namespace
 
 template <InstructionSet set>
-void find_joint_inertia(const InertiaRow& row) {
+void find_joint_inertia(const InertiaKernelData& data) {
   using L = LanesOf<set>;
-  switch (row.n) {
+  switch (data.n) {
     case 1:
-      return find_row<L, 1>(row);
+      return find_batch<L, 1>(data);
     case 2:
-      return find_row<L, 2>(row);
+      return find_batch<L, 2>(data);
     case 3:
-      return find_row<L, 3>(row);
+      return find_batch<L, 3>(data);
     case 4:
-      return find_row<L, 4>(row);
+      return find_batch<L, 4>(data);
     case 5:
-      return find_row<L, 5>(row);
+      return find_batch<L, 5>(data);
     default:
-      return find_row<L, 6>(row);
+      return find_batch<L, 6>(data);
   }
 }
 
-template void find_joint_inertia<PKM_INSTRUCTION_SET>(const InertiaRow&);
+template void find_joint_inertia<PKM_INSTRUCTION_SET>(const InertiaKernelData&);
 
 }  // namespace pkm::generic

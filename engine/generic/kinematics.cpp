@@ -16,32 +16,33 @@ namespace {
 
 using expression::Program;
 
-/// Derivatives of a program's outputs by the inputs from `first` on, count of them.
+/// Derivatives of the outputs of a program by its inputs [first, first + count).
+/// @return outputs x count
 AxisMatrix<double> derivatives(const Program& program, std::span<const double> inputs, std::size_t first,
                                std::size_t count) {
-  return with_scratch<Taylor>(inputs.size() + program.registers(), [&](std::span<Taylor> room) {
-    const std::span<Taylor> moving = room.first(inputs.size()), registers = room.subspan(inputs.size());
-    std::ranges::copy(inputs, moving.begin());
+  return with_scratch<Taylor>(inputs.size() + program.registers(), [&](std::span<Taylor> scratch) {
+    const std::span<Taylor> x = scratch.first(inputs.size()), registers = scratch.subspan(inputs.size());
+    std::ranges::copy(inputs, x.begin());
     AxisMatrix<double> D(program.outputs().size(), count);
     for (std::size_t j = 0; j < count; ++j) {
-      moving[first + j].d = 1;
-      program.run_all<Taylor>(moving, registers);
+      x[first + j].d = 1;
+      program.run_all<Taylor>(x, registers);
       for (std::size_t i = 0; i < D.rows(); ++i) D(i, j) = registers[program.outputs()[i]].d;
-      moving[first + j].d = 0;
+      x[first + j].d = 0;
     }
     return D;
   });
 }
 
-AxisVector<double> as_axes(std::span<const double> values) {
+AxisVector<double> axis_vector(std::span<const double> values) {
   AxisVector<double> axes(values.size());
   std::ranges::copy(values, axes.begin());
   return axes;
 }
 
-/// PoseReport::T. @param inputs  with the pose
+/// PoseReport::T. @param inputs  of the graph, with the pose
 AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inputs) {
-  constexpr std::size_t kAxes = 12;  // among the outputs of the frame
+  constexpr std::size_t kDirections = 12;  // index of rotation_directions among the outputs of Evaluation::frame
   const std::size_t n = e.model.inputs.coordinates;
   const std::vector<double> frame = outputs_of(e.frame, inputs);
   const AxisMatrix<double> rates = derivatives(e.origin, inputs, e.model.inputs.coordinate(0), n);
@@ -49,12 +50,12 @@ AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inpu
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t j = 0; j < n; ++j) {
       T(k, j) = rates(k, j);
-      T(3 + k, j) = frame[kAxes + 3 * j + k];
+      T(3 + k, j) = frame[kDirections + 3 * j + k];
     }
   return T;
 }
 
-/// Inputs of a pose.
+/// The graph's inputs for a design and a pose.
 std::vector<double> inputs_at(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                               std::size_t mode, const LimitSpec& limits) {
   std::vector<double> inputs = e.inputs(parameters, limits, mode);
@@ -62,14 +63,7 @@ std::vector<double> inputs_at(const Evaluation& e, std::span<const double> param
   return inputs;
 }
 
-/// The first condition that does not hold, with `words`; "": all do.
-std::string first_broken(const NamedValues& conditions, const std::string& words) {
-  for (const auto& [name, margin] : conditions)
-    if (!is_satisfied(margin)) return name + words;
-  return "";
-}
-
-/// The margins as they are reported. @param shown  values of ReportedMargin::shown, in order
+/// Combines margins according to Model::reported_margins. @param shown  values of ReportedMargin::shown, in order
 NamedValues reported_margins(const Model& model, const NamedValues& margins,
                              std::vector<double>::const_iterator shown) {
   NamedValues list;
@@ -78,16 +72,16 @@ NamedValues reported_margins(const Model& model, const NamedValues& margins,
     list.insert(list.end(), margins.begin() + static_cast<std::ptrdiff_t>(next),
                 margins.begin() + static_cast<std::ptrdiff_t>(group.first));
     next = group.first + group.count;
-    double least = group.shown ? *shown++ : margins[group.first].second;
-    for (std::size_t i = group.first; !group.shown && i < next; ++i) least = std::fmin(least, margins[i].second);
-    list.emplace_back(group.name, least);
+    double value = group.shown ? *shown++ : margins[group.first].second;
+    for (std::size_t i = group.first; !group.shown && i < next; ++i) value = std::fmin(value, margins[i].second);
+    list.emplace_back(group.name, value);
   }
   list.insert(list.end(), margins.begin() + static_cast<std::ptrdiff_t>(next), margins.end());
   return list;
 }
 
-/// Adds the quantities of the pose: angles and lengths to the angles, the others to the indices; those of the design
-/// and of motions are none of the pose's.
+/// Adds the quantities of the pose, not those of the design or of motions: angles and lengths to report.angles, others
+/// to report.indices.
 void add_quantities(const Model& model, std::vector<double>::const_iterator values, PoseReport& report) {
   for (const QuantityInfo& quantity : model.info.quantities) {
     const double value = *values++;
@@ -100,17 +94,17 @@ void add_quantities(const Model& model, std::vector<double>::const_iterator valu
 void add_clearance(const Model& model, const NearestBodies<double>& nearest, const LimitSpec& limits,
                    PoseReport& report) {
   report.angles.emplace_back("clearance", nearest.clearance);
-  const auto least = clearance_of(model, limits);
-  if (!least) return;
-  report.margins.emplace_back(kClearanceLimit, nearest.clearance - *least);
-  if (nearest.clearance >= *least || !report.reason.empty()) return;
+  const auto limit = clearance_of(model, limits);
+  if (!limit) return;
+  report.margins.emplace_back(kClearanceLimit, nearest.clearance - *limit);
+  if (nearest.clearance >= *limit || !report.reason.empty()) return;
   report.reason = std::string(kClearanceLimit) + " is violated";
   if (nearest.clearance == nearest.clearance)
     report.reason +=
         ": " + nearest.first + " and " + nearest.second + (nearest.clearance < 0 ? " overlap" : " are too near");
 }
 
-/// Adds Jq, G, J and what follows from them. @param inputs  with the pose and its joints
+/// Adds Jq, G, J, their determinants and the conditioning. @param inputs  of the graph, with the pose and its joints
 void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                    std::span<const double> inputs, PoseReport& report);
 
@@ -121,7 +115,7 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   const Model& model = e.model;
   const Inputs& at = model.inputs;
   std::vector<double> inputs = inputs_at(e, parameters, pose, mode, limits);
-  const std::vector<double> values = outputs_of(e.conditions, inputs);
+  const std::vector<double> values = outputs_of(e.constraints, inputs);
   auto next = values.begin();
   const auto named = [&](const std::vector<Result>& results) {
     NamedValues list;
@@ -129,10 +123,14 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
     return list;
   };
   PoseReport report;
-  report.joints = as_axes({values.data(), at.joints});
+  report.joints = axis_vector({values.data(), at.joints});
   next += static_cast<std::ptrdiff_t>(at.joints);
   report.margins = named(model.domains);
-  report.reason = first_broken(report.margins, " does not hold: the pose does not assemble");
+  const auto first_violated = [](const NamedValues& margins) {
+    return std::ranges::find_if_not(margins, is_satisfied, &NamedValues::value_type::second);
+  };
+  if (const auto domain = first_violated(report.margins); domain != report.margins.end())
+    report.reason = model.domains[static_cast<std::size_t>(domain - report.margins.begin())].consequence;
   const NamedValues margins = named(model.margins);
   report.angles = named(model.angles);
   for (std::size_t i = 0; i < at.joints && report.reason.empty(); ++i)
@@ -144,7 +142,8 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   report.margins.insert(report.margins.end(), listed.begin(), listed.end());
   if (!report.assembles) return report;
   add_quantities(model, quantities, report);
-  report.reason = first_broken(margins, " is violated");
+  if (const auto margin = first_violated(margins); margin != margins.end())
+    report.reason = margin->first + " is violated";
   if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles)) add_clearance(model, *nearest, limits, report);
   report.feasible = report.reason.empty();
 
@@ -173,8 +172,8 @@ void add_jacobians(const Evaluation& e, std::span<const double> parameters, cons
 
 }  // namespace
 
-PoseReport report_of_sample(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
-                            std::span<double> inputs) {
+PoseReport inspect_sample(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                          std::span<double> inputs) {
   const Inputs& at = e.model.inputs;
   PoseReport report;
   report.assembles = report.feasible = true;
@@ -190,7 +189,7 @@ PoseReport report_of_sample(const Evaluation& e, std::span<const double> paramet
 }
 
 bool assembles_at(const Evaluation& e, const std::vector<double>& inputs) {
-  const std::vector<double> values = outputs_of(e.conditions, inputs);
+  const std::vector<double> values = outputs_of(e.constraints, inputs);
   const auto joints = values.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.joints),
              domains = joints + std::ssize(e.model.domains);
   return std::all_of(values.begin(), joints, [](double q) { return std::isfinite(q); }) &&
@@ -222,24 +221,18 @@ std::optional<Influence<double>> influence_at(const Evaluation& e, std::span<con
   const Inputs& at = e.model.inputs;
   const std::vector<double> inputs = inputs_at(e, parameters, pose, mode, no_limits(e.model.info));
   if (!assembles_at(e, inputs)) return {};
-  Influence<double> found;
-  found.G = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
-  for (std::size_t i = 0; i < at.joints; ++i) found.H[i] = AxisMatrix<double>::zero(at.coordinates, at.coordinates);
-  // second derivatives along each coordinate and each sum of two
   std::vector<Taylor> moving(inputs.begin(), inputs.end());
-  for (std::size_t j = 0; j < at.coordinates; ++j)
-    for (std::size_t k = 0; k <= j; ++k) {
-      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 1;
-      const std::vector<Taylor> values = outputs_of(e.joints, moving);
-      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 0;
-      for (std::size_t i = 0; i < at.joints; ++i) found.H[i](j, k) = found.H[i](k, j) = values[i].dd;
-    }
-  for (std::size_t i = 0; i < at.joints; ++i) {
-    AxisMatrix<double>& H = found.H[i];
-    for (std::size_t j = 0; j < at.coordinates; ++j)
-      for (std::size_t k = 0; k < j; ++k) H(j, k) = H(k, j) = (H(j, k) - H(j, j) - H(k, k)) / 2;
-    if (!std::ranges::all_of(H, [](double x) { return std::isfinite(x); })) return {};
-  }
+  const auto second_derivatives = [&](const AxisVector<double>& velocity) {
+    for (std::size_t j = 0; j < at.coordinates; ++j) moving[at.coordinate(j)].d = velocity[j];
+    const std::vector<Taylor> joints = outputs_of(e.joints, moving);
+    AxisVector<double> terms(at.joints);
+    for (std::size_t i = 0; i < at.joints; ++i) terms[i] = joints[i].dd;
+    return terms;
+  };
+  const Influence<double> found{derivatives(e.joints, inputs, at.coordinate(0), at.coordinates),
+                                quadratic_form_matrices(at.coordinates, second_derivatives)};
+  for (std::size_t i = 0; i < at.joints; ++i)
+    if (!std::ranges::all_of(found.H[i], [](double x) { return std::isfinite(x); })) return {};
   return found;
 }
 

@@ -1,4 +1,4 @@
-// What a description says of one pose: joints, margins, Jacobians and their derivatives.
+// Kinematic analysis of one pose of a mechanism file: inverse kinematics, margins, Jacobians and their derivatives.
 #pragma once
 
 #include "engine/generic/evaluation.hpp"
@@ -10,19 +10,20 @@ namespace pkm::generic {
 PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                         std::size_t mode, const LimitSpec& limits);
 
-/// @param inputs  with the pose
+/// @param inputs  of the graph, with the pose
 bool assembles_at(const Evaluation& evaluation, const std::vector<double>& inputs);
 
-/// The same of a pose that is known to be feasible, without margins and angles: it allocates nothing.
-/// @param inputs  of the graph, with the pose; the joints are filled in
-PoseReport report_of_sample(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
-                            std::span<double> inputs);
+/// As inspect_pose(), for a pose that is known to be feasible: without margins, angles and quantities, and without heap
+/// allocation.
+/// @param inputs  of the graph, with the pose; receives the joints
+PoseReport inspect_sample(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
+                          std::span<double> inputs);
 
-/// The model's quantities at a pose and motion.
+/// Values of Model::quantities.
 std::vector<double> quantities_at(const Evaluation& evaluation, std::span<const double> parameters, std::size_t mode,
                                   const LimitSpec& limits, const MotionSample& at);
 
-/// Absent where the pose does not assemble or they are infinite.
+/// std::nullopt if the pose does not assemble, or if the coefficients are infinite.
 std::optional<Influence<double>> influence_at(const Evaluation& evaluation, std::span<const double> parameters,
                                               const Pose<double>& pose, std::size_t mode);
 

@@ -10,9 +10,9 @@
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/equations.hpp"
 #include "engine/generic/forward.hpp"
-#include "engine/generic/joints.hpp"
 #include "engine/generic/kinematics.hpp"
 #include "engine/generic/mobility.hpp"
+#include "engine/generic/newton_euler.hpp"
 #include "engine/generic/pose_margins.hpp"
 #include "engine/generic/voxels.hpp"
 #include "engine/mechanism/both_scalars.hpp"
@@ -20,7 +20,7 @@
 namespace pkm::generic {
 namespace {
 
-/// Its abilities are those that the description has what for.
+/// Offers the capabilities that the file has data for: links, masses, joints, columns.
 class GenericMechanism final : public Mechanism,
                                public std::enable_shared_from_this<GenericMechanism>,
                                Voxels,
@@ -64,7 +64,7 @@ class GenericMechanism final : public Mechanism,
     }
     return all;
   }
-  /// Only what the file says: the box of [survey] may be less than what the limbs reach.
+  /// From the formulas of the file only: the box of [survey] may be smaller than the reach of the limbs.
   std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const override {
     const auto i = static_cast<std::size_t>(coordinate);
     const auto from = e_.of_design<double>(e_.reach_lower[i], parameters),
@@ -72,7 +72,7 @@ class GenericMechanism final : public Mechanism,
     return from && to ? std::optional(std::array{*from, *to}) : std::nullopt;
   }
   std::optional<double> middle(std::span<const double> parameters, int coordinate) const override {
-    return e_.of_design<double>(e_.middle[static_cast<std::size_t>(coordinate)], parameters);
+    return e_.of_design<double>(e_.default_values[static_cast<std::size_t>(coordinate)], parameters);
   }
   void thresholds(std::span<const double> parameters, const LimitSpec& limits,
                   std::span<double> values) const override {
@@ -106,8 +106,8 @@ class GenericMechanism final : public Mechanism,
   std::string common_margin_unit() const { return e_.model.margin_unit; }
   template <class S>
   void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,
-                    std::span<const Pose<double>> poses, std::vector<S>& margins) const {
-    append_margins(e_, parameters, number_of_mode(info(), mode), limits, poses, margins);
+                    std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) const {
+    append_margins(e_, parameters, number_of_mode(info(), mode), limits, poses, scratch, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
@@ -137,7 +137,8 @@ class GenericMechanism final : public Mechanism,
       return accelerators_.voxels->prepare(plan, voxels, demand);
     return prepare_voxels(*this, e_, plan, voxels, demand, accelerated_box(plan, demand));
   }
-  /// The box of the accelerator's voxels, so that the generic engine counts the same cells; null: there is none.
+  /// The search box of the accelerator's voxels, so that the generic engine counts the same cells; null if there is no
+  /// accelerator.
   BoxOfDesign accelerated_box(const WorkspacePlan& plan, const Demand& demand) const {
     WorkspacePlan unlimited = plan;
     unlimited.limits = no_limits(info());
@@ -192,8 +193,8 @@ class GenericMechanism final : public Mechanism,
     return generic::assemblies_near(e_, parameters, joints, from);
   }
   ForwardGuarantee guarantee() const override {
-    return {false, "found by Newton's method from poses over the survey's box, until " + std::to_string(kIdleStarts) +
-                       " in a row led to no new one (at most " + std::to_string(kMostStarts) +
+    return {false, "found by Newton's method from poses in the search box, until " + std::to_string(kMaxIdleStarts) +
+                       " consecutive ones gave no new pose (at most " + std::to_string(kMaxStarts) +
                        "), and from mirror images; there may be others"};
   }
   ForwardStatus status(std::span<const double>, const AxisVector<double>&,
@@ -247,9 +248,9 @@ class GenericMechanism final : public Mechanism,
 
 std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, std::span<const double> parameters,
                                                   const Pose<double>& pose, const std::string& mode) {
-  const auto* const described = dynamic_cast<const GenericMechanism*>(&mechanism);
-  if (!described || !described->evaluation().model.jointed) return {};
-  return mobility_at(described->evaluation(), parameters, pose, number_of_mode(mechanism.info(), mode));
+  const auto* const generic_mechanism = dynamic_cast<const GenericMechanism*>(&mechanism);
+  if (!generic_mechanism || !generic_mechanism->evaluation().model.jointed) return {};
+  return mobility_at(generic_mechanism->evaluation(), parameters, pose, number_of_mode(mechanism.info(), mode));
 }
 
 std::shared_ptr<const Mechanism> make_mechanism(Model model, Accelerators accelerators) {

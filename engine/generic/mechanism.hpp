@@ -1,4 +1,4 @@
-// A mechanism from its description.
+// The generic engine: a Mechanism that evaluates the formulas of a mechanism file.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace pkm::generic {
 
-/// @param accelerators  closed forms of this mechanism
+/// @param accelerators  closed forms for this mechanism, used in place of the generic evaluation where they exist
 std::shared_ptr<const Mechanism> make_mechanism(Model model, Accelerators accelerators = {});
 
 }  // namespace pkm::generic

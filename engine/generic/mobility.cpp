@@ -2,7 +2,7 @@
 // and the rates of the drives as unknowns, a joint in point p between two bodies gives
 //
 //   v_p = s a,            v_p = (v + omega x p) of one body less that of the other, s the rate of a drive along a
-//   c . (omega - t a) = 0 for every direction c of a couple that the joint carries, t the rate of a drive about a
+//   c . (omega - t a) = 0 for every direction c of a couple that the joint transmits, t the rate of a drive about a
 //
 // The twists of the platform in the null space are its degrees of freedom. Lengths are divided by the size of the
 // mechanism, so that ranks do not depend on units.
@@ -20,7 +20,7 @@ namespace pkm::generic {
 namespace {
 
 using Eigen::Index, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
-using Place = std::array<Node, 3>;
+using VectorNodes = std::array<Node, 3>;
 
 constexpr double kRankThreshold = 1e-9;  // relative to the greatest singular value
 
@@ -35,7 +35,7 @@ MatrixXd beside(const MatrixXd& A, const MatrixXd& B) {
   both << A, B;
   return both;
 }
-/// Whether a vector is in the column space of A, whose rank is known.
+/// True if a vector is in the column space of A.
 bool spans(const MatrixXd& A, Index rank_of_A, const Eigen::VectorXd& vector) {
   return rank(beside(A, vector)) == rank_of_A;
 }
@@ -45,12 +45,12 @@ Matrix3d cross_matrix(const Vector3d& p) {
   return m;
 }
 
-/// The places and directions of the joints at a pose, and their rates by each coordinate.
+/// The points and directions of the joints at a pose, with their derivatives by the coordinates.
 class JointsAtPose {
  public:
   JointsAtPose(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
       : of_(*e.model.jointed),
-        turn_(e.model.turn),
+        rotation_(e.model.rotation),
         platform_(static_cast<std::size_t>(std::ranges::find(of_.solids, true, &SolidNodes::with_platform) -
                                            of_.solids.begin())),
         drives_(e.model.inputs.joints) {
@@ -67,7 +67,7 @@ class JointsAtPose {
       std::map<Node, Taylor>& by_node = values_.emplace_back();
       for (std::size_t i = 0; i < nodes.size(); ++i) by_node.emplace(nodes[i], values[i]);
     }
-    origin_ = value(of_.solids[platform_].place);
+    origin_ = value(of_.solids[platform_].point);
     for (const JointNodes& joint : of_.joints)
       size_ = std::max(size_, (value(joint.point) - origin_).lpNorm<Eigen::Infinity>());
     if (size_ == 0) size_ = 1;
@@ -103,24 +103,24 @@ class JointsAtPose {
     if (nullity == 0) return MatrixXd(6, 0);
     const MatrixXd twists = decomposition.matrixV().rightCols(nullity).middleRows(static_cast<Index>(6 * platform_), 6);
     const auto of_platform = decomposed(twists);
-    // Absolute, for null vectors are of length 1 and the platform may stand still in all of them.
+    // An absolute threshold, because null vectors have length 1, and the platform may be fixed in all of them.
     Index count = 0;
     while (count < of_platform.singularValues().size() && of_platform.singularValues()[count] > kRankThreshold) ++count;
     return of_platform.matrixU().leftCols(count);
   }
 
-  /// The platform's twist by each coordinate, (v / size, omega); none where the ends of the limbs, given by formulas,
-  /// do not move with the platform's frame.
-  std::optional<MatrixXd> described() const {
+  /// The twist of the platform by each coordinate, (v / size, omega); std::nullopt if the ends of the limbs are given
+  /// by formulas and do not move with the platform frame.
+  std::optional<MatrixXd> by_coordinates() const {
     MatrixXd twists(6, static_cast<Index>(values_.size()));
     for (std::size_t j = 0; j < values_.size(); ++j) {
       Matrix3d R, rate;
       for (std::size_t i = 0; i < 3; ++i) {
-        R.row(static_cast<Index>(i)) = value(turn_[i]);
-        rate.row(static_cast<Index>(i)) = rate_of(turn_[i], j);
+        R.row(static_cast<Index>(i)) = value(rotation_[i]);
+        rate.row(static_cast<Index>(i)) = rate_of(rotation_[i], j);
       }
       const Matrix3d spin = rate * R.transpose();
-      const Vector3d v = rate_of(of_.solids[platform_].place, j), omega(spin(2, 1), spin(0, 2), spin(1, 0));
+      const Vector3d v = rate_of(of_.solids[platform_].point, j), omega(spin(2, 1), spin(0, 2), spin(1, 0));
       for (const JointNodes& joint : of_.joints) {
         if (joint.on != platform_ && joint.from != platform_) continue;
         const Vector3d carried = v + omega.cross(value(joint.point) - origin_);
@@ -134,25 +134,25 @@ class JointsAtPose {
  private:
   std::vector<Node> needed() const {
     std::vector<Node> nodes;
-    const auto add = [&nodes](const Place& place) { nodes.insert(nodes.end(), place.begin(), place.end()); };
-    add(of_.solids[platform_].place);
-    for (const Place& row : turn_) add(row);
+    const auto add = [&nodes](const VectorNodes& point) { nodes.insert(nodes.end(), point.begin(), point.end()); };
+    add(of_.solids[platform_].point);
+    for (const VectorNodes& row : rotation_) add(row);
     for (const JointNodes& joint : of_.joints) {
       add(joint.point);
-      for (const Place& axis : joint.axes) add(axis);
+      for (const VectorNodes& axis : joint.axes) add(axis);
       if (joint.drive) add(joint.drive->axis);
     }
     return nodes;
   }
-  Vector3d value(const Place& place) const {
-    const auto at = [&](std::size_t k) { return values_.front().at(place[k]).a; };
+  Vector3d value(const VectorNodes& point) const {
+    const auto at = [&](std::size_t k) { return values_.front().at(point[k]).a; };
     return {at(0), at(1), at(2)};
   }
-  Vector3d rate_of(const Place& place, std::size_t coordinate) const {
-    const auto at = [&](std::size_t k) { return values_[coordinate].at(place[k]).d; };
+  Vector3d rate_of(const VectorNodes& point, std::size_t coordinate) const {
+    const auto at = [&](std::size_t k) { return values_[coordinate].at(point[k]).d; };
     return {at(0), at(1), at(2)};
   }
-  /// Projection of a relative angular velocity on the directions of the couples that a joint carries.
+  /// Projection matrix onto the directions of the couples that a joint transmits.
   Matrix3d couples_of(const JointNodes& joint) const {
     MatrixXd axes(3, static_cast<Index>(joint.axes.size()));
     for (std::size_t k = 0; k < joint.axes.size(); ++k)
@@ -167,7 +167,7 @@ class JointsAtPose {
   }
 
   const JointedBodies& of_;
-  const std::array<Place, 3>& turn_;  ///< of the platform, by rows
+  const std::array<VectorNodes, 3>& rotation_;  ///< of the platform, by rows
   std::size_t platform_, drives_;
   std::vector<std::map<Node, Taylor>> values_;  ///< by coordinate
   Vector3d origin_;
@@ -181,14 +181,15 @@ PlatformMobility mobility_at(const Evaluation& evaluation, std::span<const doubl
   const JointsAtPose joints(evaluation, parameters, pose, mode);
   const MatrixXd allowed = joints.allowed();
   PlatformMobility found{.of_joints = static_cast<std::size_t>(allowed.cols()), .of_coordinates = {}, .assumed = {}};
-  const std::optional<MatrixXd> described = joints.described();
-  if (!described) return found;
-  const Index of_described = rank(*described);
-  found.of_coordinates = static_cast<std::size_t>(allowed.cols() + of_described - rank(beside(allowed, *described)));
+  const std::optional<MatrixXd> of_coordinates = joints.by_coordinates();
+  if (!of_coordinates) return found;
+  const Index coordinate_rank = rank(*of_coordinates);
+  found.of_coordinates =
+      static_cast<std::size_t>(allowed.cols() + coordinate_rank - rank(beside(allowed, *of_coordinates)));
   std::vector<std::string> assumed;
   for (Index k = 0; k < 6; ++k) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(6, k);
-    if (spans(allowed, allowed.cols(), unit) && !spans(*described, of_described, unit))
+    if (spans(allowed, allowed.cols(), unit) && !spans(*of_coordinates, coordinate_rank, unit))
       assumed.push_back((k < 3 ? "translation along " : "rotation about ") + std::string(1, "xyz"[k % 3]));
   }
   if (assumed.size() + *found.of_coordinates == found.of_joints) found.assumed = assumed;

@@ -1,5 +1,4 @@
-// Instantaneous mobility of the platform: the null space of the velocity constraints of all joints that a file
-// describes, the drives free.
+// Instantaneous mobility of the platform: null space of the velocity constraints of all joints, with free drives.
 #pragma once
 
 #include <optional>
@@ -12,21 +11,22 @@
 
 namespace pkm::generic {
 
-/// Degrees of freedom that the joints of the limbs leave the platform while the drives move freely.
+/// Degrees of freedom of the platform that the joints allow if the drives move freely.
 struct PlatformMobility {
-  std::size_t of_joints;  ///< dimension of the platform's twists that the joints allow
-  /// Dimension of those among them that the coordinates describe; none: formulas of the limbs' ends do not say how the
-  /// platform moves.
+  std::size_t of_joints;  ///< dimension of the space of the platform's twists that the joints allow
+  /// Dimension of the part of this space that the coordinates describe; std::nullopt if the ends of the limbs are given
+  /// by formulas that are inconsistent with the motion of the platform frame.
   std::optional<std::size_t> of_coordinates;
-  /// Those that the joints allow and no coordinate describes, "rotation about z"; empty: none, or not along the axes.
+  /// Twists that the joints allow but the coordinates do not describe: "rotation about z". Empty if there are none, or
+  /// if they are not along the axes.
   std::vector<std::string> assumed;
 };
 
-/// At a pose that assembles, of a model whose joints are described.
+/// At a pose that assembles, for a model with Model::jointed.
 PlatformMobility mobility_at(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                              std::size_t mode);
 
-/// The same of a mechanism that a file describes; none where the file does not describe the joints.
+/// The same for a mechanism; std::nullopt if it is not from a file that describes the joints.
 /// @param mode  one of MechanismInfo::modes
 std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, std::span<const double> parameters,
                                                   const Pose<double>& pose, const std::string& mode);

@@ -1,4 +1,4 @@
-// A mechanism as its file describes it: names, and one expression graph from which everything is computed.
+// A mechanism as described by its file: names, and the nodes of all formulas in one expression graph.
 #pragma once
 
 #include <functional>
@@ -16,9 +16,10 @@ using expression::Graph;
 using expression::Groups;
 using expression::Node;
 
-/// Positions of the graph's inputs, and the groups that they form: parameters, thresholds and signs of the working mode
-/// (one group); each coordinate; the joints, as variables of the loop-closure equations; the rates of coordinates;
-/// extra inputs, on which quantities alone depend, and their rates; the accelerations of both.
+/// Layout of the graph's inputs, in this order: parameters, thresholds of limits and signs of the working mode (one
+/// group); coordinates (one group each); joints, as variables of the loop-closure equations; rates of the coordinates;
+/// extra inputs, on which only quantities depend, and their rates; accelerations of the coordinates and of the extra
+/// inputs.
 struct Inputs {
   std::size_t parameters = 0, limits = 0, signs = 0, coordinates = 0, joints = 0, extras = 0;
 
@@ -43,76 +44,78 @@ struct Result {
   std::string name;
   std::string unit;
   Node node{};
+  std::string consequence{};  ///< of a violated domain: "limb1 cannot reach the pose"
 };
 
-/// Margins that are reported as one: the value of `shown`, else the minimum of margins [first, first + count).
+/// Margins [first, first + count) that are reported as one: the value of `shown` if there is one, otherwise their
+/// minimum.
 struct ReportedMargin {
   std::string name;
   std::size_t first = 0, count = 1;
   std::optional<Node> shown{};
 };
 
-/// The range of a joint, which is empty for some designs.
+/// The range of a joint. It depends on the design and may be empty.
 struct JointRange {
   std::string joint, unit;
   Node from{}, to{};
 };
 
-/// The name of the limit of the links' clearance.
+/// Name of the limit on the clearance of links.
 inline constexpr const char* kClearanceLimit = "clearance_min";
 
 struct LinkNodes {
   std::string name, part;
   std::array<Node, 3> from, to;
   Node radius;
-  std::vector<std::string> groups;  ///< links of one group need not keep clear of each other
-  bool has_clearance = true;        ///< false: it is drawn only
+  std::vector<std::string> groups;  ///< the clearance of links with a common group is not tested
+  bool has_clearance = true;        ///< false: the link is only drawn
 };
 
-/// limbs::CrankRange, and the conditions that it stands for in a survey.
-struct CoveredRange {
+/// limbs::CrankRange, and the constraints of poses that are equivalent to it.
+struct CrankRangeNodes {
   Node at_min, at_max, after_min, before_max, half_turn, reach, branch;
-  std::vector<Node> conditions;
+  std::vector<Node> constraints;
 };
 
-/// limbs::Folds, and the conditions that they stand for in a survey.
-struct CoveredFolds {
+/// limbs::Annulus, and the constraints of poses that are equivalent to it.
+struct AnnulusNodes {
   std::array<Node, 2> surfaces;
-  std::vector<Node> conditions;
+  std::vector<Node> constraints;
   std::optional<std::size_t> crank_range;  ///< of the same limb
 };
 
-/// The rod or telescope of a limb. For given joints C is fixed; B is fixed in the platform, or stated by a formula.
+/// The rod or telescope of a limb. C is fixed for given joints; B is fixed to the platform, or given by a formula.
 struct RodNodes {
   std::array<Node, 3> C, B;
 };
 
-/// What the design's size is, for workspace-ratio.
+/// Size of the mechanism, for the objective workspace-ratio.
 struct SizeNodes {
   Node node;
   std::string unit, meaning;
 };
 
-/// limbs::Arm, whose rates equations of motion take from there. B is the rod's other end.
+/// limbs::Arm, with the end B of its rod.
 struct ArmNodes {
   std::array<Node, 3> arm, axis, rod, B;
-  std::optional<Node> joint;  ///< where the turn is a joint
+  std::optional<Node> joint;  ///< the joint coordinate, if the arm is driven
 };
 
-/// A rigid body by twice its kinetic energy: the sum of these.
+/// A rigid body. Twice its kinetic energy is the sum of the terms below; ' is the time derivative.
 struct BodyNodes {
   /// weight f' . g'
   struct Product {
     std::array<Node, 3> f, g;
     Node weight;
   };
-  /// weight turn'^2
-  struct ArmTurn {
+  /// weight q'^2 for the angle q of an arm
+  struct ArmRotation {
     std::size_t arm;
     Node weight;
   };
-  /// weight |d x d'|^2 / |d|^4: a line turns with d, without spin about it.
-  struct LineTurn {
+  /// weight |d x d'|^2 / |d|^4, for a slender body along d that does not spin about d
+  struct LineRotation {
     std::array<Node, 3> d;
     Node weight;
   };
@@ -120,48 +123,50 @@ struct BodyNodes {
   Node mass;
   std::array<Node, 3> centre;  ///< of mass
   std::vector<Product> products;
-  std::vector<ArmTurn> arm_turns;
-  std::vector<LineTurn> line_turns;
-  std::optional<std::array<Node, 3>> inertia{};  ///< about the centre: along and across a line, or of the platform
-  std::string part_of{};                         ///< the body that it turns with as one; "": it is one itself
+  std::vector<ArmRotation> arm_rotations;
+  std::vector<LineRotation> line_rotations;
+  /// Principal moments about the centre of mass: of a slender body along and across its line, of the platform about the
+  /// axes of its frame.
+  std::optional<std::array<Node, 3>> inertia{};
+  std::string part_of{};  ///< the body to which this one is rigidly attached; "": none
 };
 
-/// One body of Newton's and Euler's equations.
+/// A free body of the Newton-Euler equations.
 struct SolidNodes {
   std::string name;
-  std::vector<std::size_t> bodies{};            ///< of the model, that it is made of; none: it has no mass
-  double share = 1;                             ///< of their masses and inertias: half for one of two rods
-  std::array<Node, 3> place;                    ///< a point of it
-  std::optional<std::array<Node, 3>> line{};    ///< that it turns with, without spin about it
-  std::optional<std::array<Node, 3>> beside{};  ///< where its centre lies beside that of its bodies
-  bool with_platform = false;                   ///< it turns with the platform
+  std::vector<std::size_t> bodies{};                   ///< bodies of the model that it consists of; empty: massless
+  double share = 1;                                    ///< fraction of their inertia: 1/2 for one of two parallel rods
+  std::array<Node, 3> point;                           ///< a point of the body
+  std::optional<std::array<Node, 3>> line{};           ///< the body rotates with this direction, without spin about it
+  std::optional<std::array<Node, 3>> centre_offset{};  ///< of its centre of mass from that of its bodies
+  bool with_platform = false;                          ///< the body rotates with the platform
 };
 
-/// A joint of two of them, or of one and the base.
+/// A joint between two solids, or between a solid and the base.
 struct JointNodes {
+  /// The couples that the joint transmits: about its `axes`, or about all directions normal to them.
   enum class Couples { along, all_but_about };
   struct Drive {
     std::size_t joint;
     std::array<Node, 3> axis;
-    bool turns = false;
-    std::optional<std::size_t> slide{};  ///< a point mass of the model that it moves, too
+    bool turns = false;                  ///< revolute; otherwise prismatic
+    std::optional<std::size_t> slide{};  ///< body (a point mass) that moves with the drive
   };
   std::string name;
   std::array<Node, 3> point;
   std::size_t on;                   ///< solid
-  std::optional<std::size_t> from;  ///< none: the base
-  Couples couples;                  ///< that it carries: along some axes, or all but those about the axes it turns on
+  std::optional<std::size_t> from;  ///< the other solid; std::nullopt: the base
+  Couples couples;
   std::vector<std::array<Node, 3>> axes;
   std::optional<Drive> drive{};
 };
 
-/// All bodies and joints, where a file describes them enough for the forces in the joints.
 struct JointedBodies {
   std::vector<SolidNodes> solids;
   std::vector<JointNodes> joints;
 };
 
-/// A number that has to be positive for a design to have masses.
+/// A mass or an inertia, which has to be positive.
 struct MassCheck {
   std::string name;  ///< "the mass of rod 11"
   std::string unit;
@@ -169,60 +174,72 @@ struct MassCheck {
   bool may_vanish;
 };
 
-/// What the equations of motion are made of, by coordinates and their rates (PoseDynamics); matrices by rows.
+/// The members of PoseDynamics as functions of the coordinates and their rates; matrices row-major.
 struct EquationNodes {
   std::vector<Node> J, J_rate_X, M_X, h_X, G_X, J_wrench;
 };
 
+/// All constraints are satisfied if >= 0. Vectors are in the base frame.
 struct Model {
   MechanismInfo info;
   Graph graph;
   Inputs inputs;
-  std::vector<std::vector<double>> signs;  ///< by mode
-  std::vector<Node> joints, closures;
-  std::vector<Result> domains;  ///< >= 0 where the pose assembles
-  std::vector<Result> margins;  ///< >= 0 where it is feasible
-  std::string margin_unit;      ///< of all domains and margins that depend on the pose; "": they differ
+  std::vector<std::vector<double>> signs;  ///< by working mode
+
+  // kinematics
+  std::vector<Node> joints, closures;  ///< joint coordinates as functions of the pose; loop-closure equations
+  std::vector<Result> domains;         ///< constraints under which the pose assembles
+  std::vector<Result> margins;         ///< constraints of a feasible pose
+  std::vector<Node> defined;           ///< 0 times a formula: satisfied if the formula is finite
+  std::string margin_unit;             ///< common unit of domains and margins that depend on the pose; "": they differ
   std::vector<ReportedMargin> reported_margins;
-  std::vector<JointRange> ranges;
-  std::vector<Result> required;  ///< of the design alone: >= 0, or it describes no mechanism
-  std::vector<Node> quantities;  ///< of MechanismInfo::quantities
+  std::vector<CrankRangeNodes> crank_ranges;
+  std::vector<AnnulusNodes> annuli;
+  std::vector<Node> quantities;  ///< in the order of MechanismInfo::quantities
   std::vector<Result> angles;    ///< of passive joints
-  std::vector<Node> defined;     ///< >= 0 where formulas have a value: 0 times them
-  std::vector<CoveredRange> crank_ranges;
-  std::vector<CoveredFolds> folds;
-  std::vector<LinkNodes> links;
-  std::vector<LinkPair> link_pairs;            ///< those that have to keep clear
-  std::vector<std::size_t> moving_links;       ///< which keep clear of obstacles
-  std::optional<std::size_t> clearance_limit;  ///< where there are some: its place among the limits, behind those of
-                                               ///< the graph
+
+  // platform frame
+  std::array<Node, 3> origin;
+  std::array<std::array<Node, 3>, 3> rotation;               ///< rotation matrix, by rows
+  std::vector<std::optional<std::size_t>> rotation_axes;     ///< by coordinate: axis of a rotation, 0 to 2
+  std::vector<std::array<Node, 3>> rotation_directions;      ///< by coordinate: that axis as a unit vector, or 0
+  std::vector<std::optional<std::size_t>> translation_axes;  ///< by coordinate: axis of a translation, 0 to 2
+
+  // design
+  std::vector<JointRange> ranges;
+  std::vector<Result> required;  ///< constraints that a design has to satisfy to describe a mechanism
   std::vector<DesignMarginInfo> tests;
   std::vector<Node> test_nodes;
   std::optional<SizeNodes> size;
-  std::optional<Node> length, radius;                     ///< characteristic: of conditioning
-  std::vector<std::size_t> conditioned;                   ///< coordinates that count in the conditioning; empty: all
-  std::vector<std::optional<Node>> derived;               ///< thresholds, by limit
-  std::vector<std::optional<std::size_t>> replaced;       ///< by limit: the parameter of its name, whose value it takes
-  std::vector<std::optional<std::array<Node, 2>>> box;    ///< by coordinate
-  std::vector<std::optional<std::array<Node, 2>>> reach;  ///< by coordinate: outside it no pose is feasible
-  std::vector<std::optional<Node>> middle;                ///< by coordinate: where a survey holds it
-  std::vector<std::optional<std::size_t>> turns_about;    ///< by coordinate: the axis of a rotation, 0 to 2
-  std::vector<std::array<Node, 3>> turn_axes;             ///< by coordinate: the same in the base's frame; 0: none
-  std::vector<std::optional<std::size_t>> moves_along;    ///< by coordinate: the axis of a translation, 0 to 2
-  std::array<Node, 3> origin;                             ///< of the platform's frame, in the base's
-  std::array<std::array<Node, 3>, 3> turn;                ///< rotation matrix of the platform, by rows
-  std::vector<RodNodes> rods;                             ///< of the limbs that have one
+  std::optional<Node> length, radius;                        ///< characteristic length and radius of the conditioning
+  std::vector<std::size_t> conditioning_coordinates;         ///< those that the conditioning includes; empty: all
+  std::vector<std::optional<Node>> derived;                  ///< by limit: threshold derived from the design
+  std::vector<std::optional<std::size_t>> limit_parameters;  ///< by limit: parameter of its name, the default threshold
+
+  // workspace analysis, by coordinate
+  std::vector<std::optional<std::array<Node, 2>>> box;    ///< range that is searched
+  std::vector<std::optional<std::array<Node, 2>>> reach;  ///< range outside of which no pose is feasible
+  std::vector<std::optional<Node>> default_values;        ///< of a fixed coordinate
+
+  // links
+  std::vector<LinkNodes> links;
+  std::vector<LinkPair> link_pairs;            ///< whose clearance is tested
+  std::vector<std::size_t> moving_links;       ///< whose clearance from obstacles is tested
+  std::optional<std::size_t> clearance_limit;  ///< index among the limits, behind those of the graph
+  std::vector<RodNodes> rods;                  ///< of the limbs that have one
+
+  // dynamics
   std::vector<ArmNodes> arms;
   std::vector<BodyNodes> bodies;
   std::vector<MassCheck> masses;
   std::optional<std::array<Node, 3>> wrench_point;  ///< where a wrench acts on the platform
-  std::optional<EquationNodes> equations;           ///< where there are bodies
-  std::vector<Node> jacobian;                       ///< EquationNodes::J, with bodies or without
-  std::optional<JointedBodies> jointed;             ///< where there are bodies, and joints for them
+  std::optional<EquationNodes> equations;           ///< present if there are bodies
+  std::vector<Node> jacobian;                       ///< EquationNodes::J, present without bodies, too
+  std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
   std::string why_no_reactions;
-  std::vector<std::string> mass_models;  ///< alternatives of the file; the first is the default
-  std::string mass_model;                ///< the one in force
-  /// The same mechanism with the masses of another alternative.
+  std::vector<std::string> mass_models;  ///< the first is the default
+  std::string mass_model;                ///< the selected one
+  /// Builds the same mechanism with another mass model.
   std::function<std::shared_ptr<const Mechanism>(const std::string& mass_model)> with_masses;
 
   limbs::Term term(Node node) { return {graph, node}; }

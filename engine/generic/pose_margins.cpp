@@ -6,18 +6,28 @@
 #include "engine/generic/clearance.hpp"
 
 namespace pkm::generic {
+namespace {
+
+template <class S>
+struct MarginScratch {
+  std::vector<S> inputs, registers;
+};
+
+}  // namespace
 
 template <class S>
 void append_margins(const Evaluation& e, std::span<const S> parameters, std::size_t mode, const LimitSpec& limits,
-                    std::span<const Pose<double>> poses, std::vector<S>& margins) {
+                    std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) {
   const Model& model = e.model;
-  const auto& outputs = e.conditions.outputs();
-  const std::size_t joints = model.inputs.joints, conditions = model.domains.size() + model.margins.size();
-  const std::optional<double> least_clearance = clearance_of(model, limits);
-  std::vector<S> inputs = e.inputs(parameters, limits, mode), registers;
+  const auto& outputs = e.constraints.outputs();
+  const std::size_t joints = model.inputs.joints, constraints = model.domains.size() + model.margins.size();
+  const std::optional<double> clearance_limit = clearance_of(model, limits);
+  auto& [inputs, registers] = scratch.get<MarginScratch<S>>();
+  inputs.resize(model.inputs.count());
+  e.fill_inputs<S>(parameters, limits, mode, inputs);
   for (const Pose<double>& pose : poses) {
     for (std::size_t i = 0; i < pose.size(); ++i) inputs[model.inputs.coordinate(i)] = S(pose[i]);
-    e.conditions.run_all<S>(inputs, registers);
+    e.constraints.run_all<S>(inputs, registers);
     bool all_finite = true, assembles = true, one_is_negative = false;
     const auto add = [&](const S& margin) {
       const double value = value_of(margin);
@@ -29,20 +39,20 @@ void append_margins(const Evaluation& e, std::span<const S> parameters, std::siz
       return value >= 0;
     };
     for (std::size_t i = 0; i < joints; ++i) assembles = assembles && std::isfinite(value_of(registers[outputs[i]]));
-    for (std::size_t i = 0; i < conditions; ++i) {
-      const bool holds = add(registers[outputs[joints + i]]);
-      if (i < model.domains.size()) assembles = assembles && holds;
+    for (std::size_t i = 0; i < constraints; ++i) {
+      const bool satisfied = add(registers[outputs[joints + i]]);
+      if (i < model.domains.size()) assembles = assembles && satisfied;
     }
-    if (assembles && least_clearance)
+    if (assembles && clearance_limit)
       if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles))
-        add(S(nearest->clearance - *least_clearance));
+        add(S(nearest->clearance - *clearance_limit));
     if (!(assembles && all_finite) && !one_is_negative) margins.push_back(S(-1.0));
   }
 }
 
 template void append_margins(const Evaluation&, std::span<const double>, std::size_t, const LimitSpec&,
-                             std::span<const Pose<double>>, std::vector<double>&);
+                             std::span<const Pose<double>>, Scratch&, std::vector<double>&);
 template void append_margins(const Evaluation&, std::span<const Dual4>, std::size_t, const LimitSpec&,
-                             std::span<const Pose<double>>, std::vector<Dual4>&);
+                             std::span<const Pose<double>>, Scratch&, std::vector<Dual4>&);
 
 }  // namespace pkm::generic

@@ -6,10 +6,10 @@
 #include "engine/core/stop.hpp"
 #include "engine/generic/cells.hpp"
 #include "engine/generic/clearance.hpp"
+#include "engine/generic/conditioning.hpp"
 #include "engine/generic/dynamics.hpp"
-#include "engine/generic/inertia_rows.hpp"
+#include "engine/generic/inertia_batch.hpp"
 #include "engine/generic/kinematics.hpp"
-#include "engine/generic/lengths.hpp"
 #include "engine/workspace/cell_runs.hpp"
 #include "engine/workspace/grid_surveyor.hpp"
 #include "engine/workspace/pose_quantities.hpp"
@@ -35,27 +35,27 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
     if (demand.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, demand.rotors);
-    if (const auto least = clearance_of(evaluation.model, plan.limits))
-      clearance_.emplace(evaluation, sweep_.swept, mode_, *least, plan.limits.obstacles);
+    if (const auto limit = clearance_of(evaluation.model, plan.limits))
+      clearance_.emplace(evaluation, sweep_.swept, mode_, *limit, plan.limits.obstacles);
   }
 
  private:
   friend GridEvaluator;
-  struct Room {
-    std::optional<std::size_t> number;  ///< of the grid that it is ready for
+  struct WorkerScratch {
+    std::optional<std::size_t> number;  ///< of the grid for which it is prepared
     std::vector<double> inputs;
-    CellRoom cells;
-    InertiaRoom inertia;
-    ClearanceRows::Room clearance;
-    std::array<std::size_t, expression::kRow> waiting;  ///< bits of the cells whose clearance is looked at next
+    CellScratch cells;
+    InertiaScratch inertia;
+    ClearanceScratch clearance;
+    std::array<std::size_t, expression::kRow> waiting;  ///< indices of the bits of the cells in the clearance batch
   };
   struct Common {
     std::vector<double> inputs;
     std::vector<FixedCells> held;
   };
-  using Rooms = GridRooms<Common, Room>;
+  using Rooms = GridRooms<Common, WorkerScratch>;
 
-  /// A design on its grids, whose pieces are slices of the outer loop.
+  /// A design on its grids. The units of work (pieces) are the slices of the outer loop.
   struct GriddedSlices : Gridded {
     std::span<const double> parameters;
     const Common& common;
@@ -71,43 +71,46 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     find_fixed_cells(
         sweep_.held, plan_,
         [&](int coordinate) {
-          return e_.needed_range(parameters, plan_.limits, mode_, static_cast<std::size_t>(coordinate));
+          return e_.required_range(parameters, plan_.limits, mode_, static_cast<std::size_t>(coordinate));
         },
         common.held);
     fill_inputs(parameters, common.inputs);
-    for (Room& room : rooms.of) room.number.reset();
+    for (WorkerScratch& scratch : rooms.of) scratch.number.reset();
     return {{grid, test_.shape(grid)[0], common.held}, parameters, common};
   }
-  void find(const GriddedSlices& slices, std::size_t number, std::size_t slice, Room& room, Survey<double>& to) const {
-    prepare(slices.common, number, room);
-    const CellTally tally = find_cells(slices.grid, slice, demand_.needs_samples(), room);
+  void find(const GriddedSlices& slices, std::size_t number, std::size_t slice, WorkerScratch& scratch,
+            Survey<double>& to) const {
+    prepare(slices.common, number, scratch);
+    const CellTally tally = find_cells(slices.grid, slice, demand_.needs_samples(), scratch);
     to.feasible_cells += tally.cells;
     to.touches_box = to.touches_box || tally.touches_box;
-    if (demand_.needs_samples()) add_slice(slices.parameters, slices.grid, slice, slices.cell_volume, room, to);
+    if (demand_.needs_samples()) add_slice(slices.parameters, slices.grid, slice, slices.cell_volume, scratch, to);
   }
   template <class Visit>
   void visit_cells(const GriddedSlices& slices, Rooms& rooms, const Visit& visit) const {
-    Room& room = rooms.of[0];
-    prepare(slices.common, 0, room);
+    WorkerScratch& scratch = rooms.of[0];
+    prepare(slices.common, 0, scratch);
     const auto [count, columns, cells] = test_.shape(slices.grid);
     for (std::size_t slice = 0; slice < count; ++slice) {
-      find_cells(slices.grid, slice, true, room);
-      for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) { visit(test_.cell(slice, j, k)); });
+      find_cells(slices.grid, slice, true, scratch);
+      for_each_cell(scratch.cells, columns, cells,
+                    [&](std::size_t j, std::size_t k) { visit(test_.cell(slice, j, k)); });
     }
   }
 
-  /// For the grid with a number.
-  void prepare(const Common& common, std::size_t number, Room& room) const {
-    if (room.number == number) return;
-    room.number = number;
-    room.inputs = common.inputs;
-    set_fixed(common.held, number,
-              [&](std::size_t coordinate) -> double& { return room.inputs[e_.model.inputs.coordinate(coordinate)]; });
-    test_.start(room.inputs, room.cells);
-    if (inertia_) inertia_->start(room.inputs, room.inertia);
-    if (clearance_) clearance_->start(room.inputs, room.clearance);
+  /// Prepares the scratch memory for the grid with a number.
+  void prepare(const Common& common, std::size_t number, WorkerScratch& scratch) const {
+    if (scratch.number == number) return;
+    scratch.number = number;
+    scratch.inputs = common.inputs;
+    set_fixed(common.held, number, [&](std::size_t coordinate) -> double& {
+      return scratch.inputs[e_.model.inputs.coordinate(coordinate)];
+    });
+    test_.start(scratch.inputs, scratch.cells);
+    if (inertia_) inertia_->start(scratch.inputs, scratch.inertia);
+    if (clearance_) clearance_->start(scratch.inputs, scratch.clearance);
   }
-  /// With the held coordinates where they are held.
+  /// The graph's inputs with the fixed coordinates.
   void fill_inputs(std::span<const double> parameters, std::vector<double>& inputs) const {
     inputs.resize(e_.model.inputs.count());
     e_.fill_inputs<double>(parameters, plan_.limits, mode_, inputs);
@@ -119,69 +122,70 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
 
   /// Calls visit(column, cell) for the feasible cells of a slice, in order.
   template <class Visit>
-  static void for_each_cell(const CellRoom& room, std::size_t columns, std::size_t cells, const Visit& visit) {
+  static void for_each_cell(const CellScratch& scratch, std::size_t columns, std::size_t cells, const Visit& visit) {
     const std::size_t words = CellTest::words(cells);
     for (std::size_t j = 0; j < columns; ++j)
-      for_each_bit(std::span(room.bits).subspan(j * words, words), [&](std::size_t k) { visit(j, k); });
+      for_each_bit(std::span(scratch.bits).subspan(j * words, words), [&](std::size_t k) { visit(j, k); });
   }
 
-  Pose<double> pose_of(const VoxelGrid& grid, const std::array<std::int64_t, 3>& cell, const Room& room) const {
+  Pose<double> pose_of(const VoxelGrid& grid, const std::array<std::int64_t, 3>& cell,
+                       const WorkerScratch& scratch) const {
     Pose<double> pose(e_.model.inputs.coordinates);
-    std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
+    std::copy_n(&scratch.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
     for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
       pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid.centre(axis, cell[axis]);
     return pose;
   }
 
-  /// The feasible cells of a slice. @param want_bits  whether room.cells.bits are asked for
-  CellTally find_cells(const VoxelGrid& grid, std::size_t slice, bool want_bits, Room& room) const {
-    if (!clearance_) return test_.test(grid, slice, want_bits, room.cells);
-    test_.test(grid, slice, true, room.cells);
+  /// Finds the feasible cells of a slice, including clearance. @param want_bits  whether to compute scratch.cells.bits
+  CellTally find_cells(const VoxelGrid& grid, std::size_t slice, bool want_bits, WorkerScratch& scratch) const {
+    if (!clearance_) return test_.test(grid, slice, want_bits, scratch.cells);
+    test_.test(grid, slice, true, scratch.cells);
     const std::array<std::size_t, 3> shape = test_.shape(grid);
     const std::size_t columns = shape[1], cells = shape[2], length = CellTest::words(cells) * 64;
-    std::vector<std::uint64_t>& bits = room.cells.bits;
-    const auto look = [&] {
+    std::vector<std::uint64_t>& bits = scratch.cells.bits;
+    const auto test_batch = [&] {
       check_stop();
-      clearance_->finish(room.clearance, [&](std::size_t k) {
-        bits[room.waiting[k] / 64] &= ~(std::uint64_t{1} << room.waiting[k] % 64);
+      clearance_->finish(scratch.clearance, [&](std::size_t k) {
+        bits[scratch.waiting[k] / 64] &= ~(std::uint64_t{1} << scratch.waiting[k] % 64);
       });
     };
-    for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
-      room.waiting[room.clearance.poses.count] = j * length + k;
-      if (clearance_->add(pose_of(grid, test_.cell(slice, j, k), room), room.clearance)) look();
+    for_each_cell(scratch.cells, columns, cells, [&](std::size_t j, std::size_t k) {
+      scratch.waiting[scratch.clearance.poses.count] = j * length + k;
+      if (clearance_->add(pose_of(grid, test_.cell(slice, j, k), scratch), scratch.clearance)) test_batch();
     });
-    look();
+    test_batch();
     CellTally tally;
-    for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
+    for_each_cell(scratch.cells, columns, cells, [&](std::size_t j, std::size_t k) {
       ++tally.cells;
       tally.touches_box = tally.touches_box || k == 0 || k + 1 == cells || test_.at_side(grid, slice, j);
     });
     return tally;
   }
 
-  /// Adds the samples of a slice.
+  /// Appends the samples of a slice to the survey.
   void add_slice(std::span<const double> parameters, const VoxelGrid& grid, std::size_t slice, double measure,
-                 Room& room, Survey<double>& to) const {
+                 WorkerScratch& scratch, Survey<double>& to) const {
     const auto [slices, columns, cells] = test_.shape(grid);
-    for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
-      add_sample(parameters, pose_of(grid, test_.cell(slice, j, k), room), measure, room, to);
+    for_each_cell(scratch.cells, columns, cells, [&](std::size_t j, std::size_t k) {
+      add_sample(parameters, pose_of(grid, test_.cell(slice, j, k), scratch), measure, scratch, to);
     });
-    if (inertia_) inertia_->finish(room.inertia, to);
+    if (inertia_) inertia_->finish(scratch.inertia, to);
   }
-  /// @param room  of the slice; the pose's coordinates among its inputs are overwritten
-  void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight, Room& room,
+  /// Writes the coordinates of the pose to scratch.inputs.
+  void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight, WorkerScratch& scratch,
                   Survey<double>& to) const {
     check_stop();
     to.weight.push_back(weight);
     if (demand_.poses) to.pose.push_back(pose);
-    if (inertia_) inertia_->add(pose, room.inertia, to);
+    if (inertia_) inertia_->add(pose, scratch.inertia, to);
     if (!demand_.needs_jacobian()) return;
-    std::vector<double>& inputs = room.inputs;
+    std::vector<double>& inputs = scratch.inputs;
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
     const PoseReport report =
         std::ranges::all_of(demand_.fields,
                             [](const PoseQuantity* q) { return q == &kConditioning || q->needs_inertia(); })
-            ? report_of_sample(e_, parameters, pose, inputs)
+            ? inspect_sample(e_, parameters, pose, inputs)
             : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
     add_reported(report, e_.model.inputs.joints, to);
   }
@@ -195,8 +199,8 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   std::size_t mode_;
   BoxOfDesign default_box_;
   CellTest test_;
-  std::optional<InertiaRows> inertia_;      ///< where fields of inertia are demanded
-  std::optional<ClearanceRows> clearance_;  ///< where a clearance is asked for
+  std::optional<InertiaBatch> inertia_;      ///< if fields of inertia are requested
+  std::optional<ClearanceBatch> clearance_;  ///< if there is a clearance limit
 };
 
 }  // namespace

@@ -9,12 +9,12 @@
 
 namespace pkm::generic {
 
-/// The box for a design, for plans that give none.
+/// Search box as a function of the design, for plans that do not give one.
 using BoxOfDesign = std::function<Box(std::span<const double> parameters)>;
 
-/// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
-/// @param mechanism, evaluation  outlive the evaluator
-/// @param default_box            null: that of the file
+/// Throws std::invalid_argument with a message if the mechanism does not support the plan.
+/// @param mechanism, evaluation  must outlive the evaluator
+/// @param default_box            null: the box of the file
 std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism, const Evaluation& evaluation,
                                                      const WorkspacePlan& plan, const VoxelOptions& voxels,
                                                      const Demand& demand, BoxOfDesign default_box = {});

@@ -17,63 +17,55 @@
 
 namespace pkm {
 
-/// For N coordinates and N joints; N = 0: numbers known at run time only.
-template <class S, std::size_t N = 0>
+template <class S>
 struct Influence {
-  AxisMatrix<S, N> G;                                    ///< joints x coordinates
-  std::array<AxisMatrix<S, N>, N ? N : kMaxJoints> H{};  ///< one symmetric matrix per joint
-
-  Influence() = default;
-  /// Converts from a fixed size.
-  template <std::size_t M>
-  requires(N == 0 && M != 0) Influence(const Influence<S, M>& other) : G(other.G) {
-    for (std::size_t i = 0; i < M; ++i) H[i] = other.H[i];
-  }
+  AxisMatrix<S> G;                            ///< joints x coordinates
+  std::array<AxisMatrix<S>, kMaxJoints> H{};  ///< one symmetric matrix per joint
 };
 
 /// Accelerations qddot of the joints.
 /// @param velocity, acceleration  Xdot and Xddot of the platform
-template <class S, std::size_t N>
-AxisVector<S, N> accelerations(const Influence<S, N>& influence, const AxisVector<S, N>& velocity,
-                               const AxisVector<S, N>& acceleration) {
-  AxisVector<S, N> joints = influence.G * acceleration;
+template <class S>
+AxisVector<S> accelerations(const Influence<S>& influence, const AxisVector<S>& velocity,
+                            const AxisVector<S>& acceleration) {
+  AxisVector<S> joints = influence.G * acceleration;
   for (std::size_t i = 0; i < joints.size(); ++i) joints[i] += dot(velocity, influence.H[i] * velocity);
   return joints;
 }
 
-/// The symmetric matrices of N quadratic forms, from their values at the unit vectors and at sums of two unit vectors
-/// (polarisation).
-/// @param form  form(v): the values of the N forms at v
-template <std::size_t N, class Form>
-std::array<Matrix<double, N, N>, N> quadratic_form_matrices(const Form& form) {
-  std::array<Matrix<double, N, N>, N> H;
-  const auto unit = [](std::size_t j) {
-    Vector<double, N> v;
+/// The symmetric n x n matrices of some quadratic forms, from their values at the unit vectors and at sums of two unit
+/// vectors (polarisation).
+/// @param form  form(v): the values of the forms at v
+template <class Form>
+std::array<AxisMatrix<double>, kMaxJoints> quadratic_form_matrices(std::size_t n, const Form& form) {
+  std::array<AxisMatrix<double>, kMaxJoints> H;
+  H.fill(AxisMatrix<double>(n, n));
+  AxisVector<double> v(n);
+  for (std::size_t j = 0; j < n; ++j) {
     v[j] = 1;
-    return v;
-  };
-  for (std::size_t j = 0; j < N; ++j) {
-    const Vector<double, N> terms = form(unit(j));
-    for (std::size_t i = 0; i < N; ++i) H[i](j, j) = terms[i];
-  }
-  for (std::size_t j = 0; j < N; ++j)
+    const AxisVector<double> squares = form(v);
+    for (std::size_t i = 0; i < squares.size(); ++i) H[i](j, j) = squares[i];
     for (std::size_t k = 0; k < j; ++k) {
-      const Vector<double, N> terms = form(unit(j) + unit(k));
-      for (std::size_t i = 0; i < N; ++i) H[i](j, k) = H[i](k, j) = (terms[i] - H[i](j, j) - H[i](k, k)) / 2;
+      v[k] = 1;
+      const AxisVector<double> sums = form(v);
+      v[k] = 0;
+      for (std::size_t i = 0; i < sums.size(); ++i) H[i](j, k) = H[i](k, j) = (sums[i] - H[i](j, j) - H[i](k, k)) / 2;
     }
+    v[j] = 0;
+  }
   return H;
 }
 
 /// The influence coefficients of the inverse map, from the joints to the platform; G must be square. Infinite or NaN if
 /// G is singular.
-template <class S, std::size_t N>
-Influence<S, N> reversed(const Influence<S, N>& influence) {
-  Influence<S, N> back;
+template <class S>
+Influence<S> reversed(const Influence<S>& influence) {
+  Influence<S> back;
   const std::size_t n = influence.G.rows();
-  const AxisMatrix<S, N>& F = back.G = solve(influence.G, AxisMatrix<S, N>::identity(n));
-  for (std::size_t i = 0; i < n; ++i) back.H[i] = AxisMatrix<S, N>::zero(n, n);
+  const AxisMatrix<S>& F = back.G = solve(influence.G, AxisMatrix<S>::identity(n));
+  for (std::size_t i = 0; i < n; ++i) back.H[i] = AxisMatrix<S>::zero(n, n);
   for (std::size_t k = 0; k < n; ++k) {
-    const AxisMatrix<S, N> FHF = transpose(F) * influence.H[k] * F;
+    const AxisMatrix<S> FHF = transpose(F) * influence.H[k] * F;
     for (std::size_t i = 0; i < n; ++i) back.H[i] = back.H[i] - FHF * F(i, k);
   }
   return back;

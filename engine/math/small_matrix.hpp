@@ -254,11 +254,10 @@ B solve(A a, B b) {
 /// Maximum number of coordinates of a pose, and of actuated joints.
 inline constexpr std::size_t kMaxCoordinates = 6, kMaxJoints = 8;
 
-/// Vector with one element per pose coordinate or per actuated joint, and matrix of such rows and columns: of fixed
-/// size N, or of any size up to kMaxJoints if N = 0.
-template <class S, std::size_t N = 0>
-using AxisVector = std::conditional_t<N != 0, Vector<S, N>, MatrixUpTo<S, kMaxJoints>>;
-template <class S, std::size_t N = 0>
-using AxisMatrix = std::conditional_t<N != 0, Matrix<S, N, N>, MatrixUpTo<S, kMaxJoints, kMaxJoints>>;
+/// Vector with one element per pose coordinate or per actuated joint, and matrix of such rows and columns.
+template <class S>
+using AxisVector = MatrixUpTo<S, kMaxJoints>;
+template <class S>
+using AxisMatrix = MatrixUpTo<S, kMaxJoints, kMaxJoints>;
 
 }  // namespace pkm

@@ -21,19 +21,19 @@ class DynamicsOf : public Dynamics {
 };
 
 /// Self has `template <class S> void find_margins(std::span<const S> parameters, const std::string& mode,
-/// const LimitSpec&, std::span<const Pose<double>>, std::vector<S>&) const`, and `std::string common_margin_unit()
-/// const`.
+/// const LimitSpec&, std::span<const Pose<double>>, Scratch&, std::vector<S>&) const`, and `std::string
+/// common_margin_unit() const`.
 template <class Self>
 class PoseMarginsOf : public PoseMargins {
  public:
   std::string margin_unit() const final { return static_cast<const Self&>(*this).common_margin_unit(); }
   void append(std::span<const double> p, const std::string& mode, const LimitSpec& limits,
-              std::span<const Pose<double>> poses, std::vector<double>& margins) const final {
-    static_cast<const Self&>(*this).find_margins(p, mode, limits, poses, margins);
+              std::span<const Pose<double>> poses, Scratch& scratch, std::vector<double>& margins) const final {
+    static_cast<const Self&>(*this).find_margins(p, mode, limits, poses, scratch, margins);
   }
   void append(std::span<const Dual4> p, const std::string& mode, const LimitSpec& limits,
-              std::span<const Pose<double>> poses, std::vector<Dual4>& margins) const final {
-    static_cast<const Self&>(*this).find_margins(p, mode, limits, poses, margins);
+              std::span<const Pose<double>> poses, Scratch& scratch, std::vector<Dual4>& margins) const final {
+    static_cast<const Self&>(*this).find_margins(p, mode, limits, poses, scratch, margins);
   }
 };
 

@@ -102,7 +102,7 @@ class SurfaceBuilder {
   void refine(const WorkspaceFields& workspace, const PoseMargin& margin) {
     constexpr std::size_t kBlock = 256;  // vertices per work item
     const std::size_t count = edges_.size();
-    std::vector<std::vector<double>> scratch(workers());
+    std::vector<Scratch> scratch(workers());
     parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end, std::size_t worker) {
       for (std::size_t k = block * kBlock; k < std::min(end * kBlock, count); ++k) {
         if (edges_[k].on_box) continue;

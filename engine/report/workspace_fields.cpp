@@ -63,7 +63,7 @@ class Evaluator {
 
   /// Scratch memory of a thread.
   struct FieldScratch {
-    std::vector<double> margins;
+    Scratch margins;
     std::vector<MotionState<double>> states;
     std::vector<PoseDynamics<double>> dynamics;
     std::vector<std::size_t> cells;
@@ -229,7 +229,7 @@ PoseMargin::PoseMargin(const Mechanism& mechanism, std::span<const double> param
       parameters_(parameters.begin(), parameters.end()),
       limits_(workspace_limits(mechanism.info(), limits)) {}
 
-double PoseMargin::operator()(const Pose<double>& pose, std::vector<double>& scratch) const {
+double PoseMargin::operator()(const Pose<double>& pose, Scratch& scratch) const {
   double min_margin = std::numeric_limits<double>::infinity();
   const PoseMargins* const capability = mechanism_.pose_margins();
   if (!capability) {  // take the margins from the report; there are some even if the pose does not assemble
@@ -237,9 +237,10 @@ double PoseMargin::operator()(const Pose<double>& pose, std::vector<double>& scr
     for (const auto& named : report.margins) min_margin = std::fmin(min_margin, named.second);
     return report.feasible || min_margin < 0 ? min_margin : -1;
   }
-  scratch.clear();
-  capability->append(parameters_, mechanism_.info().modes.front(), limits_, {&pose, 1}, scratch);
-  for (const double margin : scratch) min_margin = std::fmin(min_margin, margin);
+  std::vector<double>& margins = scratch.get<std::vector<double>>();
+  margins.clear();
+  capability->append(parameters_, mechanism_.info().modes.front(), limits_, {&pose, 1}, scratch, margins);
+  for (const double margin : margins) min_margin = std::fmin(min_margin, margin);
   return min_margin;
 }
 

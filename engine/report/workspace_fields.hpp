@@ -77,8 +77,8 @@ class PoseMargin {
  public:
   /// @param mechanism  must outlive this object
   PoseMargin(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits);
-  /// @param scratch  overwritten; reuse one per thread
-  double operator()(const Pose<double>& pose, std::vector<double>& scratch) const;
+  /// @param scratch  of the calling thread
+  double operator()(const Pose<double>& pose, Scratch& scratch) const;
 
  private:
   const Mechanism& mechanism_;

@@ -32,7 +32,7 @@ class NodeGrid {
   bool is_feasible(std::size_t node) const { return feasible_[node] != 0; }
   Point point(std::size_t node) const { return point(node % kNodesPerRow, node / kNodesPerRow); }
   bool is_feasible(const Point& at) const {
-    std::vector<double> scratch;
+    Scratch scratch;
     return margin_(workspace_.pose({at[0], at[1], 0}), scratch) >= 0;
   }
 

@@ -6,8 +6,6 @@
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <new>
 #include <set>
 
@@ -44,17 +42,14 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { ope
 namespace pkm {
 namespace {
 
-/// Studies whose evaluations do not allocate. Drive forces, pose reports and margins of the generic engine do, and so
-/// do motions, obstacles and a task workspace.
+/// Studies whose evaluations do not allocate. Drive forces and pose reports of the generic engine do, and so do motions
+/// and obstacles.
 std::vector<std::string> experiments() {
   const std::set<std::string> excluded = {"motions", "mechanisms", "motors", "obstacles"};  // folders
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
-    if (entry.path().extension() != ".toml" || excluded.contains(entry.path().parent_path().filename().string()))
-      continue;
-    std::ifstream file(entry.path());
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (text.find("type = \"task-workspace\"") == std::string::npos) paths.push_back(entry.path());
+    const bool is_excluded = excluded.contains(entry.path().parent_path().filename().string());
+    if (entry.path().extension() == ".toml" && !is_excluded) paths.push_back(entry.path());
   }
   std::ranges::sort(paths);
   return paths;

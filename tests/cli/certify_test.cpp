@@ -48,7 +48,7 @@ TEST_F(Certify, BoundsVolumes) {
 
 TEST_F(Certify, RejectsInvalidArguments) {
   EXPECT_THAT(run({"certify", "quadrupteron", "--limit", "clearance_min=5mm"}).err,
-              HasSubstr("mechanism quadrupteron has no certain bounds under a clearance"));
+              HasSubstr("mechanism quadrupteron has no certified bounds with a clearance limit"));
   EXPECT_THAT(run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0"}).err, HasSubstr("between 0 and 2"));
   EXPECT_THAT(run({"certify", kMechanisms + "orthoglide.toml", "--box", "x=0:1"}).err, HasSubstr("--box"));
 }
@@ -368,7 +368,7 @@ unit = "m^2"
 )");
   const auto written = run({"certify", "disc.toml", "--proof", "disc.proof"});
   EXPECT_EQ(written.exit_code, 2) << written.out;
-  EXPECT_THAT(written.err, HasSubstr("no certain bounds over a range of x that is longer than the largest double"));
+  EXPECT_THAT(written.err, HasSubstr("certified bounds: the range of x is longer than the largest double"));
 }
 
 /// A proof that cannot be checked gives exit code 2, not that of a rejected proof.

@@ -123,7 +123,7 @@ TEST(CliPose, NamesTheLinksThatAreTooClose) {
 TEST(CliPose, APoseThatDoesNotAssembleGivesNullsAndExitCode1) {
   const auto found = pkmopt({"pose", "4ppa-2par", "--at", "x=0.4,y=1.25,z=-3,theta=0", "--json"});
   EXPECT_EQ(found.exit_code, 1);
-  const std::string reason = "h_1 exists does not hold: the pose does not assemble";
+  const std::string reason = "h_1 has no real value, so q1 is undefined";
   EXPECT_EQ(found.err, "pkmopt: the pose does not assemble in mode lower,lower: " + reason + "\n");
   const json pose = found.json();
   EXPECT_EQ(pose["assembles"], false);

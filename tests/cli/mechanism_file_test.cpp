@@ -127,7 +127,7 @@ TEST_F(MechanismFile, ForwardReportsWhetherItsListIsComplete) {
     return run(command);
   };
   EXPECT_THAT(of_file({}).out,
-              HasSubstr("\n  complete   no, found by Newton's method from poses over the survey's box"));
+              HasSubstr("\n  complete   no, found by Newton's method from poses in the search box"));
   EXPECT_EQ(of_file({"--json"}).json()["complete"], false);
   EXPECT_THAT(of_file({"--near", "x=0,y=0,z=-0.4"}).out,
               HasSubstr("complete   no, found by Newton's method from the pose"));

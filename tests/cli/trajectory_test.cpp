@@ -146,7 +146,7 @@ TEST(CliTrajectory, InfeasibleSamplesAreMarkedAndGiveExitCode1) {
   EXPECT_EQ(accepted.out, refused.out);
   const json last = accepted.json()["samples"].back();
   EXPECT_FALSE(last["feasible"]);
-  EXPECT_THAT(last["reason"].get<std::string>(), HasSubstr("limb1 reaches does not hold"));
+  EXPECT_THAT(last["reason"].get<std::string>(), HasSubstr("limb1 cannot reach the pose"));
   EXPECT_TRUE(last["forces"].is_null());
   EXPECT_TRUE(last["quantities"]["theta_11"].is_null());
   EXPECT_TRUE(last["quantities"]["theta_31"].is_number()) << "limb 3 reaches";
@@ -315,7 +315,7 @@ TEST(CliMotionStudy, AnInfeasibleMotionIsExplained) {
   const auto result = pkmopt({"evaluate", "s.toml", "--set", "l_11=0.01"}, folder.path());
   EXPECT_EQ(result.exit_code, 0) << "infeasible, as by any constraint";
   EXPECT_THAT(result.out, HasSubstr("no: motion-swing violated; peak-force: the motion swing leaves the reach of the "
-                                    "mechanism at t = 0 s (limb1 reaches"));
+                                    "mechanism at t = 0 s (limb1 cannot reach the pose)"));
 }
 
 TEST(CliTrajectory, ChecksMotors) {

@@ -75,15 +75,13 @@ class FromInverse : public Mechanism, Velocities {
                                              const std::string& mode) const final {
     for (const double joint : self().joints(p, fixed<N>(pose), mode))
       if (!std::isfinite(joint)) return std::nullopt;
-    Influence<double, N> found;
-    found.G = jacobian(p, pose, mode);
-    found.H = quadratic_form_matrices<N>([&](const Vector<double, N>& velocity) {
-      const Vector<Taylor, N> q = joints_along(p, pose, velocity, mode);
-      Vector<double, N> terms;
+    const auto second_derivatives = [&](const AxisVector<double>& velocity) {
+      const Vector<Taylor, N> q = joints_along(p, pose, fixed<N>(velocity), mode);
+      AxisVector<double> terms(N);
       for (std::size_t i = 0; i < N; ++i) terms[i] = q[i].dd;
       return terms;
-    });
-    return found;
+    };
+    return Influence<double>{jacobian(p, pose, mode), quadratic_form_matrices(N, second_derivatives)};
   }
 
   MechanismInfo info_;

@@ -4,7 +4,7 @@
 
 #include "engine/expression/derivative.hpp"
 #include "engine/expression/polynomial_form.hpp"
-#include "engine/generic/conditions.hpp"
+#include "engine/generic/constraints.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -84,7 +84,7 @@ class Planner {
  public:
   Planner(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, bool curves, const Ranges& box)
       : model_(evaluation.model),
-        known_(conditions_of(model_, mode)),
+        known_(constraints_of(model_, mode)),
         graph_(known_.graph),
         v_(order.v ? Inputs::coordinate_group(*order.v) : 0),
         z_(Inputs::coordinate_group(order.z)),
@@ -143,17 +143,17 @@ class Planner {
   /// Ranges and folds of cranks that surfaces tell, in place of what they cover.
   void take_cranks() {
     covered_.assign(known_.all.size(), false);
-    std::vector<std::optional<Signs>> reaches(known_.cranks.size());
-    for (const CoveredFolds& folds : known_.folds) {
-      const auto outer = bits_of({folds.surfaces[0], folds.surfaces[1]});
+    std::vector<std::optional<Signs>> reaches(known_.crank_ranges.size());
+    for (const AnnulusNodes& annulus : known_.annuli) {
+      const auto outer = bits_of({annulus.surfaces[0], annulus.surfaces[1]});
       if (!outer) continue;
       const Signs all = (*outer)[0] | (*outer)[1];
       plan_.formula.all |= all;
-      if (folds.crank_range) reaches[*folds.crank_range] = all;
-      cover(folds.conditions);
+      if (annulus.crank_range) reaches[*annulus.crank_range] = all;
+      cover(annulus.constraints);
     }
-    for (std::size_t i = 0; i < known_.cranks.size(); ++i) {
-      const CoveredRange& crank = known_.cranks[i];
+    for (std::size_t i = 0; i < known_.crank_ranges.size(); ++i) {
+      const CrankRangeNodes& crank = known_.crank_ranges[i];
       const auto found = bits_of({crank.at_min, crank.at_max, crank.after_min, crank.before_max});
       if (!reaches[i])
         if (const auto reach = bits_of({crank.reach})) reaches[i] = reach->front();
@@ -163,7 +163,7 @@ class Planner {
       plan_.formula.cranks.push_back(
           {(*found)[0], (*found)[1], (*found)[2], (*found)[3], *reaches[i], 0, graph_[crank.branch].number < 0});
       half_turns_.push_back(crank.half_turn);
-      cover(crank.conditions);
+      cover(crank.constraints);
     }
   }
   void cover(const std::vector<Node>& conditions) {
@@ -191,7 +191,7 @@ class Planner {
     }
     if (auto clauses = lowering_.conditions(node)) {
       for (const NodeClause& clause : *clauses) add_clause(clause);
-      for (const Node finite : finite_parts(graph_, node, v_ | z_))
+      for (const Node finite : finiteness_constraints(graph_, node, v_ | z_))
         if (std::ranges::find(plain_, finite) == plain_.end()) plain_.push_back(finite);
       return;
     }
@@ -202,7 +202,7 @@ class Planner {
     else if (curves_)
       add_curve(node);
     else
-      refuse("'" + name_of_condition(model_, number) + "' is no polynomial of degree " + (v_ == 0 ? "four" : "two"));
+      refuse("'" + constraint_name(model_, number) + "' is no polynomial of degree " + (v_ == 0 ? "four" : "two"));
   }
 
   void add_curve(Node node) {
@@ -262,7 +262,7 @@ class Planner {
   }
 
   const Model& model_;
-  Conditions known_;
+  PoseConstraints known_;
   Graph& graph_;
   Groups v_, z_;
   SurfaceLowering lowering_;

@@ -7,7 +7,7 @@
 #include "engine/generic/columns/sections_integral.hpp"
 #include "engine/generic/conditioning.hpp"
 #include "engine/generic/dynamics.hpp"
-#include "engine/generic/inertia_rows.hpp"
+#include "engine/generic/inertia_batch.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "engine/workspace/with_slopes.hpp"
 
@@ -110,13 +110,13 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   struct Room {
     std::vector<double> inputs;
     IntegralRoom integral;
-    InertiaRoom inertia;
+    InertiaScratch inertia;
     Known known;
   };
   template <class S>
   struct SampleRoom {
     std::vector<S> inputs;
-    SampleConditioning::Room<S> conditioning;
+    ConditioningScratch<S> conditioning;
   };
 
   /// The coordinates that differ from sample to sample.
@@ -171,7 +171,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
       const FixedCoordinate held = how_fixed(plan_, coordinate);
       if (held.kind == Kind::integrated) continue;
       S& input = inputs[at.coordinate(i)];
-      const auto middle = held.kind == Kind::middle ? e_.of_design<S>(e_.middle[i], parameters) : std::nullopt;
+      const auto middle = held.kind == Kind::middle ? e_.of_design<S>(e_.default_values[i], parameters) : std::nullopt;
       if (held.kind == Kind::middle && !middle) refuse_middle(coordinate);
       input = middle ? *middle : S(held.kind == Kind::listed ? held.values.front() : held.value);
     }
@@ -258,7 +258,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   GaussRule inner_rule_, outer_rule_;
   std::optional<SectionsIntegral> integral_;
   std::optional<SampleConditioning> conditioning_;  ///< where they are demanded
-  std::optional<InertiaRows> inertia_;
+  std::optional<InertiaBatch> inertia_;
 };
 
 }  // namespace

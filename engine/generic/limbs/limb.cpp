@@ -5,14 +5,17 @@
 namespace pkm::limbs {
 namespace {
 
-/// v without its part along `across`.
-Vector3 seen(const Ends& ends, const Vector3& v) { return ends.across ? v - *ends.across * dot(v, *ends.across) : v; }
-/// (|v|^2 - length^2) / 2, whose derivatives are those of a rod that keeps its length.
+/// B - A, projected onto the plane of the limb.
+Vector3 projected(const Ends& ends) {
+  const Vector3 v = ends.B - ends.A;
+  return ends.across ? v - *ends.across * dot(v, *ends.across) : v;
+}
+/// Closure of a rod: (|v|^2 - length^2) / 2. The factor 1/2 makes its gradient by v equal to v.
 Term rod_closure(const Vector3& v, const Term& length) { return (dot(v, v) - length * length) * 0.5; }
 
 }  // namespace
 
-Rotation turn_about(std::size_t axis, const Term& sine, const Term& cosine) {
+Rotation rotation_about(std::size_t axis, const Term& sine, const Term& cosine) {
   const Term zero(sine.graph(), 0.0), one(sine.graph(), 1.0);
   Rotation R({one, zero, zero}, {zero, one, zero}, {zero, zero, one});
   const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
@@ -23,18 +26,18 @@ Rotation turn_about(std::size_t axis, const Term& sine, const Term& cosine) {
 }
 
 Limb telescope(const Ends& ends, const Term& q) {
-  const Vector3 v = seen(ends, ends.B - ends.A);
-  return {.joint = length(v), .conditions = {}, .closure = rod_closure(v, q), .C = ends.A, .S = ends.A};
+  const Vector3 v = projected(ends);
+  return {.joint = length(v), .constraints = {}, .closure = rod_closure(v, q), .C = ends.A, .S = ends.A};
 }
 
 Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q) {
-  const Vector3 v = seen(ends, ends.B - ends.A);
+  const Vector3 v = projected(ends);
   const Term s = dot(v, e);
-  const Vector3 aside = v - e * s;
-  const Term aside_2 = dot(aside, aside);
-  const Term joint = s + branch * sqrt(rod * rod - aside_2);
+  const Vector3 normal = v - e * s;
+  const Term distance_2 = dot(normal, normal);
+  const Term joint = s + branch * sqrt(rod * rod - distance_2);
   return {.joint = joint,
-          .conditions = {{"reaches", "m", rod - sqrt(aside_2)}},
+          .constraints = {{"reaches", "m", rod - sqrt(distance_2)}},
           .closure = rod_closure(v - e * q, rod),
           .C = ends.A + e * joint,
           .S = ends.A + e * joint};
@@ -42,53 +45,53 @@ Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const T
 
 Limb slider(const Ends& ends, const Vector3& e, const Term& q) {
   const Term s = dot(ends.B - ends.A, e);
-  return {.joint = s, .conditions = {}, .closure = s - q, .C = ends.A + e * s, .S = ends.A + e * s};
+  return {.joint = s, .constraints = {}, .closure = s - q, .C = ends.A + e * s, .S = ends.A + e * s};
 }
 
 Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, const Term& l_1, const Term& l_2,
                       const Term& branch, const Term& q) {
   const Vector3 v = ends.B - ends.A;
   const Term s = dot(v, e);
-  const Vector3 aside = v - e * s;
-  const Term distance_2 = dot(aside, aside), distance = sqrt(distance_2);
-  // the elbow: along the line between the outer ends of the links, and beside it
+  const Vector3 normal = v - e * s;
+  const Term distance_2 = dot(normal, normal), distance = sqrt(distance_2);
+  // position of the elbow: component along the line between the outer ends of the links, and distance from it
   const Term along = (distance_2 + l_1 * l_1 - l_2 * l_2) / (distance * 2.0);
   const Term beside = branch * sqrt(l_1 * l_1 - along * along);
-  const Vector3 slide = ends.A + e * s, arm = (aside * along - cross(axis, aside) * beside) / distance;
+  const Vector3 slide = ends.A + e * s, arm = (normal * along - cross(axis, normal) * beside) / distance;
   return {.joint = s,
-          .conditions = {{"reaches", "m", l_1 + l_2 - distance}, {"unfolds", "m", distance - abs(l_1 - l_2)}},
+          .constraints = {{"reaches", "m", l_1 + l_2 - distance}, {"unfolds", "m", distance - abs(l_1 - l_2)}},
           .closure = s - q,
           .C = slide + arm,
           .S = slide,
-          .arm = Arm{arm, axis, aside - arm}};
+          .arm = Arm{arm, axis, normal - arm}};
 }
 
 Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
                    const Term& branch, const std::optional<std::array<Term, 2>>& range, const Term& q) {
-  const Vector3 v = seen(ends, ends.B - ends.A), beside = cross(axis, zero);
+  const Vector3 v = projected(ends), beside = cross(axis, zero);
   const Term u = dot(v, zero), w = dot(v, beside);
   const Term h = sqrt(u * u + w * w), k = (dot(v, v) + crank * crank - rod * rod) / (crank * 2.0);
-  const Term middle = range ? ((*range)[0] + (*range)[1]) * 0.5 : Term(q.graph(), 0.0);
+  const Term centre = range ? ((*range)[0] + (*range)[1]) * 0.5 : Term(q.graph(), 0.0);
   const Term angle = atan2(w, u) + branch * acos(k / h);
-  const Term joint = middle + call(expression::turn(), angle - middle);
+  const Term joint = centre + call(expression::angle_wrapping(), angle - centre);
   const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
-  // cosine and sine of phi + branch acos(k / h), times h^2
-  const Term beside_k = branch * sqrt(h * h - k * k), cosine = u * k - w * beside_k, sine = w * k + u * beside_k;
+  // cosine and sine of the angle, times h^2
+  const Term root = branch * sqrt(h * h - k * k), cosine = u * k - w * root, sine = w * k + u * root;
   const Vector3 to_C = (zero * cosine + beside * sine) * (crank / (h * h));
   Limb limb = {.joint = joint,
-               .conditions = {{"reaches", "m", h - k}, {"unfolds", "m", h + k}},
+               .constraints = {{"reaches", "m", h - k}, {"unfolds", "m", h + k}},
                .closure = rod_closure(v - arm(q), rod),
                .C = ends.A + arm(joint),
                .S = ends.A,
                .arm = Arm{to_C, axis, v - to_C}};
   if (dot(v, axis).is(0)) {
     const Term longest = crank + rod, shortest = crank - rod;
-    limb.folds = Folds{longest * longest - dot(v, v), dot(v, v) - shortest * shortest};
+    limb.annulus = Annulus{longest * longest - dot(v, v), dot(v, v) - shortest * shortest};
   }
   if (!range) return limb;
   const Term pi(q.graph(), kPi);
-  const Term from = call(expression::operation("max"), (*range)[0], middle - pi);
-  const Term to = call(expression::operation("min"), (*range)[1], middle + pi);
+  const Term from = call(expression::operation("max"), (*range)[0], centre - pi);
+  const Term to = call(expression::operation("min"), (*range)[1], centre + pi);
   limb.crank_range = CrankRange{.at_min = rod_closure(v - arm(from), rod),
                                 .at_max = rod_closure(v - arm(to), rod),
                                 .after_min = cos(from) * w - sin(from) * u,

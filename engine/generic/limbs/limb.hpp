@@ -1,8 +1,9 @@
-// Limbs with one drive, in closed form: the joint for a place of the platform's point, what can keep the limb from
-// reaching it, and its closure.
+// Inverse kinematics of limbs with one drive, in closed form: the joint coordinate for a position of the platform's
+// joint, the constraints under which the limb assembles, and the loop-closure equation.
 //
-// A is the base point, B the platform's point, v = B - A; lengths in planes normal to `across`, where it is given.
-// Every function states its joint over a graph, so that numbers, derivatives and lanes come from one statement.
+// A is the joint on the base, B the joint on the platform, v = B - A. If Ends::across is given, the limb moves in a
+// plane normal to it, and v is projected onto this plane. All results are nodes of an expression graph, from which
+// numbers, derivatives, SIMD batches and intervals are computed.
 #pragma once
 
 #include <optional>
@@ -13,68 +14,79 @@
 
 namespace pkm::limbs {
 
-/// >= 0 where it holds.
-struct Condition {
-  std::string reason;  ///< "reaches"
+/// margin >= 0
+struct Constraint {
+  std::string name;  ///< "reaches"
   std::string unit;
   Term margin;
 };
 
-/// Where a crank's range ends, as surfaces that the platform's point passes: what a survey needs of the range without
-/// the angle. The closure f(q) = |v - crank(q)|^2 - rod^2 is <= 0 between the two angles phi -+ acos(k / h) that
-/// assemble, phi = atan2(w, u). So one of them is in [q_min, q_max], which is less than a turn, where f changes its
-/// sign in that direction between the ends; and both are, where the limb reaches, if f >= 0 at both ends and phi is in
-/// the range, or f <= 0 at both ends and phi + pi is.
+/// The range [q_min, q_max] of a crank's angle as constraints on B, without inverse trigonometric functions, for
+/// workspace analyses.
+///
+/// The crank angles that assemble are phi - acos(k / h) and phi + acos(k / h), phi = atan2(w, u) (see crank_and_rod()).
+/// The loop-closure function f(q) = (|v - crank(q)|^2 - rod^2) / 2 is <= 0 between them and > 0 elsewhere. For a range
+/// of less than one revolution:
+/// - exactly one of the angles is in the range if f has different signs at its ends; the sign of f at q_min determines
+/// which
+///   one;
+/// - both are in the range if the limb reaches B, and either f >= 0 at both ends and phi is in the range, or f <= 0 at
+///   both ends and phi + pi is in the range.
 struct CrankRange {
-  Term at_min, at_max;         ///< f at the ends
-  Term after_min, before_max;  ///< (u, w) is at most half a turn after q_min, before q_max
-  Term half_turn;              ///< >= 0: the range is at most half a turn
-  Term reach;                  ///< h^2 - k^2
+  Term at_min, at_max;         ///< f at q_min and at q_max
+  Term after_min, before_max;  ///< >= 0: phi is at most half a revolution after q_min, or before q_max
+  Term half_turn;              ///< >= 0: the range is at most half a revolution
+  Term reach;                  ///< h^2 - k^2, >= 0 if the limb reaches B
   Term branch;
 };
 
-/// A link of constant length that turns about a pivot, and the rod from its end to B: rates follow from them without
-/// angles, arm' = turn' axis x arm with turn' = rod . B' / rod . (axis x arm). The pivot moves along the axis at most.
+/// A link of constant length that rotates about a pivot, with the rod from its end C to B. Rates follow without angles:
+/// arm' = q' axis x arm, where q' = rod . B' / rod . (axis x arm). The pivot may move, but only along the axis.
 struct Arm {
-  Vector3 arm;        ///< from the pivot to C, by roots alone
+  Vector3 arm;        ///< from the pivot to C; formulas that contain square roots but no angles
   Vector3 axis, rod;  ///< axis: unit vector
 };
 
-/// What a crank and a rod in one plane reach, |crank - rod| <= |v| <= crank + rod, as surfaces that are >= 0: of degree
-/// two, where h - k is a root and its square of degree four.
-using Folds = std::array<Term, 2>;
+/// The annulus |crank - rod| <= |v| <= crank + rod that a planar crank and rod reach, as two quadratic constraints
+/// >= 0. The equivalent constraints "reaches" and "unfolds" contain a root, and their squares have degree four.
+using Annulus = std::array<Term, 2>;
 
 struct Limb {
-  Term joint;                         ///< undefined where a condition is < 0
-  std::vector<Condition> conditions;  ///< for it to assemble
-  /// Zero where the joint variable belongs to the pose: Jq qdot = G Xdot with Jq = -d/dq, G = d/dX.
+  Term joint;                           ///< joint coordinate; undefined if a constraint is violated
+  std::vector<Constraint> constraints;  ///< under which the limb assembles
+  /// Loop-closure equation closure = 0; with Jq = -d/dq and G = d/dX the velocities satisfy Jq qdot = G Xdot.
   Term closure;
-  Vector3 C;  ///< where the rod begins: the crank's end, the elbow, the slide; of a telescope A
-  Vector3 S;  ///< the slide; of cranks and telescopes A
+  Vector3 C;  ///< where the rod begins: end of the crank, elbow, slide; A for a telescope
+  Vector3 S;  ///< slide; A for cranks and telescopes
   std::optional<CrankRange> crank_range{};
   std::optional<Arm> arm{};
-  std::optional<Folds> folds{};  ///< what all conditions of a crank in a plane are together
+  std::optional<Annulus> annulus{};  ///< equivalent to all constraints, for a planar crank
 };
 
-/// The ends of a limb.
 struct Ends {
   Vector3 A, B;
   std::optional<Vector3> across;  ///< unit vector: rod and crank stay normal to it
 };
 
-/// q = |v|. @param q  the joint variable, for the closure
+// In all of these, q is the joint as a variable of the closure, and the result is Limb::joint.
+
+/// q = |v|
 Limb telescope(const Ends& ends, const Term& q);
-/// q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), s = v . e, e a unit vector.
+/// q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), s = v . e
+/// @param e  unit vector along the rail
 Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q);
-/// q = v . e: the platform's point follows the rail.
+/// q = v . e: the joint on the platform moves along with the slide.
+/// @param e  unit vector along the rail
 Limb slider(const Ends& ends, const Vector3& e, const Term& q);
-/// q = v . e, and two links in the plane normal to e; branch is the sign of the second one's angle with the first about
-/// `axis`, which is e or -e.
+/// q = v . e, with two links in the plane normal to e.
+/// @param axis    e or -e
+/// @param branch  sign of the angle from the first link to the second one about `axis`
 Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, const Term& l_1, const Term& l_2,
                       const Term& branch, const Term& q);
-/// q = atan2(w, u) + branch acos(k / h) with u = v . zero, w = v . (axis x zero), h = hypot(u, w) and
-/// k = (|v|^2 + crank^2 - rod^2) / (2 crank), in the turn nearest to the range's middle, or to 0. axis and zero are
-/// unit vectors.
+/// q = atan2(w, u) + branch acos(k / h), where u = v . zero, w = v . (axis x zero), h = hypot(u, w) and
+/// k = (|v|^2 + crank^2 - rod^2) / (2 crank); wrapped to the revolution about the centre of the range, or about 0.
+/// @param axis, zero  orthogonal unit vectors: axis of rotation, direction of the crank at q = 0
+/// @param range       minimum and maximum angle
 Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
                    const Term& branch, const std::optional<std::array<Term, 2>>& range, const Term& q);
 

@@ -1,4 +1,4 @@
-// Vectors of the expression graph.
+// Three-dimensional vectors and rotation matrices whose elements are nodes of an expression graph.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@ struct Vector3 : std::array<Term, 3> {
   Vector3(const Term& x, const Term& y, const Term& z) : std::array<Term, 3>{{x, y, z}} {}
 };
 struct Rotation : std::array<Vector3, 3> {
-  Rotation(const Vector3& x, const Vector3& y, const Vector3& z) : std::array<Vector3, 3>{{x, y, z}} {}  ///< rows
+  /// By rows.
+  Rotation(const Vector3& x, const Vector3& y, const Vector3& z) : std::array<Vector3, 3>{{x, y, z}} {}
 };
 
 inline Vector3 operator+(const Vector3& x, const Vector3& y) { return {x[0] + y[0], x[1] + y[1], x[2] + y[2]}; }
@@ -36,7 +37,8 @@ inline Rotation operator*(const Rotation& A, const Rotation& B) {
   return {row(A[0]), row(A[1]), row(A[2])};
 }
 
-/// A turn about a coordinate axis, 0 to 2, by an angle of these functions.
-Rotation turn_about(std::size_t axis, const Term& sine, const Term& cosine);
+/// Rotation about a coordinate axis by an angle with this sine and cosine.
+/// @param axis  0 to 2
+Rotation rotation_about(std::size_t axis, const Term& sine, const Term& cosine);
 
 }  // namespace pkm::limbs

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/scratch.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/mechanism/plan.hpp"
@@ -47,11 +48,12 @@ class PoseMargins {
   /// The unit that they share; "": each has its own, m, rad or 1.
   virtual std::string margin_unit() const = 0;
   /// Appends the margins of poses, finite numbers. A pose that does not assemble has some, too, one of them negative.
-  /// @param mode  one of MechanismInfo::modes, or "": the first
+  /// @param mode     one of MechanismInfo::modes, or "": the first
+  /// @param scratch  of the calling thread
   virtual void append(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
-                      std::span<const Pose<double>> poses, std::vector<double>& margins) const = 0;
+                      std::span<const Pose<double>> poses, Scratch& scratch, std::vector<double>& margins) const = 0;
   virtual void append(std::span<const Dual4> parameters, const std::string& mode, const LimitSpec& limits,
-                      std::span<const Pose<double>> poses, std::vector<Dual4>& margins) const = 0;
+                      std::span<const Pose<double>> poses, Scratch& scratch, std::vector<Dual4>& margins) const = 0;
 };
 
 }  // namespace pkm

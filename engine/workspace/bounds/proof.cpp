@@ -33,7 +33,7 @@ class Formulas {
     for (const Node node : used) {
       const Entry& entry = statement.graph[node];
       for (const Node operand : entry.operands()) ++uses_[operand];
-      if (entry.operation == &expression::turn()) named_.insert(entry.arguments[0]);
+      if (entry.operation == &expression::angle_wrapping()) named_.insert(entry.arguments[0]);
     }
     named_.insert(roots.begin(), roots.end());
     for (const Node node : used) write(node);
@@ -49,7 +49,7 @@ class Formulas {
       if (named_.contains(node)) give(node, names_[node]);
     } else if (entry.input >= 0) {
       write_input(node, static_cast<std::size_t>(entry.input));
-    } else if (entry.operation == &expression::turn()) {
+    } else if (entry.operation == &expression::angle_wrapping()) {
       const std::string name = next_name();
       to_ << "turn " << name << ' ' << names_.at(entry.arguments[0]) << '\n';
       names_[node] = name;

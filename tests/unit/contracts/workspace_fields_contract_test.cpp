@@ -206,7 +206,7 @@ TEST_P(WorkspaceFieldsContract, SurfaceIsClosedOrientedOutwardsAndEnclosesTheVox
       // The voxel volume counts boundary cells either completely or not at all.
       EXPECT_NEAR(test::enclosed_volume(surface) / found.volume, 1, 0.06);
       const VoxelGrid grid = found.grid();
-      std::vector<double> scratch;
+      Scratch scratch;
       for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
         ASSERT_GE(margin(found.pose(surface.inside[v]), scratch), -1e-12) << v;
         for (std::size_t i = 0; i < 3; ++i) {

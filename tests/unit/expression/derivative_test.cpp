@@ -28,8 +28,8 @@ Computed symbolic(const std::string& text, double x, double y) {
   const Node inputs[2] = {graph.input(0), graph.input(1)};
   const Node f = read_formula(graph, text, kVariables, inputs);
   Rates along(graph);
-  along.move(inputs[0], graph.number(0.7));
-  along.move(inputs[1], graph.number(-1.3));
+  along.set_rate(inputs[0], graph.number(0.7));
+  along.set_rate(inputs[1], graph.number(-1.3));
   const Node first = along.of(f).node(), second = along.of(first).node();
   const Program program(graph, std::array{f, first, second});
   std::vector<double> registers;
@@ -70,7 +70,7 @@ TEST(Derivative, OfAConstantIsTheConstantZero) {
   Graph graph;
   const Node x = graph.input(0), y = graph.input(1);
   Rates by_x(graph);
-  by_x.move(x, graph.number(1));
+  by_x.set_rate(x, graph.number(1));
   EXPECT_TRUE(by_x.of(sqrt(Term(graph, y)) * 3.0).is(0));
   EXPECT_TRUE(by_x.of(Term(graph, x) + Term(graph, y)).is(1));
 }
@@ -79,8 +79,8 @@ TEST(Derivative, UsesAGivenRateOfANode) {
   Graph graph;
   const Term x(graph, graph.input(0)), c = cos(x);
   Rates by_x(graph);
-  by_x.move(x.node(), graph.number(1));
-  by_x.move(c.node(), graph.number(5));
+  by_x.set_rate(x.node(), graph.number(1));
+  by_x.set_rate(c.node(), graph.number(5));
   EXPECT_TRUE(by_x.of(c).is(5));
 }
 

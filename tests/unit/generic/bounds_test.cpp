@@ -134,12 +134,13 @@ TEST(RigorousBounds, SayWhyThereAreNone) {
   const auto many = read(by_margins("r = { default = 0.5, min = 0, max = 9, unit = \"m\", meaning = \"radius\" }",
                                     "x = [-1, 1], y = [-1, 1], z = [-1, 1]", margins));
   EXPECT_EQ(refusal(*many, plain_plan(many->info())),
-            "bounds are of at most 128 conditions, and mechanism margins has 129");
+            "certified bounds support at most 128 constraints, but mechanism margins has 129");
   const Mechanism& gough = *test::described("gough");
   WorkspacePlan listed = plain_plan(gough.info());
   listed.held = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {0, 0.1}}};
-  EXPECT_EQ(refusal(gough, listed),
-            "bounds are of one value of alpha, of which the survey has several: hold it at a value");
+  EXPECT_EQ(
+      refusal(gough, listed),
+      "certified bounds need a single value of alpha, but the workspace analysis has several; fix it at one value");
 }
 
 TEST(RigorousBounds, AreTheSameForAnyNumberOfThreads) {

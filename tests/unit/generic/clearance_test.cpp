@@ -218,9 +218,10 @@ TEST(DescribedClearance, ColumnsAndBoundsAreRefused) {
   EXPECT_EQ(message(survey),
             "mechanism linear-delta has no column surveys under a clearance (clearance_min), because links that meet "
             "end columns where no formula says; take workspace.method = \"voxels\"");
-  EXPECT_EQ(message(bound),
-            "mechanism linear-delta has no certain bounds under a clearance (clearance_min), because the distance of "
-            "two links is no formula of the pose; take voxels, or leave the clearance out");
+  EXPECT_EQ(
+      message(bound),
+      "mechanism linear-delta has no certified bounds with a clearance limit (clearance_min), because the distance "
+      "of two links is not given by a formula; use voxels, or remove the limit");
   plan.limits = clearance_limit(mechanism.info(), kInactiveClearance);
   EXPECT_EQ(message(survey), "accepted") << "it cuts nothing";
   EXPECT_EQ(message(bound), "accepted");

@@ -106,17 +106,18 @@ TEST(Obstacles, MarginsHaveDerivatives) {
     const Pose<double> pose = test::reference_pose(*mechanism);
     const LimitSpec limits = limits_about(info, pose, -0.01);
     const std::vector<double> design = test::nominal(info);
+    Scratch scratch;
     for (std::size_t p = 0; p < design.size(); ++p) {
       constexpr double kStep = 1e-6;
       const auto at = [&](double by) {
         std::vector<double> moved = design, found;
         moved[p] += by;
-        margins->append(std::span<const double>(moved), "", limits, {&pose, 1}, found);
+        margins->append(std::span<const double>(moved), "", limits, {&pose, 1}, scratch, found);
         return found.back();
       };
       std::vector<Dual4> moving(design.begin(), design.end()), found;
       moving[p].v[0] = 1;
-      margins->append(std::span<const Dual4>(moving), "", limits, {&pose, 1}, found);
+      margins->append(std::span<const Dual4>(moving), "", limits, {&pose, 1}, scratch, found);
       EXPECT_EQ(found.back().a, at(0));
       const double before = at(-kStep), after = at(kStep);
       if (std::fabs(before + after - 2 * at(0)) > 1e-10) continue;  // another link or obstacle takes over

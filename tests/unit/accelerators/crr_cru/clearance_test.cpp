@@ -250,7 +250,8 @@ TEST(CrrCruClearance, IsAMarginOfPosesWithDerivatives) {
   const auto margin = [](const std::string& name, const auto& p, const pkm::Pose<double>& pose) {
     using S = typename std::remove_cvref_t<decltype(p)>::value_type;
     std::vector<S> margins;
-    mechanism(name).pose_margins()->append(p, "", limit_spec(0, 0, 0.003), {&pose, 1}, margins);
+    Scratch scratch;
+    mechanism(name).pose_margins()->append(p, "", limit_spec(0, 0, 0.003), {&pose, 1}, scratch, margins);
     return margins.back();
   };
   int compared = 0;

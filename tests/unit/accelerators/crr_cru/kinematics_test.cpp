@@ -172,8 +172,8 @@ TEST(CrrCruKinematics, ReasonsAndRefusals) {
   const auto reason = [&](const Pose<double>& pose, const LimitSpec& limits) {
     return m.inspect(p, pose, "-,-,+,-", limits).reason;
   };
-  EXPECT_EQ(reason({0.2, 0.17, 1.2, 0}, none), "limb1 reaches does not hold: the pose does not assemble");
-  EXPECT_EQ(reason({-0.02, 0.04, 0.22, 0}, none), "limb3 unfolds does not hold: the pose does not assemble");
+  EXPECT_EQ(reason({0.2, 0.17, 1.2, 0}, none), "limb1 cannot reach the pose");
+  EXPECT_EQ(reason({-0.02, 0.04, 0.22, 0}, none), "limb3 cannot reach the pose");
   const PoseReport off_rail = m.inspect(p, {-0.03, 0.17, 0.3, 0}, "-,-,+,-", none);
   EXPECT_TRUE(off_rail.assembles);
   EXPECT_FALSE(off_rail.feasible);

@@ -113,7 +113,7 @@ TEST(CrrCruMotion, InfeasibleSamplesAreMarkedAndLeaveTheOthers) {
   EXPECT_FALSE(found.summary.has_forces);
   EXPECT_TRUE(found.points.front().feasible && found.points.front().forces);
   EXPECT_FALSE(found.points.back().feasible || found.points.back().forces);
-  EXPECT_THAT(found.points.back().reason, HasSubstr("the pose does not assemble"));
+  EXPECT_THAT(found.points.back().reason, HasSubstr("cannot reach the pose"));
 }
 
 /// The machine as a study has it: one motion, one objective of the rod lengths and masses.

@@ -117,7 +117,7 @@ TEST(CrrCruReactions, SayWhyForcesAreNotDetermined) {
   const std::vector<double> p = nominal();
   for (const std::string& name : both()) {
     const Reactions far = reactions_at(name, p, {0.9, 0.17, 0.22, 0.3});
-    EXPECT_THAT(far.reason, HasSubstr("the pose does not assemble"));
+    EXPECT_THAT(far.reason, HasSubstr("cannot reach the pose"));
     EXPECT_TRUE(far.joints.empty());
     // the yaw at which limbs 2 and 4 no longer control it
     const Reactions singular = reactions_at(name, p, {0.2, 0.17, 0.22, kPi / 2});

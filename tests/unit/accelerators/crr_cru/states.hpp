@@ -4,7 +4,7 @@
 #include "engine/accelerators/crr_cru/frame.hpp"
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/generic/equations.hpp"
-#include "engine/generic/joints.hpp"
+#include "engine/generic/newton_euler.hpp"
 #include "tests/unit/accelerators/crr_cru/golden.hpp"
 #include "tests/unit/dynamics/square_system.hpp"
 

@@ -95,9 +95,9 @@ TEST(FourPpaKinematics, ReasonsAndUnreachableJoints) {
   EXPECT_TRUE(above.assembles);  // table 2 of the paper lists its q
   EXPECT_FALSE(above.feasible);
   EXPECT_EQ(above.reason, "alpha_min is violated");
-  EXPECT_EQ(reason({0.4, 1.25, -3, 0}), "h_1 exists does not hold: the pose does not assemble");
-  EXPECT_EQ(reason({0.79, 1.25, -0.5, 0}), "s_1 exists does not hold: the pose does not assemble");
-  EXPECT_EQ(reason({0.05, 1.25, -0.5, 0}), "s_2 exists does not hold: the pose does not assemble");
+  EXPECT_EQ(reason({0.4, 1.25, -3, 0}), "h_1 has no real value, so q1 is undefined");
+  EXPECT_EQ(reason({0.79, 1.25, -0.5, 0}), "s_1 has no real value, so q1 is undefined");
+  EXPECT_EQ(reason({0.05, 1.25, -0.5, 0}), "s_2 has no real value, so q3 is undefined");
   EXPECT_EQ(reason({0.4, 0.1, -0.9, 0}), "q1 min is violated");
   EXPECT_TRUE(four_ppa().forward()->assemblies(p, {0, 2.4, 0, 2.4}).empty());    // wider than the upper bars allow
   EXPECT_TRUE(four_ppa().forward()->assemblies(p, {0, 0.5, 2.0, 2.5}).empty());  // |sin theta| > 1

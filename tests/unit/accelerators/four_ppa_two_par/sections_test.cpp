@@ -45,7 +45,9 @@ At random_pose(const Geometry<double>& g, Uniform& uniform) {
 std::vector<double> margins_at(const MarginCase& c, const At& at, double y) {
   const pkm::Pose<double> pose = {at.x, y, at.z, at.angle};
   std::vector<double> margins;
-  generic_four_ppa().pose_margins()->append(std::span<const double>(c.p), "lower,lower", c.limits, {&pose, 1}, margins);
+  Scratch scratch;
+  generic_four_ppa().pose_margins()->append(std::span<const double>(c.p), "lower,lower", c.limits, {&pose, 1}, scratch,
+                                            margins);
   return margins;
 }
 

@@ -180,14 +180,15 @@ TEST(HybridKinematics, MarginsWithDerivativesHaveTheSameBitsAndTheDerivativesOfD
     const std::size_t varied = static_cast<std::size_t>(uniform(0, kParameters));
     if (!inverse(geometry_of(p), schoenflies(at), {1, -1, -1}).assembles()) continue;
     ++poses;
+    Scratch scratch;
     const auto margins_at = [&](const std::vector<double>& design) {
       std::vector<double> found;
-      mechanism().pose_margins()->append(design, "", no_thresholds(), {&at, 1}, found);
+      mechanism().pose_margins()->append(design, "", no_thresholds(), {&at, 1}, scratch, found);
       return found;
     };
     std::vector<Dual4> q(p.begin(), p.end()), found;
     q[varied] = Dual4::variable(p[varied], 0);
-    mechanism().pose_margins()->append(q, "", no_thresholds(), {&at, 1}, found);
+    mechanism().pose_margins()->append(q, "", no_thresholds(), {&at, 1}, scratch, found);
     const auto plain = margins_at(p);
     ASSERT_EQ(found.size(), plain.size());
     auto lower = p, upper = p;

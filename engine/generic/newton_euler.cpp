@@ -1,4 +1,4 @@
-#include "engine/generic/joints.hpp"
+#include "engine/generic/newton_euler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,17 +11,17 @@ namespace {
 
 using Vec = Vector<double, 3>;
 using Mat = Matrix<double, 3, 3>;
-using Place = std::array<Node, 3>;
+using VectorNodes = std::array<Node, 3>;
 
-/// A place that moves, or a direction.
-struct Moving {
+/// A point or vector with its first and second time derivative.
+struct MovingVector {
   Vec x, v, a;
 };
 
 Mat outer(const Vec& a, const Vec& b) { return a * transpose(b); }
 Vec unit(const Vec& v) { return v * (1 / std::sqrt(dot(v, v))); }
 
-/// w of the matrix that is w x.
+/// The axial vector w of a skew-symmetric matrix: skew u = w x u.
 Vec axial(const Mat& skew) { return {{skew(2, 1), skew(0, 2), skew(1, 0)}}; }
 
 class System {
@@ -36,7 +36,7 @@ class System {
     const std::vector<Node> nodes = needed();
     const std::vector<Taylor> values = outputs_of(expression::Program(model_.graph, nodes), inputs);
     for (std::size_t i = 0; i < nodes.size(); ++i) value_.emplace(nodes[i], values[i]);
-    find_turn_of_platform();
+    find_rotation_of_platform();
   }
 
   NewtonEuler newton_euler(const Wrench<double>& wrench) const {
@@ -52,32 +52,32 @@ class System {
  private:
   std::vector<Node> needed() const {
     std::vector<Node> nodes;
-    const auto add = [&nodes](const Place& place) { nodes.insert(nodes.end(), place.begin(), place.end()); };
+    const auto add = [&nodes](const VectorNodes& point) { nodes.insert(nodes.end(), point.begin(), point.end()); };
     add(*model_.wrench_point);
-    for (const Place& row : model_.turn) add(row);
+    for (const VectorNodes& row : model_.rotation) add(row);
     for (const BodyNodes& body : model_.bodies) {
       add(body.centre);
       nodes.push_back(body.mass);
       if (body.inertia) add(*body.inertia);
     }
     for (const SolidNodes& solid : model_.jointed->solids) {
-      add(solid.place);
+      add(solid.point);
       if (solid.line) add(*solid.line);
-      if (solid.beside) add(*solid.beside);
+      if (solid.centre_offset) add(*solid.centre_offset);
     }
     for (const JointNodes& joint : model_.jointed->joints) {
       add(joint.point);
-      for (const Place& axis : joint.axes) add(axis);
+      for (const VectorNodes& axis : joint.axes) add(axis);
       if (joint.drive) add(joint.drive->axis);
     }
     return nodes;
   }
 
   double number(Node node) const { return value_.at(node).a; }
-  Moving at(const Place& place) const {
-    Moving moving;
+  MovingVector at(const VectorNodes& point) const {
+    MovingVector moving;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Taylor& value = value_.at(place[k]);
+      const Taylor& value = value_.at(point[k]);
       moving.x[k] = value.a;
       moving.v[k] = value.d;
       moving.a[k] = value.dd;
@@ -85,32 +85,32 @@ class System {
     return moving;
   }
 
-  /// Of R: R' R^T = omega x, and its rate R'' R^T + R' R'^T = epsilon x.
-  void find_turn_of_platform() {
-    Mat rate, second;
+  /// Rotation matrix R, angular velocity and angular acceleration: omega x = R' R^T, epsilon x = R'' R^T + R' R'^T.
+  void find_rotation_of_platform() {
+    Mat first, second;  // derivatives of R
     for (std::size_t i = 0; i < 3; ++i) {
-      const Moving row = at(model_.turn[i]);
+      const MovingVector row = at(model_.rotation[i]);
       for (std::size_t k = 0; k < 3; ++k) {
         R_(i, k) = row.x[k];
-        rate(i, k) = row.v[k];
+        first(i, k) = row.v[k];
         second(i, k) = row.a[k];
       }
     }
-    omega_ = axial(rate * transpose(R_));
-    epsilon_ = axial(second * transpose(R_) + rate * transpose(rate));
+    omega_ = axial(first * transpose(R_));
+    epsilon_ = axial(second * transpose(R_) + first * transpose(first));
   }
 
-  /// Without mass, in its turning.
-  RigidBody turning(const SolidNodes& solid) const {
+  /// The body with its rotation, without mass.
+  RigidBody massless(const SolidNodes& solid) const {
     RigidBody body;
     body.name = solid.name;
-    body.centre = at(solid.place).x;
+    body.centre = at(solid.point).x;
     if (solid.with_platform) {
       body.omega = omega_;
       body.epsilon = epsilon_;
     } else if (solid.line) {
-      // omega = d x d' / |d|^2 has no component along d; and its rate
-      const Moving d = at(*solid.line);
+      // omega = d x d' / |d|^2, without component along d, and its derivative
+      const MovingVector d = at(*solid.line);
       const double square = dot(d.x, d.x);
       body.omega = cross(d.x, d.v) * (1 / square);
       body.epsilon = cross(d.x, d.a) * (1 / square) - body.omega * (2 * dot(d.x, d.v) / square);
@@ -118,7 +118,7 @@ class System {
     return body;
   }
 
-  /// Of one of the bodies that a solid is made of, about its own centre.
+  /// Inertia of one of the bodies of a solid about its own centre of mass, in the base frame.
   Mat inertia_of(const SolidNodes& solid, const BodyNodes& body) const {
     Mat inertia;
     if (!body.inertia) return inertia;
@@ -126,40 +126,40 @@ class System {
       for (std::size_t k = 0; k < 3; ++k) inertia(k, k) = number((*body.inertia)[k]);
       return R_ * inertia * transpose(R_);
     }
-    if (!solid.line) return inertia;  // it does not turn
+    if (!solid.line) return inertia;  // no rotation, no effect
     const Vec u = unit(at(*solid.line).x);
     return (Mat::identity() - outer(u, u)) * number((*body.inertia)[1]);
   }
 
   RigidBody body_of(const SolidNodes& solid) const {
-    RigidBody body = turning(solid);
-    Vec centre, force;
+    RigidBody body = massless(solid);
+    Vec first_moment, inertia_force;
     for (const std::size_t i : solid.bodies) {
       const double mass = number(model_.bodies[i].mass) * solid.share;
-      const Moving of = at(model_.bodies[i].centre);
+      const MovingVector of = at(model_.bodies[i].centre);
       body.mass += mass;
-      centre += of.x * mass;
-      force += of.a * mass;
+      first_moment += of.x * mass;
+      inertia_force += of.a * mass;
     }
     if (body.mass > 0) {
-      body.centre = centre * (1 / body.mass);
-      body.a = force * (1 / body.mass);
+      body.centre = first_moment * (1 / body.mass);
+      body.a = inertia_force * (1 / body.mass);
     }
     for (const std::size_t i : solid.bodies) {
       const BodyNodes& part = model_.bodies[i];
       body.inertia += inertia_of(solid, part) * solid.share +
                       point_inertia(number(part.mass) * solid.share, at(part.centre).x - body.centre);
     }
-    if (solid.beside) body.centre += at(*solid.beside).x;
+    if (solid.centre_offset) body.centre += at(*solid.centre_offset).x;
     return body;
   }
 
-  Joint joint_of(const JointNodes& described) const {
-    Joint joint{described.name, at(described.point).x, described.on, described.from, {}, {}};
+  Joint joint_of(const JointNodes& nodes) const {
+    Joint joint{nodes.name, at(nodes.point).x, nodes.on, nodes.from, {}, {}};
     std::vector<Vec> axes;
-    for (const Place& axis : described.axes) axes.push_back(unit(at(axis).x));
-    joint.couples = described.couples == JointNodes::Couples::along ? axes : normal_to(axes);
-    if (const auto& drive = described.drive) {
+    for (const VectorNodes& axis : nodes.axes) axes.push_back(unit(at(axis).x));
+    joint.couples = nodes.couples == JointNodes::Couples::along ? axes : normal_to(axes);
+    if (const auto& drive = nodes.drive) {
       joint.actuator = Actuator{.joint = drive->joint, .axis = unit(at(drive->axis).x), .turns = drive->turns};
       if (drive->slide) {
         const BodyNodes& slide = model_.bodies[*drive->slide];
@@ -170,27 +170,27 @@ class System {
     return joint;
   }
 
-  /// Unit vectors normal to each other and to all axes.
+  /// Orthonormal basis of the orthogonal complement of the axes (Gram-Schmidt).
   static std::vector<Vec> normal_to(const std::vector<Vec>& axes) {
-    constexpr double kParallel = 1e-9;
-    std::vector<Vec> spanned, left;
-    const auto beyond = [&](Vec v) {  // what of v is not spanned yet
-      for (const auto* const list : {&spanned, &left})
+    constexpr double kParallel = 1e-9;  // length of the normal component of a unit vector
+    std::vector<Vec> span, complement;
+    const auto normal_part = [&](Vec v) {
+      for (const auto* const list : {&span, &complement})
         for (const Vec& u : *list) v = v - u * dot(u, v);
       return v;
     };
     for (const Vec& axis : axes)
-      if (const Vec v = beyond(axis); dot(v, v) > kParallel * kParallel) spanned.push_back(unit(v));
-    while (spanned.size() + left.size() < 3) {
-      Vec farthest;
+      if (const Vec v = normal_part(axis); dot(v, v) > kParallel * kParallel) span.push_back(unit(v));
+    while (span.size() + complement.size() < 3) {
+      Vec longest;
       for (std::size_t k = 0; k < 3; ++k) {
         Vec e;
         e[k] = 1;
-        if (const Vec v = beyond(e); dot(v, v) > dot(farthest, farthest)) farthest = v;
+        if (const Vec v = normal_part(e); dot(v, v) > dot(longest, longest)) longest = v;
       }
-      left.push_back(unit(farthest));
+      complement.push_back(unit(longest));
     }
-    return left;
+    return complement;
   }
 
   const Model& model_;

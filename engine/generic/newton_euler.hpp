@@ -1,4 +1,4 @@
-// Newton's and Euler's equations of the bodies and joints of a description.
+// Newton-Euler equations of the bodies and joints of a mechanism file, for the reactions in the joints.
 #pragma once
 
 #include "engine/dynamics/newton_euler.hpp"
@@ -6,8 +6,10 @@
 
 namespace pkm::generic {
 
-/// At a pose that assembles, of a model that is jointed. Throws DesignError where a mass is not positive.
-/// @param wrench  on the platform, where the model says
+/// Throws DesignError if a mass is not positive.
+/// @param evaluation  of a model with Model::jointed
+/// @param state       its pose assembles
+/// @param wrench      on the platform, at Model::wrench_point
 NewtonEuler newton_euler(const Evaluation& evaluation, std::span<const double> parameters, std::size_t mode,
                          const MotionState<double>& state, const AxisVector<double>& acceleration,
                          const Wrench<double>& wrench);

@@ -1,0 +1,43 @@
+// Joint-space inertia at the samples of a workspace analysis, in SIMD batches.
+#pragma once
+
+#include "engine/generic/pose_batch.hpp"
+
+namespace pkm::generic {
+
+struct InertiaScratch {
+  PoseBatchScratch poses;
+  std::vector<double> found;
+  expression::Rows M_q, indices;
+  std::vector<Dual4> dual_registers;
+};
+
+class InertiaBatch {
+ public:
+  /// @param evaluation  of a model with bodies
+  /// @param rotors      Demand::rotors
+  InertiaBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
+               const std::vector<double>& rotors);
+
+  /// As PoseBatch::start().
+  void start(const std::vector<double>& inputs, InertiaScratch& scratch) const;
+  /// Adds a pose, whose values are appended to the fields of the survey when the batch is full or finish() is called.
+  void add(const Pose<double>& pose, InertiaScratch& scratch, Survey<double>& to) const;
+  void finish(InertiaScratch& scratch, Survey<double>& to) const;
+  /// With derivatives: poses are evaluated one by one.
+  void start(const std::vector<Dual4>& inputs, InertiaScratch& scratch) const;
+  void add(const Pose<Dual4>& pose, InertiaScratch& scratch, Survey<Dual4>& to) const;
+  void finish(InertiaScratch&, Survey<Dual4>&) const {}
+
+ private:
+  /// Inertia matrix M_q of a single pose. @param output  output(i): value of output i of batch_
+  template <class S, class OutputOf>
+  AxisMatrix<S> inertia_of(const OutputOf& output) const;
+
+  std::size_t n_;
+  std::vector<double> rotors_;
+  PoseBatch batch_;
+  std::vector<expression::Operand> J_, M_X_;
+};
+
+}  // namespace pkm::generic

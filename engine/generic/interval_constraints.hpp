@@ -1,0 +1,31 @@
+// Constraints of a feasible pose in a form for which interval arithmetic gives tight enclosures.
+#pragma once
+
+#include <vector>
+
+#include "engine/generic/model.hpp"
+#include "engine/workspace/bounds/conditions.hpp"
+
+namespace pkm::generic {
+
+struct IntervalConstraints {
+  Graph graph;
+  std::vector<bounds::NamedCondition> all;  ///< nodes of `graph`
+};
+
+/// Rewrites the domains and margins. All of the result are satisfied if and only if all of the model are, but they
+/// contain fewer roots and inverse functions, and their roots are defined on whole boxes. Here c depends on the design
+/// only.
+///
+///     c - sqrt(a) >= 0, c >= 0             c^2 - a >= 0
+///     sqrt(a) - c >= 0, c >= 0             a - c^2 >= 0
+///     c - acos(u) >= 0, 0 <= c <= pi       u - cos(c) >= 0
+///     acos(u) - c >= 0, 0 <= c <= pi       cos(c) - u >= 0
+///     sqrt(u), if u >= 0 is a constraint   sqrt(max(u, 0))
+///     acos(u), asin(u), if -1 <= u <= 1    acos(min(max(u, -1), 1)), asin(..)
+///
+/// The last row applies to u = k / h if h - k >= 0 and h + k >= 0 are constraints, and to any u if 1 - |u| >= 0 is one.
+/// @param inputs  of the graph, for the design
+IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs);
+
+}  // namespace pkm::generic

@@ -1,0 +1,65 @@
+// Batched evaluation of nodes at the poses of a workspace analysis: poses are collected until the batch of
+// expression::kRow poses is full, and then evaluated with SIMD instructions. Operations that do not depend on the swept
+// coordinates are evaluated once.
+#pragma once
+
+#include <optional>
+
+#include "engine/expression/batch_stage.hpp"
+#include "engine/generic/evaluation.hpp"
+
+namespace pkm::generic {
+
+struct PoseBatchScratch {
+  std::vector<double> registers;
+  expression::Rows rows;
+  std::size_t count = 0;  ///< poses in the batch
+};
+
+/// Immutable, shared by threads; each has its own scratch memory.
+class PoseBatch {
+ public:
+  /// @param outputs  nodes of the model's graph
+  PoseBatch(const Model& model, std::vector<Node> outputs, const std::vector<int>& swept, std::size_t mode);
+
+  /// Evaluates the operations that do not depend on the swept coordinates, and empties the batch.
+  /// @param inputs  of the graph, with the fixed coordinates
+  void start(const std::vector<double>& inputs, PoseBatchScratch& scratch) const;
+  /// Adds a pose to the batch. @return true if the batch is full
+  bool add(const Pose<double>& pose, PoseBatchScratch& scratch) const;
+  /// Evaluates the batch, which must not be empty, padded with copies of its last pose. The caller reads the results
+  /// and sets scratch.count to 0. @return number of poses with the padding, a multiple of kLanes
+  std::size_t run(PoseBatchScratch& scratch) const;
+
+  /// Evaluates single poses, for any scalar; the results are in the registers outputs().
+  template <class S>
+  void start(std::span<const S> inputs, std::vector<S>& registers) const {
+    registers.resize(program_.registers());
+    program_.start<S>(registers);
+    program_.run<S>(0, inputs, registers);
+  }
+  template <class S>
+  void run(const Pose<S>& pose, std::span<S> registers) const {
+    const auto& inputs = program_.stages()[1].inputs;
+    for (std::size_t i = 0; i < inputs.size(); ++i) registers[inputs[i].to] = pose[coordinates_[i].number];
+    program_.run<S>(1, registers);
+  }
+  const std::vector<std::uint32_t>& outputs() const { return program_.outputs(); }
+
+  /// Location of an output of the batch.
+  expression::Operand operand(std::size_t output) const { return stage_->operand(program_.outputs()[output]); }
+  static double value(const expression::Operand& of, std::size_t pose, const PoseBatchScratch& scratch) {
+    return of.row ? scratch.rows[of.index * expression::kRow + pose] : scratch.registers[of.index];
+  }
+
+ private:
+  struct Coordinate {
+    std::size_t number;
+    std::uint32_t slot;
+  };
+  expression::Program program_;
+  std::optional<expression::BatchStage> stage_;
+  std::vector<Coordinate> coordinates_;  ///< swept coordinates that the program depends on
+};
+
+}  // namespace pkm::generic
