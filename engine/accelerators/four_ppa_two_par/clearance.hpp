@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/accelerators/four_ppa_two_par/links.hpp"
-#include "engine/accelerators/four_ppa_two_par/section.hpp"
+#include "engine/accelerators/four_ppa_two_par/slice.hpp"
 #include "engine/math/nonnegative_intervals.hpp"
 
 namespace pkm::four_ppa_two_par {

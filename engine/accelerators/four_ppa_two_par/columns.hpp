@@ -7,7 +7,7 @@
 #include "engine/accelerators/four_ppa_two_par/clearance.hpp"
 #include "engine/accelerators/four_ppa_two_par/conditioning.hpp"
 #include "engine/accelerators/four_ppa_two_par/coupling.hpp"
-#include "engine/accelerators/four_ppa_two_par/pieces.hpp"
+#include "engine/accelerators/four_ppa_two_par/theta_intervals.hpp"
 #include "engine/mechanism/survey.hpp"
 
 namespace pkm::four_ppa_two_par {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "engine/accelerators/hybrid/breaks.hpp"
+#include "engine/accelerators/hybrid/critical_values.hpp"
 #include "engine/accelerators/hybrid/conditioning.hpp"
 #include "engine/math/quadrature.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/accelerators/hybrid/meetings.hpp"
+#include "engine/accelerators/hybrid/intersections.hpp"
 
 namespace pkm::hybrid {
 namespace {

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/accelerators/hybrid/section.hpp"
+#include "engine/accelerators/hybrid/slice.hpp"
 #include "engine/math/critical_values.hpp"
 #include "engine/math/sqrt_quadratic_integral.hpp"
 

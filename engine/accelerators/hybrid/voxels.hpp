@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/accelerators/hybrid/cells.hpp"
-#include "engine/accelerators/hybrid/section.hpp"
+#include "engine/accelerators/hybrid/slice.hpp"
 #include "engine/workspace/cell_runs.hpp"
 
 namespace pkm::hybrid {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "engine/accelerators/hybrid/section.hpp"
+#include "engine/accelerators/hybrid/slice.hpp"
 
 namespace pkm::testing::hybrid {
 

@@ -1,7 +1,7 @@
 // Between the breaks of beta sections keep their structure, and at each break it changes.
 #include <gtest/gtest.h>
 
-#include "engine/accelerators/hybrid/breaks.hpp"
+#include "engine/accelerators/hybrid/critical_values.hpp"
 #include "tests/unit/accelerators/hybrid/golden.hpp"
 
 namespace pkm::testing::hybrid {

@@ -1,4 +1,4 @@
-#include "engine/accelerators/hybrid/breaks.hpp"
+#include "engine/accelerators/hybrid/critical_values.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/accelerators/four_ppa_two_par/masses.hpp"
-#include "engine/accelerators/four_ppa_two_par/section.hpp"
+#include "engine/accelerators/four_ppa_two_par/slice.hpp"
 #include "tests/unit/accelerators/four_ppa_two_par/golden.hpp"
 #include "tests/unit/accelerators/four_ppa_two_par/plain_pose.hpp"
 

@@ -1,4 +1,4 @@
-#include "engine/accelerators/hybrid/meetings.hpp"
+#include "engine/accelerators/hybrid/intersections.hpp"
 
 #include <cmath>
 

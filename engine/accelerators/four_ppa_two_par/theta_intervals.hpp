@@ -11,7 +11,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "engine/accelerators/four_ppa_two_par/section.hpp"
+#include "engine/accelerators/four_ppa_two_par/slice.hpp"
 #include "engine/math/critical_values.hpp"
 #include "engine/math/dual.hpp"
 

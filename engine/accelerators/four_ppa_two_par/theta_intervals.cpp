@@ -1,4 +1,4 @@
-#include "engine/accelerators/four_ppa_two_par/pieces.hpp"
+#include "engine/accelerators/four_ppa_two_par/theta_intervals.hpp"
 
 #include "engine/math/nonnegative_intervals.hpp"
 

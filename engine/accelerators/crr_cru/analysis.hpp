@@ -1,21 +1,20 @@
-// (3CRR/R)&CRU and Quadrupteron: what workspace analyses by columns and by voxels share.
+// (3CRR/R)&CRU and Quadrupteron: settings that workspace analyses by columns and by voxels share, and their evaluators.
 #pragma once
 
 #include <memory>
 
-#include "engine/accelerators/crr_cru/frame.hpp"
 #include "engine/accelerators/crr_cru/masses.hpp"
+#include "engine/accelerators/crr_cru/yaw.hpp"
 #include "engine/mechanism/surveyor.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm::crr_cru {
 
-/// What surveyors by columns and by voxels share.
-struct Planned {
+struct AnalysisSettings {
   Platform platform;
   MassModel mass_model;
-  WorkingMode mode;  ///< of the coupling that is demanded; feasibility does not depend on it
-  Held held;
+  WorkingMode mode;  ///< for the inertia; feasibility does not depend on it
+  FixedCoordinate fixed;
   Limits limits;
   Demand demand;
   bool with_conditioning = demand.has(kConditioning);
@@ -26,14 +25,14 @@ struct Planned {
     std::ranges::copy(demand.rotors, all.rotors.begin());
     return all;
   }
-  /// Conditioning depends on phi alone.
+  /// Conditioning of all positions at one phi.
   template <class S>
   S conditioning_at(const Geometry<S>& g, const S& phi) const {
     const auto [s, c] = sincos(phi);
     const S length = demand.characteristic_length ? S(*demand.characteristic_length) : characteristic_length(g);
     return conditioning(arms(g, s, c), length);
   }
-  /// One sample stands for all positions at one phi.
+  /// Adds one sample that represents all positions at one phi.
   template <class S>
   void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, Survey<S>& survey) const {
     if (!(value_of(weight) > 0)) return;
@@ -42,7 +41,8 @@ struct Planned {
   }
 };
 
-std::unique_ptr<const WorkspaceEvaluator> make_surveyor(const Planned& planned, const ColumnOptions& columns);
-std::unique_ptr<const VoxelEvaluator> make_surveyor(const Planned& planned, const VoxelOptions& voxels);
+std::unique_ptr<const WorkspaceEvaluator> make_evaluator(const AnalysisSettings& settings,
+                                                         const ColumnOptions& columns);
+std::unique_ptr<const VoxelEvaluator> make_evaluator(const AnalysisSettings& settings, const VoxelOptions& voxels);
 
 }  // namespace pkm::crr_cru
