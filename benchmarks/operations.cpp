@@ -95,13 +95,13 @@ void columns(benchmark::State& state) {
   std::array<Counted, kParameters> counted;
   std::ranges::copy(optimal_design(), counted.begin());
   const auto g = geometry(std::span<const Counted>(counted));
-  const auto f = frame(g, limits(g, without_limits()), Counted(g.L0 * 0.5));
+  const auto f = sliced_design(g, limits(g, without_limits()), Counted(g.L0 * 0.5));
   Counted sum(0.0);
   constexpr int kSlices = 50;
   const Operations slice_operations = count([&] {
     for (int i = 0; i < kSlices; ++i) {
       const auto [s, c] = sincos(Counted(1.5 * (i + 0.5) / kSlices));
-      sum += area(f, section(f, s, c));
+      sum += area(f, slice(f, s, c));
     }
   });
   benchmark::DoNotOptimize(sum);

@@ -39,10 +39,10 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     survey.clear(settings_.demand.fields);
     ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const SlicedDesign<S> s = sliced(parameters);
-    find_outer_pieces(s, sliced_constant<double>(parameters), sliced_constant<Dual<1>>(parameters), scratch);
+    find_outer_intervals(s, sliced_constant<double>(parameters), sliced_constant<Dual<1>>(parameters), scratch);
     if (!has_fixed_rules_) {
       const auto area = [&](const S& outer) { return area_at(s, outer, scratch); };
-      take_volume(integrate<S>(area, scratch.pieces, tolerance_, roundoff(s, scratch.pieces), scratch.integrals),
+      take_volume(integrate<S>(area, scratch.intervals, tolerance_, roundoff(s, scratch.intervals), scratch.integrals),
                   survey);
     }
     if (settings_.demand.needs_inertia()) {
@@ -56,7 +56,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     const Geometry<S>& g = s.design.g;
     const bool per_slice = settings_.with_conditioning && s.axes.outer_is_phi;
     if (has_fixed_rules_ || per_slice)
-      visit_nodes(scratch.pieces, outer_rule_, [&](const S& outer, const S& jacobian, double rule_weight) {
+      visit_nodes(scratch.intervals, outer_rule_, [&](const S& outer, const S& jacobian, double rule_weight) {
         const S area = has_fixed_rules_ ? area_of_columns(s, outer, inner_rule_, scratch, survey.columns)
                                         : area_at(s, outer, scratch);
         const S weight = area * jacobian * rule_weight;
@@ -81,7 +81,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
       if (conditioning) index = settings_.conditioning_at(g, phi);
     };
     if (!s.axes.outer_is_phi) set_phi(s.fixed);
-    visit_nodes(scratch.pieces, outer_rule_, [&](const S& outer, const S& jacobian, double rule_weight) {
+    visit_nodes(scratch.intervals, outer_rule_, [&](const S& outer, const S& jacobian, double rule_weight) {
       const S outer_weight = jacobian * rule_weight;
       if (s.axes.outer_is_phi) set_phi(outer);
       visit_positions(s, outer, inner_rule_, scratch, [&](const Vector3<S>& at, const S& weight) {

@@ -16,7 +16,7 @@ namespace pkm::crr_cru {
 template <class S>
 struct ColumnScratch {
   std::vector<Break<S>> critical_values;
-  std::vector<Piece<S>> pieces;  ///< subintervals of the outer coordinate between critical values
+  std::vector<Piece<S>> intervals;  ///< subintervals of the outer coordinate between critical values
   std::vector<QuadratureCell<S>> integrals;
   Decomposition decomposition;
 };
@@ -62,17 +62,17 @@ S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plai
   return implicit_root(at, distance(s, S(t)), distance(by_outer, Dual<1>::variable(t, 0)).v[0]);
 }
 
-/// Fills scratch.pieces with the subintervals of the outer coordinate on which slices are not empty and have one
+/// Fills scratch.intervals with the subintervals of the outer coordinate on which slices are not empty and have one
 /// combinatorial type. Decisions depend on values only, never on derivatives.
 /// @param plain, by_outer  as of lift_critical_value()
 template <class S>
-void find_outer_pieces(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
+void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
                        const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {
   // In x, only triple intersections of circles have no closed form; in phi, most critical values have none.
   const int samples = s.axes.outer_is_phi ? 192 : 48;
   auto& values = scratch.critical_values;
   values.clear();
-  scratch.pieces.clear();
+  scratch.intervals.clear();
   if (s.axes.outer_is_phi) {
     add_critical_values_of_phi(s, values);
   } else {
@@ -90,7 +90,7 @@ void find_outer_pieces(const SlicedDesign<S>& s, const SlicedDesign<double>& pla
       return lift_critical_value(s, plain, by_outer, at, value_of(values.back().at) - value_of(values.front().at),
                                  scratch.decomposition);
   };
-  find_pieces(values, signature, lift, samples, scratch.pieces);
+  find_pieces(values, signature, lift, samples, scratch.intervals);
 }
 
 /// The slice at a value of the outer coordinate; its decomposition is in scratch.decomposition.
@@ -110,12 +110,12 @@ S area_at(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
 
 /// Rounding error of the integral of area_at() over the subintervals [m^3 or m^2 rad].
 template <class S>
-double roundoff(const SlicedDesign<S>& s, const std::vector<Piece<S>>& pieces) {
-  if (pieces.empty()) return 0;
+double roundoff(const SlicedDesign<S>& s, const std::vector<Piece<S>>& intervals) {
+  if (intervals.empty()) return 0;
   const auto& out2 = s.design.out2;
   const double size =  // of the terms that cancel in the area
       value_of(s.design.g.L) + std::sqrt(value_of(max(max(out2[0], out2[1]), max(out2[2], out2[3]))));
-  return 4e-16 * size * size * (value_of(pieces.back().upper) - value_of(pieces.front().lower));
+  return 4e-16 * size * size * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }
 
 /// Whether u is a turning point of a circle that bounds the column, so that its length behaves like a square root.

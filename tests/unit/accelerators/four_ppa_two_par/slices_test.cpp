@@ -1,4 +1,4 @@
-// The plain test of a pose of 4PPa-2PaR against the generic engine, and closed-form sections against the plain test.
+// The plain test of a pose of 4PPa-2PaR against the generic engine, and closed-form slices against the plain test.
 // (Cells: voxels_test.cpp.)
 #include <algorithm>
 
@@ -49,7 +49,7 @@ std::vector<double> margins_at(const MarginCase& c, const At& at, double y) {
   return margins;
 }
 
-TEST(FourPpaSections, PlainPoseTestAgreesWithTheGenericEngine) {
+TEST(FourPpaSlices, PlainPoseTestAgreesWithTheGenericEngine) {
   Uniform uniform(31);
   int feasible_poses = 0, infeasible_poses = 0;
   for (int i = 0; i < 40000; ++i) {
@@ -66,7 +66,7 @@ TEST(FourPpaSections, PlainPoseTestAgreesWithTheGenericEngine) {
   EXPECT_GT(infeasible_poses, 1000);
 }
 
-TEST(FourPpaSections, ParametersAndLimitsHaveTheOrderOfTheFile) {
+TEST(FourPpaSlices, ParametersAndLimitsHaveTheOrderOfTheFile) {
   const auto names = [](const auto& list) {
     std::vector<std::string> all;
     for (const auto& entry : list) all.push_back(entry.name);
@@ -83,34 +83,34 @@ TEST(FourPpaSections, ParametersAndLimitsHaveTheOrderOfTheFile) {
   EXPECT_EQ(four_ppa().info().parameters.size(), std::size_t{kAllParameters});
 }
 
-/// Whether a pose lies in the closed-form section of its plane and theta.
-bool in_section(const Frame<double>& f, double x, double z, const SinCosOf<double>& theta) {
-  const Section<double> t = section(f, theta.sin, theta.cos);
+/// Whether a pose lies in the closed-form slice of its plane and theta.
+bool in_slice(const SlicedDesign<double>& f, double x, double z, const SinCosOf<double>& theta) {
+  const Slice<double> t = slice(f, theta.sin, theta.cos);
   if (t.empty || theta.cos < f.l.cos_theta_min) return false;
   Limbs<double> limbs;
   for (std::size_t j = 0; j < 2; ++j) place_limb(f.g, x, f.y, z, theta, Branch::lower, j, limbs);
   const std::size_t leaning = limbs.x[0] >= limbs.x[1] ? 0 : 1;
   if (limbs.x[leaning] > f.g.l_d) return false;
-  const Half<double> h = half_section(t, leaning);
+  const HalfSlice<double> h = half_slice(t, leaning);
   const double delta = limbs.sigma[1 - leaning] - limbs.sigma[leaning];
   if (h.empty || delta < h.low || delta > h.end) return false;
   const double rise = limbs.z_c[leaning] + f.z_low;
   return rise >= 0 && rise <= column(f, t, h, leaning, delta).length;
 }
 
-TEST(FourPpaSections, ContainExactlyTheFeasiblePoses) {
+TEST(FourPpaSlices, ContainExactlyTheFeasiblePoses) {
   Uniform uniform(33);
   int inside = 0, outside = 0;
   for (int i = 0; i < 100000; ++i) {
     const MarginCase c = random_margin_case(uniform);
     const At at = random_pose(c.g, uniform);
-    const Frame<double> f = frame(c.g, c.l, at.y);
+    const SlicedDesign<double> f = sliced_design(c.g, c.l, at.y);
     const SinCosOf<double> theta = sincos(at.angle);
     if (f.empty) continue;
     const std::vector<double> margins = margins_at(c, at, f.y);
     if (std::ranges::any_of(margins, [](double m) { return std::fabs(m) < 1e-9; })) continue;
     const bool expected = std::ranges::all_of(margins, [](double m) { return m >= 0; });
-    EXPECT_EQ(in_section(f, at.x, at.z, theta), expected);
+    EXPECT_EQ(in_slice(f, at.x, at.z, theta), expected);
     ++(expected ? inside : outside);
   }
   EXPECT_GT(inside, 1000);
