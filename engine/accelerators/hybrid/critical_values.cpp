@@ -6,38 +6,39 @@
 namespace pkm::hybrid {
 namespace {
 
-/// A strip that is there on one side of a break only: its ends meet, or, if the same two edges meet at both, touch.
-Event closing(const Strip& strip) {
-  const StripEnd &p = strip.from, &q = strip.to;
+/// The degeneracy at which a strip vanishes: its bounds coincide, or, if both are intersections of the same two edges,
+/// the edges become tangent.
+Degeneracy vanishing_strip(const Strip& strip) {
+  const StripBound &p = strip.from, &q = strip.to;
   const bool same = (p.first == q.first && p.second == q.second) || (p.first == q.second && p.second == q.first);
-  const bool touch = p.kind == StripEnd::Kind::meeting && q.kind == p.kind && same;
-  return {.kind = touch ? Event::Kind::touch : Event::Kind::heights,
+  const bool tangent = p.kind == StripBound::Kind::intersection && q.kind == p.kind && same;
+  return {.kind = tangent ? Degeneracy::Kind::tangency : Degeneracy::Kind::heights,
           .first = p,
           .second = q,
           .left = p.first,
           .right = p.second};
 }
 
-/// The event between two sections that have different structures; false: nothing is seen to meet.
-bool find_event(const Sample& lower, const Sample& upper, Event& event) {
-  using Kind = StripEnd::Kind;
-  const Section<double>&s = lower.section, &t = upper.section;
-  const Structure &below = lower.structure, &above = upper.structure;
-  const auto changes = [&](const Event& candidate) {
+/// The degeneracy between two slices of different types; std::nullopt if none is identified.
+std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const SampledSlice& upper) {
+  using Kind = StripBound::Kind;
+  const Slice<double>&s = lower.slice, &t = upper.slice;
+  const Decomposition &below = lower.decomposition, &above = upper.decomposition;
+  const StripBound low = end_of_z(s, Kind::lower, below.lower), high = end_of_z(s, Kind::upper, below.upper),
+                   hole = end_of_z(s, Kind::hole);
+  const auto heights = [](const StripBound& first, const StripBound& second) {
+    return Degeneracy{Degeneracy::Kind::heights, first, second};
+  };
+  const auto changes = [&](const StripBound& first, const StripBound& second) {  // their order
+    const Degeneracy candidate = heights(first, second);
     return (distance(s, candidate) >= 0) != (distance(t, candidate) >= 0);
   };
-  const StripEnd low = end_of_z(s, Kind::lower, below.lower), high = end_of_z(s, Kind::upper, below.upper),
-                 hole = end_of_z(s, Kind::hole);
-  const auto take = [&](const Event& candidate) {
-    event = candidate;
-    return true;
-  };
-  if (below.lower != above.lower) return take({Event::Kind::heights, low, end_of_z(s, Kind::lower, above.lower)});
-  if (below.upper != above.upper) return take({Event::Kind::heights, high, end_of_z(s, Kind::upper, above.upper)});
-  for (const StripEnd& other : {high, hole})
-    if (const Event closes{Event::Kind::heights, low, other}; changes(closes)) return take(closes);
-  if (const Event covers{Event::Kind::heights, hole, high}; hole.z > low.z && changes(covers)) return take(covers);
-  for (const StripEnd& at : {low, high, hole}) {
+  if (below.lower != above.lower) return heights(low, end_of_z(s, Kind::lower, above.lower));
+  if (below.upper != above.upper) return heights(high, end_of_z(s, Kind::upper, above.upper));
+  if (changes(low, high)) return heights(low, high);
+  if (changes(low, hole)) return heights(low, hole);
+  if (hole.z > low.z && changes(hole, high)) return heights(hole, high);
+  for (const StripBound& at : {low, high, hole}) {
     if (at.z < low.z || at.z > high.z) continue;
     std::array<Edge, kSides * kCurves> edge;
     std::array<double, kSides * kCurves> in_s, in_t;
@@ -49,116 +50,123 @@ bool find_event(const Sample& lower, const Sample& upper, Event& event) {
     for (std::size_t i = 0; i < edge.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
-        const bool apart = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
-        if (!apart)
-          // the chain's -x and x never meet but at a tip
-          return take({.kind = Event::Kind::edges, .first = at, .left = edge[j], .right = edge[i]});
+        // the chain's bounds -x and x intersect only where a root vanishes
+        const bool opposite = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
+        if (!opposite)
+          return Degeneracy{.kind = Degeneracy::Kind::edges, .first = at, .left = edge[j], .right = edge[i]};
       }
   }
-  // the shortest strip that is not there on the other side, preferably one between two edges that no strip is between
-  // there; others may just end elsewhere
-  bool closes = false;
-  double least = std::numeric_limits<double>::infinity();
-  const auto closes_from = [&](const Structure& here, const Structure& there, const auto& same) {
+  // The shortest strip that does not exist on the other side, preferably one whose two edges bound no strip there;
+  // other strips may only have different bounds.
+  std::optional<Degeneracy> found;
+  double shortest = std::numeric_limits<double>::infinity();
+  const auto find_vanishing = [&](const Decomposition& here, const Decomposition& there, const auto& same) {
     for (const Strip& strip : here.strips) {
       const bool stays = std::ranges::any_of(there.strips, [&](const Strip& of) { return same(of, strip); });
-      if (stays || strip.to.z - strip.from.z >= least) continue;
-      least = strip.to.z - strip.from.z;
-      event = closing(strip);
-      closes = true;
+      if (stays || strip.to.z - strip.from.z >= shortest) continue;
+      shortest = strip.to.z - strip.from.z;
+      found = vanishing_strip(strip);
     }
   };
   const auto same_edges = [](const Strip& p, const Strip& q) { return p.left == q.left && p.right == q.right; };
-  const auto same_ends = [](const Strip& p, const Strip& q) { return alike(p, q); };
-  closes_from(below, above, same_edges);
-  closes_from(above, below, same_edges);
-  if (closes) return true;
-  closes_from(below, above, same_ends);
-  closes_from(above, below, same_ends);
-  return closes;
+  const auto same_strip = [](const Strip& p, const Strip& q) { return same_type(p, q); };
+  find_vanishing(below, above, same_edges);
+  find_vanishing(above, below, same_edges);
+  if (found) return found;
+  find_vanishing(below, above, same_strip);
+  find_vanishing(above, below, same_strip);
+  return found;
 }
 
-/// Whether an event's heights are known in a sample: where edges meet, that is where the strip is.
-bool knows(const Sample& sample, const Event& event) {
-  const auto has = [&](const StripEnd& end) {
-    return end.kind != StripEnd::Kind::meeting || std::ranges::any_of(sample.structure.strips, [&](const Strip& s) {
-             return s.from.z == end.z || s.to.z == end.z;
-           });
+/// Whether the heights of a degeneracy are those of a sample: intersections are those of its strips.
+bool has_heights(const SampledSlice& sample, const Degeneracy& degeneracy) {
+  const auto has = [&](const StripBound& end) {
+    return end.kind != StripBound::Kind::intersection ||
+           std::ranges::any_of(sample.decomposition.strips,
+                               [&](const Strip& s) { return s.from.z == end.z || s.to.z == end.z; });
   };
-  return event.kind == Event::Kind::edges || (has(event.first) && has(event.second));
+  return degeneracy.kind == Degeneracy::Kind::edges || (has(degeneracy.first) && has(degeneracy.second));
 }
 
-/// x of an edge at a height, and its first two derivatives by z, with derivatives by beta.
-struct Bent {
+/// x of an edge and its first two derivatives with respect to z, the first two with derivatives with respect to beta.
+struct EdgeDerivatives {
   Dual<1> x, slope;
-  double bend;
+  double curvature;
 };
-Bent bent(const Section<Dual<1>>& s, const Edge& edge, double z) {
+EdgeDerivatives edge_derivatives(const Slice<Dual<1>>& s, const Edge& edge, double z) {
   const Curve<Dual<1>>& c = s.curve[edge.curve];
   const Dual<1> root = c.root(z), slope = c.slope(z, root);
   const double sign = s.sign(edge);
   return {s.constant(edge) + root * sign, slope * sign, sign * (value_of(c.curvature()) - slope.a * slope.a) / root.a};
 }
 
-/// A step of Newton's method for the height where two edges meet, with its derivative by beta.
-Dual<1> moved(const Section<Dual<1>>& s, const StripEnd& end) {
-  if (end.kind != StripEnd::Kind::meeting) return height(s, end);
-  const Bent first = bent(s, end.first, end.z), second = bent(s, end.second, end.z);
+/// The height of a bound after one Newton step if it is an intersection, with its derivative with respect to beta.
+Dual<1> newton_height(const Slice<Dual<1>>& s, const StripBound& end) {
+  if (end.kind != StripBound::Kind::intersection) return height(s, end);
+  const EdgeDerivatives first = edge_derivatives(s, end.first, end.z), second = edge_derivatives(s, end.second, end.z);
   return end.z - (second.x - first.x) / (second.slope.a - first.slope.a);
 }
 
-/// A step of Newton's method towards an event, in beta and the heights of meetings.
+/// One step of Newton's method for a degeneracy, in beta and the heights of intersections.
 /// @return  the step in beta
-double step_towards(const Section<Dual<1>>& s, Event& event) {
-  if (event.kind == Event::Kind::edges) {
-    const Dual<1> apart = distance(s, event);
-    return -apart.a / apart.v[0];
+double newton_step(const Slice<Dual<1>>& s, Degeneracy& degeneracy) {
+  if (degeneracy.kind == Degeneracy::Kind::edges) {
+    const Dual<1> difference = distance(s, degeneracy);
+    return -difference.a / difference.v[0];
   }
-  if (event.kind == Event::Kind::heights) {
-    const Dual<1> first = moved(s, event.first), second = moved(s, event.second), apart = second - first;
-    const double along = -apart.a / apart.v[0];
-    event.first.z = first.a + first.v[0] * along;
-    event.second.z = second.a + second.v[0] * along;
-    return along;
+  if (degeneracy.kind == Degeneracy::Kind::heights) {
+    const Dual<1> first = newton_height(s, degeneracy.first), second = newton_height(s, degeneracy.second),
+                  difference = second - first;
+    const double step = -difference.a / difference.v[0];
+    degeneracy.first.z = first.a + first.v[0] * step;
+    degeneracy.second.z = second.a + second.v[0] * step;
+    return step;
   }
-  // a touch: both the distance of the edges and its slope are 0
-  const Bent left = bent(s, event.left, event.first.z), right = bent(s, event.right, event.first.z);
-  const Dual<1> apart = right.x - left.x, slope = right.slope - left.slope;
-  const double bend = right.bend - left.bend, determinant = apart.v[0] * bend - slope.a * slope.v[0];
-  event.first.z += (slope.v[0] * apart.a - apart.v[0] * slope.a) / determinant;
-  return (slope.a * slope.a - bend * apart.a) / determinant;
+  // a tangency: the distance of the edges and its derivative with respect to z are 0
+  const EdgeDerivatives left = edge_derivatives(s, degeneracy.left, degeneracy.first.z),
+                        right = edge_derivatives(s, degeneracy.right, degeneracy.first.z);
+  const Dual<1> difference = right.x - left.x, slope = right.slope - left.slope;
+  const double curvature = right.curvature - left.curvature,
+               determinant = difference.v[0] * curvature - slope.a * slope.v[0];
+  degeneracy.first.z += (slope.v[0] * difference.a - difference.v[0] * slope.a) / determinant;
+  return (slope.a * slope.a - curvature * difference.a) / determinant;
 }
 
-/// Goes from a beta near it to an event between two beta; false: none is found.
-/// @param width  of the last step: the one after it is below rounding
-bool approach(const Frame<Dual<1>>& still, double lower, double upper, double width, double& beta, Event& event) {
-  if (event.kind == Event::Kind::touch) event.first.z = 0.5 * (event.first.z + event.second.z);
-  for (int step = 0; step < 12; ++step) {
-    const double along = step_towards(section(still, Dual<1>::variable(beta, 0)), event);
-    beta += along;
+/// Finds a degeneracy between two beta by Newton's method.
+/// @param width  step that ends the iteration; the next step would be below rounding
+/// @param beta   initial value, and result
+/// @return false if it does not converge
+bool refine(const SlicedDesign<Dual<1>>& by_beta, double lower, double upper, double width, double& beta,
+            Degeneracy& degeneracy) {
+  if (degeneracy.kind == Degeneracy::Kind::tangency)
+    degeneracy.first.z = 0.5 * (degeneracy.first.z + degeneracy.second.z);
+  for (int k = 0; k < 12; ++k) {
+    const double step = newton_step(slice(by_beta, Dual<1>::variable(beta, 0)), degeneracy);
+    beta += step;
     if (!(beta > lower && beta < upper)) return false;
-    if (std::fabs(along) < width) return true;
+    if (std::fabs(step) < width) return true;
   }
   return false;
 }
 
-class Search {
+class CriticalValueSearch {
  public:
-  Search(const Frame<double>& plain, const Frame<Dual<1>>& still, BreakScratch& scratch)
-      : plain_(plain), still_(still), scratch_(scratch) {
-    constexpr std::size_t kSamples = 192;  // gaps may be as narrow
+  CriticalValueSearch(const SlicedDesign<double>& plain, const SlicedDesign<Dual<1>>& by_beta,
+                      CriticalValueScratch& scratch)
+      : design_(plain), by_beta_(by_beta), scratch_(scratch) {
+    constexpr std::size_t kSamples = 192;  // narrower components and gaps can be missed
     const double low = plain.l.beta_min, high = plain.l.beta_max;
     scratch_.count = 0;
-    whole_ = high - low;
-    if (plain.empty || !(whole_ > 0)) return;
-    beside_ = 1e-7 * whole_;
-    used_ = 2;  // the first two are for the neighbours here
-    search(low + beside_, slot(0));
-    begin(low, {}, slot(0));
+    range_ = high - low;
+    if (plain.empty || !(range_ > 0)) return;
+    offset_ = 1e-7 * range_;
+    used_ = 2;  // the first two are the adjacent samples of this loop
+    fill(low + offset_, sample_number(0));
+    begin(low, {}, sample_number(0));
     for (std::size_t k = 1; k <= kSamples; ++k) {
-      const Sample &before = slot((k - 1) % 2), &next = slot(k % 2);
-      search(k == kSamples ? high - beside_ : low + whole_ * (static_cast<double>(k) / kSamples), slot(k % 2));
-      explore(before, next, kDepth);
+      const SampledSlice &before = sample_number((k - 1) % 2), &next = sample_number(k % 2);
+      fill(k == kSamples ? high - offset_ : low + range_ * (static_cast<double>(k) / kSamples), sample_number(k % 2));
+      bisect(before, next, kDepth);
     }
     end(high, {});
   }
@@ -166,91 +174,93 @@ class Search {
  private:
   static constexpr int kDepth = 60;
 
-  Sample& slot(std::size_t i) {
+  SampledSlice& sample_number(std::size_t i) {
     while (scratch_.samples.size() <= i) scratch_.samples.emplace_back();
     return scratch_.samples[i];
   }
-  void search(double beta, Sample& s) {
+  void fill(double beta, SampledSlice& s) {
     s.beta = beta;
-    s.section = section(plain_, beta);
-    find_strips(s.section, scratch_.strips, s.structure);
+    s.slice = slice(design_, beta);
+    decompose(s.slice, scratch_.strips, s.decomposition);
   }
-  const Sample& sample(double beta) {
-    Sample& s = slot(used_++);
-    search(beta, s);
+  const SampledSlice& sample(double beta) {
+    SampledSlice& s = sample_number(used_++);
+    fill(beta, s);
     return s;
   }
 
-  /// A stretch begins at a break: the sample is just above.
-  void begin(double at, const std::optional<Event>& event, const Sample& above) {
-    open_ = !above.structure.strips.empty();
+  /// Begins an interval, with a sample slightly above its lower endpoint.
+  void begin(double at, const std::optional<Degeneracy>& degeneracy, const SampledSlice& above) {
+    open_ = !above.decomposition.strips.empty();
     if (!open_) return;
-    if (scratch_.count == scratch_.stretches.size()) scratch_.stretches.emplace_back();
-    Stretch& s = scratch_.stretches[scratch_.count++];
+    if (scratch_.count == scratch_.intervals.size()) scratch_.intervals.emplace_back();
+    BetaInterval& s = scratch_.intervals[scratch_.count++];
     s.lower = at;
-    s.at_lower = event;
-    s.structure = above.structure;
+    s.at_lower = degeneracy;
+    s.decomposition = above.decomposition;
   }
-  void end(double at, const std::optional<Event>& event) {
+  void end(double at, const std::optional<Degeneracy>& degeneracy) {
     if (!open_) return;
-    Stretch& s = scratch_.stretches[scratch_.count - 1];
+    BetaInterval& s = scratch_.intervals[scratch_.count - 1];
     s.upper = at;
-    s.at_upper = event;
+    s.at_upper = degeneracy;
   }
 
-  /// Finds the breaks between two samples.
-  void explore(const Sample& low, const Sample& high, int depth) {
-    if (alike(low.structure, high.structure)) return;
+  /// Finds the critical values between two samples.
+  void bisect(const SampledSlice& low, const SampledSlice& high, int depth) {
+    if (same_type(low.decomposition, high.decomposition)) return;
     const double length = high.beta - low.beta;
-    if (!(length > 1e-10 * whole_) || depth == 0) {
+    if (!(length > 1e-10 * range_) || depth == 0) {
       const double at = 0.5 * (low.beta + high.beta);
       end(at, {});
       begin(at, {}, high);
       return;
     }
     const std::size_t used = used_;
-    Event event;
+    std::optional<Degeneracy> degeneracy = find_degeneracy(low, high);
     double at;
-    if (!locate(low, high, event, at)) {
-      const Sample& middle = sample(0.5 * (low.beta + high.beta));
-      explore(low, middle, depth - 1);
-      explore(middle, high, depth - 1);
+    if (!degeneracy || !find_critical_value(low, high, *degeneracy, at)) {
+      const SampledSlice& middle = sample(0.5 * (low.beta + high.beta));
+      bisect(low, middle, depth - 1);
+      bisect(middle, high, depth - 1);
       used_ = used;
       return;
     }
-    const double beside = std::fmin(beside_, 0.1 * length);
-    const Sample& below = at - beside > low.beta ? sample(at - beside) : low;
-    const Sample& above = at + beside < high.beta ? sample(at + beside) : high;
-    explore(low, below, depth - 1);
-    if (!alike(below.structure, above.structure)) {
-      end(at, event);
-      begin(at, event, above);
+    const double beside = std::fmin(offset_, 0.1 * length);
+    const SampledSlice& below = at - beside > low.beta ? sample(at - beside) : low;
+    const SampledSlice& above = at + beside < high.beta ? sample(at + beside) : high;
+    bisect(low, below, depth - 1);
+    if (!same_type(below.decomposition, above.decomposition)) {
+      end(at, degeneracy);
+      begin(at, degeneracy, above);
     }
-    explore(above, high, depth - 1);
+    bisect(above, high, depth - 1);
     used_ = used;
   }
 
-  bool locate(const Sample& low, const Sample& high, Event& event, double& at) const {
-    if (!find_event(low, high, event)) return false;
-    const auto off = [&](const Sample& s) {
-      return knows(s, event) ? std::fabs(distance(s.section, event)) : std::numeric_limits<double>::infinity();
+  bool find_critical_value(const SampledSlice& low, const SampledSlice& high, Degeneracy& degeneracy,
+                           double& at) const {
+    const auto residual = [&](const SampledSlice& s) {
+      return has_heights(s, degeneracy) ? std::fabs(distance(s.slice, degeneracy))
+                                        : std::numeric_limits<double>::infinity();
     };
-    at = (off(low) < off(high) ? low : high).beta;
-    return approach(still_, low.beta, high.beta, 1e-9 * whole_, at, event);
+    at = (residual(low) < residual(high) ? low : high).beta;
+    return refine(by_beta_, low.beta, high.beta, 1e-9 * range_, at, degeneracy);
   }
 
-  const Frame<double>& plain_;
-  const Frame<Dual<1>>& still_;
-  BreakScratch& scratch_;
-  double whole_ = 0, beside_ = 0;
+  const SlicedDesign<double>& design_;
+  const SlicedDesign<Dual<1>>& by_beta_;
+  CriticalValueScratch& scratch_;
+  double range_ = 0, offset_ = 0;
   std::size_t used_ = 0;
   bool open_ = false;
 };
 
 }  // namespace
 
-void find_stretches(const Frame<double>& plain, const Frame<Dual<1>>& still, BreakScratch& scratch) {
-  Search(plain, still, scratch);
+void find_beta_intervals(const SlicedDesign<double>& plain, const SlicedDesign<Dual<1>>& by_beta,
+                         CriticalValueScratch& scratch) {
+  CriticalValueSearch(plain, by_beta, scratch);
 }
 
 }  // namespace pkm::hybrid

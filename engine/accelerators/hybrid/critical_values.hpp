@@ -1,8 +1,9 @@
-// Hybrid robot: the breaks of beta, between which sections keep their structure.
+// Hybrid robot: the intervals of beta, between critical values, on which slices have one combinatorial type.
 //
-// Structures are searched for at some beta. Where two neighbours differ, the event that changes the one into the other
-// is read off them, and Newton's method goes to it, in beta and the heights of the two meetings together. Structures
-// close to it on both sides show whether it was the only one in between; else the search goes on there.
+// Slices are decomposed at samples of beta. If two adjacent samples differ in type, the degeneracy that changes the one
+// type into the other is identified, and Newton's method solves for it, in beta and in the heights of intersections
+// simultaneously. Decompositions slightly below and above the solution show whether further critical values exist
+// between the samples, which are then searched for recursively.
 #pragma once
 
 #include <deque>
@@ -14,86 +15,89 @@
 
 namespace pkm::hybrid {
 
-/// A section of a design without derivatives.
-struct Sample {
+/// A slice of a design in double precision.
+struct SampledSlice {
   double beta = 0;
-  Section<double> section;
-  Structure structure;
+  Slice<double> slice;
+  Decomposition decomposition;
 };
 
-/// What happens to a section at a break.
-struct Event {
+/// The degeneracy of a slice at a critical value.
+struct Degeneracy {
   enum class Kind : std::uint8_t {
-    heights,  ///< `first` and `second` meet
-    edges,    ///< `left` and `right` meet at `first`, an end of z
-    touch     ///< `left` and `right` touch at the height of `first`, where one strip ends and the next begins
+    heights,  ///< `first` and `second` coincide
+    edges,    ///< `left` and `right` intersect at `first`, a bound of z
+    tangency  ///< `left` and `right` are tangent at the height of `first`, between two strips or where one vanishes
   } kind = Kind::heights;
-  StripEnd first, second;
+  StripBound first, second;
   Edge left, right;
 };
 
-/// A range of beta with one structure.
-struct Stretch {
+/// An interval of beta on which slices have one type.
+struct BetaInterval {
   double lower = 0, upper = 0;
-  std::optional<Event> at_lower, at_upper;  ///< that change the structure there, where known
-  Structure structure;                      ///< near the lower end
+  std::optional<Degeneracy> at_lower, at_upper;  ///< at its endpoints, if known
+  Decomposition decomposition;                   ///< near the lower endpoint
 };
 
-/// Storage that searches reuse.
-struct BreakScratch {
-  std::vector<Stretch> stretches;
-  std::size_t count = 0;  ///< of them in use
-  std::deque<Sample> samples;
+/// Scratch memory of find_beta_intervals().
+struct CriticalValueScratch {
+  std::vector<BetaInterval> intervals;
+  std::size_t count = 0;  ///< number of intervals in use
+  std::deque<SampledSlice> samples;
   StripScratch strips;
 };
 
-/// Fills scratch.stretches with the ranges on which sections are not empty, in their order.
-/// @param plain, still  the same design without derivatives
-void find_stretches(const Frame<double>& plain, const Frame<Dual<1>>& still, BreakScratch& scratch);
+/// Finds the intervals on which slices are not empty, in ascending order.
+/// @param plain    the design in double precision
+/// @param by_beta  the design as constants, for derivatives with respect to beta
+/// @param scratch  receives them in `intervals`
+void find_beta_intervals(const SlicedDesign<double>& plain, const SlicedDesign<Dual<1>>& by_beta,
+                         CriticalValueScratch& scratch);
 
-/// The curve that begins or ends at an end of z, where its root is 0; kCurves: none.
-inline std::size_t tip(const StripEnd& end) {
-  if (end.kind == StripEnd::Kind::hole) return kCurveH;
-  if (end.kind == StripEnd::Kind::meeting) return kCurves;
+/// The curve whose root vanishes at a bound of z; kCurves if there is none.
+inline std::size_t vanishing_curve(const StripBound& end) {
+  if (end.kind == StripBound::Kind::hole) return kCurveH;
+  if (end.kind == StripBound::Kind::intersection) return kCurves;
   if (end.index == kEndP1 || end.index == kEndP2) return kCurveP;
-  if (end.index == kEndL && end.kind == StripEnd::Kind::upper) return kCurveL;
-  return end.index == kEndQ && end.kind == StripEnd::Kind::lower ? std::size_t{kCurveQ} : std::size_t{kCurves};
+  if (end.index == kEndL && end.kind == StripBound::Kind::upper) return kCurveL;
+  return end.index == kEndQ && end.kind == StripBound::Kind::lower ? std::size_t{kCurveQ} : std::size_t{kCurves};
 }
 
-/// x of an edge at an end of z, where a root of the section may begin.
+/// x of an edge at a bound of z, at which its root may vanish.
 template <class S>
-S edge_at_end(const Section<S>& s, const Edge& edge, const StripEnd& end) {
-  return edge.curve == tip(end) ? S(0.0) : edge_at(s, edge, height(s, end));
+S edge_at_end(const Slice<S>& s, const Edge& edge, const StripBound& end) {
+  return edge.curve == vanishing_curve(end) ? S(0.0) : edge_at(s, edge, height(s, end));
 }
 
-/// Whether areas behave like a power 3/2 beside an event: edges touch, or an end of z passes where a root begins.
-inline bool has_root(const Event& event) {
-  const auto is_tip = [](const StripEnd& end) { return tip(end) != kCurves; };
-  return event.kind == Event::Kind::touch || is_tip(event.first) ||
-         (event.kind == Event::Kind::heights && is_tip(event.second));
+/// Whether the area has a singularity (of power 3/2) at a degeneracy: a tangency, or a bound of z at which a root
+/// vanishes.
+inline bool has_sqrt_singularity(const Degeneracy& degeneracy) {
+  return degeneracy.kind == Degeneracy::Kind::tangency || vanishing_curve(degeneracy.first) != kCurves ||
+         (degeneracy.kind == Degeneracy::Kind::heights && vanishing_curve(degeneracy.second) != kCurves);
 }
 
-/// How far the two are apart: 0 at the break.
+/// Distance of the degenerating features: 0 at the critical value.
 template <class S>
-S distance(const Section<S>& s, const Event& event) {
-  if (event.kind == Event::Kind::touch) {  // where it is stationary in z
-    const S z(event.first.z);
-    return edge_at(s, event.right, z) - edge_at(s, event.left, z);
+S distance(const Slice<S>& s, const Degeneracy& degeneracy) {
+  if (degeneracy.kind == Degeneracy::Kind::tangency) {  // the minimum or maximum over z
+    const S z(degeneracy.first.z);
+    return edge_at(s, degeneracy.right, z) - edge_at(s, degeneracy.left, z);
   }
-  if (event.kind == Event::Kind::edges)
-    return edge_at_end(s, event.right, event.first) - edge_at_end(s, event.left, event.first);
-  return height(s, event.second) - height(s, event.first);
+  if (degeneracy.kind == Degeneracy::Kind::edges)
+    return edge_at_end(s, degeneracy.right, degeneracy.first) - edge_at_end(s, degeneracy.left, degeneracy.first);
+  return height(s, degeneracy.second) - height(s, degeneracy.first);
 }
 
-/// The beta of an event of a design, with its derivatives: with a and b the two that meet there, a(p, beta(p)) =
-/// b(p, beta(p)) gives beta' = -(d(a - b)/dp) / (d(a - b)/dbeta).
+/// The beta of a degeneracy with its derivatives, by the implicit function theorem.
 template <class S>
-S moving_break(const Frame<S>& f, const Frame<Dual<1>>& still, double at, const Event& event) {
+S lift_critical_value(const SlicedDesign<S>& d, const SlicedDesign<Dual<1>>& by_beta, double at,
+                      const Degeneracy& degeneracy) {
   if constexpr (std::is_same_v<S, double>) {
     return at;
   } else {
-    const double by_beta = distance(section(still, Dual<1>::variable(at, 0)), event).v[0];
-    return implicit_root(at, distance(section(f, S(at)), event), by_beta);
+    const double slope = distance(slice(by_beta, Dual<1>::variable(at, 0)), degeneracy).v[0];
+    return implicit_root(at, distance(slice(d, S(at)), degeneracy), slope);
   }
 }
 

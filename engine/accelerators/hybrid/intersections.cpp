@@ -5,23 +5,23 @@
 namespace pkm::hybrid {
 namespace {
 
-/// Where the chain's edges meet on one side.
-double chain_meeting(const Section<double>& s, const Edge& first, const Edge& second) {
+/// Intersection of two edges of the chain on one side.
+double chain_intersection(const Slice<double>& s, const Edge& first, const Edge& second) {
   const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
   return (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
 }
 
-/// How far one edge is right of another.
+/// Difference of x of two edges at one z.
 struct Gap {
-  double value, slope, bend;  ///< the last bounds the second derivative
+  double value, slope, bend;  ///< bend: bound of the second derivative
   double step() const { return -value / slope; }
-  /// Whether what Newton's method does after this step is below rounding.
-  bool last(double z) const {
+  /// Whether Newton's method has converged to rounding accuracy after this step.
+  bool is_last(double z) const {
     constexpr double kRelative = 1e-17;
     return step() * step() * bend <= kRelative * z * std::fabs(slope);
   }
 };
-Gap gap(const Section<double>& s, const Edge& first, const Edge& second, double z) {
+Gap gap(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
   const auto at = [&](const Edge& e) {
     const Curve<double>& c = s.curve[e.curve];
     const double root = c.root(z), slope = c.slope(z, root), sign = s.sign(e);
@@ -31,27 +31,28 @@ Gap gap(const Section<double>& s, const Edge& first, const Edge& second, double 
   return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
 }
 
-/// Where two edges on circles meet, as near z as there is a place between two heights; NaN: nowhere, they are no
-/// circles, or so near to touching that rounding counts.
-double circles_meeting(const Section<double>& s, const Edge& first, const Edge& second, double z, double low,
-                       double high) {
+/// Intersection of two circular edges between two heights, the one closest to z; kNoIntersection if there is none, if
+/// an edge is not circular, or if the circles are tangent to working precision.
+double circle_intersection(const Slice<double>& s, const Edge& first, const Edge& second, double z, double low,
+                           double high) {
   const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
-  if (!circle(first) || !circle(second)) return kNowhere;
+  if (!circle(first) || !circle(second)) return kNoIntersection;
   // centres and radii
   const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
-  const double foot = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
-  const double dx = s.constant(second) - s.constant(first), dz = 0.5 * (d.a - d.b) - foot,
-               apart = 1 / (dx * dx + dz * dz);
-  const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * apart), across2 = r1 * r1 * apart - along * along;
-  constexpr double kTouch = 1e-4;
-  if (!(across2 >= kTouch * along * along)) return kNowhere;
+  const double z1 = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
+  const double dx = s.constant(second) - s.constant(first), dz = 0.5 * (d.a - d.b) - z1,
+               inverse2 = 1 / (dx * dx + dz * dz);
+  // relative to the distance of the centres
+  const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * inverse2), across2 = r1 * r1 * inverse2 - along * along;
+  constexpr double kTangent = 1e-4;
+  if (!(across2 >= kTangent * along * along)) return kNoIntersection;
   const double across = std::sqrt(across2);
-  double least = std::numeric_limits<double>::infinity(), nearest = kNowhere;
+  double smallest = std::numeric_limits<double>::infinity(), nearest = kNoIntersection;
   for (const double h : {across, -across}) {
-    const double at = foot + along * dz + h * dx, from_first = along * dx - h * dz, from_second = from_first - dx;
+    const double at = z1 + along * dz + h * dx, from_first = along * dx - h * dz, from_second = from_first - dx;
     const bool on_both = from_first * s.sign(first) >= 0 && from_second * s.sign(second) >= 0;
-    if (!on_both || !(at > low && at < high) || std::fabs(at - z) >= least) continue;
-    least = std::fabs(at - z);
+    if (!on_both || !(at > low && at < high) || std::fabs(at - z) >= smallest) continue;
+    smallest = std::fabs(at - z);
     nearest = at;
   }
   return nearest;
@@ -59,9 +60,9 @@ double circles_meeting(const Section<double>& s, const Edge& first, const Edge& 
 
 }  // namespace
 
-double meeting(const Section<double>& s, const Edge& first, const Edge& second, double p, double q) {
-  if (of_chain(first, second)) return std::fmin(std::fmax(chain_meeting(s, first, second), p), q);
-  if (const double z = circles_meeting(s, first, second, 0.5 * (p + q), p, q); z == z) return z;
+double intersection(const Slice<double>& s, const Edge& first, const Edge& second, double p, double q) {
+  if (of_chain(first, second)) return std::fmin(std::fmax(chain_intersection(s, first, second), p), q);
+  if (const double z = circle_intersection(s, first, second, 0.5 * (p + q), p, q); z == z) return z;
   const double at_p = gap(s, first, second, p).value, at_q = gap(s, first, second, q).value;
   double z = p - at_p * (q - p) / (at_q - at_p);
   for (int step = 0; step < 80; ++step) {
@@ -70,24 +71,24 @@ double meeting(const Section<double>& s, const Edge& first, const Edge& second, 
     ((here.value >= 0) == (at_p >= 0) ? p : q) = z;
     if (!(q - p > 4e-16 * z)) break;
     z += here.step();
-    if (here.last(z)) return std::fmin(std::fmax(z, p), q);
+    if (here.is_last(z)) return std::fmin(std::fmax(z, p), q);
   }
   return z;
 }
 
-double meeting_near(const Section<double>& s, const Edge& first, const Edge& second, double z) {
-  if (of_chain(first, second)) return chain_meeting(s, first, second);
-  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  if (const double at = circles_meeting(s, first, second, z, 0, kAnywhere); at == at) return at;
-  double rises = 0;
+double intersection_near(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
+  if (of_chain(first, second)) return chain_intersection(s, first, second);
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  if (const double at = circle_intersection(s, first, second, z, 0, kUnbounded); at == at) return at;
+  double first_slope = 0;
   for (int step = 0; step < 8; ++step) {
     const Gap here = gap(s, first, second, z);
-    if (step == 0) rises = here.slope;
-    if (!(rises * here.slope > 0)) return kNowhere;
+    if (step == 0) first_slope = here.slope;
+    if (!(first_slope * here.slope > 0)) return kNoIntersection;
     z += here.step();
-    if (here.last(z)) return z;
+    if (here.is_last(z)) return z;
   }
-  return kNowhere;
+  return kNoIntersection;
 }
 
 }  // namespace pkm::hybrid

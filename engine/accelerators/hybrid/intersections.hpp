@@ -1,4 +1,4 @@
-// Hybrid robot: the heights where two edges of a section meet.
+// Hybrid robot: intersections of two edges of a slice.
 #pragma once
 
 #include <limits>
@@ -7,19 +7,19 @@
 
 namespace pkm::hybrid {
 
-inline constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kNoIntersection = std::numeric_limits<double>::quiet_NaN();
 
-/// Both belong to the chain, on one side: they differ as Q, P, lw_max cos(phi_max), lw_min cos(phi_max) do, which are
-/// linear in z.
+/// Whether two edges are bounds due to the auxiliary chain on one side: they intersect where Q, P, lw_max cos(phi_max)
+/// or lw_min cos(phi_max), which are linear in z, are equal.
 inline bool of_chain(const Edge& first, const Edge& second) {
   return first.curve >= kCurveQ && second.curve >= kCurveQ && first.side == second.side;
 }
 
-/// Where two edges that have changed places between p and q meet: in closed form, or by Newton's method, kept between
-/// them by bisection. The chain's meet at the same height on either side, to the last bit.
-double meeting(const Section<double>& s, const Edge& first, const Edge& second, double p, double q);
+/// z at which two edges intersect whose order differs at p and q: in closed form, or by Newton's method safeguarded by
+/// bisection. Edges of the chain intersect at bit-identical heights on both sides.
+double intersection(const Slice<double>& s, const Edge& first, const Edge& second, double p, double q);
 
-/// Where two edges meet near z; kNowhere: not that near.
-double meeting_near(const Section<double>& s, const Edge& first, const Edge& second, double z);
+/// z of an intersection near a given z; kNoIntersection if Newton's method does not converge there.
+double intersection_near(const Slice<double>& s, const Edge& first, const Edge& second, double z);
 
 }  // namespace pkm::hybrid

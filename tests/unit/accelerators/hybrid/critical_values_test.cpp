@@ -1,4 +1,4 @@
-// Between the breaks of beta sections keep their structure, and at each break it changes.
+// Between critical values of beta, slices have one combinatorial type; at each critical value it changes.
 #include <gtest/gtest.h>
 
 #include "engine/accelerators/hybrid/critical_values.hpp"
@@ -8,10 +8,10 @@ namespace pkm::testing::hybrid {
 namespace {
 
 template <class S>
-Frame<S> unlimited_frame(const std::vector<double>& design, const WorkingMode& mode) {
+SlicedDesign<S> unlimited_design(const std::vector<double>& design, const WorkingMode& mode) {
   const std::vector<S> p(design.begin(), design.end());
   const std::span<const S> all(p);
-  return frame(geometry(all), limits(all, no_limits(mechanism().info())), mode, 1);
+  return sliced_design(geometry(all), limits(all, no_limits(mechanism().info())), mode, 1);
 }
 
 /// Designs of the golden data, each shifted a little, so that nearly all have a workspace.
@@ -26,36 +26,37 @@ std::vector<std::vector<double>> designs(int count) {
   return all;
 }
 
-TEST(HybridBreaks, SectionsKeepTheirStructureInBetween) {
+TEST(HybridCriticalValues, SlicesKeepTheirTypeBetweenCriticalValues) {
   constexpr int kBetas = 60;
-  int breaks = 0;
-  BreakScratch scratch;
+  int critical_values = 0;
+  CriticalValueScratch scratch;
   StripScratch strips;
-  Structure structure;
+  Decomposition decomposition;
   for (const std::vector<double>& design : designs(30)) {
-    const auto f = unlimited_frame<double>(design, {1, -1, -1});
-    const auto at = [&](double beta) -> const Structure& {
-      find_strips(section(f, beta), strips, structure);
-      return structure;
+    const auto f = unlimited_design<double>(design, {1, -1, -1});
+    const auto at = [&](double beta) -> const Decomposition& {
+      decompose(slice(f, beta), strips, decomposition);
+      return decomposition;
     };
-    find_stretches(f, unlimited_frame<Dual<1>>(design, {1, -1, -1}), scratch);
+    find_beta_intervals(f, unlimited_design<Dual<1>>(design, {1, -1, -1}), scratch);
     double before = f.l.beta_min;
     for (std::size_t i = 0; i < scratch.count; ++i) {
-      const Stretch& s = scratch.stretches[i];
+      const BetaInterval& s = scratch.intervals[i];
       ASSERT_GE(s.lower, before);
       const double length = s.upper - s.lower;
-      const double inside = std::fmin(0.1 * length, 1e-6 * (f.l.beta_max - f.l.beta_min));  // of a break not followed
+      const double inside =
+          std::fmin(0.1 * length, 1e-6 * (f.l.beta_max - f.l.beta_min));  // of an inaccurate critical value
       if (s.lower > before) {
         EXPECT_TRUE(at(0.5 * (before + s.lower)).strips.empty());
       }
-      EXPECT_FALSE(s.structure.strips.empty());
+      EXPECT_FALSE(s.decomposition.strips.empty());
       for (int k = 0; k <= kBetas; ++k)
-        ASSERT_TRUE(alike(at(s.lower + inside + (length - 2 * inside) * k / kBetas), s.structure))
-            << "stretch " << i << " [" << s.lower << ", " << s.upper << "] " << k;
+        ASSERT_TRUE(same_type(at(s.lower + inside + (length - 2 * inside) * k / kBetas), s.decomposition))
+            << "interval " << i << " [" << s.lower << ", " << s.upper << "] " << k;
       if (s.at_lower) {
         const double beside = std::fmin(1e-5, 0.1 * length);
-        EXPECT_FALSE(alike(at(s.lower - beside), s.structure));
-        ++breaks;
+        EXPECT_FALSE(same_type(at(s.lower - beside), s.decomposition));
+        ++critical_values;
       }
       before = s.upper;
     }
@@ -63,7 +64,7 @@ TEST(HybridBreaks, SectionsKeepTheirStructureInBetween) {
       EXPECT_TRUE(at(0.5 * (before + f.l.beta_max)).strips.empty());
     }
   }
-  EXPECT_GT(breaks, 300);
+  EXPECT_GT(critical_values, 300);
 }
 
 }  // namespace
