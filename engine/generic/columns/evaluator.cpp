@@ -1,10 +1,10 @@
-#include "engine/generic/columns/survey.hpp"
+#include "engine/generic/columns/evaluator.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "engine/generic/clearance.hpp"
-#include "engine/generic/columns/sections_integral.hpp"
+#include "engine/generic/columns/nested_integral.hpp"
 #include "engine/generic/conditioning.hpp"
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/inertia_rows.hpp"
@@ -16,17 +16,17 @@ namespace {
 
 using Kind = FixedCoordinate::Kind;
 
-/// The orders of coordinates in which sections may have closed forms: each pair of swept ones as (v, z), or each as z
-/// alone, the others outside (of lines in one order), those that are integrated over outermost.
-std::vector<SectionOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
+/// The orders of coordinates in which slices can have closed forms: each pair of swept ones as (v, z), or each one as
+/// z, with the others as outer coordinates (in a single order for lines); integrated ones are outermost.
+std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
   std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
   for (const int coordinate : sweep.held)
     if (how_fixed(plan, coordinate).kind == Kind::integrated)
       integrated.push_back(static_cast<std::size_t>(coordinate));
   std::ranges::sort(swept);
-  std::vector<SectionOrder> orders;
+  std::vector<CoordinateOrder> orders;
   do {
-    SectionOrder order{.outer = integrated, .v = {}, .z = swept.back()};
+    CoordinateOrder order{.outer = integrated, .v = {}, .z = swept.back()};
     std::span<const std::size_t> outer = std::span(swept).first(swept.size() - 1);
     if (!are_lines && !outer.empty()) {
       order.v = outer.back();
@@ -47,19 +47,20 @@ Ranges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& 
 }
 
 struct Plans {
-  std::vector<SectionPlan> all;
-  std::string why_not;  ///< where there are none
+  std::vector<SlicePlan> all;
+  std::string why_not;  ///< if there are no plans
 };
 
-/// Sections of conics where there are any, else lines bounded by polynomials, else lines. @param most  plans
+/// Slices of conics if possible, otherwise lines bounded by polynomials, otherwise any lines. @param max_evaluations
+/// maximum number of plans
 Plans plans_of(const Evaluation& evaluation, std::size_t mode, const Sweep& sweep, const WorkspacePlan& plan,
-               const Ranges& box, std::size_t most = 100) {
+               const Ranges& box, std::size_t max_evaluations = 100) {
   Plans plans;
   for (const auto& [are_lines, curves] : {std::pair{false, false}, {true, false}, {true, true}}) {
     if (!plans.all.empty()) break;
-    for (const SectionOrder& order : orders_of(sweep, plan, are_lines)) {
-      if (plans.all.size() == most) return plans;
-      SectionPlan made = plan_sections(evaluation, mode, order, curves, box);
+    for (const CoordinateOrder& order : orders_of(sweep, plan, are_lines)) {
+      if (plans.all.size() == max_evaluations) return plans;
+      SlicePlan made = plan_slices(evaluation, mode, order, curves, box);
       if (made.why_not.empty())
         plans.all.push_back(std::move(made));
       else
@@ -89,12 +90,13 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     if (plans.empty())
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
                                   "; take workspace.method = \"voxels\"");
-    SectionPlan best = fastest(std::move(plans));
-    // Derivatives lose digits where the measure has a kink that no structure tells: with conics two more are cheap.
+    SlicePlan best = fastest(std::move(plans));
+    // Derivatives lose digits at a kink of the measure that no change of the type indicates; with conics two more
+    // digits are cheap.
     const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
     integral_.emplace(std::move(best), tolerance);
-    if (demand.has(kConditioning)) conditioning_.emplace(evaluation, moving(), mode_);
-    if (demand.needs_inertia()) inertia_.emplace(evaluation, moving(), mode_, demand.rotors);
+    if (demand.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
+    if (demand.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, demand.rotors);
   }
 
  private:
@@ -109,7 +111,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   };
   struct Room {
     std::vector<double> inputs;
-    IntegralRoom integral;
+    IntegralScratch integral;
     InertiaRoom inertia;
     Known known;
   };
@@ -119,40 +121,41 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     SampleConditioning::Room<S> conditioning;
   };
 
-  /// The coordinates that differ from sample to sample.
-  std::vector<int> moving() const {
-    const SectionOrder& order = integral_->plan().order;
+  /// The swept and integrated coordinates.
+  std::vector<int> dual_registers() const {
+    const CoordinateOrder& order = integral_->plan().order;
     std::vector<int> all(order.outer.begin(), order.outer.end());
     if (order.v) all.push_back(static_cast<int>(*order.v));
     all.push_back(static_cast<int>(order.z));
     return all;
   }
 
-  /// The plan whose survey of the default design, to a few digits, takes the fewest sections. One that takes too long
-  /// there is not chosen, unless all do.
-  SectionPlan fastest(std::vector<SectionPlan> plans) const {
+  /// The plan whose analysis of the default design at low accuracy takes the fewest slices; plans that take too long
+  /// are excluded unless all do.
+  SlicePlan fastest(std::vector<SlicePlan> plans) const {
     const double tolerance = plans.front().order.v ? 1e-3 : 1e-2;
     if (plans.size() == 1 || plans.front().order.outer.empty()) return std::move(plans.front());
     std::vector<double> design;
     for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
-    constexpr long kMostHalvings = 2'000'000;  // some seconds
-    Room room;
+    constexpr long kMaxBisections = 2'000'000;  // a few seconds
+    Room memory;
     std::size_t best = 0;
     double least = 1e7;
     for (std::size_t i = 0; i < plans.size(); ++i) {
-      const SectionsIntegral trial(plans[i], tolerance);
-      const auto curves = static_cast<std::size_t>(std::ranges::count(plans[i].surfaces, true, &Surface::is_curve));
+      const NestedIntegral trial(plans[i], tolerance);
+      const auto curves =
+          static_cast<std::size_t>(std::ranges::count(plans[i].surfaces, true, &Surface::is_transcendental));
       const auto per_section =
-          static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size() + 400 * curves);
-      fill_inputs<double>(design, room.inputs);
-      room.integral.column.halvings = 0;
-      room.integral.column.most_halvings = kMostHalvings;
+          static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].independent.back().size() + 400 * curves);
+      fill_inputs<double>(design, memory.inputs);
+      memory.integral.column.bisections = 0;
+      memory.integral.column.max_bisections = kMaxBisections;
       try {
-        trial.measure(room.inputs, room.integral, std::max(1L, static_cast<long>(least / per_section)));
-      } catch (const TooManyHalvings&) {
+        trial.measure(memory.inputs, memory.integral, std::max(1L, static_cast<long>(least / per_section)));
+      } catch (const TooManyBisections&) {
         continue;
       }
-      const double work = static_cast<double>(room.integral.sections) * per_section;
+      const double work = static_cast<double>(memory.integral.evaluations) * per_section;
       if (i > 0 && work >= least) continue;
       best = i;
       least = work;
@@ -160,7 +163,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     return std::move(plans[best]);
   }
 
-  /// With the held coordinates where they are held.
+  /// The inputs, with fixed coordinates at their values.
   template <class S>
   void fill_inputs(std::span<const S> parameters, std::vector<S>& inputs) const {
     const Inputs& at = e_.model.inputs;
@@ -185,57 +188,57 @@ class GenericColumns final : public WithGradients<GenericColumns> {
 
   template <class S>
   void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
-    Room& room = scratch.get<Room>();
+    Room& memory = scratch.get<Room>();
     SampleRoom<S>& samples = scratch.get<SampleRoom<S>>();
     survey.clear(demand_.fields);
     fill_inputs<S>(parameters, samples.inputs);
-    room.inputs.resize(samples.inputs.size());
-    std::ranges::transform(samples.inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
+    memory.inputs.resize(samples.inputs.size());
+    std::ranges::transform(samples.inputs, memory.inputs.begin(), [](const S& x) { return value_of(x); });
     Integral<double> found;
     if constexpr (std::is_same_v<S, double>) {
-      room.known.of = nullptr;
-      found = integral_->measure(room.inputs, room.integral);
+      memory.known.of = nullptr;
+      found = integral_->measure(memory.inputs, memory.integral);
     } else {
-      found = with_slopes(samples.inputs, room);
+      found = with_slopes(samples.inputs, memory);
     }
     take_volume(found, survey);
     if (found.value == 0 && found.error > 0) survey.error = 1;
     if constexpr (!std::is_same_v<S, double>) {
       for (std::size_t i = 0; i < samples.inputs.size(); ++i)
-        survey.volume.v = survey.volume.v + samples.inputs[i].v * room.known.by_input[i];
+        survey.volume.v = survey.volume.v + samples.inputs[i].v * memory.known.by_input[i];
     }
-    if (demand_.needs_samples()) add_samples(parameters, samples, room, survey);
+    if (demand_.needs_samples()) add_samples(parameters, samples, memory, survey);
   }
 
-  /// The volume and its derivatives by all inputs. Parameters come in passes of four: what the first found serves the
-  /// others, which have the same values and ask for other derivatives.
-  Integral<double> with_slopes(const std::vector<Dual4>& inputs, Room& room) const {
-    Known& known = room.known;
+  /// The volume and its derivatives with respect to all inputs. Parameters come in blocks of four (forward mode), of
+  /// which the first one computes the results for all, because only the derivatives differ.
+  Integral<double> with_slopes(const std::vector<Dual4>& inputs, Room& memory) const {
+    Known& known = memory.known;
     const auto same_slopes = [](const Dual4& x, const Dual4& y) { return std::ranges::equal(x.v.d, y.v.d); };
     if (known.of == this && std::ranges::equal(known.inputs, inputs, {}, &Dual4::a, &Dual4::a) &&
         !std::ranges::equal(known.inputs, inputs, same_slopes))
       return known.volume;
     known.of = this;
     known.inputs = inputs;
-    known.volume = integral_->measure_for_slopes(room.inputs, room.integral);
-    known.by_input.assign(room.inputs.size(), 0);
-    integral_->add_slopes(known.by_input, room.integral);
+    known.volume = integral_->measure_for_gradient(memory.inputs, memory.integral);
+    known.by_input.assign(memory.inputs.size(), 0);
+    integral_->add_gradient(known.by_input, memory.integral);
     return known.volume;
   }
 
   template <class S>
-  void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& room, Survey<S>& survey) const {
+  void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& memory, Survey<S>& survey) const {
     const std::vector<S>& inputs = samples.inputs;
-    const SectionOrder& order = integral_->plan().order;
+    const CoordinateOrder& order = integral_->plan().order;
     if (inertia_) {
       check_masses(e_, parameters);
-      inertia_->start(inputs, room.inertia);
+      inertia_->start(inputs, memory.inertia);
     }
     if (conditioning_) conditioning_->start(parameters, inputs, samples.conditioning);
     Pose<S> pose(e_.model.inputs.coordinates);
     std::copy_n(&inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
     std::vector<S>* const conditioning = survey.find(kConditioning);
-    integral_->for_each_node<S>(inputs, outer_rule_, inner_rule_, room.integral,
+    integral_->for_each_node<S>(inputs, outer_rule_, inner_rule_, memory.integral,
                                 [&](const std::vector<S>& outer, const S& v, const S& z, const S& weight) {
                                   for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
                                   if (order.v) pose[*order.v] = v;
@@ -244,9 +247,9 @@ class GenericColumns final : public WithGradients<GenericColumns> {
                                   if (demand_.poses) survey.pose.push_back(pose);
                                   if (conditioning)
                                     conditioning->push_back(conditioning_->at(pose, samples.conditioning));
-                                  if (inertia_) inertia_->add(pose, room.inertia, survey);
+                                  if (inertia_) inertia_->add(pose, memory.inertia, survey);
                                 });
-    if (inertia_) inertia_->finish(room.inertia, survey);
+    if (inertia_) inertia_->finish(memory.inertia, survey);
   }
 
   const Mechanism& mechanism_;
@@ -256,8 +259,8 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   const Sweep& sweep_;
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
-  std::optional<SectionsIntegral> integral_;
-  std::optional<SampleConditioning> conditioning_;  ///< where they are demanded
+  std::optional<NestedIntegral> integral_;
+  std::optional<SampleConditioning> conditioning_;  ///< if they are demanded
   std::optional<InertiaRows> inertia_;
 };
 

@@ -1,4 +1,4 @@
-#include "engine/generic/columns/section_plan.hpp"
+#include "engine/generic/columns/slice_plan.hpp"
 
 #include <algorithm>
 
@@ -12,10 +12,10 @@ namespace {
 using NodeSurface = std::array<Node, 6>;
 using NodeClause = std::vector<NodeSurface>;
 
-/// Places of z^i v^j among a conic's coefficients.
+/// Index of the coefficient of z^i v^j of a conic.
 constexpr std::size_t kPlace[3][3] = {{0, 1, 3}, {2, 4, 6}, {5, 6, 6}};
 
-/// Clauses of surfaces that hold where the condition does: conics in v and z, or where there is no v polynomials in z.
+/// Converts conditions to clauses of surfaces: conics in v and z, or without v polynomials in z.
 class SurfaceLowering {
  public:
   SurfaceLowering(Graph& graph, Groups v, Groups z) : graph_(graph), v_(v), z_(z) {}
@@ -26,7 +26,7 @@ class SurfaceLowering {
       if (auto clauses = lowered_by(node, z_first)) return clauses;
     return {};
   }
-  /// Of a single one.
+  /// A clause of a single surface.
   std::optional<NodeSurface> surface(Node node) {
     const auto found = conditions(node);
     if (!found || found->size() != 1 || found->front().size() != 1) return {};
@@ -70,7 +70,7 @@ class SurfaceLowering {
   Groups v_, z_;
 };
 
-/// Made of operations that have a value wherever their domains, which are conditions, hold.
+/// Whether all operations are defined wherever their domains, which are conditions, are satisfied.
 bool is_known_to_exist(const Graph& graph, Node node) {
   static const std::vector<std::string> known = {"sin", "cos", "asin", "acos", "atan", "atan2", "turn", "log", "exp"};
   return std::ranges::all_of(graph.reachable({&node, 1}), [&](Node each) {
@@ -82,14 +82,14 @@ bool is_known_to_exist(const Graph& graph, Node node) {
 
 class Planner {
  public:
-  Planner(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, bool curves, const Ranges& box)
+  Planner(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves, const Ranges& box)
       : model_(evaluation.model),
         known_(conditions_of(model_, mode)),
         graph_(known_.graph),
         v_(order.v ? Inputs::coordinate_group(*order.v) : 0),
         z_(Inputs::coordinate_group(order.z)),
         lowering_(graph_, v_, z_),
-        curves_(curves) {
+        transcendental_(curves) {
     plan_.order = order;
     take_cranks();
     for (std::size_t i = 0; i < known_.all.size() && plan_.why_not.empty(); ++i)
@@ -100,9 +100,9 @@ class Planner {
     add_box_of_z();
   }
 
-  SectionPlan finish() {
-    if (surface_nodes_.size() > kMostSurfaces)
-      plan_.why_not = "its sections have more than " + std::to_string(kMostSurfaces) + " surfaces";
+  SlicePlan finish() {
+    if (surface_nodes_.size() > kMaxSurfaces)
+      plan_.why_not = "its sections have more than " + std::to_string(kMaxSurfaces) + " surfaces";
     if (!plan_.why_not.empty()) return std::move(plan_);
     std::erase_if(plan_.formula.any, [&](Signs one_of) { return (one_of & plan_.formula.all) != 0; });
     std::vector<Groups> groups{~Groups{0}};
@@ -118,16 +118,16 @@ class Planner {
     plan_.program = expression::Program(graph_, outputs, groups);
 
     const std::uint32_t* at = plan_.program.outputs().data();
-    plan_.plain.resize(plan_.order.outer.size() + 2);
+    plan_.independent.resize(plan_.order.outer.size() + 2);
     for (std::size_t i = 0; i < plain_.size(); ++i, ++at)
-      plan_.plain[static_cast<std::size_t>(std::max(plan_.program.stage_of()[*at], 0))].push_back(*at);
+      plan_.independent[static_cast<std::size_t>(std::max(plan_.program.stage_of()[*at], 0))].push_back(*at);
     const auto is_zero = [&](Node node) { return graph_[node].is_number() && graph_[node].number == 0; };
     for (const NodeSurface& conic : surface_nodes_) {
       Surface& surface = plan_.surfaces.emplace_back();
       std::copy_n(at, 6, surface.coefficients.begin());
       surface.has_z = !is_zero(conic[2]) || !is_zero(conic[4]) || !is_zero(conic[5]);
-      surface.is_curve = std::ranges::find(curve_nodes_, conic[0]) != curve_nodes_.end();
-      surface.is_steep = v_ == 0 && !surface.is_curve && (!is_zero(conic[3]) || !is_zero(conic[4]));
+      surface.is_transcendental = std::ranges::find(curve_nodes_, conic[0]) != curve_nodes_.end();
+      surface.is_high_degree = v_ == 0 && !surface.is_transcendental && (!is_zero(conic[3]) || !is_zero(conic[4]));
       at += 6;
     }
     for (CrankSigns& crank : plan_.formula.cranks) crank.half_turn = *at++;
@@ -140,7 +140,7 @@ class Planner {
     if (plan_.why_not.empty()) plan_.why_not = what;
   }
 
-  /// Ranges and folds of cranks that surfaces tell, in place of what they cover.
+  /// Expresses the ranges and folds of cranks by surfaces.
   void take_cranks() {
     covered_.assign(known_.all.size(), false);
     std::vector<std::optional<Signs>> reaches(known_.cranks.size());
@@ -170,7 +170,7 @@ class Planner {
     for (std::size_t i = 0; i < known_.all.size(); ++i)
       covered_[i] = covered_[i] || std::ranges::find(conditions, known_.all[i]) != conditions.end();
   }
-  /// One of each; none: they are not all surfaces of this kind.
+  /// A surface for each; std::nullopt if they are not all of this kind.
   std::optional<std::vector<Signs>> bits_of(std::initializer_list<Node> surfaces) {
     std::vector<NodeSurface> found;
     for (const Node surface : surfaces) {
@@ -199,7 +199,7 @@ class Planner {
     if (is_joint && is_known_to_exist(graph_, node)) return;
     if ((graph_[node].groups & z_) == 0)
       plain_.push_back(node);
-    else if (curves_)
+    else if (transcendental_)
       add_curve(node);
     else
       refuse("'" + name_of_condition(model_, number) + "' is no polynomial of degree " + (v_ == 0 ? "four" : "two"));
@@ -233,7 +233,7 @@ class Planner {
       plan_.formula.any.push_back(bits);
   }
 
-  /// z between its ends.
+  /// Bounds of z.
   void add_box_of_z() {
     const limbs::Term from(graph_, ends_.back()[0]), to(graph_, ends_.back()[1]);
     const std::size_t place_of_z = v_ == 0 ? 1 : kPlace[1][0];
@@ -251,7 +251,7 @@ class Planner {
     auto at = std::ranges::find(surface_nodes_, conic);
     if (at == surface_nodes_.end()) at = surface_nodes_.insert(at, conic);
     const auto number = static_cast<std::size_t>(at - surface_nodes_.begin());
-    return Signs{1} << (number % kMostSurfaces);
+    return Signs{1} << (number % kMaxSurfaces);
   }
 
   std::array<Node, 2> ends_of(std::size_t coordinate, const Ranges& box) {
@@ -266,8 +266,8 @@ class Planner {
   Graph& graph_;
   Groups v_, z_;
   SurfaceLowering lowering_;
-  bool curves_;
-  SectionPlan plan_;
+  bool transcendental_;
+  SlicePlan plan_;
   std::vector<bool> covered_;
   std::vector<Node> plain_, half_turns_, curve_nodes_;
   std::vector<NodeSurface> surface_nodes_;
@@ -276,8 +276,8 @@ class Planner {
 
 }  // namespace
 
-SectionPlan plan_sections(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, bool curves,
-                          const Ranges& box) {
+SlicePlan plan_slices(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,
+                      const Ranges& box) {
   return Planner(evaluation, mode, order, curves, box).finish();
 }
 

@@ -1,4 +1,4 @@
-// Column surveys of described mechanisms.
+// Workspace analysis by columns for mechanism files.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,12 @@
 
 namespace pkm::generic {
 
-/// Throws std::invalid_argument with a sentence when the description cannot serve the plan.
+/// Throws std::invalid_argument, with a sentence, if columns cannot serve the plan.
 std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
                                                           const WorkspacePlan& plan, const ColumnOptions& columns,
                                                           const Demand& demand);
 
-/// Why no survey of the mechanism has columns; "": its usual one has.
+/// Why the default analysis of the mechanism has no columns; empty if it has.
 std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluation);
 
 }  // namespace pkm::generic

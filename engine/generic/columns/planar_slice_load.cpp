@@ -1,13 +1,13 @@
-// A section's surfaces in a square that its workspace fills.
+// The constraints of a planar slice, transformed to the square that its workspace fills.
 #include <cmath>
 
-#include "engine/generic/columns/corners.hpp"
+#include "engine/generic/columns/vertices.hpp"
 
 namespace pkm::generic {
 namespace {
 
-/// c by t and s, from C by v and z.
-Conic in_square(const std::array<double, 6>& C, const std::array<double, 2>& v, const std::array<double, 2>& z) {
+/// Transforms a conic from v and z to t and s.
+Conic in_box(const std::array<double, 6>& C, const std::array<double, 2>& v, const std::array<double, 2>& z) {
   const auto [vm, vh] = v;
   const auto [zm, zh] = z;
   Conic P;
@@ -18,13 +18,14 @@ Conic in_square(const std::array<double, 6>& C, const std::array<double, 2>& v, 
          vh * zh * C[4],
          zh * zh * C[5]};
   for (const double c : P.c) P.scale += std::fabs(c);
-  // A conic that contains z formally only, but for rounding, is upright.
+  // A conic that depends on z by rounding only is a vertical line.
   constexpr double kRounding = 1e-14;
   if (std::fabs(P.c[2]) + std::fabs(P.c[4]) + std::fabs(P.c[5]) <= kRounding * P.scale) P.c[2] = P.c[4] = P.c[5] = 0;
   return P;
 }
 
-/// Cuts a range to [low, high] and a little beyond, so that what ends there does so inside. False: nothing is left.
+/// Intersects a range with a slightly enlarged [low, high], so that endpoints there are inside. @return false if it is
+/// empty
 bool cut(std::array<double, 2>& range, double low, double high) {
   if (!(low <= range[1] && high >= range[0])) return false;
   const double beyond = 1e-2 * (high - low);
@@ -33,12 +34,13 @@ bool cut(std::array<double, 2>& range, double low, double high) {
   return true;
 }
 
-/// Cuts the ranges to where a conic that is an ellipse, or a strip along one of the coordinates, is >= 0. False: it is
-/// so nowhere in them.
+/// Contracts the ranges to the bounding box of P >= 0, if this is an ellipse or a strip along one of the coordinates.
+/// @return false if it is empty
 bool narrow_to(const std::array<double, 6>& C, std::array<double, 2>& v, std::array<double, 2>& z) {
   const auto [c, cv, cz, cvv, cvz, czz] = C;
-  const bool is_round = czz < 0 && cvv < 0 && cvz * cvz < 4 * cvv * czz;
-  if (!is_round && !(cvz == 0 && ((cv == 0 && cvv == 0 && czz < 0) || (cz == 0 && czz == 0 && cvv < 0)))) return true;
+  const bool has_sqrt_singularity = czz < 0 && cvv < 0 && cvz * cvz < 4 * cvv * czz;
+  if (!has_sqrt_singularity && !(cvz == 0 && ((cv == 0 && cvv == 0 && czz < 0) || (cz == 0 && czz == 0 && cvv < 0))))
+    return true;
   const auto range_of = [](const std::array<double, 3>& where, std::array<double, 2>& range) {
     const Roots roots = roots_of(where);
     return roots.count == 2 && cut(range, roots.s[0], roots.s[1]);
@@ -49,48 +51,48 @@ bool narrow_to(const std::array<double, 6>& C, std::array<double, 2>& v, std::ar
   return czz < 0 ? range_of({c, cz, czz}, z) : range_of({c, cv, cvv}, v);
 }
 
-/// P is a multiple of Q: 1 or -1 by its sign, or 0.
+/// 1 or -1 if P is a positive or negative multiple of Q, otherwise 0.
 int is_multiple(const Conic& P, const Conic& Q) {
   constexpr double kSame = 1e-12;
-  const double room = kSame * P.scale * Q.scale;
+  const double scratch = kSame * P.scale * Q.scale;
   bool same = true, opposite = true;
   for (std::size_t i = 0; i < 6 && (same || opposite); ++i) {
     const double p = P.c[i] * Q.scale, q = Q.c[i] * P.scale;
-    same = same && std::fabs(p - q) <= room;
-    opposite = opposite && std::fabs(p + q) <= room;
+    same = same && std::fabs(p - q) <= scratch;
+    opposite = opposite && std::fabs(p + q) <= scratch;
   }
   return same ? 1 : opposite ? -1 : 0;
 }
 
-void add_active(std::size_t k, SectionRoom& room) {
-  for (const std::size_t known : room.active)
-    if (const int sign = is_multiple(room.conics[k], room.conics[known])) {
-      (sign > 0 ? room.meaning[known].same : room.meaning[known].opposite) |= bit(k);
+void add_active(std::size_t k, PlanarSliceScratch& scratch) {
+  for (const std::size_t known : scratch.active)
+    if (const int sign = is_multiple(scratch.conics[k], scratch.conics[known])) {
+      (sign > 0 ? scratch.meaning[known].same : scratch.meaning[known].opposite) |= bit(k);
       return;
     }
-  room.active.push_back(k);
-  room.meaning[k] = {bit(k), 0};
+  scratch.active.push_back(k);
+  scratch.meaning[k] = {bit(k), 0};
 }
 
 }  // namespace
 
-bool Section::load(std::span<const double> registers, SectionRoom& room) const {
+bool PlanarSlice::load(std::span<const double> registers, PlanarSliceScratch& scratch) const {
   const auto ends_of = [&](const std::array<std::uint32_t, 2>& ends) {
     return std::array{registers[ends[0]], registers[ends[1]]};
   };
   std::array<double, 2> v = ends_of(plan_.range[plan_.range.size() - 2]), z = ends_of(plan_.range.back());
   if (!(v[1] > v[0]) || !(z[1] > z[0])) return false;
-  std::array<std::array<double, 6>, kMostSurfaces> C;
+  std::array<std::array<double, 6>, kMaxSurfaces> C;
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
     for (std::size_t i = 0; i < 6; ++i) C[k][i] = registers[plan_.surfaces[k].coefficients[i]];
     if ((plan_.formula.all & bit(k)) != 0 && !narrow_to(C[k], v, z)) return false;
   }
-  room.v = {0.5 * (v[0] + v[1]), 0.5 * (v[1] - v[0])};
-  room.z = {0.5 * (z[0] + z[1]), 0.5 * (z[1] - z[0])};
-  room.active.clear();
-  room.always = 0;
+  scratch.v = {0.5 * (v[0] + v[1]), 0.5 * (v[1] - v[0])};
+  scratch.z = {0.5 * (z[0] + z[1]), 0.5 * (z[1] - z[0])};
+  scratch.active.clear();
+  scratch.always = 0;
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
-    const Conic& P = room.conics[k] = in_square(C[k], room.v, room.z);
+    const Conic& P = scratch.conics[k] = in_box(C[k], scratch.v, scratch.z);
     if (!std::isfinite(P.scale)) {
       if ((plan_.formula.all & bit(k)) != 0) return false;
       continue;
@@ -100,9 +102,9 @@ bool Section::load(std::span<const double> registers, SectionRoom& room) const {
     if (P.c[0] - least(-P.c[3]) - least(-P.c[5]) + rest < 0) {
       if ((plan_.formula.all & bit(k)) != 0) return false;
     } else if (P.c[0] + least(P.c[3]) + least(P.c[5]) - rest > 0 || P.scale == std::fabs(P.c[0])) {
-      room.always |= bit(k);
+      scratch.always |= bit(k);
     } else {
-      add_active(k, room);
+      add_active(k, scratch);
     }
   }
   return true;
