@@ -67,7 +67,7 @@ S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plai
 /// @param plain, by_outer  as of lift_critical_value()
 template <class S>
 void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
-                       const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {
+                          const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {
   // In x, only triple intersections of circles have no closed form; in phi, most critical values have none.
   const int samples = s.axes.outer_is_phi ? 192 : 48;
   auto& values = scratch.critical_values;

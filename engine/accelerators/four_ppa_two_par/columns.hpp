@@ -204,70 +204,51 @@ void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S
 /// Which of the planes y (near) and L0 - y (far) are sampled; y <= L0/2 is that of the design.
 enum class Planes { near, far, both };
 
-/// The mirror images of a node. The slice at -theta is the mirror image in x = b/2 of the slice at theta; if both limbs
-/// have the same depth, each slice is symmetric; and the slice of the plane L0 - y at -theta is that of the plane y at
-/// theta. Conditioning is the same for all images, so that one sample with their total weight is sufficient. Inertia is
-/// permuted among the joints, and poses differ: then every image is a separate sample.
-struct Images {
-  bool symmetric;  ///< the node also represents the other half of the slice
-  Planes planes;
-
-  double count() const { return (symmetric ? 4.0 : 2.0) * (planes == Planes::both ? 2.0 : 1.0); }
-};
-
-/// A quadrature node in a slice.
-template <class S>
-struct Node {
-  S theta, sin_theta, cos_theta;
-  std::array<S, 2> x, sigma, z_c;  ///< of the two limbs [m]
-};
-
-template <class S>
-void add_samples(const SlicedDesign<S>& d, const SampleContents<S>& contents, const Images& images, const S& weight,
-                 const Node<S>& n, const S& index, std::array<std::vector<S>, 2>& inertia, const SampleTarget<S>& to) {
-  const Geometry<S>& g = d.g;
-  auto& [here, across] = inertia;
-  if (!contents.distinguishes_images()) {
-    add_sample(contents, S(weight * images.count()), {}, index, here, false, to);
-    return;
-  }
-  const auto find = [&](const std::array<S, 2>& at_x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c,
-                        std::vector<S>& values) {
-    if (contents.inertia)
-      inertia_values(joint_inertia(g, contents.masses, n.sin_theta, n.cos_theta, at_x, sigma, z_c), to.survey, values);
-  };
-  find(n.x, n.sigma, n.z_c, here);
-  find({n.x[1], n.x[0]}, {n.sigma[1], n.sigma[0]}, {n.z_c[1], n.z_c[0]}, across);
-  const S x = n.x[0] + g.a * n.cos_theta * 0.5, x_across = g.b - x, z = n.z_c[0] - n.sigma[0] - g.d;
-  for (const Planes plane : {Planes::near, Planes::far}) {
-    if (images.planes != Planes::both && images.planes != plane) continue;
-    const S y = plane == Planes::near ? d.y : S(g.L0 - d.y);
-    if (images.symmetric || plane == Planes::near) {
-      add_sample(contents, weight, {x, y, z, n.theta}, index, here, false, to);
-      add_sample(contents, weight, {x_across, y, z, S(-n.theta)}, index, across, true, to);
-    }
-    if (images.symmetric || plane == Planes::far) {
-      add_sample(contents, weight, {x, y, z, S(-n.theta)}, index, here, true, to);
-      add_sample(contents, weight, {x_across, y, z, n.theta}, index, across, false, to);
-    }
-  }
-}
-
 /// Adds weighted samples of one plane or both: the nodes of a Gauss rule in theta, delta and z on every interval on
 /// which the integrand is smooth. The sum of the weights approximates `weight` times the volume of the planes.
+///
+/// A node represents its mirror images. The slice at -theta is the mirror image in x = b/2 of the slice at theta; if
+/// both limbs have the same depth, each slice is symmetric; and the slice of the plane L0 - y at -theta is that of the
+/// plane y at theta. Conditioning is the same for all images, so that one sample with their total weight is sufficient.
+/// Inertia is permuted among the joints, and poses differ: then every image is a separate sample.
 /// @param test  clearance test of poses, or null
 template <class S>
 void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes planes, const S& weight,
             const GaussRule& theta_rule, const GaussRule& inner_rule, const ClearanceTest* test,
             ColumnScratch<S>& scratch, Survey<S>& survey) {
-  find_theta_intervals(d, scratch.critical_values, scratch.intervals);
+  const Geometry<S>& g = d.g;
   const SampleTarget<S> to(survey);
+  std::vector<S>&inertia = scratch.inertia[0], &inertia_across = scratch.inertia[1];
+  const auto add_images = [&](const S& own_weight, const S& theta, const SinCosOf<S>& turn, const Column<S>& col,
+                              const std::array<S, 2>& z_c, const S& index, bool symmetric) {
+    const auto find_inertia = [&](const Column<S>& at, const std::array<S, 2>& at_z_c, std::vector<S>& values) {
+      inertia_values(joint_inertia(g, contents.masses, turn.sin, turn.cos, at.x, at.sigma, at_z_c), survey, values);
+    };
+    if (contents.inertia) {
+      find_inertia(col, z_c, inertia);
+      find_inertia({.x = {col.x[1], col.x[0]}, .sigma = {col.sigma[1], col.sigma[0]}}, {z_c[1], z_c[0]},
+                   inertia_across);
+    }
+    const S x = col.x[0] + g.a * turn.cos * 0.5, x_across = g.b - x, z = z_c[0] - col.sigma[0] - g.d;
+    for (const Planes plane : {Planes::near, Planes::far}) {
+      if (planes != Planes::both && planes != plane) continue;
+      const S y = plane == Planes::near ? d.y : S(g.L0 - d.y);
+      if (symmetric || plane == Planes::near) {
+        add_sample(contents, own_weight, {x, y, z, theta}, index, inertia, false, to);
+        add_sample(contents, own_weight, {x_across, y, z, S(-theta)}, index, inertia_across, true, to);
+      }
+      if (symmetric || plane == Planes::far) {
+        add_sample(contents, own_weight, {x, y, z, S(-theta)}, index, inertia, true, to);
+        add_sample(contents, own_weight, {x_across, y, z, theta}, index, inertia_across, false, to);
+      }
+    }
+  };
+  find_theta_intervals(d, scratch.critical_values, scratch.intervals);
   visit_nodes(scratch.intervals, theta_rule, [&](const S& theta, const S& theta_jacobian, double theta_weight) {
-    const auto [sine, cosine] = sincos(theta);
-    const S &s = sine, &c = cosine;
-    const Slice<S> t = slice(d, s, c);
+    const SinCosOf<S> turn = sincos(theta);
+    const Slice<S> t = slice(d, turn.sin, turn.cos);
     visit_halves(d, t, test, scratch, [&](const HalfSlice<S>& h, std::size_t leaning, double halves) {
-      const Images images{halves == 2, planes};
+      const double images = 2 * halves * (planes == Planes::both ? 2.0 : 1.0);
       const S outer = weight * theta_jacobian * theta_weight;
       visit_nodes(scratch.ranges, inner_rule, [&](const S& delta, const S& delta_jacobian, double delta_weight) {
         const Column<S> col = column(d, t, h, leaning, delta);
@@ -277,13 +258,15 @@ void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes 
           poses.clear();
           visit_nodes(part, inner_rule,
                       [&](const S& rise, const S&, double) { poses.add(col.z_c(d, rise, 0), col.z_c(d, rise, 1)); });
-          if (contents.conditioning) poses.compute({d.g.l_u, contents.gamma, s, c, col.x, col.sigma});
+          if (contents.conditioning) poses.compute({g.l_u, contents.gamma, turn.sin, turn.cos, col.x, col.sigma});
           std::size_t n = 0;
           visit_nodes(part, inner_rule, [&](const S&, const S& jacobian, double z_weight) {
             const S each = outer * col.slope * delta_jacobian * jacobian * (delta_weight * z_weight);
-            const Node<S> node{theta, s, c, col.x, col.sigma, {poses.z_c[0][n], poses.z_c[1][n]}};
-            add_samples(d, contents, images, each, node, contents.conditioning ? poses.index[n] : S(0.0),
-                        scratch.inertia, to);
+            const S index = contents.conditioning ? poses.index[n] : S(0.0);
+            if (contents.distinguishes_images())
+              add_images(each, theta, turn, col, {poses.z_c[0][n], poses.z_c[1][n]}, index, halves == 2);
+            else
+              add_sample(contents, S(each * images), {}, index, inertia, false, to);
             ++n;
           });
         }

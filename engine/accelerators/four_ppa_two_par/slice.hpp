@@ -9,8 +9,8 @@
 // With Delta_j = Z_low - Z_j and delta = |sigma_1 - sigma_2| its length is min(Delta_i, Delta_k - delta), where i is
 // the limb with the greater inclination (beta_i >= beta_k), "leaning" in the code. So delta is used as a coordinate
 // instead of x. The loop-closure equation x_1 + x_2 = w = b - a cos theta puts A = (x_1, sigma_1) and
-// B = (-x_2, sigma_2) on one circle of radius l_d with A - B = (w, delta): a chord of length sqrt(q), q = w^2 + delta^2,
-// seen from the centre under the angle 2p = beta_1 + beta_2. Hence, with u = |x - b/2|,
+// B = (-x_2, sigma_2) on one circle of radius l_d with A - B = (w, delta): a chord of length sqrt(q), q = w^2 +
+// delta^2, seen from the centre under the angle 2p = beta_1 + beta_2. Hence, with u = |x - b/2|,
 //
 //   sin p = sqrt(q) / (2 l_d),   u = delta cot(p) / 2,   integral of u d(delta) = l_d^2 (p + sin p cos p),
 //

@@ -158,53 +158,47 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   };
   using Rooms = GridRooms<VoxelHeights, Worker>;
 
-  struct GriddedColumns : Gridded {
-    SlicedDesign<double> design;
-    const VoxelHeights& heights;
+  /// Calls visit(k) for the numbers of the beta of a piece.
+  template <class Visit>
+  static void for_each_beta(const VoxelColumns& columns, std::size_t piece, const Visit& visit) {
+    const auto first = static_cast<std::int64_t>(piece) * kBetas;
+    for (std::int64_t k = first; k < std::min(first + kBetas, columns.grid.cells[2]); ++k) visit(k);
+  }
 
-    VoxelColumns columns() const { return {design, grid, heights}; }
-    /// Calls visit(k) for the numbers of the beta of a piece.
-    template <class Visit>
-    void for_each_beta(std::size_t piece, const Visit& visit) const {
-      const auto first = static_cast<std::int64_t>(piece) * kBetas;
-      for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) visit(k);
-    }
-  };
-
-  GriddedColumns start(std::span<const double> parameters, Rooms& rooms) const {
+  VoxelColumns start(std::span<const double> parameters, Rooms& rooms) const {
     const SlicedDesign<double> design = sliced(settings_, parameters);
     const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(design));
     const double stroke = stroke_factor(design.l, settings_.plan);
-    GriddedColumns d{{grid, 0}, design, rooms.common};
-    if (!(stroke > 0)) return d;
+    VoxelColumns columns{{grid, 0}, design, rooms.common};
+    if (!(stroke > 0)) return columns;
     rooms.common.fill(design, grid);
-    d.pieces = static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas);
-    d.cell_volume *= stroke;
-    return d;
+    columns.pieces = static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas);
+    columns.cell_volume *= stroke;
+    return columns;
   }
 
-  void find(const GriddedColumns& d, std::size_t, std::size_t piece, Worker& worker, Survey<double>& to) const {
-    const VoxelColumns columns = d.columns();
+  void find(const VoxelColumns& columns, std::size_t, std::size_t piece, Worker& worker, Survey<double>& to) const {
     const bool only_counts = !settings_.demand.has(kConditioning);
-    ColumnSamples<double> samples(d.design, settings_.demand, worker.poses, to);
-    d.for_each_beta(piece, [&](std::int64_t k) {
+    const VoxelGrid& grid = columns.grid;
+    ColumnSamples<double> samples(columns.design, settings_.demand, worker.poses, to);
+    for_each_beta(columns, piece, [&](std::int64_t k) {
       if (only_counts) {
         to.feasible_cells += columns.count(k, worker.runs, to.touches_box);
         return;
       }
       columns.visit(k, worker.runs, [&](const CellRun& run) {
-        count_cells(d.grid, run, to);
-        samples.add(d.grid.centre(1, run.first[1]), d.grid.centre(2, k),
-                    static_cast<double>(run.count()) * d.cell_volume);
+        count_cells(grid, run, to);
+        samples.add(grid.centre(1, run.first[1]), grid.centre(2, k),
+                    static_cast<double>(run.count()) * columns.cell_volume);
       });
     });
     samples.finish();
   }
   template <class Visit>
-  void visit_cells(const GriddedColumns& d, Rooms& rooms, const Visit& visit) const {
-    for (std::size_t piece = 0; piece < d.pieces; ++piece)
-      d.for_each_beta(piece, [&](std::int64_t k) {
-        d.columns().visit(k, rooms.of[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
+  void visit_cells(const VoxelColumns& columns, Rooms& rooms, const Visit& visit) const {
+    for (std::size_t piece = 0; piece < columns.pieces; ++piece)
+      for_each_beta(columns, piece, [&](std::int64_t k) {
+        columns.visit(k, rooms.of[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
       });
   }
 

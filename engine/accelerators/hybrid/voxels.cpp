@@ -50,13 +50,13 @@ void VoxelHeights::fill(const SlicedDesign<double>& d, const VoxelGrid& grid) {
 }
 
 VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) const {
-  const SlicedDesign<double>& d = design_;
-  const double beta = grid_.centre(2, k);
+  const SlicedDesign<double>& d = design;
+  const double beta = grid.centre(2, k);
   if (d.empty || beta < d.l.beta_min || beta > d.l.beta_max) return {};
-  for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights_.z.size());
+  for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights.z.size());
   const Slice<double> s = slice(d, beta);
   const double low = *std::ranges::max_element(s.lower), high = *std::ranges::min_element(s.upper);
-  const auto begin = heights_.z.begin(), end = begin + grid_.cells[1];
+  const auto begin = heights.z.begin(), end = begin + grid.cells[1];
   const auto first_z = static_cast<std::size_t>(std::lower_bound(begin, end, low) - begin);
   const auto end_z = std::max(first_z, static_cast<std::size_t>(std::upper_bound(begin, end, high) - begin));
   const Edge left_C{kCurveC, kLeft}, right_C{kCurveC, kRight};
@@ -70,12 +70,12 @@ VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) co
                               .hi_C = s.constant(right_C),
                               .z_high = high,
                               .hole_end = s.hole_end,
-                              .x_lower = grid_.lower[0],
-                              .x_step = grid_.step[0],
-                              .cells = static_cast<double>(grid_.cells[0]),
-                              .z = heights_.z.data(),
-                              .left = heights_.left.data(),
-                              .right = heights_.right.data(),
+                              .x_lower = grid.lower[0],
+                              .x_step = grid.step[0],
+                              .cells = static_cast<double>(grid.cells[0]),
+                              .z = heights.z.data(),
+                              .left = heights.left.data(),
+                              .right = heights.right.data(),
                               .first_z = first_z,
                               .end_z = end_z};
   return {first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
@@ -87,8 +87,8 @@ std::int64_t VoxelColumns::count(std::int64_t k, CellRuns& runs, bool& touches) 
     return at.first_z <= j && j < at.end_z && runs.hole[j] - runs.first[j] + (runs.end[j] - runs.after[j]) > 0;
   };
   if (at.tally.cells > 0)
-    touches = touches || at.tally.touches || grid_.at_end(2, k) || has_cells(0) ||
-              has_cells(static_cast<std::size_t>(grid_.cells[1] - 1));
+    touches = touches || at.tally.touches || grid.at_end(2, k) || has_cells(0) ||
+              has_cells(static_cast<std::size_t>(grid.cells[1] - 1));
   return static_cast<std::int64_t>(at.tally.cells);
 }
 

@@ -8,6 +8,7 @@
 #include "engine/accelerators/hybrid/cells.hpp"
 #include "engine/accelerators/hybrid/slice.hpp"
 #include "engine/workspace/cell_runs.hpp"
+#include "engine/workspace/grid_surveyor.hpp"
 
 namespace pkm::hybrid {
 
@@ -21,12 +22,10 @@ struct VoxelHeights {
   void fill(const SlicedDesign<double>& d, const VoxelGrid& grid);
 };
 
-/// The feasible cells of a grid, column by column along x. Threads can share an object.
-class VoxelColumns {
- public:
-  /// Keeps references. @param heights  of this design and grid
-  VoxelColumns(const SlicedDesign<double>& design, const VoxelGrid& grid, const VoxelHeights& heights)
-      : design_(design), grid_(grid), heights_(heights) {}
+/// A design on its grid, column by column along x.
+struct VoxelColumns : Gridded {
+  SlicedDesign<double> design;
+  const VoxelHeights& heights;  ///< of this design and grid
 
   /// Number of feasible cells at beta number k.
   /// @param runs     scratch memory
@@ -54,10 +53,6 @@ class VoxelColumns {
     CellTally tally{0, false};
   };
   Columns find_runs(std::int64_t k, CellRuns& runs) const;
-
-  const SlicedDesign<double>& design_;
-  const VoxelGrid& grid_;
-  const VoxelHeights& heights_;
 };
 
 }  // namespace pkm::hybrid
