@@ -6,6 +6,7 @@
 #include "engine/accelerators/four_ppa_two_par/clearance.hpp"
 #include "engine/math/random.hpp"
 #include "engine/workspace/survey_set.hpp"
+#include "tests/unit/accelerators/four_ppa_two_par/plain_pose.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -30,7 +31,7 @@ void pose_clearance(benchmark::State& state) {
   const auto all = original_design();
   const auto g = geometry(std::span<const double>(all));
   const auto place = lower_placement(g, 0.37, -0.9, sincos(0.4).sin, sincos(0.4).cos);
-  for (auto _ : state) benchmark::DoNotOptimize(nearest_links(links(g, place)).clearance);
+  for (auto _ : state) benchmark::DoNotOptimize(testing::nearest_links(links(g, place)).clearance);
   state.counters["poses"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(pose_clearance)->Unit(benchmark::kMicrosecond);

@@ -69,7 +69,7 @@ BENCHMARK(limits_integrated_over_y)->Name("columns/original_with_limits_over_y")
 template <class S>
 S volume(std::span<const S> parameters, const LimitSpec& spec, ColumnScratch<S>& scratch) {
   const Geometry<S> g = geometry(parameters);
-  return plane_volume(frame(g, limits(g, spec), S(g.L0 * 0.5)), 1e-8, scratch).value;
+  return plane_volume(sliced_design(g, limits(g, spec), S(g.L0 * 0.5)), 1e-8, scratch).value;
 }
 
 void value_and_gradient(benchmark::State& state, const Designs& designs, const LimitSpec& spec) {

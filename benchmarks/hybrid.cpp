@@ -58,21 +58,22 @@ void columns_conditioning(benchmark::State& state) { analyse<double>(state, Colu
 void voxels(benchmark::State& state) { analyse<double>(state, kPaperGrid, 1); }
 void voxels_conditioning(benchmark::State& state) { analyse<double>(state, kPaperGrid, 1, with_conditioning()); }
 
-hybrid::Frame<double> nominal_frame() {
+hybrid::SlicedDesign<double> nominal_design() {
   const std::vector<double> p = designs(1)[0];
   const std::span<const double> all(p);
-  return hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1);
+  return hybrid::sliced_design(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())),
+                               {1, -1, -1}, 1);
 }
 
 /// A loop over the same voxels; fails if the workspace analysis counts a different number.
 void loop(benchmark::State& state) {
-  const hybrid::Frame<double> frame = nominal_frame();
-  const VoxelGrid grid(kPaperGrid.cells, hybrid::default_box(frame));
+  const hybrid::SlicedDesign<double> design = nominal_design();
+  const VoxelGrid grid(kPaperGrid.cells, hybrid::default_box(design));
   Survey<double> loop_result, result;
   for (auto _ : state) {
     summarise(grid,
               testing::test_every_cell(
-                  grid, [&](double x, double z, double beta) { return testing::hybrid::feasible(frame, x, z, beta); }),
+                  grid, [&](double x, double z, double beta) { return testing::hybrid::feasible(design, x, z, beta); }),
               loop_result);
     benchmark::DoNotOptimize(loop_result.volume);
   }

@@ -95,13 +95,13 @@ void columns(benchmark::State& state) {
   std::array<Counted, kParameters> counted;
   std::ranges::copy(optimal_design(), counted.begin());
   const auto g = geometry(std::span<const Counted>(counted));
-  const auto f = frame(g, limits(g, without_limits()), Counted(g.L0 * 0.5));
+  const auto f = sliced_design(g, limits(g, without_limits()), Counted(g.L0 * 0.5));
   Counted sum(0.0);
   constexpr int kSlices = 50;
   const Operations slice_operations = count([&] {
     for (int i = 0; i < kSlices; ++i) {
       const auto [s, c] = sincos(Counted(1.5 * (i + 0.5) / kSlices));
-      sum += area(f, section(f, s, c));
+      sum += area(f, slice(f, s, c));
     }
   });
   benchmark::DoNotOptimize(sum);
@@ -175,9 +175,8 @@ void coupling_of_voxels(benchmark::State& state) {
   benchmark_case.plan.method = VoxelOptions{.cells = {40, 40, 40}};
   const Operations pose =
       count([] {
-        InertiaFrame<Counted> frame{};
-        const PlaneInertia<Counted> share{2.0, 0.1, 3.0};
-        benchmark::DoNotOptimize(joint_inertia(frame, share, share, share, share));
+        const PlaneInertia<Counted> limb{2.0, 0.1, 3.0};
+        benchmark::DoNotOptimize(joint_inertia(YawInertia<Counted>{}, std::array{limb, limb, limb, limb}));
       }) +
       Operations{8 + 4 * 16, 4 * 17, 4, 0};  // by hand: coupling_indices, with four portable exponential functions
   compare_with_bound(state, benchmark_case,

@@ -1,26 +1,25 @@
 #include "engine/accelerators/crr_cru/accelerators.hpp"
 
+#include "engine/accelerators/crr_cru/analysis.hpp"
 #include "engine/accelerators/crr_cru/forward.hpp"
-#include "engine/accelerators/crr_cru/planned.hpp"
 
 namespace pkm::crr_cru {
 namespace {
 
-/// The coordinates that may be fixed while the other three are swept: each of the four.
+/// The one coordinate that a plan fixes while it sweeps the other three: phi by default; -1 if there is none.
 int fixed_coordinate(const WorkspacePlan& plan) {
   for (int coordinate = 0; coordinate < 4; ++coordinate) {
-    std::vector<int> swept;
-    for (int k = 0; k < 4; ++k)
-      if (k != coordinate) swept.push_back(k);
-    const bool named = !plan.swept.empty() || !plan.held.empty();
+    std::vector<int> swept = {0, 1, 2, 3};
+    std::erase(swept, coordinate);
+    const bool is_named = !plan.swept.empty() || !plan.held.empty();
     const bool fixes = plan.held.empty() || plan.held.front().coordinate == coordinate;
-    if ((named || coordinate == 3) && fixes && sweeps(plan, swept)) return coordinate;
+    if ((is_named || coordinate == 3) && fixes && sweeps(plan, swept)) return coordinate;
   }
   return -1;
 }
 
-/// "-,-,+,-", and that for "".
-WorkingMode mode_called(const std::string& name) {
+/// The elbow signs of a mode such as "-,-,+,-", the default.
+WorkingMode working_mode(const std::string& name) {
   WorkingMode mode = {-1, -1, 1, -1};
   for (std::size_t i = 0; 2 * i < name.size(); ++i) mode[i] = name[2 * i] == '+' ? 1 : -1;
   return mode;
@@ -41,21 +40,19 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
   }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                     const Demand& demand) const override {
-    return make_surveyor(planned(plan, demand), columns);
+    return make_evaluator(settings(plan, demand), columns);
   }
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
                                                 const Demand& demand) const override {
-    return make_surveyor(planned(plan, demand), voxels);
+    return make_evaluator(settings(plan, demand), voxels);
   }
-  Planned planned(const WorkspacePlan& plan, const Demand& demand) const {
-    const FixedCoordinate fixed = how_fixed(plan, fixed_coordinate(plan));
-    return {
-        .platform = platform_,
-        .mass_model = mass_model_,
-        .mode = mode_called(demand.mode),
-        .held = {static_cast<std::size_t>(fixed.coordinate), fixed.kind == FixedCoordinate::Kind::middle, fixed.value},
-        .limits = limits(plan.limits),
-        .demand = demand};
+  AnalysisSettings settings(const WorkspacePlan& plan, const Demand& demand) const {
+    return {.platform = platform_,
+            .mass_model = mass_model_,
+            .mode = working_mode(demand.mode),
+            .fixed = how_fixed(plan, fixed_coordinate(plan)),
+            .limits = limits(plan.limits),
+            .demand = demand};
   }
 
   Platform platform_;

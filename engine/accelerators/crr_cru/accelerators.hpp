@@ -1,4 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: closed forms in place of the generic engine.
+// (3CRR/R)&CRU and Quadrupteron: accelerators for the generic engine.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace pkm::crr_cru {
 
-/// @param mass_model  "table" or "geometry", which decides what the parameters are
+/// @param mass_model  "table" or "geometry": which parameters the design has after the lengths
 Accelerators accelerators(Platform platform, const std::string& mass_model);
 
 }  // namespace pkm::crr_cru

@@ -1,167 +1,179 @@
-// (3CRR/R)&CRU and Quadrupteron: exact volumes, and weighted samples, by quadrature of closed-form sections.
+// (3CRR/R)&CRU and Quadrupteron: exact volumes and weighted samples, by quadrature of the closed-form areas of slices
+// over the outer coordinate.
 //
-// With phi held, sections are normal to x and the outer coordinate is x; otherwise sections lie on the plane of the
-// position that is held and the outer coordinate is phi.
+// If phi is fixed, slices are normal to x, which is the outer coordinate; otherwise they are on the plane of the fixed
+// position, and phi is the outer coordinate.
 #pragma once
 
 #include <type_traits>
 
-#include "engine/accelerators/crr_cru/breaks.hpp"
+#include "engine/accelerators/crr_cru/critical_values.hpp"
 #include "engine/math/dual.hpp"
 
 namespace pkm::crr_cru {
 
-/// Storage that surveys reuse.
+/// Scratch memory of an analysis.
 template <class S>
 struct ColumnScratch {
-  std::vector<Break<S>> breaks;
-  std::vector<Piece<S>> pieces;
+  std::vector<Break<S>> critical_values;
+  std::vector<Piece<S>> intervals;  ///< subintervals of the outer coordinate between critical values
   std::vector<QuadratureCell<S>> integrals;
-  Structure structure;
+  Decomposition decomposition;
 };
 
-/// A break of the structure with its derivatives: where two ends meet, that of an implicit function (README.md).
-/// @param still  the same design without derivatives, for those by t
+/// A critical value found by bisection, with its derivatives: those of the implicit function at which two critical
+/// points of a slice coincide (README.md), or 0 if no column or gap vanishes.
+/// @param plain     the design in double precision
+/// @param by_outer  the design as constants, for derivatives with respect to the outer coordinate
+/// @param range     length of the range of the outer coordinate
 template <class S>
-S moving_break(const Sweeping<S>& s, const Sweeping<double>& plain, const Sweeping<Dual<1>>& still, double at,
-               double whole, Structure& structure) {
-  const double beside = 1e-9 * whole;
-  double least = 1e-4 * whole, t = at;
-  BreakCode first, second;
-  for (const double candidate : {at - beside, at + beside}) {
-    const Section<double> cross = section_at(plain, candidate);
-    find_structure(cross, structure);
-    const auto compare = [&](const BreakCode& a, const BreakCode& b) {
-      const double apart = std::fabs(break_at(cross, b) - break_at(cross, a));
-      if (!(apart > 0 && apart < least)) return;
-      least = apart;
+S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
+                      const SlicedDesign<Dual<1>>& by_outer, double at, double range, Decomposition& decomposition) {
+  const double offset = 1e-9 * range;
+  double smallest = 1e-4 * range, t = at;
+  CriticalPoint first, second;  // bound the smallest column or gap beside `at`
+  for (const double candidate : {at - offset, at + offset}) {
+    const Slice<double> slice = slice_at(plain, candidate);
+    decompose(slice, decomposition);
+    const auto compare = [&](const CriticalPoint& a, const CriticalPoint& b) {
+      const double distance = std::fabs(abscissa(slice, b) - abscissa(slice, a));
+      if (!(distance > 0 && distance < smallest)) return;
+      smallest = distance;
       t = candidate;
       first = a;
       second = b;
     };
-    for (std::size_t i = 0; i < structure.columns.size(); ++i) {
-      const Column& column = structure.columns[i];
+    for (std::size_t i = 0; i < decomposition.columns.size(); ++i) {
+      const Column& column = decomposition.columns[i];
       compare(column.lower, column.upper);
-      if (i > 0) compare(structure.columns[i - 1].upper, column.lower);
-      for (std::size_t end = 0; end < 2 * cross.u.size; ++end) {
-        const BreakCode edge = BreakCode::end_of_u(end);
+      if (i > 0) compare(decomposition.columns[i - 1].upper, column.lower);
+      for (std::size_t end = 0; end < 2 * slice.u.size; ++end) {
+        const CriticalPoint edge = CriticalPoint::end_of_u(end);
         compare(edge, column.lower);
         compare(column.upper, edge);
       }
     }
   }
   if (t == at) return S(at);
-  const auto apart = [&](const auto& sweep, const auto& outer) {
-    const auto cross = section_at(sweep, outer);
-    return break_at(cross, second) - break_at(cross, first);
+  const auto distance = [&](const auto& design, const auto& outer) {
+    const auto slice = slice_at(design, outer);
+    return abscissa(slice, second) - abscissa(slice, first);
   };
-  return implicit_root(at, apart(s, S(t)), apart(still, Dual<1>::variable(t, 0)).v[0]);
+  return implicit_root(at, distance(s, S(t)), distance(by_outer, Dual<1>::variable(t, 0)).v[0]);
 }
 
-/// Fills scratch.pieces. Every decision depends on values only.
-/// @param plain, still  the same design without derivatives
+/// Fills scratch.intervals with the subintervals of the outer coordinate on which slices are not empty and have one
+/// combinatorial type. Decisions depend on values only, never on derivatives.
+/// @param plain, by_outer  as of lift_critical_value()
 template <class S>
-void find_outer_pieces(const Sweeping<S>& s, const Sweeping<double>& plain, const Sweeping<Dual<1>>& still,
-                       ColumnScratch<S>& scratch) {
-  // In x, only where a corner of two circles crosses a third does a break have no closed form; in phi, most are such.
-  const int samples = s.cuts.outer_is_phi ? 192 : 48;
-  scratch.breaks.clear();
-  scratch.pieces.clear();
-  if (s.cuts.outer_is_phi) {  // the box may leave no phi at all
-    breaks_in_phi(s, scratch.breaks);
+void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
+                          const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {
+  // In x, only triple intersections of circles have no closed form; in phi, most critical values have none.
+  const int samples = s.axes.outer_is_phi ? 192 : 48;
+  auto& values = scratch.critical_values;
+  values.clear();
+  scratch.intervals.clear();
+  if (s.axes.outer_is_phi) {
+    add_critical_values_of_phi(s, values);
   } else {
-    if (s.frame.singular) return;
-    breaks_in_x(s, scratch.breaks);
+    if (s.positions.singular) return;
+    add_critical_values_of_x(s, values);
   }
   const auto signature = [&](double outer) {
-    find_structure(section_at(plain, outer), scratch.structure);
-    return scratch.structure.signature;
+    decompose(slice_at(plain, outer), scratch.decomposition);
+    return scratch.decomposition.signature;
   };
-  const auto moving = [&](double at) {
+  const auto lift = [&](double at) {
     if constexpr (std::is_same_v<S, double>)
       return at;
     else
-      return moving_break(s, plain, still, at, value_of(scratch.breaks.back().at) - value_of(scratch.breaks.front().at),
-                          scratch.structure);
+      return lift_critical_value(s, plain, by_outer, at, value_of(values.back().at) - value_of(values.front().at),
+                                 scratch.decomposition);
   };
-  find_pieces(scratch.breaks, signature, moving, samples, scratch.pieces);
+  find_pieces(values, signature, lift, samples, scratch.intervals);
 }
 
-/// Area of the section at a value of the outer coordinate, in closed form [m^2].
+/// The slice at a value of the outer coordinate; its decomposition is in scratch.decomposition.
 template <class S>
-S area_at(const Sweeping<S>& s, const S& outer, ColumnScratch<S>& scratch) {
-  const Section<S> cross = section_at(s, outer);
-  find_structure(values(cross), scratch.structure);
-  return area(cross, scratch.structure);
+Slice<S> decomposed_slice(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
+  const Slice<S> slice = slice_at(s, outer);
+  decompose(values(slice), scratch.decomposition);
+  return slice;
 }
 
-/// What rounding leaves of the integral of area_at over the pieces [m^3 or m^2 rad].
+/// Area of the slice at a value of the outer coordinate [m^2].
 template <class S>
-double roundoff(const Sweeping<S>& s, const std::vector<Piece<S>>& pieces) {
-  if (pieces.empty()) return 0;
+S area_at(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
+  const Slice<S> slice = decomposed_slice(s, outer, scratch);
+  return area(slice, scratch.decomposition);
+}
+
+/// Rounding error of the integral of area_at() over the subintervals [m^3 or m^2 rad].
+template <class S>
+double roundoff(const SlicedDesign<S>& s, const std::vector<Piece<S>>& intervals) {
+  if (intervals.empty()) return 0;
   const auto& out2 = s.design.out2;
-  const double size =  // of the terms that the area is a difference of
+  const double size =  // of the terms that cancel in the area
       value_of(s.design.g.L) + std::sqrt(value_of(max(max(out2[0], out2[1]), max(out2[2], out2[3]))));
-  return 4e-16 * size * size * (value_of(pieces.back().upper) - value_of(pieces.front().lower));
+  return 4e-16 * size * size * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }
 
-/// Whether an end of the column over u is a circle that begins or ends there.
+/// Whether u is a turning point of a circle that bounds the column, so that its length behaves like a square root.
 template <class S>
-bool ends_like_a_root(const Section<S>& cross, const Column& column, double u) {
+bool has_sqrt_singularity(const Slice<S>& slice, const Column& column, double u) {
   constexpr double kRoundoff = 1e-9;
   for (std::size_t k = 0; k < column.ends; ++k) {
-    if (!column.end[k].on_circle()) continue;
-    const Arc<S> arc = arc_of(cross, column.end[k]);
-    const double w = u - value_of(arc.ring->u), radius2 = value_of(*arc.radius2);
+    if (column.end[k].kind != EndpointLabel::on_circle) continue;
+    const Arc<S> arc = arc_of(slice, column.end[k]);
+    const double w = u - value_of(arc.annulus->u), radius2 = value_of(*arc.radius2);
     if (std::fabs(radius2 - w * w) < kRoundoff * radius2) return true;
   }
   return false;
 }
 
-/// Calls visit(column, u, weight) at the nodes of `rule` over u on every smooth piece of the section.
+/// Calls visit(slice, column, u, weight) at the nodes of a quadrature rule over u in every cell of the slice at a value
+/// of the outer coordinate.
 template <class S, class Visit>
-void visit_columns(const Section<S>& cross, const Structure& structure, const GaussRule& rule, const Visit& visit) {
-  for (const Column& column : structure.columns) {
-    Piece<S> piece{break_at(cross, column.lower), break_at(cross, column.upper)};
-    piece.sqrt_at_lower = ends_like_a_root(cross, column, value_of(piece.lower));
-    piece.sqrt_at_upper = ends_like_a_root(cross, column, value_of(piece.upper));
+void visit_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
+                   const Visit& visit) {
+  const Slice<S> slice = decomposed_slice(s, outer, scratch);
+  for (const Column& column : scratch.decomposition.columns) {
+    Piece<S> piece{abscissa(slice, column.lower), abscissa(slice, column.upper)};
+    piece.sqrt_at_lower = has_sqrt_singularity(slice, column, value_of(piece.lower));
+    piece.sqrt_at_upper = has_sqrt_singularity(slice, column, value_of(piece.upper));
     visit_nodes(piece, rule,
-                [&](const S& u, const S& jacobian, double weight) { visit(column, u, S(jacobian * weight)); });
+                [&](const S& u, const S& jacobian, double weight) { visit(slice, column, u, S(jacobian * weight)); });
   }
 }
 
-/// The area by `rule` over u, of the exact lengths of the columns along v.
+/// Area of the slice by a quadrature rule over u of the exact lengths of its columns [m^2].
+/// @param columns  incremented by their number
 template <class S>
-S area_of_columns(const Sweeping<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
+S area_of_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                   std::int64_t& columns) {
-  const Section<S> cross = section_at(s, outer);
-  find_structure(values(cross), scratch.structure);
   S sum(0.0);
-  visit_columns(cross, scratch.structure, rule, [&](const Column& column, const S& u, const S& weight) {
+  visit_columns(s, outer, rule, scratch, [&](const Slice<S>& slice, const Column& column, const S& u, const S& weight) {
     S length(0.0);
     for (std::size_t k = 0; k < column.ends; k += 2)
-      length += end_at(cross, column.end[k + 1], u) - end_at(cross, column.end[k], u);
+      length += end_at(slice, column.end[k + 1], u) - end_at(slice, column.end[k], u);
     sum += length * weight;
     ++columns;
   });
   return sum;
 }
 
-/// Calls visit(position, weight) at nodes of the section at a value of the outer coordinate: `rule` over u and over
-/// every interval of v.
+/// Calls visit(position, weight) at the nodes of a product rule in the slice: over u, and over every interval of v.
 template <class S, class Visit>
-void visit_positions(const Sweeping<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
+void visit_positions(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                      const Visit& visit) {
-  const Section<S> cross = section_at(s, outer);
-  find_structure(values(cross), scratch.structure);
   Vector3<S> at;
-  at[s.cuts.normal] = s.cuts.outer_is_phi ? s.held : outer;
-  visit_columns(cross, scratch.structure, rule, [&](const Column& column, const S& u, const S& weight) {
-    at[s.cuts.u] = u;
+  at[s.axes.normal] = s.axes.outer_is_phi ? s.fixed : outer;
+  visit_columns(s, outer, rule, scratch, [&](const Slice<S>& slice, const Column& column, const S& u, const S& weight) {
+    at[s.axes.u] = u;
     for (std::size_t k = 0; k < column.ends; k += 2) {
-      const Piece<S> interval{end_at(cross, column.end[k], u), end_at(cross, column.end[k + 1], u)};
+      const Piece<S> interval{end_at(slice, column.end[k], u), end_at(slice, column.end[k + 1], u)};
       visit_nodes(interval, rule, [&](const S& v, const S& jacobian, double inner) {
-        at[s.cuts.v] = v;
+        at[s.axes.v] = v;
         visit(at, S(weight * jacobian * inner));
       });
     }

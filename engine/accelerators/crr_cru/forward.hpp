@@ -8,14 +8,14 @@
 
 namespace pkm::crr_cru {
 
-/// Both assembly branches for slide positions: "+" with cos(phi + delta) > 0 and "-"; one where they meet, none where
-/// |sin(phi + delta)| would exceed 1. phi in (-pi, pi].
+/// The assembly modes for given slide positions: "+" with cos(phi + delta) > 0, and "-"; a single one if both coincide,
+/// none if |sin(phi + delta)| would exceed 1. phi is in (-pi, pi].
 inline std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& rho) {
   const Yaw<double> y = yaw(g);
   const double kappa = (rho[3] - rho[1] - y.a_0) / y.R;
   constexpr double kRoundoff = 1e-12;
   if (!(std::fabs(kappa) <= 1 + kRoundoff)) return {};
-  const double turn = asin(std::clamp(kappa, -1.0, 1.0)), delta = offset(y);
+  const double angle = asin(std::clamp(kappa, -1.0, 1.0)), delta = offset(y);
   std::vector<AssemblyMode> modes;
   const auto add = [&](double phi, const char* branch) {
     phi = wrapped(phi);
@@ -24,8 +24,8 @@ inline std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVe
     modes.push_back(
         {{rho[0] - arm[0].to_joint[0], rho[1] - arm[1].to_joint[1], rho[2] - arm[2].to_joint[2], phi}, branch});
   };
-  add(turn - delta, "+");
-  if (kPi - turn != turn) add(kPi - turn - delta, "-");
+  add(angle - delta, "+");
+  if (kPi - angle != angle) add(kPi - angle - delta, "-");
   return modes;
 }
 

@@ -1,5 +1,5 @@
-// (3CRR/R)&CRU and Quadrupteron: M_q from the limbs' shares, and coupling indices along a row of voxels, kLanes at a
-// time. Derivation: README.md.
+// (3CRR/R)&CRU and Quadrupteron: joint-space inertia M_q from the inertias of the limbs, and coupling indices along a
+// row of voxels in SIMD batches. Derivation: README.md.
 #pragma once
 
 #include <array>
@@ -11,60 +11,61 @@
 
 namespace pkm::crr_cru {
 
-/// Inertia of a limb's rods as felt at C_i in the limb's plane: elements of M_d [kg].
+/// Inertia of a limb's rods at its joint C_i, in the plane of the limb: elements of a symmetric matrix along the lower
+/// and the higher world axis [kg].
 template <class S>
 struct PlaneInertia {
   S pp, pq, qq;
 };
 
-/// What M_q takes of one phi.
+/// The part of M_q that depends on phi alone.
 template <class S>
-struct SlideFrame {
-  std::array<std::array<S, 2>, 4> per_slide;  ///< s_i in the limb's plane, along the lower and the higher world axis
-  // platforms, and what slides along the rails
-  S xx, yy, zz, vx, vy, vz, k;
-  std::array<double, 4> rotors{};  ///< what drive trains add
+struct YawInertia {
+  std::array<std::array<S, 3>, 4> arm;        ///< C_i - D [m]
+  std::array<std::array<S, 2>, 4> per_slide;  ///< s_i in the plane of the limb, along the lower and the higher axis
+  S xx, yy, zz, vx, vy, vz, k;                ///< platforms, and the masses that slide along the rails
+  std::array<double, 4> rotors{};             ///< inertia of drive trains at the joints [kg]
 };
 
-/// M_q from the limbs' shares [kg]. S may be lanes, of which all have one frame.
+/// M_q from the inertias of the four limbs [kg]. S can be Lanes, with the same YawInertia for all of them.
 template <class S, class T>
-[[gnu::always_inline]] inline JointInertia<S> joint_inertia(const SlideFrame<T>& f, const PlaneInertia<S>& l1,
-                                                            const PlaneInertia<S>& l2, const PlaneInertia<S>& l3,
-                                                            const PlaneInertia<S>& l4) {
-  const auto along = [&f](std::size_t i, const PlaneInertia<S>& l) {  // A_i s_i
+[[gnu::always_inline]] inline JointInertia<S> joint_inertia(const YawInertia<T>& f,
+                                                            const std::array<PlaneInertia<S>, 4>& l) {
+  const auto along = [&](std::size_t i) {  // A_i s_i
     const auto& s = f.per_slide[i];
-    return std::array<S, 2>{l.pp * s[0] + l.pq * s[1], l.pq * s[0] + l.qq * s[1]};
+    return std::array<S, 2>{l[i].pp * s[0] + l[i].pq * s[1], l[i].pq * s[0] + l[i].qq * s[1]};
   };
-  const std::array<S, 2> v1 = along(0, l1), v2 = along(1, l2), v3 = along(2, l3), v4 = along(3, l4);
-  const S vx = f.vx + (v2[0] + v3[0] + v4[0]), vy = f.vy + (v1[0] + v3[1]), vz = f.vz + (v1[1] + v2[1] + v4[1]);
-  const auto twice = [&f](std::size_t i, const std::array<S, 2>& v) {
-    return S(f.per_slide[i][0] * v[0] + f.per_slide[i][1] * v[1]);
+  const std::array<std::array<S, 2>, 4> v = {along(0), along(1), along(2), along(3)};
+  const S vx = f.vx + (v[1][0] + v[2][0] + v[3][0]), vy = f.vy + (v[0][0] + v[2][1]),
+          vz = f.vz + (v[0][1] + v[1][1] + v[3][1]);
+  const auto twice_energy = [&](std::size_t i) {  // s_i^T A_i s_i
+    return S(f.per_slide[i][0] * v[i][0] + f.per_slide[i][1] * v[i][1]);
   };
-  const S k = f.k + ((twice(0, v1) + twice(1, v2)) + (twice(2, v3) + twice(3, v4)));
+  const S k = f.k + ((twice_energy(0) + twice_energy(1)) + (twice_energy(2) + twice_energy(3)));
   JointInertia<S> M;
-  M.m00 = f.xx + (l2.pp + l3.pp + l4.pp) + f.rotors[0];
-  M.m11 = f.yy + (l1.pp + l3.qq) - vy * 2.0 + k + f.rotors[1];
-  M.m22 = f.zz + (l1.qq + l2.qq + l4.qq) + f.rotors[2];
+  M.m00 = f.xx + (l[1].pp + l[2].pp + l[3].pp) + f.rotors[0];
+  M.m11 = f.yy + (l[0].pp + l[2].qq) - vy * 2.0 + k + f.rotors[1];
+  M.m22 = f.zz + (l[0].qq + l[1].qq + l[3].qq) + f.rotors[2];
   M.m33 = k + f.rotors[3];
-  M.m01 = l3.pq - vx;
-  M.m02 = l2.pq + l4.pq;
+  M.m01 = l[2].pq - vx;
+  M.m02 = l[1].pq + l[3].pq;
   M.m03 = vx;
-  M.m12 = l1.pq - vz;
+  M.m12 = l[0].pq - vz;
   M.m13 = vy - k;
   M.m23 = vz;
   return M;
 }
 
-/// A limb's shares along a row of voxels: an element for each, or one for all.
-struct ShareRow {
+/// Inertia of a limb along a row of voxels: one element per voxel, or a single one for all.
+struct InertiaRow {
   const double *pp, *pq, *qq;
   bool varies;
 };
 
-/// Coupling indices of voxels [first, end) of a row, and up to whole lanes of some beyond; numbers without meaning for
-/// voxels that do not assemble.
+/// Computes the coupling indices of voxels [first, end) of a row, and of some more up to a multiple of kLanes; they are
+/// meaningless for voxels that do not assemble.
 template <InstructionSet set>
-void coupling_along(const SlideFrame<double>& frame, const std::array<ShareRow, 4>& shares, std::size_t first,
-                    std::size_t end, const std::array<double*, 4>& index);
+void coupling_of_row(const YawInertia<double>& inertia, const std::array<InertiaRow, 4>& limbs, std::size_t first,
+                     std::size_t end, const std::array<double*, 4>& index);
 
 }  // namespace pkm::crr_cru

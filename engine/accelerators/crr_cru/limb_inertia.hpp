@@ -1,6 +1,6 @@
-// (3CRR/R)&CRU and Quadrupteron: the inertia of limbs and platforms as it is felt at the joints C_i (README.md).
+// (3CRR/R)&CRU and Quadrupteron: inertia of the limbs at the platform joints C_i, and of the platforms (README.md).
 //
-// Source: as model.hpp, sections 2.2 to 3.1 with their errata; the limb-wise form follows from virtual work.
+// Source: as model.hpp, parts 2.2 to 3.1 with their errata; the limb-wise form follows from virtual work.
 #pragma once
 
 #include "engine/accelerators/crr_cru/joint_inertia.hpp"
@@ -9,8 +9,7 @@
 
 namespace pkm::crr_cru {
 
-/// A limb's share of the inertia at its joint, in world axes: its plane's lower axis, both, the higher one [kg]. None
-/// where rounding has put a sample just outside the reach.
+/// Inertia of the rods of a limb at its joint C_i. Zero if rounding has placed a sample just outside the reach.
 template <class S>
 PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
   if (!limb.reaches) return {};
@@ -27,32 +26,17 @@ PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::siz
           A * v[1] * v[1] - B * 2.0 * (u[1] * v[1]) + C * u[1] * u[1]};
 }
 
-/// What moves along a limb's rail [kg].
+/// Adds the mass that moves with a limb's slide to M_X. @param by_phi  velocity of C_i along the rail per phidot [m]
 template <class S>
-S rail_mass(const Masses<S>& b, std::size_t i) {
-  return b.m_1[i] + b.m_2[i] + b.slide;
+void add_on_rail(std::size_t e, const S& mass, const S& by_phi, Matrix<S, 4, 4>& M) {
+  const S moment = mass * by_phi;
+  M(e, e) += mass;
+  M(e, 3) += moment;
+  M(3, e) += moment;
+  M(3, 3) += by_phi * moment;
 }
 
-/// Adds J_C^T A J_C, J_C = [1 | turning], to M_X, where A is a limb's share in space: in its plane, and what moves
-/// along its rail.
-template <class S>
-void add_at_joint(const LimbFrame& f, const PlaneInertia<S>& share, const S& along, const Vector<S, 3>& turning,
-                  Matrix<S, 4, 4>& M) {
-  Matrix<S, 3, 3> at;
-  at(f.p, f.p) = share.pp;
-  at(f.q, f.q) = share.qq;
-  at(f.p, f.q) = at(f.q, f.p) = share.pq;
-  at(f.e, f.e) = along;
-  const Vector<S, 3> column = at * turning;
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) M(r, c) += at(r, c);
-    M(r, 3) += column[r];
-    M(3, r) += column[r];
-  }
-  M(3, 3) += dot(turning, column);
-}
-
-/// A point mass that moves with D and an arm of length `at` along D-C_4 [m]: on the moving platform.
+/// Adds a point mass of the moving platform to M_X. @param at  its distance from D along D-C_4 [m]
 template <class S>
 void add_on_arm(const S& mass, const S& at, const S& sin_phi, const S& cos_phi, Matrix<S, 4, 4>& M) {
   for (std::size_t k = 0; k < 3; ++k) M(k, k) += mass;
@@ -64,7 +48,7 @@ void add_on_arm(const S& mass, const S& at, const S& sin_phi, const S& cos_phi, 
   M(3, 3) += mass * at * at;
 }
 
-/// Platforms' and payload's share of M_X: depends on phi alone.
+/// M_X of the platforms and the payload, which depends on phi alone.
 template <class S>
 Matrix<S, 4, 4> platform_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_phi, const S& cos_phi) {
   Matrix<S, 4, 4> M;

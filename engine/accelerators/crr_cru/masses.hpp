@@ -1,9 +1,11 @@
-// (3CRR/R)&CRU and Quadrupteron: masses and inertias, as parameters of their own or following the geometry.
+// (3CRR/R)&CRU and Quadrupteron: masses and inertias, given as parameters or derived from the geometry.
 //
-// Source: the table of the paper (model.hpp) with the inertias of limbs 1 and 3 in the right rows. A rod's centre of
-// mass is its middle; the moving platform's lies on the arm D-C_4 at the distance c from D, the middle platform's is N.
+// Source: the table of the paper (model.hpp), in which the inertias of limbs 1 and 3 are in each other's rows;
+// corrected here. The centre of mass of a rod is its midpoint; that of the moving platform is on the arm D-C_4 at the
+// distance c from D, that of the middle platform is N.
 //
-// Following the geometry (MassModel::geometry), fitted to the paper's eight rods by least squares and to its platforms:
+// Derived from the geometry (MassModel::geometry), with constants fitted to the paper's eight rods by least squares and
+// to its platforms:
 //   rods       m_ik = lambda l_ik + m_0,   I_ik = kappa m_ik l_ik^2 / 12
 //   platforms  m_1 = density_1 pi r^2,   I_1zz = kappa_1 m_1 r^2   (middle)
 //              m   = density l^2,        I_zz  = kappa_D m l^2,   c = share l   (moving)
@@ -19,7 +21,7 @@ namespace pkm::crr_cru {
 
 enum class MassModel { table, geometry };
 
-/// Order of the parameters behind the lengths: those of every mass model, then those of one.
+/// Order of the parameters after the lengths: those of every mass model, then those of one mass model.
 enum ExtraIndex { kSlideMass = kParameters, kPayload, kPayloadOffset, kRadii, kFirstOfModel = kRadii + 3 };
 enum TableIndex {
   kRodMass = kFirstOfModel,    ///< m_11, m_12, m_21, .. m_42
@@ -43,16 +45,16 @@ enum GeometryIndex {
 
 template <class S>
 struct Masses {
-  std::array<S, 4> m_1, m_2;       ///< rods next to the slide and next to the platform [kg]
-  std::array<S, 4> I_1, I_2;       ///< about their centres and e_i [kg m^2]
+  std::array<S, 4> m_1, m_2;       ///< rod at the slide, rod at the platform [kg]
+  std::array<S, 4> I_1, I_2;       ///< about the rod's centre, axis e_i [kg m^2]
   S m, I_zz, c;                    ///< moving platform: mass, inertia about its centre, distance of the centre from D
   S m_middle, I_middle;            ///< middle platform: m_1, I_1zz
-  S slide;                         ///< mass that each slide adds along its rail
+  S slide;                         ///< of one slide
   S payload, c_payload;            ///< point mass on the arm D-C_4, and its distance from D
-  std::array<double, 4> rotors{};  ///< inertia of drive trains at the joints [kg], in M_q alone
+  std::array<double, 4> rotors{};  ///< inertia of drive trains at the joints [kg], added to M_q only
 };
 
-/// Throws DesignError with a sentence where a mass or an inertia is not positive.
+/// Throws DesignError, with a sentence, if a mass or an inertia is not positive.
 template <class S>
 Masses<S> masses(MassModel model, std::span<const S> p) {
   Masses<S> b;

@@ -17,7 +17,8 @@ namespace pkm::crr_cru {
 template <class S>
 using Pose = SchoenfliesPose<S>;
 
-/// Whether the circle of C_1..C_3 is a platform of its own, jointed to the moving one at D, or part of it.
+/// Whether the circle of C_1..C_3 belongs to a separate middle platform, jointed to the moving one at D, or to the
+/// moving platform itself.
 enum class Platform { jointed, rigid };  // (3CRR/R)&CRU, Quadrupteron
 
 /// Order of the parameters.
@@ -48,11 +49,11 @@ enum LimitIndex { kSMin, kCMin, kClearanceMin, kLimits };
 template <class S>
 using Vector3 = std::array<S, 3>;
 
-/// Lengths [m], names as above.
+/// Lengths [m]; names as in README.md.
 template <class S>
 struct Geometry {
   Platform platform;
-  std::array<S, 4> l_1, l_2;  ///< rods next to the slide and next to the platform
+  std::array<S, 4> l_1, l_2;  ///< rod at the slide, rod at the platform
   S r, h, l, L;
   std::array<S, 3> cos_beta, sin_beta;
   S rho_min, rho_max;
@@ -79,55 +80,55 @@ Geometry<S> geometry(Platform platform, std::span<const S> p) {
   return g;
 }
 
-/// Thresholds: a pose is feasible where |sin theta_i2| >= s_min in all limbs and kappa_p >= c_min.
+/// Thresholds: a pose is feasible if |sin theta_i2| >= s_min in all limbs and kappa_p >= c_min.
 struct Limits {
   double s_min = 0, c_min = 0;
 };
 
 inline Limits limits(const LimitSpec& spec) { return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0)}; }
 
-/// Axes of a limb's frame: numbers of the world axes along e, p, q and the signs of p and q.
-struct LimbFrame {
+/// Axes of a limb: indices of the world axes along e, p and q, and the signs of p and q.
+struct LimbAxes {
   std::size_t e, p, q;
   double p_sign, q_sign;
   double sense;          ///< s
   Vector3<double> rail;  ///< a / L
 };
-inline constexpr std::array<LimbFrame, 4> kLimbs = {{
+inline constexpr std::array<LimbAxes, 4> kLimbs = {{
     {.e = 0, .p = 1, .q = 2, .p_sign = -1, .q_sign = 1, .sense = -1, .rail = {0, 1, 0}},
     {.e = 1, .p = 0, .q = 2, .p_sign = 1, .q_sign = -1, .sense = 1, .rail = {0, 0, 1}},
     {.e = 2, .p = 0, .q = 1, .p_sign = 1, .q_sign = 1, .sense = 1, .rail = {0, 0, 0}},
     {.e = 1, .p = 0, .q = 2, .p_sign = -1, .q_sign = -1, .sense = -1, .rail = {1, 0, 1}},
 }};
 
-/// Components along p and q.
+/// Components of a vector along the p and q of a limb.
 template <class S>
-Vector<S, 2> in_plane(const LimbFrame& f, const Vector3<S>& v) {
+Vector<S, 2> in_plane(const LimbAxes& f, const Vector3<S>& v) {
   return {{v[f.p] * f.p_sign, v[f.q] * f.q_sign}};
 }
 
-/// C_i - D, and whether it turns with phi.
+/// The vector C_i - D, and whether it rotates with phi.
 template <class S>
 struct Arm {
   Vector3<S> to_joint;
-  bool turns;
+  bool rotates;
 };
 
-/// Velocity of C_i per phidot: z x arm where the arm turns, else 0.
+/// Velocity of C_i per unit of phidot: z x arm if the arm rotates, otherwise 0.
 template <class S>
-Vector<S, 3> turning(const Arm<S>& arm) {
-  if (!arm.turns) return {};
+Vector<S, 3> yaw_velocity(const Arm<S>& arm) {
+  if (!arm.rotates) return {};
   return {{arm.to_joint[1] * -1.0, arm.to_joint[0], S(0.0)}};
 }
 
 template <class S>
 std::array<Arm<S>, 4> arms(const Geometry<S>& g, const S& sin_phi, const S& cos_phi) {
   std::array<Arm<S>, 4> arm;
-  const bool turns = g.platform == Platform::rigid;
+  const bool rotates = g.platform == Platform::rigid;
   for (std::size_t i = 0; i < 3; ++i) {
-    const S c = turns ? S(g.cos_beta[i] * cos_phi - g.sin_beta[i] * sin_phi) : g.cos_beta[i];
-    const S s = turns ? S(g.sin_beta[i] * cos_phi + g.cos_beta[i] * sin_phi) : g.sin_beta[i];
-    arm[i] = {{g.r * c, g.r * s, -g.h}, turns};
+    const S c = rotates ? S(g.cos_beta[i] * cos_phi - g.sin_beta[i] * sin_phi) : g.cos_beta[i];
+    const S s = rotates ? S(g.sin_beta[i] * cos_phi + g.cos_beta[i] * sin_phi) : g.sin_beta[i];
+    arm[i] = {{g.r * c, g.r * s, -g.h}, rotates};
   }
   arm[3] = {{g.l * cos_phi, g.l * sin_phi, S(0.0)}, true};
   return arm;
@@ -136,7 +137,7 @@ std::array<Arm<S>, 4> arms(const Geometry<S>& g, const S& sin_phi, const S& cos_
 /// Elbow signs sigma_i = sign(sin theta_i2), +1 or -1.
 using WorkingMode = std::array<int, 4>;
 
-/// One limb at a pose. Where it does not reach, only rho, A, C and d are set.
+/// One limb at a pose. If it does not reach, only rho, A, C and d are set.
 template <class S>
 struct Limb {
   S rho;                 ///< slide position [m]
@@ -144,13 +145,13 @@ struct Limb {
   Vector<S, 2> d;        ///< C - A in the limb's plane, along p and q [m]
   Vector<S, 2> u1, u2;   ///< unit vectors along the rods, along p and q
   S sin_2, cos_2;        ///< of theta_i2
-  bool reaches = false;  ///< the limb assembles: |d| is in [|l_i1 - l_i2|, l_i1 + l_i2]
+  bool reaches = false;  ///< |d| is in [|l_i1 - l_i2|, l_i1 + l_i2]
 };
 
-/// A limb whose platform joint is at C.
+/// The limb with its platform joint at C. @param elbow  sign of sin theta_i2
 template <class S>
 Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int elbow) {
-  const LimbFrame& f = kLimbs[i];
+  const LimbAxes& f = kLimbs[i];
   const S &l1 = g.l_1[i], &l2 = g.l_2[i];
   Limb<S> limb;
   limb.C = C;
@@ -162,12 +163,12 @@ Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int el
   const double length = std::sqrt(value_of(d2)), sum = value_of(l1 + l2), difference = value_of(l1 - l2);
   limb.reaches = length <= sum && length >= std::fabs(difference);
   if (!limb.reaches) return limb;
-  // 1 - cos theta_2 and 1 + cos theta_2, without cancellation at the ends of the reach
-  const S twice = l1 * l2 * 2.0, less = ((l1 + l2) * (l1 + l2) - d2) / twice,
-          more = (d2 - (l1 - l2) * (l1 - l2)) / twice;
-  limb.cos_2 = value_of(less) < 1 ? S(1.0 - less) : S(more - 1.0);
-  limb.sin_2 = sqrt_or_zero(S(less * more)) * static_cast<double>(elbow);
-  if (!(value_of(d2) > 0)) {  // the rods fold back on themselves: any direction will do
+  // 1 - cos theta_2 and 1 + cos theta_2, without cancellation at the limits of the reach
+  const S twice = l1 * l2 * 2.0, one_minus_cos = ((l1 + l2) * (l1 + l2) - d2) / twice,
+          one_plus_cos = (d2 - (l1 - l2) * (l1 - l2)) / twice;
+  limb.cos_2 = value_of(one_minus_cos) < 1 ? S(1.0 - one_minus_cos) : S(one_plus_cos - 1.0);
+  limb.sin_2 = sqrt_or_zero(S(one_minus_cos * one_plus_cos)) * static_cast<double>(elbow);
+  if (!(value_of(d2) > 0)) {  // the rods coincide, and their direction is arbitrary
     limb.u1 = {{S(1.0), S(0.0)}};
     limb.u2 = {{S(-1.0), S(0.0)}};
   } else {

@@ -1,70 +1,74 @@
-// (3CRR/R)&CRU and Quadrupteron: voxel surveys from rows of bits (README.md). Same cells as the plain loop over poses:
-// rows come from the ends of chords (rings.hpp), and the plain test of a cell decides the cells next to an end.
+// (3CRR/R)&CRU and Quadrupteron: feasible voxels of a slice from three tables of bits (README.md). The cells are those
+// that a test of every pose finds: rows follow from the endpoints of chords (bit_rows.hpp), and the test itself decides
+// for the cells next to an endpoint.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "engine/accelerators/crr_cru/frame.hpp"
-#include "engine/accelerators/crr_cru/rings.hpp"
+#include "engine/accelerators/crr_cru/bit_rows.hpp"
+#include "engine/accelerators/crr_cru/position_set.hpp"
 #include "engine/mechanism/survey.hpp"
 #include "engine/workspace/cell_runs.hpp"
 
 namespace pkm::crr_cru {
 
-/// Order of a grid's axes: u and v as in Cuts, and the outer coordinate.
+/// Axes of the grid along the outer coordinate and along u and v of SliceAxes.
 struct GridAxes {
   std::size_t outer, u, v;
 };
-inline GridAxes grid_axes(const Held& held) { return held.coordinate == 3 ? GridAxes{0, 1, 2} : GridAxes{2, 0, 1}; }
+inline GridAxes grid_axes(const FixedCoordinate& fixed) {
+  return fixed.coordinate == 3 ? GridAxes{0, 1, 2} : GridAxes{2, 0, 1};
+}
 
-/// Holds every feasible pose: positions by the slides' ranges, phi by kappa_p >= 0. Order of axes as the sweep's.
-Box default_box(const Design<double>& d, const Held& held);
+/// A box that contains every feasible pose, from the ranges of the slides and kappa_p >= 0.
+Box default_box(const Design<double>& d, const FixedCoordinate& fixed);
 
-/// Of every cell along one coordinate, the feasible cells along another: a row of bits in whole words. Behind the last
-/// row, empty ones up to whole lanes.
+/// Feasible cells along one coordinate, for every cell along another one: rows of bits, padded to whole words, and
+/// empty rows up to a multiple of kLanes.
 struct BitTable {
-  std::size_t words = 0;
+  std::size_t words = 0;  ///< of a row
   std::vector<std::uint64_t> bits;
 
   std::span<const std::uint64_t> row(std::size_t i) const { return {bits.data() + i * words, words}; }
 };
 
-/// The cells of every section at one phi. Filled, workers may share it.
-class SectionCells {
+/// The feasible cells at one phi, in planes normal to the coordinate n. Threads can share a filled object.
+class SliceCells {
  public:
-  /// Fills the tables. @return  whether they leave anything
-  bool fill(const Design<double>& d, const Held& held, const VoxelGrid& grid, double phi);
+  /// Fills the tables. @return false if one of them is empty, so that no cell is feasible
+  bool fill(const Design<double>& d, const FixedCoordinate& fixed, const VoxelGrid& grid, double phi);
 
-  /// Calls visit(u) for every column with feasible cells.
-  /// @param n    the plane's number, 0 where the coordinate normal to it is held
-  /// @param row  set to the column's words of bits
+  /// Calls visit(u) for every column along v with feasible cells.
+  /// @param n    number of the plane; 0 if the coordinate normal to it is fixed
+  /// @param row  receives the bits of the column
   template <class Visit>
   void visit_columns(std::size_t n, std::vector<std::uint64_t>& row, const Visit& visit) const {
-    const auto of_u = u_at_n_.row(n), of_v = v_at_n_.row(n);
-    row.resize(of_v.size());
-    for_each_bit(of_u, [&](std::size_t u) {
-      const auto at_u = v_at_u_.row(u);
+    const auto u_row = u_at_n_.row(n), v_row = v_at_n_.row(n);
+    row.resize(v_row.size());
+    for_each_bit(u_row, [&](std::size_t u) {
+      const auto v_at_u = v_at_u_.row(u);
       std::uint64_t any = 0;
-      for (std::size_t i = 0; i < of_v.size(); ++i) any |= row[i] = of_v[i] & at_u[i];
+      for (std::size_t i = 0; i < v_row.size(); ++i) any |= row[i] = v_row[i] & v_at_u[i];
       if (any) visit(static_cast<std::int64_t>(u));
     });
   }
   PlaneTally count(std::size_t n) const;
 
  private:
-  /// A coordinate's cells, and storage beyond them up to whole lanes.
+  /// The cells along a coordinate, with their centres padded to a multiple of kLanes.
   struct Axis {
     std::vector<double> center;
     double lower = 0, step = 0;
     std::size_t cells = 0;
   };
-  static void lay(Axis& axis, const VoxelGrid& grid, std::size_t which);
+  static void fill_axis(Axis& axis, const VoxelGrid& grid, std::size_t which);
 
-  /// What slides and the rings that couple the coordinates a and b leave of b at each a; false: nothing.
-  bool fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across, std::size_t b,
-            const Axis& along, BitTable& table);
+  /// Fills the table of coordinate b at each a from the ranges of a and b and the annuli in their plane.
+  /// @return false if it is empty
+  bool fill_table(const Design<double>& d, const PositionSet<double>& set, std::size_t a, const Axis& across,
+                  std::size_t b, const Axis& along, BitTable& table);
 
   Axis n_, u_, v_;
   BitTable u_at_n_, v_at_n_, v_at_u_;

@@ -1,4 +1,5 @@
-// (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. Why: README.md, "The yaw".
+// (3CRR/R)&CRU and Quadrupteron: quantities that depend on the yaw alone: Jacobian, parallel singularity, conditioning.
+// Derivation: README.md, "The yaw".
 #pragma once
 
 #include "engine/accelerators/crr_cru/model.hpp"
@@ -6,6 +7,7 @@
 
 namespace pkm::crr_cru {
 
+/// rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0
 template <class S>
 struct Yaw {
   S a_s, a_c, a_0;  ///< [m]
@@ -32,18 +34,18 @@ S parallel_index(const Yaw<S>& y, const S& sin_phi, const S& cos_phi) {
   return (y.a_s * cos_phi - y.a_c * sin_phi) / y.R;
 }
 
-/// The length that the phi column is divided by, unless a study gives one: l, or l + r [m].
+/// Default of the length by which the phi column of J is divided: l, or l + r [m].
 template <class S>
 S characteristic_length(const Geometry<S>& g) {
   return g.platform == Platform::jointed ? g.l : S(g.l + g.r);
 }
 
-/// Inverse condition number of J with the phi column divided by `length` [m]. z stands alone in J: its singular value
-/// is 1, and x, y, phi are left.
+/// Inverse condition number of J with the phi column divided by `length` [m]. z is a separate block of J with the
+/// singular value 1; the other block is the 3 x 3 matrix of x, y, phi.
 template <class S>
 S conditioning(const std::array<Arm<S>, 4>& arm, const S& length) {
   const S one(1.0), zero(0.0);
-  const S turn_1 = turning(arm[0])[0] / length, turn_2 = turning(arm[1])[1] / length;
+  const S turn_1 = yaw_velocity(arm[0])[0] / length, turn_2 = yaw_velocity(arm[1])[1] / length;
   return inverse_condition(
       Rows3<S>{{{one, zero, turn_1}, {zero, one, turn_2}, {zero, one, arm[3].to_joint[0] / length}}}, one);
 }

@@ -10,27 +10,23 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
+constexpr int kY = 1;  ///< number of the coordinate y, which is fixed
+
+/// The plane y of an analysis, by default the middle one [m].
 template <class S>
-S plane(const Geometry<S>& g, const FixedCoordinate& held) {
-  return held.kind == FixedCoordinate::Kind::value ? S(held.value) : middle_plane(g);
+S plane(const Geometry<S>& g, const FixedCoordinate& y) {
+  return y.kind == FixedCoordinate::Kind::value ? S(y.value) : S(g.L0 * 0.5);
 }
 
-template <class S>
-S gamma(const Geometry<S>& g, const Demand& demand) {
-  return demand.characteristic_length ? S(g.a / (2 * *demand.characteristic_length)) : S(1.0);  // default L_c = a/2
-}
-
-constexpr int kY = 1;  ///< the coordinate that surveys hold
-
-/// The only mode whose poses are surveyed.
-constexpr const char* kSurveyedMode = "lower,lower";
+bool integrates_y(const WorkspacePlan& plan) { return how_fixed(plan, kY).kind == FixedCoordinate::Kind::integrated; }
 
 template <class S>
 SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
+  const auto& length = demand.characteristic_length;  // default: a/2
   SampleContents<S> c{.conditioning = demand.has(kConditioning),
                       .poses = demand.poses,
                       .inertia = demand.needs_inertia(),
-                      .gamma = gamma(geometry(parameters), demand),
+                      .gamma = length ? S(geometry(parameters).a / (2 * *length)) : S(1.0),
                       .masses = {}};
   if (c.inertia) {
     c.masses = masses(parameters);
@@ -39,11 +35,11 @@ SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) 
   return c;
 }
 
-class ColumnEvaluator final : public WithGradients<ColumnEvaluator> {
+class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
  public:
-  ColumnEvaluator(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand)
+  ClosedFormColumns(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand)
       : limits_(plan.limits),
-        held_(how_fixed(plan, kY)),
+        y_(how_fixed(plan, kY)),
         columns_(columns),
         demand_(demand),
         inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
@@ -51,83 +47,85 @@ class ColumnEvaluator final : public WithGradients<ColumnEvaluator> {
 
   const GradientEvaluator* slopes() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
   std::string why_no_gradients() const override {
-    return "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
-           "such surveys have no derivatives; take an optimiser without gradients, or keep the sliders apart by h_min";
+    return "the study limits the clearance of links (clearance_min), so that ends of columns have no closed form and "
+           "the "
+           "analysis has no derivatives; use an optimiser without gradients, or keep the sliders apart by h_min";
   }
 
  private:
-  friend WithGradients<ColumnEvaluator>;
+  friend WithGradients<ClosedFormColumns>;
   static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& room, Survey<S>& survey) const {
+  void run(std::span<const S> parameters, Scratch& memory, Survey<S>& survey) const {
     survey.clear(demand_.fields);
-    ColumnScratch<S>& scratch = room.get<ColumnScratch<S>>();
+    ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const Geometry<S> g = geometry(parameters);
     Limits<S> l = limits(g, limits_);
     std::optional<ClearanceTest> clearance;
-    if constexpr (std::is_same_v<S, double>) clearance = take_clearance(g, l);
+    if constexpr (std::is_same_v<S, double>) clearance = reduce_clearance(g, l);
     const ClearanceTest* const test = clearance ? &*clearance : nullptr;
-    const S y = plane(g, held_);
-    const Frame<S> f = frame(g, l, y);
-    const bool over_y = held_.kind == FixedCoordinate::Kind::integrated;
-    take_volume(volume_of(f, test, over_y, scratch), survey);
+    const S y = plane(g, y_);
+    const SlicedDesign<S> d = sliced_design(g, l, y);
+    const bool over_y = y_.kind == FixedCoordinate::Kind::integrated;
+    take_volume(volume_of(d, test, over_y, scratch), survey);
     if (!demand_.needs_samples()) return;
     const SampleContents<S> wanted = contents(parameters, demand_);
     if (!over_y) {
-      sample(f, wanted, value_of(y) > value_of(S(g.L0 - y)) ? Planes::far : Planes::near, S(1.0), theta_rule_,
+      sample(d, wanted, value_of(y) > value_of(S(g.L0 - y)) ? Planes::far : Planes::near, S(1.0), theta_rule_,
              inner_rule_, test, scratch, survey);
       return;
     }
     const Piece<S> half{l.h_min, g.L0 * 0.5, true, false};
     if (!(value_of(half.upper) > value_of(half.lower))) return;
-    // Over y every node has eight poses: samples that tell them apart make do with a coarser rule.
+    // With y, every node represents eight poses. If they are separate samples, a coarser rule is sufficient.
     static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);
-    const GaussRule &inner = wanted.told_apart() ? coarse : inner_rule_,
-                    &outer = wanted.told_apart() ? coarse : theta_rule_;
+    const GaussRule &inner = wanted.distinguishes_images() ? coarse : inner_rule_,
+                    &outer = wanted.distinguishes_images() ? coarse : theta_rule_;
     visit_nodes(half, inner, [&](const S& at, const S& jacobian, double weight) {
-      sample(frame(g, l, at), wanted, Planes::both, S(jacobian * weight), outer, inner, test, scratch, survey);
+      sample(sliced_design(g, l, at), wanted, Planes::both, S(jacobian * weight), outer, inner, test, scratch, survey);
     });
   }
 
   template <class S>
-  Integral<S> volume_of(const Frame<S>& f, const ClearanceTest* test, bool over_y, ColumnScratch<S>& scratch) const {
+  Integral<S> volume_of(const SlicedDesign<S>& d, const ClearanceTest* test, bool over_y,
+                        ColumnScratch<S>& scratch) const {
     if constexpr (std::is_same_v<S, double>) {
       if (test)
-        return columns_.nodes[1] > 0 ? clear_volume_by_rule(f, *test, theta_rule_, inner_rule_, scratch)
-                                     : clear_volume(f, *test, over_y, columns_.tolerance, scratch);
+        return columns_.nodes[1] > 0 ? clear_volume_by_rule(d, *test, over_y, theta_rule_, inner_rule_, scratch)
+                                     : clear_volume(d, *test, over_y, columns_.tolerance, scratch);
     }
-    return over_y                  ? volume_over_y(f.g, f.l, columns_.tolerance, scratch)
-           : columns_.nodes[1] > 0 ? fixed_rule(f, scratch)
-                                   : plane_volume(f, columns_.tolerance, scratch);
+    return over_y                  ? volume_over_y(d.g, d.l, columns_.tolerance, scratch)
+           : columns_.nodes[1] > 0 ? fixed_rule(d, scratch)
+                                   : plane_volume(d, columns_.tolerance, scratch);
   }
 
-  /// The volume by the study's own number of theta nodes per piece; no error is estimated.
+  /// The volume by a fixed number of nodes per interval of theta, without an error estimate.
   template <class S>
-  Integral<S> fixed_rule(const Frame<S>& f, ColumnScratch<S>& scratch) const {
-    find_pieces(f, scratch.breaks, scratch.pieces);
+  Integral<S> fixed_rule(const SlicedDesign<S>& d, ColumnScratch<S>& scratch) const {
+    find_theta_intervals(d, scratch.critical_values, scratch.intervals);
     Integral<S> result;
-    visit_nodes(scratch.pieces, theta_rule_, [&](const S& theta, const S& jacobian, double weight) {
+    visit_nodes(scratch.intervals, theta_rule_, [&](const S& theta, const S& jacobian, double weight) {
       const auto [s, c] = sincos(theta);
-      result.value += (2 * weight) * jacobian * area(f, section(f, s, c));
+      result.value += (2 * weight) * jacobian * area(d, slice(d, s, c));
       ++result.evaluations;
     });
     return result;
   }
 
   LimitSpec limits_;
-  FixedCoordinate held_;
+  FixedCoordinate y_;
   ColumnOptions columns_;
   Demand demand_;
   GaussRule inner_rule_, theta_rule_;
 };
 
-class OfVoxels final : public GridEvaluator<OfVoxels> {
+class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
  public:
-  OfVoxels(const WorkspacePlan& plan, const VoxelOptions& voxels, const Demand& demand)
+  ClosedFormVoxels(const WorkspacePlan& plan, const VoxelOptions& voxels, const Demand& demand)
       : GridEvaluator(demand),
         limits_(plan.limits),
-        held_(how_fixed(plan, kY)),
+        y_(how_fixed(plan, kY)),
         voxels_(voxels),
         demand_(demand),
         counter_(voxels.cells, voxels.box ? (*voxels.box)[2] : kTheta) {}
@@ -141,8 +139,8 @@ class OfVoxels final : public GridEvaluator<OfVoxels> {
     Geometry<double> g;
     Limits<double> l;
     std::optional<ClearanceTest> test;
-    const std::vector<FixedCells>& all_y;  ///< where y is integrated over
-    double y;                              ///< else
+    const std::vector<FixedCells>& all_y;  ///< if y is integrated over
+    double y;                              ///< otherwise
     SampleContents<double> wanted;
 
     VoxelPlane operator[](std::size_t number) const {
@@ -157,36 +155,35 @@ class OfVoxels final : public GridEvaluator<OfVoxels> {
   GriddedPlanes start(std::span<const double> parameters, Rooms& rooms) const {
     const Geometry<double> g = geometry(parameters);
     Limits<double> l = limits(g, limits_);
-    auto test = take_clearance(g, l);
+    auto test = reduce_clearance(g, l);
     const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
     rooms.common.clear();
-    if (held_.kind == FixedCoordinate::Kind::integrated)
-      rooms.common.push_back({kY, 0, g.L0 / static_cast<double>(held_.cells), held_.cells});
+    if (y_.kind == FixedCoordinate::Kind::integrated)
+      rooms.common.push_back({kY, 0, g.L0 / static_cast<double>(y_.cells), y_.cells});
     GriddedPlanes planes{{grid, 0, rooms.common},
                          g,
                          l,
                          std::move(test),
                          rooms.common,
-                         plane(g, held_),
+                         plane(g, y_),
                          demand_.needs_samples() ? contents(parameters, demand_) : SampleContents<double>{}};
-    const Halves most = planes.grids == 1 ? halves(planes, planes[0]) : counter_.whole();
-    planes.pieces = counts(planes) ? counter_.pieces(most) : counter_.blocks(most);
+    const GridPart largest = planes.grids == 1 ? representative_part(planes, planes[0]) : counter_.whole();
+    planes.pieces = counts(planes) ? counter_.pieces(largest) : counter_.blocks(largest);
     return planes;
   }
-  /// Nothing is asked of single cells.
+  /// Whether only the number of cells is needed.
   bool counts(const GriddedPlanes& planes) const { return !planes.test && !demand_.needs_samples(); }
-  /// What is found of a plane: conditioning is the same at mirrored poses, so that one stands for all of them, unless
-  /// they are told apart.
-  Halves halves(const GriddedPlanes& planes, const VoxelPlane& at) const {
-    return planes.test || planes.wanted.told_apart() ? counter_.whole() : counter_.halves(at);
+  /// The part of a plane to search. Conditioning is the same at mirrored poses, so that one can represent all of them.
+  GridPart representative_part(const GriddedPlanes& planes, const VoxelPlane& at) const {
+    return planes.test || planes.wanted.distinguishes_images() ? counter_.whole() : counter_.representative_part(at);
   }
 
   void find(const GriddedPlanes& planes, std::size_t number, std::size_t piece, VoxelWorker& own,
             Survey<double>& to) const {
     const VoxelPlane at = planes[number];
-    const Halves part = halves(planes, at);
+    const GridPart part = representative_part(planes, at);
     if (counts(planes)) return counter_.count(at, part, piece, to);
-    const Sampled<double> samples(to);
+    const SampleTarget<double> samples(to);
     counter_.visit_block(at, piece, part, own.columns, [&](const CellRun& run) {
       const int images = part.images(run.first[0], run.first[2]);
       count_cells(at.grid, run, to, images);
@@ -201,7 +198,7 @@ class OfVoxels final : public GridEvaluator<OfVoxels> {
   }
 
   void sample(const VoxelPlane& at, const SampleContents<double>& wanted, const CellRun& run, double weight,
-              VoxelWorker& own, const Sampled<double>& to) const {
+              VoxelWorker& own, const SampleTarget<double>& to) const {
     const Geometry<double>& g = at.g;
     const VoxelGrid& grid = at.grid;
     const auto& [i, first, k] = run.first;
@@ -227,46 +224,39 @@ class OfVoxels final : public GridEvaluator<OfVoxels> {
   }
 
   LimitSpec limits_;
-  FixedCoordinate held_;
+  FixedCoordinate y_;
   VoxelOptions voxels_;
   Demand demand_;
   VoxelCounter counter_;
 };
 
-/// Samples stand for mirrored poses, where the two sliders of a rail change places.
-bool has_unequal_rotors(const std::vector<double>& rotors) {
-  return !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]);
-}
-
-bool serves(const WorkspacePlan& plan, const Demand& demand) {
-  return sweeps(plan, {0, 2, 3}) && (demand.mode.empty() || demand.mode == kSurveyedMode) &&
-         !(demand.needs_inertia() && has_unequal_rotors(demand.rotors)) &&
-         !(asks_clearance(plan, kClearanceMin) && !plan.limits.obstacles.empty());
-}
-
-bool is_over_y(const WorkspacePlan& plan) { return how_fixed(plan, kY).kind == FixedCoordinate::Kind::integrated; }
-
-class Columns final : public ColumnAccelerator {
+class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
  public:
   bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand) const override {
-    return four_ppa_two_par::serves(plan, demand) && !columns.box && !(is_over_y(plan) && columns.nodes[0] > 0);
+    return serves(plan, demand) && !columns.box && !(integrates_y(plan) && columns.nodes[0] > 0);
+  }
+  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const Demand& demand) const override {
+    return serves(plan, demand);
   }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                     const Demand& demand) const override {
-    return std::make_unique<ColumnEvaluator>(plan, columns, demand);
-  }
-};
-
-class Voxels final : public VoxelAccelerator {
- public:
-  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const Demand& demand) const override {
-    return four_ppa_two_par::serves(plan, demand);
+    return std::make_unique<ClosedFormColumns>(plan, columns, demand);
   }
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
                                                 const Demand& demand) const override {
-    if (is_over_y(plan) && how_fixed(plan, kY).cells < 1)
+    if (integrates_y(plan) && how_fixed(plan, kY).cells < 1)
       throw std::invalid_argument("voxels integrated over y need a number of cells for y");
-    return std::make_unique<OfVoxels>(plan, voxels, demand);
+    return std::make_unique<ClosedFormVoxels>(plan, voxels, demand);
+  }
+
+ private:
+  static bool serves(const WorkspacePlan& plan, const Demand& demand) {
+    // Samples represent mirror images, in which the two sliders of a rail are exchanged.
+    const std::vector<double>& rotors = demand.rotors;
+    const bool unequal = !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]);
+    return sweeps(plan, {0, 2, 3}) && (demand.mode.empty() || demand.mode == "lower,lower") &&
+           !(demand.needs_inertia() && unequal) &&
+           !(asks_clearance(plan, kClearanceMin) && !plan.limits.obstacles.empty());
   }
 };
 
@@ -281,7 +271,8 @@ class Forward final : public ForwardKinematics {
 }  // namespace
 
 Accelerators accelerators() {
-  return {std::make_shared<Columns>(), std::make_shared<Voxels>(), std::make_shared<Forward>()};
+  const auto analyses = std::make_shared<const Analyses>();
+  return {.columns = analyses, .voxels = analyses, .forward = std::make_shared<const Forward>()};
 }
 
 }  // namespace pkm::four_ppa_two_par

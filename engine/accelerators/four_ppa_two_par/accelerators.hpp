@@ -1,4 +1,4 @@
-// 4PPa-2PaR: closed forms in place of the generic engine. They are of the lower mode, over x, z and theta.
+// 4PPa-2PaR: accelerators for the generic engine, for the mode lower,lower with x, z and theta swept.
 #pragma once
 
 #include "engine/mechanism/accelerators.hpp"

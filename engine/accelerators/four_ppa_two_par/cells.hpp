@@ -1,4 +1,4 @@
-// 4PPa-2PaR: the feasible cells of columns, at kLanes thetas side by side.
+// 4PPa-2PaR: the feasible cells of columns along z, in SIMD batches of kLanes values of theta.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// The columns (along z) of the first x of a grid at kLanes neighbouring thetas. Nothing but numbers, so that kernels
-/// share no code with files that are compiled for another instruction set.
+/// The columns of the first x of a grid at kLanes consecutive thetas. A plain struct, so that kernels share no inline
+/// code with files that are compiled for another instruction set.
 struct ColumnsAtThetas {
   double a, b, l_u, l_d, d, L0;        ///< as in Geometry
   double sin_par_min, cos_theta_min;   ///< as in Limits
@@ -19,23 +19,23 @@ struct ColumnsAtThetas {
   double x_lower, x_step, z_lower, z_step;  ///< of the grid
   double z_cells;
   const double *sines, *cosines;  ///< of kLanes thetas
-  std::int64_t thetas;            ///< those from this one on have no cells
-  std::int64_t columns;           ///< how many x, from the first
+  std::int64_t thetas;            ///< number of thetas with cells, from the first
+  std::int64_t columns;           ///< number of x, from the first
 };
 
-/// How many cells are feasible, by theta.
+/// Numbers of feasible cells, by theta.
 struct CellTally {
-  double cells[kLanes], in_first[kLanes], in_last[kLanes];  ///< of all columns, of the first, of the last one
-  bool lowest, highest;                                     ///< a column reaches the lowest, the highest cell of z
+  double cells[kLanes], in_first[kLanes], in_last[kLanes];  ///< in all columns, in the first one, in the last one
+  bool lowest, highest;                                     ///< a column contains the lowest, the highest cell of z
 };
-/// @param from, to  the x indices to count
+/// Counts the cells with x indices [from, to).
 template <InstructionSet set>
 CellTally tally(const ColumnsAtThetas& columns, std::int64_t from, std::int64_t to);
 
-/// Cells [first, end) of z, at [x index * kLanes + theta]; there are none outside of the x indices [x_begin, x_end).
+/// Cells [first, end) of z, at index x * kLanes + theta, for the x indices [x_begin, x_end); there are none elsewhere.
 struct ColumnBlock {
   std::int64_t x_begin = 0, x_end = 0;
-  std::vector<double> first, end;  ///< whole numbers; end <= first: none
+  std::vector<double> first, end;  ///< integers; end <= first: none
 };
 template <InstructionSet set>
 void fill(const ColumnsAtThetas& columns, ColumnBlock& block);

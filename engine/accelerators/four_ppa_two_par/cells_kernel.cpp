@@ -7,17 +7,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The columns of kLanes thetas; L is their scalar. The one other form of margins(): solved for z, so that a whole
-/// column takes one test.
+/// The columns of kLanes thetas, with the limits solved for z, so that one evaluation yields all cells of a column.
 template <class L>
-struct Slab {
-  double l_d2, x_min, x_max, parallel, bottom;  ///< bottom: greatest -z_c; parallel: l_d^2 sin_par_min
-  double x_step, cells, per_cell, offset;       ///< of z; offset: z = -d in units of cells from the first centre
+struct ColumnLimits {
+  double l_d2, x_min, x_max, parallel, bottom;  ///< bottom: maximum of -z_c; parallel: l_d^2 sin_par_min
+  double x_step, cells, per_cell, offset;       ///< of z; offset: z = -d in cells, relative to the first centre
   L x_0, w;                                     ///< x_1 of the first column; x_1 + x_2
-  L top_1, top_2;                               ///< least -z_c of each limb; infinite where the theta has no poses
-  std::int64_t x_begin, x_end;                  ///< columns outside have no cells at any of the thetas
+  L top_1, top_2;                               ///< minimum of -z_c of each limb; infinite if the theta has no poses
+  std::int64_t x_begin, x_end;                  ///< columns outside have no cells at any theta
 
-  explicit Slab(const ColumnsAtThetas& at) {
+  explicit ColumnLimits(const ColumnsAtThetas& at) {
     l_d2 = at.l_d * at.l_d;
     x_min = at.x_min;
     x_max = at.x_max;
@@ -31,34 +30,34 @@ struct Slab {
     const L sine = L::load(at.sines), cosine = L::load(at.cosines);
     const L shift = at.a * sine * 0.5, half = at.a * cosine * 0.5;
     const L y_1 = at.y - shift, y_2 = at.y + shift, H_1 = lesser(y_1, at.L0 - y_1), H_2 = lesser(y_2, at.L0 - y_2);
-    const auto some =
+    const auto has_poses =
         (L::load(kIndex) < static_cast<double>(at.thetas)) & (cosine >= at.cos_theta_min) & (H_1 >= 0.0) & (H_2 >= 0.0);
     const auto top = [&](const L& H) {
       const L depth = sqrt_or_zero((at.l_u - H) * (at.l_u + H));
-      return select(some, greater(L(at.z_high), depth), L(kInfinity));
+      return select(has_poses, greater(L(at.z_high), depth), L(kInfinity));
     };
     top_1 = top(H_1);
     top_2 = top(H_2);
     x_0 = (at.x_lower + 0.5 * x_step) - half;
     w = at.b - 2.0 * half;
 
-    const double low = least(select(some, greater(L(x_min), w - x_max) - x_0, L(kInfinity)));
-    const double high = greatest(select(some, lesser(L(x_max), w - x_min) - x_0, L(-kInfinity)));
+    const double low = least(select(has_poses, greater(L(x_min), w - x_max) - x_0, L(kInfinity)));
+    const double high = greatest(select(has_poses, lesser(L(x_max), w - x_min) - x_0, L(-kInfinity)));
     const auto columns = static_cast<double>(at.columns);
     const auto index = [&](double i) { return static_cast<std::int64_t>(i > 0 ? i < columns ? i : columns : 0); };
-    x_begin = index(low / x_step - 1);  // a column more on each side, so that rounding loses none
+    x_begin = index(low / x_step - 1);  // one more column on each side, because of rounding
     x_end = index(high / x_step + 2);
   }
 
   /// Cells of z in column i.
   struct Cells {
     L first, end;
-    decltype(L() < L()) some;
+    decltype(L() < L()) exist;
   };
   [[gnu::always_inline]] Cells operator[](std::int64_t i) const {
     const L x_1 = x_0 + static_cast<double>(i) * x_step, x_2 = w - x_1;
     const L sigma_1 = sqrt_or_zero(l_d2 - x_1 * x_1), sigma_2 = sqrt_or_zero(l_d2 - x_2 * x_2);
-    // in cells: from the first centre at or above the low end to the last at or below the high one
+    // in cells: from the first centre not below the lower end to the last centre not above the upper end
     const L low = offset - (bottom + lesser(sigma_1, sigma_2)) * per_cell;
     const L high = offset - greater(top_1 + sigma_1, top_2 + sigma_2) * per_cell;
     const L first = ceil(lesser(greater(low, L(0.0)), L(cells)));
@@ -77,15 +76,15 @@ struct Slab {
 template <InstructionSet set>
 CellTally tally(const ColumnsAtThetas& at, std::int64_t from, std::int64_t to) {
   using L = LanesOf<set>;
-  const Slab<L> slab(at);
+  const ColumnLimits<L> limits(at);
   L sum = 0.0, in_first = 0.0, in_last = 0.0, lowest = kInfinity, highest = 0.0;
-  const std::int64_t begin = slab.x_begin > from ? slab.x_begin : from, end = slab.x_end < to ? slab.x_end : to;
+  const std::int64_t begin = limits.x_begin > from ? limits.x_begin : from, end = limits.x_end < to ? limits.x_end : to;
   for (std::int64_t i = begin; i < end; ++i) {
-    const auto column = slab[i];
-    const L found = select(column.some, column.end - column.first, L(0.0));
+    const auto column = limits[i];
+    const L found = select(column.exist, column.end - column.first, L(0.0));
     sum += found;
-    lowest = lesser(lowest, select(column.some, column.first, L(kInfinity)));
-    highest = greater(highest, select(column.some, column.end, L(0.0)));
+    lowest = lesser(lowest, select(column.exist, column.first, L(kInfinity)));
+    highest = greater(highest, select(column.exist, column.end, L(0.0)));
     if (i == 0) in_first = found;
     if (i == at.columns - 1) in_last = found;
   }
@@ -94,20 +93,20 @@ CellTally tally(const ColumnsAtThetas& at, std::int64_t from, std::int64_t to) {
   in_first.store(result.in_first);
   in_last.store(result.in_last);
   result.lowest = least(lowest) == 0;
-  result.highest = greatest(highest) == slab.cells;
+  result.highest = greatest(highest) == limits.cells;
   return result;
 }
 
 template <InstructionSet set>
 void fill(const ColumnsAtThetas& at, ColumnBlock& block) {
   using L = LanesOf<set>;
-  const Slab<L> slab(at);
-  block.x_begin = slab.x_begin;
-  block.x_end = slab.x_end;
-  for (std::int64_t i = slab.x_begin; i < slab.x_end; ++i) {
-    const auto column = slab[i];
+  const ColumnLimits<L> limits(at);
+  block.x_begin = limits.x_begin;
+  block.x_end = limits.x_end;
+  for (std::int64_t i = limits.x_begin; i < limits.x_end; ++i) {
+    const auto column = limits[i];
     column.first.store(block.first.data() + i * kLanes);
-    select(column.some, column.end, L(0.0)).store(block.end.data() + i * kLanes);
+    select(column.exist, column.end, L(0.0)).store(block.end.data() + i * kLanes);
   }
 }
 

@@ -1,9 +1,9 @@
-// 4PPa-2PaR: the volume of the workspace where poses are tested for clearance.
+// 4PPa-2PaR: volume of the workspace with a clearance test of poses.
 //
-// Where a capsule test cuts columns, a section's area has no closed form left: it is integrated over delta, and along
-// z the clear parts are found by roots. The integrand has kinks where a pair of links begins to cut or another pair
-// takes over; nobody knows where, so both quadratures halve their pieces until their error estimates, which count the
-// kinks in, meet the tolerance. Tolerances below kFinestClearTolerance are not aimed at.
+// The test excludes parts of columns, so that the area of a slice has no closed form: it is integrated over delta, and
+// the clear parts of columns are found by root finding. The integrand has kinks at unknown positions, at which a pair
+// of links becomes active. Therefore both quadratures bisect their intervals until error estimates that allow for kinks
+// meet the tolerance, which is at least kFinestClearTolerance.
 #pragma once
 
 #include "engine/accelerators/four_ppa_two_par/clearance.hpp"
@@ -13,12 +13,14 @@ namespace pkm::four_ppa_two_par {
 
 inline constexpr double kFinestClearTolerance = 1e-4;  ///< relative
 
-/// Volume on the frame's plane [m^2 rad], or integrated over y [m^3 rad] (then of a frame at y = L0/2).
-Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test, bool over_y, double tolerance,
+/// Volume on the plane of the design [m^2 rad], or, for a design at y = L0/2, integrated over y [m^3 rad].
+/// @param tolerance  relative
+Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch);
 
-/// The volume on one plane by fixed rules in theta and delta; no error is estimated.
-Integral<double> clear_volume_by_rule(const Frame<double>& f, const ClearanceTest& test, const GaussRule& theta_rule,
-                                      const GaussRule& inner_rule, ColumnScratch<double>& scratch);
+/// The same by fixed rules in theta and delta, without an error estimate.
+Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y,
+                                      const GaussRule& theta_rule, const GaussRule& inner_rule,
+                                      ColumnScratch<double>& scratch);
 
 }  // namespace pkm::four_ppa_two_par

@@ -5,13 +5,13 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Lower links hang below C_j; sliders, upper bars and the connector's side lie in the plane of the rail.
+/// Lower links are suspended from C_j; sliders, upper bars and the connector's side are in the plane of the rail.
 bool is_lower(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kLowerBars || kind == kLowerConnector);
 }
 
-/// Sliders and upper bars move against all the rest when z changes.
+/// Sliders and upper bars move relative to all other links when z changes.
 bool moves(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kSliders || kind == kUpperBars);
@@ -23,7 +23,7 @@ double radius(const Geometry<double>& g, int group) {
   return group % kGroupsPerLimb == kSliders ? g.R_s : g.R_u;
 }
 
-/// Whether the bound of a pair is its distance at every pose, so that a pair too near leaves nothing.
+/// Whether the lower bound of a pair is its distance at every pose: if it is too small, no pose is clear.
 bool is_constant(const Geometry<double>& g, const GroupPair& pair) {
   if (pair.first == kPlatform) return is_lower(pair.second) && g.d_d <= g.d;
   return pair.first == group_of(0, kLowerConnector) && pair.second == group_of(1, kLowerConnector);
@@ -38,7 +38,7 @@ Bounds<double> bounds_of_group(const Links<double>& all, int group) {
 
 }  // namespace
 
-double least_clearance(const Geometry<double>& g, const GroupPair& pair) {
+double clearance_lower_bound(const Geometry<double>& g, const GroupPair& pair) {
   const double radii = radius(g, pair.first) + radius(g, pair.second);
   const bool lower_1 = is_lower(pair.first), lower_2 = is_lower(pair.second);
   double axes;
@@ -55,103 +55,103 @@ double least_clearance(const Geometry<double>& g, const GroupPair& pair) {
   return axes - radii;
 }
 
-ClearanceTest::ClearanceTest(const Geometry<double>& g, double least) : g_(g), least_(least) {
+ClearanceTest::ClearanceTest(const Geometry<double>& g, double min_clearance) : g_(g), min_clearance_(min_clearance) {
   const double infinity = std::numeric_limits<double>::infinity();
-  // Sliders' segments are 2 h - 2 (d_0 + d_u/2 - R_s) apart, or meet; points where R_s is larger.
-  if (least > -2 * g.R_s) h_min_ = std::fmax(0.0, std::fmax(g.d_0 + g.d_u / 2, g.R_s) + least / 2);
-  const double below = g.d_d - g.d;  // E_j below the platform
+  // The segments of two sliders are 2 h - 2 (d_0 + d_u/2 - R_s) apart, or overlap; they are points if R_s is larger.
+  if (min_clearance > -2 * g.R_s) h_min_ = std::fmax(0.0, std::fmax(g.d_0 + g.d_u / 2, g.R_s) + min_clearance / 2);
+  const double below = g.d_d - g.d;  // depth of E_j below the platform
   for (const GroupPair& pair : kPairs) {
-    if (pair.first == pair.second || least_clearance(g, pair) >= least) continue;
+    if (pair.first == pair.second || clearance_lower_bound(g, pair) >= min_clearance) continue;
     const bool platform_and_lower = pair.first == kPlatform && is_lower(pair.second);
     if (is_constant(g, pair)) {
       h_min_ = infinity;
     } else if (platform_and_lower && below <= g.l_d) {
-      const double radii = least + g.R_p + g.R_d;
-      if (radii > g.d) h_min_ = infinity;  // the distance of D_j
+      const double radii = min_clearance + g.R_p + g.R_d;
+      if (radii > g.d) h_min_ = infinity;  // D_j is d above the platform
       sin_beta_min_ = radii / below;
     } else {
-      (moves(pair.first) || moves(pair.second) ? moving_ : hanging_).push_back(pair);
+      (moves(pair.first) || moves(pair.second) ? moving_pairs_ : suspended_pairs_).push_back(pair);
     }
   }
   if (h_min_ < infinity && sin_beta_min_ <= 1) return;
   h_min_ = infinity;
-  hanging_.clear();
-  moving_.clear();
+  suspended_pairs_.clear();
+  moving_pairs_.clear();
 }
 
 double ClearanceTest::excess(const Placement<double>& p) const {
-  return std::fmin(excess(p, hanging_), excess(p, moving_));
+  return std::fmin(excess(p, suspended_pairs_), excess(p, moving_pairs_));
 }
 
 double ClearanceTest::excess(const Placement<double>& p, const std::vector<GroupPair>& pairs) const {
-  double least = std::numeric_limits<double>::infinity();
-  if (pairs.empty()) return least;
+  double smallest = std::numeric_limits<double>::infinity();
+  if (pairs.empty()) return smallest;
   const Links<double> all = links(g_, p);
   std::array<Bounds<double>, kGroups> box;
   for (int group = 0; group < kGroups; ++group) box[static_cast<std::size_t>(group)] = bounds_of_group(all, group);
   for (const GroupPair& pair : pairs) {
     const double radii = radius(g_, pair.first) + radius(g_, pair.second);
-    const double apart =
+    const double bound =
         distance_of_bounds(box[static_cast<std::size_t>(pair.first)], box[static_cast<std::size_t>(pair.second)]) -
         radii;
-    if (apart >= least_)
-      least = std::fmin(least, apart);
+    if (bound >= min_clearance_)
+      smallest = std::fmin(smallest, bound);
     else
       visit_links(pair, [&](std::size_t i, std::size_t k) {
-        least = std::fmin(least, segment_distance(all[i].axis, all[k].axis) - radii);
+        smallest = std::fmin(smallest, segment_distance(all[i].axis, all[k].axis) - radii);
       });
   }
-  return least - least_;
+  return smallest - min_clearance_;
 }
 
-Placement<double> ClearanceTest::place(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
-                                       double rise) const {
+Placement<double> ClearanceTest::place(const SlicedDesign<double>& d, const Slice<double>& t,
+                                       const Column<double>& column, double rise) const {
   Placement<double> p{.sin_theta = t.sin_theta, .x = column.x, .drop = column.sigma, .z_c = {}, .h = {}};
   for (std::size_t j = 0; j < 2; ++j) {
-    p.z_c[j] = column.z_c(f, rise, j);
+    p.z_c[j] = column.z_c(d, rise, j);
     p.h[j] = sqrt_or_zero((g_.l_u - p.z_c[j]) * (g_.l_u + p.z_c[j]));
   }
   return p;
 }
 
-const std::vector<Part>& ClearanceTest::clear_ranges(const Frame<double>& f, const Section<double>& t,
-                                                     const Half<double>& h, std::size_t leaning, double low,
+const std::vector<Part>& ClearanceTest::clear_ranges(const SlicedDesign<double>& d, const Slice<double>& t,
+                                                     const HalfSlice<double>& h, std::size_t leaning, double low,
                                                      double high, ClearanceScratch& scratch) const {
   scratch.clear.clear();
-  if (hanging_.empty()) {
+  if (suspended_pairs_.empty()) {
     if (low < high) scratch.clear.push_back({low, high});
     return scratch.clear;
   }
   const auto excess_at = [&](double delta) {
-    return excess(place(f, t, column(f, t, h, leaning, delta), 0), hanging_);
+    return excess(place(d, t, column(d, t, h, leaning, delta), 0), suspended_pairs_);
   };
-  // When delta rises by 1 at given theta, D_1 and D_2 stay together and C_j turns about D_j by d(beta_j), with
-  // d(beta_leaning) = cos(beta_other) / (l_d sin 2p), d(beta_other) = -cos(beta_leaning) / (l_d sin 2p). So nothing
-  // that hangs changes its place to anything else by more than (cos(beta_1) + cos(beta_2)) / sin 2p <= 1 / sin p.
-  const auto steepness = [&](double from, double) { return 1 / chord(f, t, from).sin_p; };
-  scratch.finder.find(excess_at, steepness, low, high, scratch.clear);
+  // Per unit of delta at given theta, D_1 and D_2 keep their distance and C_j rotates about D_j by d(beta_j), with
+  // d(beta_leaning) = cos(beta_other) / (l_d sin 2p), d(beta_other) = -cos(beta_leaning) / (l_d sin 2p). So the
+  // relative displacement of suspended links is at most (cos(beta_1) + cos(beta_2)) / sin 2p <= 1 / sin p.
+  const auto lipschitz = [&](double from, double) { return 1 / chord(d, t, from).sin_p; };
+  scratch.finder.find(excess_at, lipschitz, low, high, scratch.clear);
   return scratch.clear;
 }
 
-const std::vector<Part>& ClearanceTest::clear_parts(const Frame<double>& f, const Section<double>& t,
+const std::vector<Part>& ClearanceTest::clear_parts(const SlicedDesign<double>& d, const Slice<double>& t,
                                                     const Column<double>& column, ClearanceScratch& scratch) const {
   scratch.clear.clear();
-  if (moving_.empty()) {
+  if (moving_pairs_.empty()) {
     if (column.length > 0) scratch.clear.push_back({0, column.length});
     return scratch.clear;
   }
-  const auto excess_at = [&](double rise) { return excess(place(f, t, column, rise), moving_); };
-  // When z rises by 1, C_j rises by 1 and the sliders part by -z_cj/h_j: no two points of a pair of links change their
-  // places to each other by more than l_u/h_1 + l_u/h_2, and h grows with z.
-  const auto steepness = [&](double from, double) {
-    const Placement<double> p = place(f, t, column, from);
+  const auto excess_at = [&](double rise) { return excess(place(d, t, column, rise), moving_pairs_); };
+  // Per unit of z, C_j rises by 1 and the sliders move apart by -z_cj/h_j: the relative displacement of two points of a
+  // pair of links is at most l_u/h_1 + l_u/h_2, and h increases with z.
+  const auto lipschitz = [&](double from, double) {
+    const Placement<double> p = place(d, t, column, from);
     return g_.l_u / p.h[0] + g_.l_u / p.h[1];
   };
-  scratch.finder.find(excess_at, steepness, 0, column.length, scratch.clear);
+  scratch.finder.find(excess_at, lipschitz, 0, column.length, scratch.clear);
   return scratch.clear;
 }
 
-std::optional<ClearanceTest> take_clearance(const Geometry<double>& g, Limits<double>& l) {
+std::optional<ClearanceTest> reduce_clearance(const Geometry<double>& g, Limits<double>& l) {
   if (!l.clearance_min) return {};
   ClearanceTest test(g, *l.clearance_min);
   l.clearance_min.reset();

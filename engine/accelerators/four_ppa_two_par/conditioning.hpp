@@ -1,8 +1,8 @@
-// 4PPa-2PaR: conditioning of a pose of the lower mode, without forming the 4 x 4 Jacobian.
+// 4PPa-2PaR: conditioning of a pose in the mode lower,lower, by a 3 x 3 block of the Jacobian.
 //
-// Turning the joint speeds by the orthogonal map (q1+q2+q3+q4)/2, (q3+q4-q1-q2)/2, (q2-q1)/sqrt2, (q4-q3)/sqrt2 keeps
-// the singular values of J and splits off y: the first row becomes (0, 2, 0, 0). What is left is 3 x 3 in (x, z, theta
-// L_c).
+// The orthogonal transformation of the joint velocities to (q1+q2+q3+q4)/2, (q3+q4-q1-q2)/2, (q2-q1)/sqrt2,
+// (q4-q3)/sqrt2 preserves the singular values of J and separates y: the first row becomes (0, 2, 0, 0). The other rows
+// are a 3 x 3 matrix in (x, z, theta L_c).
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// What the poses of one column have in common.
+/// Quantities that all poses of one column share.
 template <class S>
 struct ColumnPoses {
   S l_u, gamma;  ///< gamma = a / (2 L_c)
@@ -23,8 +23,8 @@ struct ColumnPoses {
   std::array<S, 2> x, sigma;  ///< of the two limbs [m], lower branch
 };
 
-/// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length, 0 where J_q or G
-/// is singular. S may be lanes.
+/// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length; 0 if J_q or G is
+/// singular. S can be Lanes.
 template <class S, class T>
 [[gnu::always_inline]] inline S conditioning(const ColumnPoses<T>& column, const std::array<S, 2>& z_c) {
   constexpr double kRoot2 = 1.41421356237309504880;
@@ -39,15 +39,15 @@ template <class S, class T>
     m[j + 1] = {S(scale * column.x[j]), S(scale * column.sigma[j] * -sign),
                 S(scale * column.x[j] * column.gamma * column.sin_theta * sign)};
   }
-  return inverse_condition(m, S(4.0));  // the whole matrix is diag(2) and this 3 x 3
+  return inverse_condition(m, S(4.0));  // J is diag(2) and this 3 x 3 matrix
 }
 
-/// The same for `count` poses, kLanes at a time; arrays have room for a multiple of kLanes.
+/// The same for `count` poses in SIMD batches; the arrays are padded to a multiple of kLanes.
 template <InstructionSet set>
 void conditioning_of_poses(const ColumnPoses<double>& column, const double* z_c1, const double* z_c2, std::size_t count,
                            double* result);
 
-/// Heights of poses of one column, and their conditioning.
+/// Heights of the poses of one column, and their conditioning.
 template <class S>
 struct ColumnConditioning {
   std::array<std::vector<S>, 2> z_c;
@@ -64,9 +64,9 @@ struct ColumnConditioning {
 };
 template <>
 inline void ColumnConditioning<double>::compute(const ColumnPoses<double>& column) {
-  const std::size_t count = size(), room = (count + kLanes - 1) / kLanes * kLanes;
-  index.resize(room);
-  for (auto& list : z_c) list.resize(room, list.empty() ? 0 : list.back());
+  const std::size_t count = size(), padded = (count + kLanes - 1) / kLanes * kLanes;
+  index.resize(padded);
+  for (auto& list : z_c) list.resize(padded, list.empty() ? 0 : list.back());
   with_instruction_set([&]<InstructionSet set>() {
     conditioning_of_poses<set>(column, z_c[0].data(), z_c[1].data(), count, index.data());
   });

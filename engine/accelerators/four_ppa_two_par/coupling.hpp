@@ -1,5 +1,5 @@
-// 4PPa-2PaR: the inertia that the sliders feel at a pose of the lower mode, without J and M_X: a sum of squares of
-// speeds that the sliders' speeds give in closed form. README.md, Motion.
+// 4PPa-2PaR: joint-space inertia at a pose of the mode lower,lower, without J and M_X: twice the kinetic energy is a
+// sum of squares of velocities that are linear in those of the sliders. Derivation: README.md, Motion.
 #pragma once
 
 #include "engine/accelerators/four_ppa_two_par/masses.hpp"
@@ -8,13 +8,13 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// M_q [kg], finite inside the workspace: 0 < sigma_j, 0 < h_j, z_cj < 0, 0 < cos theta, 0 < sin(beta_1 + beta_2). NaN
-/// at its edges of the last two, where J is singular to working precision: M_q divides by both.
+/// M_q [kg]. It is finite inside the workspace: 0 < sigma_j, 0 < h_j, z_cj < 0, 0 < cos theta, 0 < sin(beta_1 +
+/// beta_2). NaN if cos theta or sin(beta_1 + beta_2) vanishes to working precision, because J is singular there.
 /// @param x, sigma, z_c  of the two limbs [m], lower branch
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_theta, const S& cos_theta,
                               const std::array<S, 2>& x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c) {
-  using Row = Vector<S, 4>;  // of a speed: its coefficients of q'
+  using Row = Vector<S, 4>;  // the coefficients of q' in a velocity
   std::array<Row, 2> y, h, z_cj, x_j;
   std::array<S, 2> t, h2;
   for (std::size_t j = 0; j < 2; ++j) {
@@ -59,8 +59,7 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S&
   return M;
 }
 
-/// What fields of a survey hold of a pose's inertia, one after the other.
-/// @param values  overwritten
+/// Computes the values of all inertia fields of a survey at a pose, in their order.
 template <class S>
 void inertia_values(const Matrix<S, 4, 4>& M_q, Survey<S>& survey, std::vector<S>& values) {
   values.clear();
@@ -68,10 +67,8 @@ void inertia_values(const Matrix<S, 4, 4>& M_q, Survey<S>& survey, std::vector<S
                    [&](auto&, std::span<const S> of) { values.insert(values.end(), of.begin(), of.end()); });
 }
 
-/// Adds them.
-/// @param mirrored  they are those of the pose with theta -> -theta (mirrored in y): the two sliders of each rail
-/// change
-///                  places
+/// Adds the values of inertia_values() to the fields.
+/// @param mirrored  the pose is the mirror image (theta -> -theta), with the two sliders of each rail exchanged
 template <class S>
 void add_inertia(const std::vector<S>& values, bool mirrored, Survey<S>& survey) {
   auto value = values.begin();

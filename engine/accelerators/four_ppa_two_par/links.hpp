@@ -1,11 +1,9 @@
-// 4PPa-2PaR: its links as capsules, and which pairs of them must keep clear of each other. Drawn in README.md, Links.
+// 4PPa-2PaR: the links as capsules, and the pairs of links that have to keep a clearance. Figure: README.md, Links.
 //
-// Distances are measured in a frame at the platform's y: they do not depend on y.
+// Positions are relative to the platform's y, on which distances do not depend.
 #pragma once
 
 #include <array>
-#include <string>
-#include <vector>
 
 #include "engine/accelerators/four_ppa_two_par/model.hpp"
 #include "engine/geometry/obstacle.hpp"
@@ -13,35 +11,36 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// What the links' places follow from, at a pose in any working mode.
+/// Position of the limbs at a pose, relative to the platform's y; it determines the positions of all links.
 template <class S>
 struct Placement {
   S sin_theta;
-  std::array<S, 2> x, drop, z_c, h;  ///< [m]; drop: height of C_j above D_j, sigma_j in the lower branch, else -sigma_j
+  std::array<S, 2> x, drop, z_c, h;  ///< [m]; drop: height of C_j above D_j
 };
 
-template <class S>
-Placement<S> placement(const Limbs<S>& limb, const S& sin_theta, WorkingMode mode) {
-  Placement<S> p = {.sin_theta = sin_theta, .x = limb.x, .drop = limb.sigma, .z_c = limb.z_c, .h = limb.h};
-  for (std::size_t j = 0; j < 2; ++j)
-    if (mode[j] == Branch::upper) p.drop[j] = -limb.sigma[j];
+/// The limbs in the mode lower,lower; meaningless if a limb does not reach.
+inline Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta,
+                                         double cos_theta) {
+  const double half = g.a * cos_theta * 0.5;
+  Placement<double> p{.sin_theta = sin_theta, .x = {x - half, g.b - x - half}, .drop = {}, .z_c = {}, .h = {}};
+  for (std::size_t j = 0; j < 2; ++j) {
+    p.drop[j] = sqrt_or_zero((g.l_d - p.x[j]) * (g.l_d + p.x[j]));
+    p.z_c[j] = z + g.d + p.drop[j];
+    p.h[j] = sqrt_or_zero((g.l_u - p.z_c[j]) * (g.l_u + p.z_c[j]));
+  }
   return p;
 }
 
-/// The links' places in the lower mode, from the centre of a voxel.
-Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta);
-
-// Links in groups that keep together. Each limb has, in the plane of its rail, two sliders, four upper bars and the
-// upper connector's side along y; in the plane y = y_j the upper connector's upright side with two lower bars, and the
-// lower connector.
+// Groups of links. Each limb has, in the plane of its rail, two sliders, four upper bars and the upper connector's side
+// along y; in the plane y = y_j the upper connector's upright side with two lower bars, and the lower connector.
 enum LinkGroup { kSliders, kUpperBars, kConnectorSide, kLowerBars, kLowerConnector, kGroupsPerLimb };
-inline constexpr int kPlatform = 2 * kGroupsPerLimb;  ///< the group after those of both limbs
+inline constexpr int kPlatform = 2 * kGroupsPerLimb;  ///< last group
 inline constexpr int kGroups = kPlatform + 1;
 
-/// Position of limb j's group (j = 0, 1).
+/// Index of a group of limb 0 or 1.
 constexpr int group_of(int limb, LinkGroup group) { return limb * kGroupsPerLimb + group; }
 
-/// The links of one group: [first, end) of the list of all.
+/// Range [first, end) of the links of one group in the list of all links.
 struct GroupRange {
   std::size_t first, end;
 };
@@ -66,8 +65,8 @@ Links<S> links(const Geometry<S>& g, const Placement<S>& p) {
   };
   const S zero(0.0), shift = g.a * p.sin_theta * 0.5, half_u = g.d_u * 0.5;
   const S slider = max(zero, S(g.d_0 + half_u - g.R_s));
-  const S reach = max(g.d, g.d_d);  // of the lower connector below D_j
-  std::array<Point3<S>, 2> joint;   // P_1, P_2
+  const S connector = max(g.d, g.d_d);  // length of the lower connector below D_j
+  std::array<Point3<S>, 2> joint;       // P_1, P_2
   for (std::size_t j = 0; j < 2; ++j) {
     const S rail = j == 0 ? zero : g.b, y = j == 0 ? S(-shift) : shift;
     const S x_d = j == 0 ? p.x[0] : S(g.b - p.x[1]), z_c = p.z_c[j], z_d = z_c - p.drop[j];
@@ -81,20 +80,20 @@ Links<S> links(const Geometry<S>& g, const Placement<S>& p) {
     add({rail, y, z_c}, {rail, y, z_c - g.d_d}, g.R_d);
     add({rail, y, z_c}, {x_d, y, z_d}, g.R_d);
     add({rail, y, z_c - g.d_d}, {x_d, y, z_d - g.d_d}, g.R_d);
-    add({x_d, y, z_d}, {x_d, y, z_d - reach}, g.R_d);
+    add({x_d, y, z_d}, {x_d, y, z_d - connector}, g.R_d);
     joint[j] = {x_d, y, z_d - g.d};
   }
   add(joint[0], joint[1], g.R_p);
   return all;
 }
 
-/// Two groups that must keep clear of each other: every link of one of every link of the other, or, where both are the
-/// sliders of one limb, its two sliders of each other.
+/// Two groups between whose links the clearance is measured; for the sliders of one limb twice, between the two
+/// sliders.
 struct GroupPair {
   int first, second;
 };
 inline constexpr std::size_t kGroupPairs = 35;
-/// Ordered as the list of groups: pairs of sliders of one rail, platform, different limbs.
+/// First the sliders of each rail, then the platform with groups of both limbs, then groups of different limbs.
 inline constexpr std::array<GroupPair, kGroupPairs> kPairs = [] {
   std::array<GroupPair, kGroupPairs> pairs{};
   std::size_t n = 0;
@@ -107,20 +106,12 @@ inline constexpr std::array<GroupPair, kGroupPairs> kPairs = [] {
   return pairs;
 }();
 
-/// Calls visit(i, k) for every pair of links that a pair of groups stands for.
+/// Calls visit(i, k) for every pair of links of a pair of groups.
 template <class Visit>
 void visit_links(const GroupPair& pair, const Visit& visit) {
   const GroupRange a = links_of(pair.first), b = links_of(pair.second);
   for (std::size_t i = a.first; i < a.end; ++i)
     for (std::size_t k = pair.first == pair.second ? i + 1 : b.first; k < b.end; ++k) visit(i, k);
-}
-
-/// Over all pairs, one by one.
-template <class S>
-ClosestPair<S> nearest_links(const Links<S>& all) {
-  return closest_pair(all, [](const auto& visit) {
-    for (const GroupPair& pair : kPairs) visit_links(pair, visit);
-  });
 }
 
 }  // namespace pkm::four_ppa_two_par

@@ -1,4 +1,4 @@
-// 4PPa-2PaR: masses and inertias that follow the geometry. README.md, Masses, has the table.
+// 4PPa-2PaR: masses and inertias as functions of the geometry. Table: README.md, Masses.
 #pragma once
 
 #include <span>
@@ -23,17 +23,17 @@ enum MassIndex {
 
 template <class S>
 struct Masses {
-  S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< one of each [kg]
-  S I_upper, I_lower;              ///< of a bar about its middle, across the bar [kg m^2]
-  S I_platform;                    ///< about its centre and z [kg m^2]
+  S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< of one link [kg]
+  S I_upper, I_lower;              ///< of a bar about its centre, axis normal to the bar [kg m^2]
+  S I_platform;                    ///< about its centre, axis z [kg m^2]
   S c_payload;                     ///< [m]
-  std::array<double, 4> rotors{};  ///< inertia of drive trains at the sliders [kg], in M_q alone
+  std::array<double, 4> rotors{};  ///< inertia of drive trains at the sliders [kg], added to M_q only
 };
 
-/// Throws DesignError with a sentence when a link's mass or inertia is not positive.
+/// Throws DesignError, with a sentence, if a mass or an inertia of a link is not positive.
 void check_positive(const Masses<double>& b);
 
-/// Throws DesignError with a sentence when a link's mass or inertia is not positive.
+/// Checked by check_positive().
 /// @param p  all parameters
 template <class S>
 Masses<S> masses(std::span<const S> p) {

@@ -1,6 +1,6 @@
-// 4PPa-2PaR: geometry, limits and kinematics of one pose. Frames and names: README.md.
+// 4PPa-2PaR: geometry, limits and forward kinematics. Frames and names: README.md.
 //
-// Source: "Kinematics analysis and optimal design of a 3T1R parallel mechanism", equation numbers are that paper's.
+// Source: "Kinematics analysis and optimal design of a 3T1R parallel mechanism", with its equation numbers.
 #pragma once
 
 #include <array>
@@ -40,23 +40,17 @@ Geometry<S> geometry(std::span<const S> p) {
   return g;
 }
 
-/// The plane y that surveys are on where their plan names no other [m].
-template <class S>
-S middle_plane(const Geometry<S>& g) {
-  return g.L0 * 0.5;
-}
-
-/// Pose-level thresholds in the form in which the tests use them.
+/// Thresholds of the pose-level constraints, as sines and cosines of the angles.
 template <class S>
 struct Limits {
   S sin_alpha_min, cos_alpha_min;
   S sin_beta_min, cos_beta_min;
   S sin_beta_max, cos_beta_max;
   S h_min;               ///< [m]
-  S sin_par_min;         ///< sin(phi), the least sin(beta_1 + beta_2)
+  S sin_par_min;         ///< sin(phi), minimum of sin(beta_1 + beta_2)
   S sin_half, cos_half;  ///< of phi/2
   S cos_theta_min;
-  std::optional<double> clearance_min;  ///< [m]; none: no capsule is looked at
+  std::optional<double> clearance_min;  ///< [m]
 
   using L = Limits;
   static constexpr std::array<S L::*, 11> kAll = {
@@ -64,7 +58,7 @@ struct Limits {
       &L::h_min,         &L::sin_par_min,   &L::sin_half,     &L::cos_half,     &L::cos_theta_min};
 };
 
-/// A Geometry or Limits for another scalar, in which they do not move with the design.
+/// Converts a Geometry or Limits to constants of another scalar.
 template <class To, template <class> class Values, class From>
 Values<To> constant(const Values<From>& from) {
   Values<To> to{};
@@ -72,7 +66,7 @@ Values<To> constant(const Values<From>& from) {
   return to;
 }
 
-/// Thresholds given by the study, or derived from the bars' and sliders' sizes (eqs 17 and 19).
+/// Thresholds given by the study, or derived from the sizes of bars and sliders (eqs 17 and 19).
 template <class S>
 Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
   const auto given = [&](int i) { return sincos(S(spec.given[static_cast<std::size_t>(i)].value_or(0))); };
@@ -98,31 +92,8 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
           .clearance_min = spec.given[kClearanceMin]};
 }
 
-/// Branch of a limb: lower when the platform hangs below C_j.
-enum class Branch { lower, upper };
-using WorkingMode = std::array<Branch, 2>;
-inline constexpr WorkingMode kLowerMode = {Branch::lower, Branch::lower};
-
-/// Position of the limbs at a pose. Exists where x_j is in [0, l_d] and |z_cj| <= l_u.
-template <class S>
-struct Limbs {
-  std::array<S, 2> x, y, sigma, z_c, h;  ///< [m]
-};
-
-/// Puts limb j where it is at a pose; where it does not reach, roots are 0.
-template <class S>
-[[gnu::always_inline]] inline void place_limb(const Geometry<S>& g, const S& x, const S& y, const S& z,
-                                              const SinCosOf<S>& theta, Branch branch, std::size_t j, Limbs<S>& limb) {
-  const S shift = g.a * theta.sin * 0.5, half = g.a * theta.cos * 0.5;
-  limb.x[j] = j == 0 ? S(x - half) : S(g.b - x - half);
-  limb.y[j] = j == 0 ? S(y - shift) : S(y + shift);
-  limb.sigma[j] = sqrt_or_zero(S((g.l_d - limb.x[j]) * (g.l_d + limb.x[j])));
-  limb.z_c[j] = branch == Branch::lower ? S(z + g.d + limb.sigma[j]) : S(z + g.d - limb.sigma[j]);
-  limb.h[j] = sqrt_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
-}
-
-/// Every assembly mode (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its rail, both circle
-/// intersections. Up to 16; those with both C_j below the rails come first.
+/// All assembly modes, at most 16 (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its rail,
+/// both intersections of two circles. Those with both C_j below the rails come first.
 std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& q);
 
 }  // namespace pkm::four_ppa_two_par

@@ -16,7 +16,7 @@ VoxelCounter::VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::
   }
 }
 
-Halves VoxelCounter::halves(const VoxelPlane& plane) const {
+GridPart VoxelCounter::representative_part(const VoxelPlane& plane) const {
   const Geometry<double>& g = plane.g;
   const VoxelGrid& grid = plane.grid;
   const bool middle = plane.y == g.L0 / 2, theta = middle && even_;
@@ -29,7 +29,7 @@ Halves VoxelCounter::halves(const VoxelPlane& plane) const {
           .centre_theta = cells_[2] % 2 == 1};
 }
 
-ColumnsAtThetas VoxelCounter::columns(const VoxelPlane& plane, std::int64_t k_block, const Halves& part) const {
+ColumnsAtThetas VoxelCounter::columns(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part) const {
   const auto& [g, l, test, y, grid] = plane;
   const auto k = static_cast<std::size_t>(k_block);
   const Ranges<double> in = ranges(g, l);
@@ -57,7 +57,7 @@ ColumnsAtThetas VoxelCounter::columns(const VoxelPlane& plane, std::int64_t k_bl
           .columns = part.xs};
 }
 
-void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, const Halves& part,
+void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part,
                               ColumnBlock& block) const {
   block.first.resize(static_cast<std::size_t>(cells_[0] * kLanes));
   block.end.resize(static_cast<std::size_t>(cells_[0] * kLanes));
@@ -65,13 +65,13 @@ void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, con
   with_instruction_set([&]<InstructionSet set>() { fill<set>(at, block); });
 }
 
-void VoxelCounter::count(const VoxelPlane& plane, const Halves& part, std::size_t piece, Survey<double>& to) const {
+void VoxelCounter::count(const VoxelPlane& plane, const GridPart& part, std::size_t piece, Survey<double>& to) const {
   const auto n = static_cast<std::int64_t>(piece);
   const std::int64_t k_block = n / parts() * kLanes, from = n % parts() * kColumns;
   if (k_block >= part.thetas || from >= part.xs) return;
   const ColumnsAtThetas at = columns(plane, k_block, part);
   const CellTally t = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });
-  double total = 0;  // whole numbers
+  double total = 0;  // an integer
   bool touches = t.lowest || t.highest;
   for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k) {
     const std::int64_t lane = k - k_block;

@@ -1,4 +1,4 @@
-// 4PPa-2PaR: voxel surveys from column intervals. Same cells as the plain loop over poses, no loop over z.
+// 4PPa-2PaR: feasible voxels, column by column. The cells are those that a test of every pose finds.
 #pragma once
 
 #include <algorithm>
@@ -12,62 +12,63 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// The paper's box does not matter to the model; this one holds every feasible pose: x in [0, b],
-/// z in [-(l_u + l_d + d), -d], theta in [-pi/2, pi/2].
+/// A box that contains every feasible pose: x in [0, b], z in [-(l_u + l_d + d), -d], theta in [-pi/2, pi/2].
 Box default_box(const Geometry<double>& g);
 
 /// A plane of one design and the grid on it.
 struct VoxelPlane {
   const Geometry<double>& g;
   const Limits<double>& l;
-  const ClearanceTest* test;  ///< what a clearance limit leaves to be tested pose by pose, or null
+  const ClearanceTest* test;  ///< clearance test of poses, or null
   double y;                   ///< as given, not mirrored
-  const VoxelGrid& grid;      ///< its cells and theta range are the counter's
+  const VoxelGrid& grid;      ///< with the cells and the theta range of the VoxelCounter
 };
 
-/// The part of a grid that has all: on the middle plane both limbs have the same stroke, so that what is feasible is
-/// even in theta where the grid is, and symmetric in x where the box is.
-struct Halves {
-  std::int64_t xs, thetas;  ///< from the first
+/// The part of a grid that represents all cells by symmetry. On the middle plane both limbs have the same stroke, so
+/// that the workspace is symmetric in theta and in x; the grid may be as well.
+struct GridPart {
+  std::int64_t xs, thetas;  ///< number of x and theta, from the first
   bool mirrored_x = false, mirrored_theta = false;
-  bool centre_x = false, centre_theta = false;  ///< the last one is its own image
+  bool centre_x = false, centre_theta = false;  ///< the last one is its own mirror image
 
-  /// How many columns the one at x index i and theta index k stands for.
+  /// Number of columns that the column at x index i and theta index k represents.
   int images(std::int64_t i, std::int64_t k) const {
     return (mirrored_x && !(centre_x && i == xs - 1) ? 2 : 1) *
            (mirrored_theta && !(centre_theta && k == thetas - 1) ? 2 : 1);
   }
 };
 
-/// What a survey's threads overwrite, each for itself.
+/// Scratch memory of one thread.
 struct VoxelWorker {
   ColumnBlock columns;
   ColumnConditioning<double> poses;
-  std::vector<double> inertia;  ///< values of a pose's fields
+  std::vector<double> inertia;  ///< values of fields at a pose
 };
 
-/// Counts cells of grids with a fixed number of cells.
+/// Finds and counts feasible cells of grids with given numbers of cells.
 class VoxelCounter {
  public:
-  /// @param cells    of x, z, theta
+  /// @param cells    numbers along x, z, theta
   /// @param theta    range of theta [rad], the same for every design
   VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::array<double, 2>& theta);
 
-  Halves halves(const VoxelPlane& plane) const;
-  Halves whole() const { return {.xs = cells_[0], .thetas = cells_[2]}; }
+  GridPart representative_part(const VoxelPlane& plane) const;
+  GridPart whole() const { return {.xs = cells_[0], .thetas = cells_[2]}; }
 
-  /// How many blocks of neighbouring thetas there are.
-  std::size_t blocks(const Halves& part) const { return static_cast<std::size_t>((part.thetas + kLanes - 1) / kLanes); }
-  /// The same in pieces that are counted at once: a microsecond's work, to be shared out.
-  std::size_t pieces(const Halves& part) const { return blocks(part) * static_cast<std::size_t>(parts()); }
+  /// Number of blocks of kLanes thetas.
+  std::size_t blocks(const GridPart& part) const {
+    return static_cast<std::size_t>((part.thetas + kLanes - 1) / kLanes);
+  }
+  /// Number of pieces for count(): units of work of about a microsecond, which threads share.
+  std::size_t pieces(const GridPart& part) const { return blocks(part) * static_cast<std::size_t>(parts()); }
 
-  /// Adds the feasible cells that a piece stands for, whatever the plane's test.
-  void count(const VoxelPlane& plane, const Halves& part, std::size_t piece, Survey<double>& to) const;
+  /// Adds the feasible cells that a piece represents, without the clearance test.
+  void count(const VoxelPlane& plane, const GridPart& part, std::size_t piece, Survey<double>& to) const;
 
-  /// Calls visit(run) for every run of feasible z cells of one block, in the order of theta and x. There is one run at
-  /// most at an x, unless the plane's test cuts it.
+  /// Calls visit(run) for every run of feasible cells along z in one block, in the order of theta and x. A column has
+  /// at most one run, unless the clearance test divides it.
   template <class Visit>
-  void visit_block(const VoxelPlane& plane, std::size_t block, const Halves& part, ColumnBlock& columns,
+  void visit_block(const VoxelPlane& plane, std::size_t block, const GridPart& part, ColumnBlock& columns,
                    const Visit& visit) const {
     const auto k_block = static_cast<std::int64_t>(block) * kLanes;
     if (k_block >= part.thetas) return;
@@ -94,13 +95,13 @@ class VoxelCounter {
   double cos_theta(std::int64_t k) const { return cos_[static_cast<std::size_t>(k)]; }
 
  private:
-  static constexpr std::int64_t kColumns = 64;                                  ///< of eight thetas, in a piece
+  static constexpr std::int64_t kColumns = 64;                                  ///< x of a piece
   std::int64_t parts() const { return (cells_[0] + kColumns - 1) / kColumns; }  ///< pieces of a block
-  void fill_block(const VoxelPlane& plane, std::int64_t k_block, const Halves& part, ColumnBlock& block) const;
-  ColumnsAtThetas columns(const VoxelPlane& plane, std::int64_t k_block, const Halves& part) const;
+  void fill_block(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part, ColumnBlock& block) const;
+  ColumnsAtThetas columns(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part) const;
 
   std::array<std::int64_t, 3> cells_;
-  std::vector<double> sin_, cos_;  ///< of every theta, filled up to a whole block
+  std::vector<double> sin_, cos_;  ///< of every theta, padded to a whole block
   bool even_;                      ///< the theta grid is symmetric about 0
 };
 

@@ -4,7 +4,6 @@
 #include "engine/accelerators/hybrid/conditioning.hpp"
 #include "engine/accelerators/hybrid/forward.hpp"
 #include "engine/accelerators/hybrid/voxels.hpp"
-#include "engine/geometry/conditioning.hpp"
 #include "engine/workspace/grid_surveyor.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "engine/workspace/with_slopes.hpp"
@@ -12,34 +11,39 @@
 namespace pkm::hybrid {
 namespace {
 
-constexpr int kY = 1;  ///< the coordinate that surveys hold
+constexpr int kY = 1;  ///< number of the coordinate y, which is fixed
 
-struct Planned {
+struct AnalysisSettings {
   WorkingMode signs;
   int branch;  ///< required sign of N2, +1 or -1
   WorkspacePlan plan;
   Demand demand;
 };
 
-/// What the carriage's stroke makes of a volume of (x, z, beta): its length where y is integrated over [m], else 1, or
-/// 0 beyond its ends.
+/// Factor by which y multiplies a volume of (x, z, beta): the stroke of the carriage [m] if y is integrated over,
+/// otherwise 1, or 0 outside the stroke.
 template <class S>
-S carriage(const Limits<S>& l, const FixedCoordinate& held) {
-  if (held.kind == FixedCoordinate::Kind::integrated) return l.s_max[1] - l.s_min[1];
-  if (held.kind == FixedCoordinate::Kind::middle) return S(1.0);
-  return S(held.value >= value_of(l.s_min[1]) && held.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
+S stroke_factor(const Limits<S>& l, const WorkspacePlan& plan) {
+  const FixedCoordinate y = how_fixed(plan, kY);
+  if (y.kind == FixedCoordinate::Kind::integrated) return l.s_max[1] - l.s_min[1];
+  if (y.kind == FixedCoordinate::Kind::middle) return S(1.0);
+  return S(y.value >= value_of(l.s_min[1]) && y.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
 }
 
-/// The conditioning of columns along x, on which it does not depend. Without derivatives it is computed last, for
-/// many of them side by side.
+/// Adds columns along x, on which conditioning does not depend, as samples. Without derivatives, conditioning is
+/// computed at the end, in SIMD batches.
 template <class S>
-class Conditioning {
+class ColumnSamples {
  public:
-  /// @param poses   reused storage
-  /// @param survey  to which columns are added
-  Conditioning(const Frame<S>& f, const Demand& demand, PoseList& poses, Survey<S>& survey)
-      : frame_(f),
-        length_(demand.characteristic_length ? S(*demand.characteristic_length) : f.g.e),
+  /// @param poses  scratch memory
+  ColumnSamples(const SlicedDesign<S>& d, const Demand& demand, PoseList& poses, Survey<S>& survey)
+      : design_{.L1 = d.g.L1,
+                .L2 = d.g.L2,
+                .L3 = d.g.L3,
+                .d = d.g.d,
+                .e = d.g.e,
+                .signs = {1.0 * d.signs[0], 1.0 * d.signs[1], 1.0 * d.signs[2]},
+                .length = demand.characteristic_length ? S(*demand.characteristic_length) : d.g.e},
         poses_(poses),
         survey_(survey),
         index_(survey.find(kConditioning)) {
@@ -55,175 +59,152 @@ class Conditioning {
       poses_.sine.push_back(sincos_.sin);
       poses_.cosine.push_back(sincos_.cos);
     } else {
-      const Joints<S> j = inverse(frame_.g, Pose<S>{S(0.0), S(0.0), z, beta}, frame_.signs);
-      const bool regular = j.assembles() && !j.serial;
-      index_->push_back(regular ? inverse_condition(homogeneous_jacobian(z, j, length_)) : S(0.0));
+      const auto [sine, cosine] = sincos(beta);
+      index_->push_back(conditioning(design_, z, sine, cosine));
     }
   }
 
-  /// Call it after the last one.
+  /// To be called after the last add().
   void finish() {
     if constexpr (std::is_same_v<S, double>) {
       if (!index_) return;
-      const std::size_t count = poses_.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
+      const std::size_t count = poses_.size(), padded = (count + kLanes - 1) / kLanes * kLanes;
       const std::size_t before = index_->size();
-      for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine}) list->resize(whole);
-      index_->resize(before + whole);
-      const Geometry<double>& g = frame_.g;
-      const ConditioningDesign design{.L1 = g.L1,
-                                      .L2 = g.L2,
-                                      .L3 = g.L3,
-                                      .d = g.d,
-                                      .e = g.e,
-                                      .signs = {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
-                                      .roundoff = kRoundoff,
-                                      .length = length_};
+      for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine}) list->resize(padded);
+      index_->resize(before + padded);
       with_instruction_set([&]<InstructionSet set>() {
-        inverse_conditions<set>(design, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), whole,
-                                index_->data() + before);
+        conditioning_of_poses<set>(design_, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), padded,
+                                   index_->data() + before);
       });
       index_->resize(before + count);
     }
   }
 
  private:
-  const Frame<S>& frame_;
-  S length_;
+  ConditioningDesign<S> design_;
   PoseList& poses_;
   Survey<S>& survey_;
-  std::vector<S>* index_;  ///< null: not demanded
-  double beta_ = 0;        ///< the last one
+  std::vector<S>* index_;  ///< null if it is not demanded
+  double beta_ = 0;        ///< of the previous column
   SinCosOf<double> sincos_{0, 1};
 };
 
 template <class S>
-Frame<S> frame_of(const Planned& planned, std::span<const S> parameters) {
-  return frame(geometry(parameters), limits(parameters, planned.plan.limits), planned.signs, planned.branch);
+SlicedDesign<S> sliced(const AnalysisSettings& settings, std::span<const S> parameters) {
+  return sliced_design(geometry(parameters), limits(parameters, settings.plan.limits), settings.signs, settings.branch);
 }
 
-class ColumnEvaluator final : public WithGradients<ColumnEvaluator> {
+class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
  public:
-  ColumnEvaluator(const Planned& planned, const ColumnOptions& columns) : planned_(planned), columns_(columns) {}
+  ClosedFormColumns(const AnalysisSettings& settings, const ColumnOptions& columns)
+      : settings_(settings), columns_(columns) {}
 
  private:
-  friend WithGradients<ColumnEvaluator>;
-  static constexpr int kSampleNodes = 8;  // per strip of z and piece of beta
+  friend WithGradients<ClosedFormColumns>;
+  static constexpr int kSampleNodes = 8;  // per strip of z and interval of beta
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& room, Survey<S>& survey) const {
-    survey.clear(planned_.demand.fields);
-    ColumnScratch<S>& scratch = room.get<ColumnScratch<S>>();
-    const Frame<S> f = frame_of(planned_, parameters);
-    const S stroke = carriage(f.l, how_fixed(planned_.plan, kY));
+  void run(std::span<const S> parameters, Scratch& memory, Survey<S>& survey) const {
+    survey.clear(settings_.demand.fields);
+    ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
+    const SlicedDesign<S> d = sliced(settings_, parameters);
+    const S stroke = stroke_factor(d.l, settings_.plan);
     if (!(value_of(stroke) > 0)) return;
-    find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
-    if (!fixed_) {
-      take_volume(volume(f, columns_.tolerance, scratch), survey);
+    find_outer_intervals(d, sliced_constant<double>(parameters), sliced_constant<Dual<1>>(parameters), scratch);
+    if (!has_fixed_rules_) {
+      take_volume(volume(d, columns_.tolerance, scratch), survey);
       survey.volume *= stroke;
-      if (!planned_.demand.has(kConditioning)) return;
+      if (!settings_.demand.has(kConditioning)) return;
     }
-    Conditioning<S> conditioning(f, planned_.demand, scratch.poses, survey);
-    visit_nodes(scratch.pieces, beta_rule_, [&](const S& beta, const S& jacobian, double rule_weight) {
+    ColumnSamples<S> samples(d, settings_.demand, scratch.poses, survey);
+    visit_nodes(scratch.intervals, beta_rule_, [&](const S& beta, const S& jacobian, double rule_weight) {
       const S outer = jacobian * rule_weight * stroke;
-      visit_columns(f, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
+      visit_columns(d, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
         const S weight = outer * inner * length;
-        conditioning.add(z, beta, weight);
-        if (!fixed_) return;
+        samples.add(z, beta, weight);
+        if (!has_fixed_rules_) return;
         survey.volume += weight;
         ++survey.columns;
       });
     });
-    conditioning.finish();
+    samples.finish();
   }
 
   /// The design as constants of another scalar.
   template <class To, class From>
-  Frame<To> still(std::span<const From> parameters) const {
-    return frame_of(planned_, std::span<const To>(constants<To, kParameters>(parameters)));
+  SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
+    return sliced(settings_, std::span<const To>(constants<To, kParameters>(parameters)));
   }
 
-  Planned planned_;
+  AnalysisSettings settings_;
   ColumnOptions columns_;
-  bool fixed_ = columns_.nodes[0] > 0;  ///< numbers of nodes are given
-  GaussRule z_rule_ = gauss_legendre(fixed_ ? columns_.nodes[0] : kSampleNodes),
-            beta_rule_ = gauss_legendre(fixed_ ? columns_.nodes[1] : kSampleNodes);
+  bool has_fixed_rules_ = columns_.nodes[0] > 0;  ///< the numbers of nodes are given, instead of the tolerance
+  GaussRule z_rule_ = gauss_legendre(has_fixed_rules_ ? columns_.nodes[0] : kSampleNodes),
+            beta_rule_ = gauss_legendre(has_fixed_rules_ ? columns_.nodes[1] : kSampleNodes);
 };
 
-class OfVoxels final : public GridEvaluator<OfVoxels> {
+class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
  public:
-  OfVoxels(const Planned& planned, const VoxelOptions& voxels)
-      : GridEvaluator(planned.demand), planned_(planned), voxels_(voxels) {}
+  ClosedFormVoxels(const AnalysisSettings& settings, const VoxelOptions& voxels)
+      : GridEvaluator(settings.demand), settings_(settings), voxels_(voxels) {}
 
  private:
   friend GridEvaluator;
   static constexpr std::int64_t kBetas = 8;  ///< of a piece
 
   struct Worker {
-    PoseList poses;  ///< whose conditioning is asked for
-    CellRuns runs;   ///< at one beta
+    PoseList poses;
+    CellRuns runs;  ///< at one beta
   };
   using Rooms = GridRooms<VoxelHeights, Worker>;
 
-  struct GriddedColumns : Gridded {
-    Frame<double> frame;
-    const VoxelHeights& heights;
+  /// Calls visit(k) for the numbers of the beta of a piece.
+  template <class Visit>
+  static void for_each_beta(const VoxelColumns& columns, std::size_t piece, const Visit& visit) {
+    const auto first = static_cast<std::int64_t>(piece) * kBetas;
+    for (std::int64_t k = first; k < std::min(first + kBetas, columns.grid.cells[2]); ++k) visit(k);
+  }
 
-    VoxelColumns columns() const { return {frame, grid, heights}; }
-    /// Calls visit(k) for the beta of a piece.
-    template <class Visit>
-    void for_each_beta(std::size_t piece, const Visit& visit) const {
-      const auto first = static_cast<std::int64_t>(piece) * kBetas;
-      for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) visit(k);
-    }
-  };
-
-  GriddedColumns start(std::span<const double> parameters, Rooms& rooms) const {
-    const Frame<double> f = frame_of(planned_, parameters);
-    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(f));
-    const double stroke = carriage(f.l, how_fixed(planned_.plan, kY));
-    GriddedColumns columns{{grid, 0}, f, rooms.common};
+  VoxelColumns start(std::span<const double> parameters, Rooms& rooms) const {
+    const SlicedDesign<double> design = sliced(settings_, parameters);
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(design));
+    const double stroke = stroke_factor(design.l, settings_.plan);
+    VoxelColumns columns{{grid, 0}, design, rooms.common};
     if (!(stroke > 0)) return columns;
-    rooms.common.fill(f, grid);
+    rooms.common.fill(design, grid);
     columns.pieces = static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas);
     columns.cell_volume *= stroke;
     return columns;
   }
 
-  void find(const GriddedColumns& d, std::size_t, std::size_t piece, Worker& worker, Survey<double>& to) const {
-    const VoxelColumns columns = d.columns();
-    const bool counts = !planned_.demand.has(kConditioning);
-    Conditioning<double> conditioning(d.frame, planned_.demand, worker.poses, to);
-    d.for_each_beta(piece, [&](std::int64_t k) {
-      if (counts) {
+  void find(const VoxelColumns& columns, std::size_t, std::size_t piece, Worker& worker, Survey<double>& to) const {
+    const bool only_counts = !settings_.demand.has(kConditioning);
+    const VoxelGrid& grid = columns.grid;
+    ColumnSamples<double> samples(columns.design, settings_.demand, worker.poses, to);
+    for_each_beta(columns, piece, [&](std::int64_t k) {
+      if (only_counts) {
         to.feasible_cells += columns.count(k, worker.runs, to.touches_box);
         return;
       }
       columns.visit(k, worker.runs, [&](const CellRun& run) {
-        count_cells(d.grid, run, to);
-        conditioning.add(d.grid.centre(1, run.first[1]), d.grid.centre(2, k),
-                         static_cast<double>(run.count()) * d.cell_volume);
+        count_cells(grid, run, to);
+        samples.add(grid.centre(1, run.first[1]), grid.centre(2, k),
+                    static_cast<double>(run.count()) * columns.cell_volume);
       });
     });
-    conditioning.finish();
+    samples.finish();
   }
   template <class Visit>
-  void visit_cells(const GriddedColumns& d, Rooms& rooms, const Visit& visit) const {
-    for (std::size_t piece = 0; piece < d.pieces; ++piece)
-      d.for_each_beta(piece, [&](std::int64_t k) {
-        d.columns().visit(k, rooms.of[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
+  void visit_cells(const VoxelColumns& columns, Rooms& rooms, const Visit& visit) const {
+    for (std::size_t piece = 0; piece < columns.pieces; ++piece)
+      for_each_beta(columns, piece, [&](std::int64_t k) {
+        columns.visit(k, rooms.of[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
       });
   }
 
-  Planned planned_;
+  AnalysisSettings settings_;
   VoxelOptions voxels_;
 };
-
-/// Signs of n1, n2, n3, and the required one of N2: "+,-,-", or "+,-,-/-" where N2 < 0 is required; "": the first.
-Planned planned(const WorkspacePlan& plan, const Demand& demand) {
-  const std::string name = demand.mode.empty() ? "+,-,-" : demand.mode;
-  const auto sign = [&](std::size_t i) { return name[i] == '+' ? 1 : -1; };
-  return {{sign(0), sign(2), sign(4)}, name.ends_with("/-") ? -1 : 1, plan, demand};
-}
 
 class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
   bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand&) const override {
@@ -235,37 +216,27 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
   }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                     const Demand& demand) const override {
-    return std::make_unique<ColumnEvaluator>(planned(plan, demand), columns);
+    return std::make_unique<ClosedFormColumns>(settings(plan, demand), columns);
   }
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
                                                 const Demand& demand) const override {
-    return std::make_unique<OfVoxels>(planned(plan, demand), voxels);
+    return std::make_unique<ClosedFormVoxels>(settings(plan, demand), voxels);
+  }
+  /// The mode contains the signs of n1, n2, n3, and "/-" after them if N2 < 0 is required. Default: "+,-,-".
+  static AnalysisSettings settings(const WorkspacePlan& plan, const Demand& demand) {
+    const std::string mode = demand.mode.empty() ? "+,-,-" : demand.mode;
+    const auto sign = [&](std::size_t i) { return mode[i] == '+' ? 1 : -1; };
+    return {{sign(0), sign(2), sign(4)}, mode.ends_with("/-") ? -1 : 1, plan, demand};
   }
 };
 
-std::string sign_name(int sign) { return sign > 0 ? "+" : sign < 0 ? "-" : "0"; }
-
-class ForwardInClosedForm final : public ForwardKinematics {
+class ClosedFormForward final : public ForwardKinematics {
   std::vector<AssemblyMode> assemblies(std::span<const double> p, const AxisVector<double>& s) const override {
-    std::vector<AssemblyMode> modes;
-    for (const Assembly& found : forward(geometry(p), s).assemblies) {
-      AssemblyMode mode{found.pose, sign_name(found.sign_z) + "," + sign_name(found.sign_N2)};
-      mode.working_mode = sign_name(found.mode[0]) + "," + sign_name(found.mode[1]) + "," + sign_name(found.mode[2]);
-      if (found.double_z) mode.double_roots.push_back("z");
-      if (found.double_beta) mode.double_roots.push_back("beta");
-      modes.push_back(std::move(mode));
-    }
-    return modes;
+    return forward(geometry(p), s).modes;
   }
   ForwardStatus status(std::span<const double> p, const AxisVector<double>& s,
                        const std::vector<AssemblyMode>&) const override {
-    static const std::array<ForwardStatus, 5> meanings = {
-        {{},
-         {"NO_XZ", "the carriages A and B are too far apart, or as far apart as links of different lengths can't be"},
-         {"DEGENERATE_XZ", "A'' and B'' are as far apart as A' and B', so that the parallelogram moves freely"},
-         {"NO_BETA", "link C does not reach the platform's joint C' for any beta"},
-         {"DEGENERATE_BETA", "C' turns about the foot of link C, so that every beta assembles"}}};
-    return meanings[static_cast<std::size_t>(forward(geometry(p), s).status)];
+    return forward(geometry(p), s).status;
   }
 };
 
@@ -273,7 +244,7 @@ class ForwardInClosedForm final : public ForwardKinematics {
 
 Accelerators accelerators() {
   const auto analyses = std::make_shared<const Analyses>();
-  return {.columns = analyses, .voxels = analyses, .forward = std::make_shared<const ForwardInClosedForm>()};
+  return {.columns = analyses, .voxels = analyses, .forward = std::make_shared<const ClosedFormForward>()};
 }
 
 }  // namespace pkm::hybrid

@@ -1,4 +1,4 @@
-// Hybrid robot: closed forms in place of the generic engine. They are over x, z and beta, of one working mode.
+// Hybrid robot: accelerators for the generic engine, for any one working mode with x, z and beta swept.
 #pragma once
 
 #include "engine/mechanism/accelerators.hpp"

@@ -1,4 +1,4 @@
-// Hybrid robot: the feasible cells of columns along x, at kLanes heights side by side.
+// Hybrid robot: the feasible cells of columns along x, in SIMD batches of kLanes values of z.
 #pragma once
 
 #include <cstddef>
@@ -10,29 +10,28 @@
 
 namespace pkm::hybrid {
 
-/// The columns at one beta. Nothing but numbers, so that kernels share no code with files that are compiled for
+/// The columns at one beta. A plain struct, so that kernels share no inline code with files that are compiled for
 /// another instruction set.
 struct ColumnsAtBeta {
-  Product<double> C, Q, P, L, H;  ///< as in Section: the ends of x squared
+  Product<double> C, Q, P, L, H;  ///< curves of the slice: bounds of x, squared
   double sign, lo_C, hi_C;        ///< of limb C
-  double z_high, hole_end;        ///< no columns above the first, no hole above the second
+  double z_high, hole_end;        ///< maximum z of columns, and of the hole
   double x_lower, x_step, cells;
-  const double *z, *left, *right;  ///< heights, and what limbs A and B leave of x there; whole lanes
-  std::size_t first_z, end_z;      ///< indices of the heights
+  const double *z, *left, *right;  ///< z, and the range of x that limbs A and B allow there; padded
+  std::size_t first_z, end_z;      ///< range of indices of z
 };
 
-/// Cells of x at each height, whole numbers: [first, hole) and [after, end).
+/// Feasible cells of x for each z, as integers: [first, hole) and [after, end).
 struct CellRuns {
   std::vector<double> first, hole, after, end;
 };
 
-/// How many there are, and whether a column reaches its lowest or its highest cell.
 struct CellTally {
-  double cells;
-  bool touches;
+  double cells;  ///< their number
+  bool touches;  ///< one of them is the first or last of its column
 };
 
-/// Fills the runs of heights [first_z, end_z) and, up to whole lanes, of some beyond.
+/// Computes the runs for indices of z [first_z, end_z), and for some more up to a multiple of kLanes.
 template <InstructionSet set>
 CellTally fill(const ColumnsAtBeta& columns, CellRuns& runs);
 

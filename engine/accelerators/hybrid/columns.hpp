@@ -1,107 +1,93 @@
-// Hybrid robot: exact volume, and weighted samples, by quadrature over beta of closed-form x-z sections.
+// Hybrid robot: exact volumes and weighted samples, by quadrature over beta of the closed-form areas of slices.
 #pragma once
 
 #include <algorithm>
 #include <type_traits>
 
-#include "engine/accelerators/hybrid/breaks.hpp"
 #include "engine/accelerators/hybrid/conditioning.hpp"
+#include "engine/accelerators/hybrid/critical_values.hpp"
 #include "engine/math/quadrature.hpp"
 
 namespace pkm::hybrid {
 
-/// Storage that surveys reuse.
+/// Scratch memory of an analysis.
 template <class S>
 struct ColumnScratch {
-  BreakScratch breaks;
-  std::vector<Piece<S>> pieces;  ///< one for each of the stretches
-  std::vector<QuadratureCell<S>> parts;
+  CriticalValueScratch beta;
+  std::vector<Piece<S>> intervals;  ///< one for each of beta.intervals
+  std::vector<QuadratureCell<S>> integrals;
   StripScratch strips;
-  Structure structure;  ///< of a beta outside of the pieces
-  PoseList poses;       ///< whose conditioning is asked for
+  Decomposition decomposition;  ///< of a beta outside the intervals
+  PoseList poses;
 };
 
-/// The structure of a section: that of the stretch around beta, followed from where it was asked for last.
+/// The decomposition of a slice. In an interval of beta, that of the previous slice there is updated if possible.
 template <class S>
-const Structure& structure_of(const Section<double>& s, double beta, ColumnScratch<S>& scratch) {
-  const auto around = [&](const Piece<S>& p) { return value_of(p.lower) < beta && beta < value_of(p.upper); };
-  const auto piece = std::ranges::find_if(scratch.pieces, around);
-  const bool known = piece != scratch.pieces.end();
-  Structure& structure =
-      known ? scratch.breaks.stretches[static_cast<std::size_t>(piece - scratch.pieces.begin())].structure
-            : scratch.structure;
-  if (!known || !follow_strips(s, structure)) find_strips(s, scratch.strips, structure);
-  return structure;
+const Decomposition& decomposition_of(const Slice<double>& s, double beta, ColumnScratch<S>& scratch) {
+  const auto contains = [&](const Piece<S>& p) { return value_of(p.lower) < beta && beta < value_of(p.upper); };
+  const auto interval = std::ranges::find_if(scratch.intervals, contains);
+  const bool found = interval != scratch.intervals.end();
+  const auto number = static_cast<std::size_t>(interval - scratch.intervals.begin());
+  Decomposition& decomposition = found ? scratch.beta.intervals[number].decomposition : scratch.decomposition;
+  if (!found || !track(s, decomposition)) decompose(s, scratch.strips, decomposition);
+  return decomposition;
 }
 
-/// A section with its structure.
+/// Fills scratch.intervals with the intervals of beta on which slices are not empty and have one type. Decisions depend
+/// on values only, never on derivatives.
+/// @param plain, by_beta  as of find_beta_intervals()
 template <class S>
-struct Cut {
-  Section<S> section;
-  const Structure& structure;
-};
-template <class S>
-Cut<S> cut(const Frame<S>& f, const S& beta, ColumnScratch<S>& scratch) {
-  const Section<S> s = section(f, beta);
-  if constexpr (std::is_same_v<S, double>)
-    return {s, structure_of(s, beta, scratch)};
-  else
-    return {s, structure_of(values(s), value_of(beta), scratch)};
-}
-
-/// Fills scratch.pieces. Every decision depends on values only.
-/// @param plain, still  the same design without derivatives
-template <class S>
-void find_outer_pieces(const Frame<S>& f, const Frame<double>& plain, const Frame<Dual<1>>& still,
-                       ColumnScratch<S>& scratch) {
-  find_stretches(plain, still, scratch.breaks);
-  scratch.pieces.clear();
-  for (std::size_t i = 0; i < scratch.breaks.count; ++i) {
-    const Stretch& s = scratch.breaks.stretches[i];
+void find_outer_intervals(const SlicedDesign<S>& d, const SlicedDesign<double>& plain,
+                          const SlicedDesign<Dual<1>>& by_beta, ColumnScratch<S>& scratch) {
+  find_beta_intervals(plain, by_beta, scratch.beta);
+  scratch.intervals.clear();
+  for (std::size_t i = 0; i < scratch.beta.count; ++i) {
+    const BetaInterval& s = scratch.beta.intervals[i];
     const bool first = s.lower == plain.l.beta_min, last = s.upper == plain.l.beta_max;
-    const bool joins = i > 0 && scratch.breaks.stretches[i - 1].upper == s.lower;
-    const S lower = first        ? f.l.beta_min
-                    : joins      ? scratch.pieces.back().upper
-                    : s.at_lower ? moving_break(f, still, s.lower, *s.at_lower)
+    const bool joins = i > 0 && scratch.beta.intervals[i - 1].upper == s.lower;
+    const S lower = first        ? d.l.beta_min
+                    : joins      ? scratch.intervals.back().upper
+                    : s.at_lower ? lift_critical_value(d, by_beta, s.lower, *s.at_lower)
                                  : S(s.lower);
-    const S upper = last ? f.l.beta_max : s.at_upper ? moving_break(f, still, s.upper, *s.at_upper) : S(s.upper);
-    const bool sqrt_at_lower = !first && (!s.at_lower || has_root(*s.at_lower)),
-               sqrt_at_upper = !last && (!s.at_upper || has_root(*s.at_upper));
-    scratch.pieces.push_back({lower, upper, sqrt_at_lower, sqrt_at_upper});
+    const S upper = last         ? d.l.beta_max
+                    : s.at_upper ? lift_critical_value(d, by_beta, s.upper, *s.at_upper)
+                                 : S(s.upper);
+    const bool sqrt_at_lower = !first && (!s.at_lower || has_sqrt_singularity(*s.at_lower)),
+               sqrt_at_upper = !last && (!s.at_upper || has_sqrt_singularity(*s.at_upper));
+    scratch.intervals.push_back({lower, upper, sqrt_at_lower, sqrt_at_upper});
   }
 }
 
-/// Area of the section at a beta [m^2].
+/// Area of the slice at a beta [m^2].
 template <class S>
-S area_at(const Frame<S>& f, const S& beta, ColumnScratch<S>& scratch) {
-  const Cut<S> c = cut(f, beta, scratch);
-  return area(c.section, c.structure);
+S area_at(const SlicedDesign<S>& d, const S& beta, ColumnScratch<S>& scratch) {
+  const Slice<S> s = slice(d, beta);
+  return area(s, decomposition_of(values(s), value_of(beta), scratch));
 }
 
-/// What rounding leaves of the integral of area_at over the pieces [m^2 rad].
+/// Rounding error of the integral of area_at() over the intervals [m^2 rad].
 template <class S>
-double roundoff(const Frame<S>& f, const std::vector<Piece<S>>& pieces) {
-  if (pieces.empty()) return 0;
-  double size = value_of(max(f.g.L1, max(f.g.L2, f.g.L3)));  // of the terms that the area is a difference of
-  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(value_of(f.lo[i])) + std::fabs(value_of(f.hi[i]));
-  return 4e-16 * size * value_of(f.z_high) * (value_of(pieces.back().upper) - value_of(pieces.front().lower));
+double roundoff(const SlicedDesign<S>& d, const std::vector<Piece<S>>& intervals) {
+  if (intervals.empty()) return 0;
+  double size = value_of(max(d.g.L1, max(d.g.L2, d.g.L3)));  // of the terms that cancel in the area
+  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(value_of(d.lo[i])) + std::fabs(value_of(d.hi[i]));
+  return 4e-16 * size * value_of(d.z_high) * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }
 
-/// The integral of the sections' areas over the pieces [m^2 rad].
+/// Integral of the areas of slices over beta [m^2 rad].
 template <class S>
-Integral<S> volume(const Frame<S>& f, double tolerance, ColumnScratch<S>& scratch) {
-  return integrate<S>([&](const S& beta) { return area_at(f, beta, scratch); }, scratch.pieces, tolerance,
-                      roundoff(f, scratch.pieces), scratch.parts, {.rule = patterson_rule()});
+Integral<S> volume(const SlicedDesign<S>& d, double tolerance, ColumnScratch<S>& scratch) {
+  return integrate<S>([&](const S& beta) { return area_at(d, beta, scratch); }, scratch.intervals, tolerance,
+                      roundoff(d, scratch.intervals), scratch.integrals, {.rule = patterson_rule()});
 }
 
-/// Calls visit(z, length, weight) at the nodes of `rule` over z on every strip of the section: the exact length of the
-/// column of x there.
+/// Calls visit(z, length of the column of x, weight) at the nodes of a quadrature rule over z in every strip of the
+/// slice.
 template <class S, class Visit>
-void visit_columns(const Frame<S>& f, const S& beta, const GaussRule& rule, ColumnScratch<S>& scratch,
+void visit_columns(const SlicedDesign<S>& d, const S& beta, const GaussRule& rule, ColumnScratch<S>& scratch,
                    const Visit& visit) {
-  const Cut<S> c = cut(f, beta, scratch);
-  const Section<S>& s = c.section;
-  for (const Strip& strip : c.structure.strips) {
+  const Slice<S> s = slice(d, beta);
+  for (const Strip& strip : decomposition_of(values(s), value_of(beta), scratch).strips) {
     const Piece<S> piece{height(s, strip.from), height(s, strip.to), true, true};
     visit_nodes(piece, rule, [&](const S& z, const S& jacobian, double weight) {
       visit(z, S(edge_at(s, strip.right, z) - edge_at(s, strip.left, z)), S(jacobian * weight));

@@ -1,18 +1,20 @@
-// Hybrid robot: inverse condition numbers of poses, kLanes side by side.
+// Hybrid robot: inverse condition number of a pose, and of many poses in SIMD batches.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <vector>
 
+#include "engine/accelerators/hybrid/limbs.hpp"
 #include "engine/core/instruction_set.hpp"
+#include "engine/geometry/conditioning.hpp"
 #include "engine/math/lanes.hpp"
 
 namespace pkm::hybrid {
 
-/// Poses at some heights and beta; x and y do not count.
+/// Poses given by z and beta; conditioning does not depend on x and y.
 struct PoseList {
-  std::vector<double> z, sine, cosine;  ///< [m], of beta
+  std::vector<double> z, sine, cosine;  ///< [m], sine and cosine of beta
 
   void clear() {
     for (auto* list : {&z, &sine, &cosine}) list->clear();
@@ -20,18 +22,29 @@ struct PoseList {
   std::size_t size() const { return z.size(); }
 };
 
-/// What conditioning depends on in a design. Nothing but numbers, as in cells.hpp.
+/// The properties of a design on which conditioning depends. A plain struct, as in cells.hpp.
+template <class S>
 struct ConditioningDesign {
-  double L1, L2, L3, d, e;      ///< as in Geometry [m]
+  S L1, L2, L3, d, e;           ///< as in Geometry [m]
   std::array<double, 3> signs;  ///< of n1, n2, n3
-  double roundoff;              ///< relative: a limb nearer than this to being across its rail is singular
-  double length;                ///< characteristic [m]
+  S length;                     ///< characteristic length [m]
 };
 
-/// Inverse condition numbers of whole lanes of poses, `count` of them; 0 for poses that do not assemble or are serially
-/// singular.
+/// Inverse condition number; 0 if the pose does not assemble or is serially singular. S is Lanes or that of the design.
+template <class S, class T>
+[[gnu::always_inline]] inline S conditioning(const ConditioningDesign<T>& g, const S& z, const S& sin_b,
+                                             const S& cos_b) {
+  auto regular = value_of(z) >= value_of(z);
+  const Limbs<S> j = limbs(g, z, sin_b, cos_b, [&](const S& square, const T& length, std::size_t limb) {
+    regular = regular & (value_of(square) > kRoundoff * value_of(length) * value_of(length));
+    return S(sqrt_or_zero(square) * g.signs[limb]);
+  });
+  return select(regular, inverse_condition(homogeneous_jacobian(z, j, S(g.length))), S(0.0));
+}
+
+/// The same for `count` poses, a multiple of kLanes.
 template <InstructionSet set>
-void inverse_conditions(const ConditioningDesign& design, const double* z, const double* sine, const double* cosine,
-                        std::size_t count, double* result);
+void conditioning_of_poses(const ConditioningDesign<double>& design, const double* z, const double* sine,
+                           const double* cosine, std::size_t count, double* result);
 
 }  // namespace pkm::hybrid

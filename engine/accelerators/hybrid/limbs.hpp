@@ -1,11 +1,14 @@
-// Hybrid robot: the loops of its limbs, and their Jacobian; for lanes, too, so with no other header than those.
+// Hybrid robot: loop-closure equations of the limbs and their Jacobian. Frames, names and equations: README.md.
 //
-// Frames, names and equations: README.md.
+// Also used by kernels with Lanes as scalars, so it includes no headers of other folders.
 #pragma once
 
 #include <array>
 
 namespace pkm::hybrid {
+
+/// Relative rounding error: a radicand within it counts as 0, so that the limb is normal to its rail.
+inline constexpr double kRoundoff = 1e-12;
 
 /// (a + a_z z) (b + b_z z)
 template <class S>
@@ -20,7 +23,7 @@ struct Limbs {
 };
 
 /// @param g     lengths L1, L2, L3, d, e [m]
-/// @param root  root(n_i^2, L_i, i) is n_i in the working mode, whatever it makes of a limb out of reach
+/// @param root  root(n_i^2, L_i, i) returns n_i in the working mode, and any number for a limb out of reach
 template <class S, class Lengths, class Root>
 [[gnu::always_inline]] inline Limbs<S> limbs(const Lengths& g, const S& z, const S& sin_b, const S& cos_b,
                                              const Root& root) {
@@ -34,7 +37,7 @@ template <class S, class Lengths, class Root>
   return j;
 }
 
-/// J of (s1, s3, s4) over (x, z, beta length): y stands alone with the gain 1 and is left out.
+/// J of (s1, s3, s4) with respect to (x, z, beta length), without y, which is a separate block with the gain 1.
 template <class S>
 [[gnu::always_inline]] inline std::array<std::array<S, 3>, 3> homogeneous_jacobian(const S& z, const Limbs<S>& j,
                                                                                    const S& length) {

@@ -1,8 +1,7 @@
-// Hybrid robot: what bounds its poses.
+// Hybrid robot: limits of its poses.
 //
-// What bounds them are parameters of the design: strokes, ranges of the joints, what is kept from singularities. A
-// study can set tau_s, tau_p and tau_c as limits, too, which then hold instead of the design's own.
-// Measures of singularity: README.md.
+// They are parameters of the design: strokes, ranges of the joints, distances from singularities (README.md). A study
+// can replace tau_s, tau_p and tau_c by limits of its own.
 #pragma once
 
 #include <optional>
@@ -16,14 +15,13 @@ namespace pkm::hybrid {
 /// Order of the pose-level limits that a study may set.
 enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
 
-/// Thresholds in the form in which the tests use them.
+/// Thresholds of the pose-level constraints.
 template <class S>
 struct Limits {
   std::array<S, 4> s_min, s_max;  ///< [m]
   S z_clear, beta_min, beta_max;  ///< [m], [rad]
   S tau_s, tau_p, tau_c;
-  SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< of the greatest angles
-  S lam_max, mu_max;                     ///< [rad]
+  SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< sine and cosine of the maximum angles
   S gap, lw_min, lw_max;                 ///< [m]
 };
 
@@ -46,8 +44,6 @@ Limits<S> limits(std::span<const S> p, const LimitSpec& spec) {
           .lam = sincos(p[kLamMax]),
           .mu = sincos(p[kMuMax]),
           .phi = sincos(p[kPhiMax]),
-          .lam_max = p[kLamMax],
-          .mu_max = p[kMuMax],
           .gap = p[kGap],
           .lw_min = p[kLwMin],
           .lw_max = p[kLwMax]};

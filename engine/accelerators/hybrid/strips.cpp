@@ -3,85 +3,87 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/accelerators/hybrid/meetings.hpp"
+#include "engine/accelerators/hybrid/intersections.hpp"
 
 namespace pkm::hybrid {
 namespace {
 
-constexpr int kDepth = 16;  // of cuts: what could hide in 2^-16 of a range changes areas by some 1e-15
+constexpr int kDepth = 16;  // bisections: a component missed in 2^-16 of a range changes the area by about 1e-15
 
-constexpr double kSearches = 1e-13;  // m, of heights found by different searches
+constexpr double kRootTolerance = 1e-13;  // [m] accuracy of heights computed in two ways
 
-/// All curves' roots at one height.
+/// The roots of all curves at one z.
 struct Node {
   double z;
   std::array<double, kCurves> root;
 };
 
-Node node_at(const Section<double>& s, double z) {
+Node node_at(const Slice<double>& s, double z) {
   Node n{.z = z, .root = {}};
   for (std::size_t k = 0; k < kCurves; ++k) n.root[k] = s.curve[k].root(z);
   return n;
 }
 
-double place(const Section<double>& s, const Edge& e, const Node& n) {
+double x_at(const Slice<double>& s, const Edge& e, const Node& n) {
   return s.constant(e) + n.root[e.curve] * s.sign(e);
 }
 
-/// Where `above` may come down to `below` between two heights at which it is not below it: at that height its least
-/// bound is negative; NaN: it stays above. A convex function lies above its tangents, a concave one above its chord.
-double may_meet(const Section<double>& s, const Edge& above, const Edge& below, const Node& p, const Node& q) {
-  if (of_chain(above, below)) return kNowhere;
+/// Test whether `above` can intersect `below` between two heights at which it is not below it. A convex function is
+/// above its tangents, a concave one above its chord, which gives a piecewise linear lower bound of the difference.
+/// @return a height at which this bound is negative; kNoIntersection if there is none
+double possible_intersection(const Slice<double>& s, const Edge& above, const Edge& below, const Node& p,
+                             const Node& q) {
+  if (of_chain(above, below)) return kNoIntersection;
   const double high = s.sign(above), low = s.sign(below);
-  const bool high_bends = high<0, low_bends = low> 0;  // convex, and the other concave
-  const double width = q.z - p.z, gap_p = place(s, above, p) - place(s, below, p),
-               gap_q = place(s, above, q) - place(s, below, q);
-  if (!high_bends && !low_bends) return kNowhere;
+  const bool above_is_convex = high<0, below_is_concave = low> 0;  // convex, and the other concave
+  const double width = q.z - p.z, gap_p = x_at(s, above, p) - x_at(s, below, p),
+               gap_q = x_at(s, above, q) - x_at(s, below, q);
+  if (!above_is_convex && !below_is_concave) return kNoIntersection;
   const auto chord = [&](const Edge& e, double sign) { return sign * (q.root[e.curve] - p.root[e.curve]) / width; };
   const auto tangent = [&](const Edge& e, double sign, const Node& n) {
     return sign * s.curve[e.curve].slope(n.z, n.root[e.curve]);
   };
   double slope_p = 0, slope_q = 0;
-  const auto add = [&](const Edge& e, double sign, bool bends, double factor) {
-    const double straight = bends ? 0 : chord(e, sign);
-    slope_p += factor * (bends ? tangent(e, sign, p) : straight);
-    slope_q += factor * (bends ? tangent(e, sign, q) : straight);
+  const auto add = [&](const Edge& e, double sign, bool use_tangent, double factor) {
+    const double straight = use_tangent ? 0 : chord(e, sign);
+    slope_p += factor * (use_tangent ? tangent(e, sign, p) : straight);
+    slope_q += factor * (use_tangent ? tangent(e, sign, q) : straight);
   };
-  add(above, high, high_bends, 1);
-  add(below, low, low_bends, -1);
-  if (slope_p >= 0 || slope_q <= 0) return kNowhere;  // rises from p, or falls to q
-  // the two lines gap_p + slope_p (z - p) and gap_q - slope_q (q - z) meet; a slope may be infinite
+  add(above, high, above_is_convex, 1);
+  add(below, low, below_is_concave, -1);
+  if (slope_p >= 0 || slope_q <= 0) return kNoIntersection;  // the minimum is at p or q
+  // intersection of the lines gap_p + slope_p (z - p) and gap_q - slope_q (q - z); a slope can be infinite
   double along = (gap_q - gap_p - slope_q * width) / (slope_p - slope_q);
-  double least = gap_p + slope_p * along;
+  double smallest = gap_p + slope_p * along;
   if (std::isinf(slope_p)) {
     along = 0;
-    least = std::isinf(slope_q) ? -1 : gap_q - slope_q * width;
+    smallest = std::isinf(slope_q) ? -1 : gap_q - slope_q * width;
   } else if (std::isinf(slope_q)) {
     along = width;
-    least = gap_p + slope_p * width;
+    smallest = gap_p + slope_p * width;
   }
-  if (least >= 0) return kNowhere;
+  if (smallest >= 0) return kNoIntersection;
   return p.z + std::fmin(std::fmax(along, 0.1 * width), 0.9 * width);
 }
 
-/// The curves of one side in force over a range of z.
+/// The envelope of the curves of one side over an interval of z.
 class Envelope {
  public:
-  Envelope(const Section<double>& s, Side side, std::size_t curves, const Node& low, const Node& high,
-           std::vector<StripScratch::Stretch>& stretches)
-      : s_(s), side_(side), curves_(curves), out_(stretches) {
+  Envelope(const Slice<double>& s, Side side, std::size_t curves, const Node& low, const Node& high,
+           std::vector<StripScratch::EnvelopePiece>& pieces)
+      : s_(s), side_(side), curves_(curves), out_(pieces) {
     out_.clear();
-    cut(low, in_force(low), high, in_force(high), kDepth);
+    divide(low, active(low), high, active(high), kDepth);
   }
 
  private:
   Edge edge(std::size_t curve) const { return {static_cast<std::uint8_t>(curve), side_}; }
 
-  std::size_t in_force(const Node& n) const {
+  std::size_t active(const Node& n) const {
     std::size_t best = 0;
-    double at = place(s_, edge(0), n);
+    double at = x_at(s_, edge(0), n);
     for (std::size_t k = 1; k < curves_; ++k) {
-      const double x = place(s_, edge(k), n);
+      const double x = x_at(s_, edge(k), n);
       if (!(side_ == kLeft ? x > at : x < at)) continue;
       best = k;
       at = x;
@@ -89,24 +91,25 @@ class Envelope {
     return best;
   }
 
-  /// From p, where curve i is in force, to q, where j is.
-  void cut(const Node& p, std::size_t i, const Node& q, std::size_t j, int depth) {
+  /// Divides the interval from p, where curve i is active, to q, where j is.
+  void divide(const Node& p, std::size_t i, const Node& q, std::size_t j, int depth) {
     if (i != j) {
-      const Node n = node_at(s_, meeting(s_, edge(i), edge(j), p.z, q.z));
-      const std::size_t k = in_force(n);
+      const Node n = node_at(s_, intersection(s_, edge(i), edge(j), p.z, q.z));
+      const std::size_t k = active(n);
       const bool between = k != i && k != j && depth > 0 && n.z > p.z && n.z < q.z;
-      cut(p, i, n, between ? k : i, depth - 1);
-      cut(n, between ? k : j, q, j, depth - 1);
+      divide(p, i, n, between ? k : i, depth - 1);
+      divide(n, between ? k : j, q, j, depth - 1);
       return;
     }
     for (std::size_t k = 0; k < curves_ && depth > 0; ++k) {
       if (k == i || !(p.z < q.z)) continue;
-      const double z = side_ == kLeft ? may_meet(s_, edge(i), edge(k), p, q) : may_meet(s_, edge(k), edge(i), p, q);
+      const double z = side_ == kLeft ? possible_intersection(s_, edge(i), edge(k), p, q)
+                                      : possible_intersection(s_, edge(k), edge(i), p, q);
       if (!(z > p.z && z < q.z)) continue;
       const Node n = node_at(s_, z);
-      const std::size_t between = in_force(n);
-      cut(p, i, n, between, depth - 1);
-      cut(n, between, q, i, depth - 1);
+      const std::size_t between = active(n);
+      divide(p, i, n, between, depth - 1);
+      divide(n, between, q, i, depth - 1);
       return;
     }
     if (!(p.z < q.z)) return;
@@ -116,30 +119,30 @@ class Envelope {
       out_.push_back({p.z, q.z, static_cast<std::uint8_t>(i)});
   }
 
-  const Section<double>& s_;
+  const Slice<double>& s_;
   Side side_;
   std::size_t curves_;
-  std::vector<StripScratch::Stretch>& out_;
+  std::vector<StripScratch::EnvelopePiece>& out_;
 };
 
-StripEnd meeting_at(double z, const Edge& first, const Edge& second) {
-  return {.z = z, .kind = StripEnd::Kind::meeting, .first = first, .second = second};
+StripBound intersection_at(double z, const Edge& first, const Edge& second) {
+  return {.z = z, .kind = StripBound::Kind::intersection, .first = first, .second = second};
 }
 
-/// An end of a strip and the curves there.
-struct Place {
-  StripEnd end;
+/// A candidate for a bound of a strip, with the curves there.
+struct Candidate {
+  StripBound end;
   Node node;
-  bool positive;  ///< `right` is not left of `left`
+  bool positive;  ///< x of `right` is not below that of `left`
 };
 
-/// Appends the parts between p and q on which `right` is right of `left`.
-void add_positive(const Section<double>& s, const Edge& left, const Edge& right, const Place& p, const Place& q,
+/// Appends the strips between p and q on which `right` is not below `left`.
+void add_positive(const Slice<double>& s, const Edge& left, const Edge& right, const Candidate& p, const Candidate& q,
                   int depth, std::vector<Strip>& strips) {
   const double low = p.node.z, high = q.node.z;
   if (p.positive != q.positive) {
-    const double z = meeting(s, right, left, low, high);
-    Place middle{meeting_at(z, left, right), node_at(s, z), p.positive};
+    const double z = intersection(s, right, left, low, high);
+    Candidate middle{intersection_at(z, left, right), node_at(s, z), p.positive};
     add_positive(s, left, right, p, middle, depth, strips);
     middle.positive = q.positive;
     add_positive(s, left, right, middle, q, depth, strips);
@@ -147,44 +150,44 @@ void add_positive(const Section<double>& s, const Edge& left, const Edge& right,
   }
   if (!(low < high)) return;
   const double z = depth == 0   ? low
-                   : p.positive ? may_meet(s, right, left, p.node, q.node)
-                                : may_meet(s, left, right, p.node, q.node);
+                   : p.positive ? possible_intersection(s, right, left, p.node, q.node)
+                                : possible_intersection(s, left, right, p.node, q.node);
   if (z > low && z < high) {
-    Place middle{meeting_at(z, left, left), node_at(s, z), false};  // no end, if the strip goes on
-    middle.positive = place(s, right, middle.node) >= place(s, left, middle.node);
+    Candidate middle{intersection_at(z, left, left), node_at(s, z), false};  // not a bound if the strip continues
+    middle.positive = x_at(s, right, middle.node) >= x_at(s, left, middle.node);
     add_positive(s, left, right, p, middle, depth - 1, strips);
     add_positive(s, left, right, middle, q, depth - 1, strips);
     return;
   }
   if (!p.positive) return;
-  const bool goes_on =
+  const bool continues =
       !strips.empty() && strips.back().to.z == low && strips.back().left == left && strips.back().right == right;
-  if (goes_on)
+  if (continues)
     strips.back().to = q.end;
   else
     strips.push_back({p.end, q.end, left, right});
 }
 
-/// Strips between two heights from the first `curves` curves.
-void find_plain_strips(const Section<double>& s, std::size_t curves, const StripEnd& low, const StripEnd& high,
-                       StripScratch& scratch, std::vector<Strip>& strips) {
+/// Finds the strips between two heights that the first `curves` curves bound.
+void find_strips(const Slice<double>& s, std::size_t curves, const StripBound& low, const StripBound& high,
+                 StripScratch& scratch, std::vector<Strip>& strips) {
   strips.clear();
   if (!(low.z < high.z)) return;
   const Node bottom = node_at(s, low.z), top = node_at(s, high.z);
   const Envelope left(s, kLeft, curves, bottom, top, scratch.left),
       right(s, kRight, curves, bottom, top, scratch.right);
-  Place from{low, bottom, false};
+  Candidate from{low, bottom, false};
   for (std::size_t i = 0, j = 0; i < scratch.left.size() && j < scratch.right.size();) {
     const auto &l = scratch.left[i], &r = scratch.right[j];
     const Edge lower{l.curve, kLeft}, upper{r.curve, kRight};
-    StripEnd end = high;
+    StripBound end = high;
     const bool left_ends = l.to <= r.to, right_ends = r.to <= l.to;
     if (left_ends && i + 1 < scratch.left.size())
-      end = meeting_at(l.to, lower, {scratch.left[i + 1].curve, kLeft});
+      end = intersection_at(l.to, lower, {scratch.left[i + 1].curve, kLeft});
     else if (right_ends && j + 1 < scratch.right.size())
-      end = meeting_at(r.to, upper, {scratch.right[j + 1].curve, kRight});
-    Place to{end, end.z == high.z ? top : node_at(s, end.z), false};
-    for (Place* at : {&from, &to}) at->positive = place(s, upper, at->node) >= place(s, lower, at->node);
+      end = intersection_at(r.to, upper, {scratch.right[j + 1].curve, kRight});
+    Candidate to{end, end.z == high.z ? top : node_at(s, end.z), false};
+    for (Candidate* at : {&from, &to}) at->positive = x_at(s, upper, at->node) >= x_at(s, lower, at->node);
     add_positive(s, lower, upper, from, to, kDepth, strips);
     from = to;
     i += left_ends;
@@ -192,15 +195,15 @@ void find_plain_strips(const Section<double>& s, std::size_t curves, const Strip
   }
 }
 
-/// Takes the columns of `inner` out of those of `outer`.
-void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
-  const auto same = [](const StripEnd& p, const StripEnd& q) {  // but for the rounding of either search
-    return alike(p, q) && std::fabs(p.z - q.z) < kSearches;
+/// Subtracts the strips `inner` from `outer`.
+void subtract(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
+  const auto same = [](const StripBound& p, const StripBound& q) {  // up to the accuracy of the heights
+    return same_type(p, q) && std::fabs(p.z - q.z) < kRootTolerance;
   };
   strips.clear();
   for (const Strip& o : outer) {
-    StripEnd from = o.from;
-    const auto add = [&](const StripEnd& to, const Strip* hole) {
+    StripBound from = o.from;
+    const auto add = [&](const StripBound& to, const Strip* hole) {
       if (!(from.z < to.z) || same(from, to)) return;
       if (!hole) {
         strips.push_back({from, to, o.left, o.right});
@@ -219,39 +222,42 @@ void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, 
   }
 }
 
-/// The ends of z in force, as numbers of the lower and the upper one.
-std::array<std::size_t, 2> ends_in_force(const Section<double>& s) {
+/// Numbers of the active lower and upper bound of z.
+std::array<std::size_t, 2> active_ends(const Slice<double>& s) {
   const auto low = std::max_element(s.lower.begin(), s.lower.end()),
              high = std::min_element(s.upper.begin(), s.upper.end());
   return {static_cast<std::size_t>(low - s.lower.begin()), static_cast<std::size_t>(high - s.upper.begin())};
 }
-Structure::Hole hole_of(const Section<double>& s, double low, double high) {
-  return s.hole_end > low ? s.hole_end < high ? Structure::Hole::below : Structure::Hole::all : Structure::Hole::none;
+Decomposition::Hole hole_of(const Slice<double>& s, double low, double high) {
+  return s.hole_end > low ? s.hole_end < high ? Decomposition::Hole::below : Decomposition::Hole::all
+                          : Decomposition::Hole::none;
 }
 
 }  // namespace
 
-bool follow_strips(const Section<double>& s, Structure& structure) {
-  const auto [lower, upper] = ends_in_force(s);
+bool track(const Slice<double>& s, Decomposition& decomposition) {
+  const auto [lower, upper] = active_ends(s);
   const double low = s.lower[lower], high = s.upper[upper];
-  if (lower != structure.lower || upper != structure.upper || hole_of(s, low, high) != structure.hole) return false;
-  if (structure.strips.empty()) return false;  // of a gap that no break is known of: there are strips beyond it
-  StripEnd from, to;                           // of the strip before, where it was
+  if (lower != decomposition.lower || upper != decomposition.upper || hole_of(s, low, high) != decomposition.hole)
+    return false;
+  if (decomposition.strips.empty()) return false;  // a gap with unknown critical values: strips can exist beside it
+  StripBound from, to;                             // of the previous strip, before its update
   const Strip* before = nullptr;
-  const auto follow = [&](StripEnd& end) {
-    const auto was = [&end](const StripEnd& other) { return alike(end, other) && end.z == other.z; };
+  const auto follow = [&](StripBound& end) {
+    const auto was = [&end](const StripBound& other) { return same_type(end, other) && end.z == other.z; };
     if (before && was(to))
       end.z = before->to.z;
     else if (before && was(from))
       end.z = before->from.z;
     else
-      end.z = end.kind == StripEnd::Kind::meeting ? meeting_near(s, end.first, end.second, end.z) : height(s, end);
+      end.z = end.kind == StripBound::Kind::intersection ? intersection_near(s, end.first, end.second, end.z)
+                                                         : height(s, end);
   };
-  for (Strip& strip : structure.strips) {
+  for (Strip& strip : decomposition.strips) {
     const Strip was = strip;
     follow(strip.from);
     follow(strip.to);
-    const bool above = !before || strip.from.z >= before->from.z - kSearches;
+    const bool above = !before || strip.from.z >= before->from.z - kRootTolerance;
     if (!(strip.from.z < strip.to.z && strip.from.z >= low && strip.to.z <= high && above)) return false;
     from = was.from;
     to = was.to;
@@ -260,19 +266,21 @@ bool follow_strips(const Section<double>& s, Structure& structure) {
   return true;
 }
 
-void find_strips(const Section<double>& s, StripScratch& scratch, Structure& structure) {
-  structure.strips.clear();
-  const auto [lower, upper] = ends_in_force(s);
-  structure.lower = lower;
-  structure.upper = upper;
-  const StripEnd low = end_of_z(s, StripEnd::Kind::lower, lower), high = end_of_z(s, StripEnd::Kind::upper, upper);
-  structure.hole = hole_of(s, low.z, high.z);
-  const bool whole = structure.hole == Structure::Hole::none;
-  find_plain_strips(s, kCurveH, low, high, scratch, whole ? structure.strips : scratch.outer);
+void decompose(const Slice<double>& s, StripScratch& scratch, Decomposition& decomposition) {
+  decomposition.strips.clear();
+  const auto [lower, upper] = active_ends(s);
+  decomposition.lower = lower;
+  decomposition.upper = upper;
+  const StripBound low = end_of_z(s, StripBound::Kind::lower, lower),
+                   high = end_of_z(s, StripBound::Kind::upper, upper);
+  decomposition.hole = hole_of(s, low.z, high.z);
+  const bool whole = decomposition.hole == Decomposition::Hole::none;
+  find_strips(s, kCurveH, low, high, scratch, whole ? decomposition.strips : scratch.outer);
   if (!whole) {
-    const StripEnd end = structure.hole == Structure::Hole::below ? end_of_z(s, StripEnd::Kind::hole) : high;
-    find_plain_strips(s, kCurves, low, end, scratch, scratch.inner);
-    take_out(scratch.outer, scratch.inner, structure.strips);
+    const StripBound end =
+        decomposition.hole == Decomposition::Hole::below ? end_of_z(s, StripBound::Kind::hole) : high;
+    find_strips(s, kCurves, low, end, scratch, scratch.inner);
+    subtract(scratch.outer, scratch.inner, decomposition.strips);
   }
 }
 

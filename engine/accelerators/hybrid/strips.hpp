@@ -1,93 +1,91 @@
-// Hybrid robot: a section as strips of z over which x runs between two of its curves.
+// Hybrid robot: decomposition of a slice into strips, intervals of z over which x is between two curves.
 //
-// The lower ends of x in force are an upper envelope of curves, the upper ends a lower one, and x has a column where
-// the one lies below the other. Every curve is a constant and a root that is concave in z, taken with one sign or the
-// other, so tangents and chords tell for certain whether two curves keep apart between two heights where they are
-// known. Where they don't, the range is cut; where two change places, there is an end of a strip.
+// The active lower bound of x is the upper envelope of curves, the active upper bound a lower envelope, and x is
+// feasible between them if the one is below the other. Every curve is the sum of a constant and, with either sign, a
+// root that is concave in z. Therefore tangents and chords prove that two curves do not intersect between two heights;
+// if they do not prove it, the interval is bisected. Intersections of active curves are the bounds of strips.
 //
-// Columns without (-H, H) are columns less those of a section that has H among its curves.
+// The hole (-H, H) is excluded as a difference of two decompositions, one of them with H among the curves.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "engine/accelerators/hybrid/section.hpp"
+#include "engine/accelerators/hybrid/slice.hpp"
 #include "engine/math/critical_values.hpp"
 #include "engine/math/sqrt_quadratic_integral.hpp"
 
 namespace pkm::hybrid {
 
-/// A height where a strip ends: an end of z of the section, or where two edges meet.
-struct StripEnd {
-  enum class Kind : std::uint8_t { lower, upper, hole, meeting };
+/// A bound of a strip: a bound of z of the slice, or the intersection of two edges.
+struct StripBound {
+  enum class Kind : std::uint8_t { lower, upper, hole, intersection };
   double z = 0;
-  Kind kind = Kind::meeting;
-  std::uint8_t index = 0;  ///< of the end of z
-  Edge first, second;      ///< which meet
+  Kind kind = Kind::intersection;
+  std::uint8_t index = 0;  ///< number of the bound of z
+  Edge first, second;      ///< if they intersect
 };
 
 struct Strip {
-  StripEnd from, to;
+  StripBound from, to;
   Edge left, right;
 };
 
-/// Whether two are the same but for their numbers.
-inline bool alike(const StripEnd& p, const StripEnd& q) {
+/// Equality of the combinatorial types, ignoring numerical values.
+inline bool same_type(const StripBound& p, const StripBound& q) {
   return p.kind == q.kind && p.index == q.index && p.first == q.first && p.second == q.second;
 }
-inline bool alike(const Strip& p, const Strip& q) {
-  return alike(p.from, q.from) && alike(p.to, q.to) && p.left == q.left && p.right == q.right;
+inline bool same_type(const Strip& p, const Strip& q) {
+  return same_type(p.from, q.from) && same_type(p.to, q.to) && p.left == q.left && p.right == q.right;
 }
 
-/// A section as strips.
-struct Structure {
-  std::vector<Strip> strips;         ///< from below, not empty; where there is a hole, two over the same heights
-  std::size_t lower = 0, upper = 0;  ///< the ends of z in force
-  enum class Hole { none, below, all } hole = Hole::none;  ///< at which of the heights between them there is one
+struct Decomposition {
+  std::vector<Strip> strips;         ///< non-empty ones in ascending z; beside a hole, two over the same interval
+  std::size_t lower = 0, upper = 0;  ///< numbers of the active bounds of z
+  enum class Hole { none, below, all } hole = Hole::none;  ///< for which z between them x has a hole
 };
-inline bool alike(const Structure& p, const Structure& q) {
-  return std::ranges::equal(p.strips, q.strips, [](const Strip& a, const Strip& b) { return alike(a, b); });
+inline bool same_type(const Decomposition& p, const Decomposition& q) {
+  return std::ranges::equal(p.strips, q.strips, [](const Strip& a, const Strip& b) { return same_type(a, b); });
 }
 
-/// What finding strips reuses.
+/// Scratch memory of decompose().
 struct StripScratch {
-  struct Stretch {  ///< of an envelope
+  struct EnvelopePiece {  ///< interval of z on which one curve is active
     double from, to;
     std::uint8_t curve;
   };
-  std::vector<Stretch> left, right;
+  std::vector<EnvelopePiece> left, right;
   std::vector<Strip> outer, inner;
 };
 
-/// @param structure  overwritten
-void find_strips(const Section<double>& s, StripScratch& scratch, Structure& structure);
+void decompose(const Slice<double>& s, StripScratch& scratch, Decomposition& decomposition);
 
-/// Moves a structure to a section near that of its heights. false: it is not seen there, and its heights have no
-/// meaning. Strips that begin between those of the structure are not seen.
-bool follow_strips(const Section<double>& s, Structure& structure);
+/// Updates the heights of a decomposition for a nearby slice of the same type. Additional strips are not detected.
+/// @return false if the type differs; then the heights are meaningless
+bool track(const Slice<double>& s, Decomposition& decomposition);
 
-/// x of an edge.
+/// x of an edge at z.
 template <class S>
-S edge_at(const Section<S>& s, const Edge& edge, const S& z) {
+S edge_at(const Slice<S>& s, const Edge& edge, const S& z) {
   return s.constant(edge) + s.curve[edge.curve].root(z) * s.sign(edge);
 }
 
 /// Integral of x along an edge over z.
 template <class S>
-S edge_integral(const Section<S>& s, const Edge& edge, const S& from, const S& to) {
+S edge_integral(const Slice<S>& s, const Edge& edge, const S& from, const S& to) {
   const Curve<S>& c = s.curve[edge.curve];
   const S length = to - from;
   return s.constant(edge) * length +
          sqrt_quadratic_integral(length, c.root(from), c.root(to), c.curvature()) * s.sign(edge);
 }
 
-/// The height of a strip's end with its derivatives. Where edges meet it is an implicit function of the design.
+/// z of a bound of a strip with its derivatives; those of an intersection by the implicit function theorem.
 template <class S>
-S height(const Section<S>& s, const StripEnd& end) {
-  if (end.kind == StripEnd::Kind::lower) return s.lower[end.index];
-  if (end.kind == StripEnd::Kind::upper) return s.upper[end.index];
-  if (end.kind == StripEnd::Kind::hole) return s.hole_end;
+S height(const Slice<S>& s, const StripBound& end) {
+  if (end.kind == StripBound::Kind::lower) return s.lower[end.index];
+  if (end.kind == StripBound::Kind::upper) return s.upper[end.index];
+  if (end.kind == StripBound::Kind::hole) return s.hole_end;
   const S z(end.z), apart = edge_at(s, end.second, z) - edge_at(s, end.first, z);
   const auto slope = [&](const Edge& edge) {
     const Curve<S>& c = s.curve[edge.curve];
@@ -98,21 +96,23 @@ S height(const Section<S>& s, const StripEnd& end) {
   return implicit_root(end.z, apart, by_z);
 }
 
-/// An end of z of a section.
-inline StripEnd end_of_z(const Section<double>& s, StripEnd::Kind kind, std::size_t index = 0) {
-  StripEnd end{.kind = kind, .index = static_cast<std::uint8_t>(index)};
+/// A bound of z of a slice.
+inline StripBound end_of_z(const Slice<double>& s, StripBound::Kind kind, std::size_t index = 0) {
+  StripBound end{.kind = kind, .index = static_cast<std::uint8_t>(index)};
   end.z = height(s, end);
   return end;
 }
 
-/// Area of a section in closed form [m^2], from the integrals along the edges of its strips; an edge that goes on in
-/// the next strip has one for both. Ends where edges meet are taken as they are: there, lengths do not jump, and what
-/// two strips gain and lose is the same.
+/// Area of a slice in closed form [m^2], from the integrals along the edges of its strips; an edge that continues in
+/// the next strip has one integral. Derivatives of intersections are omitted, because the length of columns is
+/// continuous there, so that the contributions of two strips cancel.
 template <class S>
-S area(const Section<S>& s, const Structure& structure) {
+S area(const Slice<S>& s, const Decomposition& decomposition) {
   S sum(0.0);
-  const std::vector<Strip>& strips = structure.strips;
-  const auto end = [&](const StripEnd& e) { return e.kind == StripEnd::Kind::meeting ? S(e.z) : height(s, e); };
+  const std::vector<Strip>& strips = decomposition.strips;
+  const auto end = [&](const StripBound& e) {
+    return e.kind == StripBound::Kind::intersection ? S(e.z) : height(s, e);
+  };
   const auto add = [&](Edge Strip::*side, double sign) {
     for (std::size_t i = 0, next; i < strips.size(); i = next) {
       const Edge& edge = strips[i].*side;

@@ -5,58 +5,58 @@
 
 namespace pkm::hybrid {
 
-Box default_box(const Frame<double>& f) {
-  const Geometry<double>& g = f.g;
-  const Limits<double>& l = f.l;
-  const Box some = {{{-g.L1, g.L1}, {0, g.L1}, {l.beta_min, l.beta_max}}};
-  if (f.empty) return some;
+Box default_box(const SlicedDesign<double>& d) {
+  const Geometry<double>& g = d.g;
+  const Limits<double>& l = d.l;
+  const Box any = {{{-g.L1, g.L1}, {0, g.L1}, {l.beta_min, l.beta_max}}};
+  if (d.empty) return any;
   // the range of n = sign |n| for |n| in [low, high]
   const auto signed_range = [](double low, double high, int sign) {
     return sign > 0 ? std::array{low, high} : std::array{-high, -low};
   };
   const auto along = [&](double L, double z) { return std::sqrt(std::fmax(0, (L - z) * (L + z))); };
-  const std::array<std::array<double, 2>, 3> n = {signed_range(along(g.L1, f.z_high), along(g.L1, f.z_low), f.signs[0]),
-                                                  signed_range(along(g.L2, f.z_high), along(g.L2, f.z_low), f.signs[1]),
-                                                  signed_range(l.tau_s * g.L3, g.L3 * l.psiC.sin, f.signs[2])};
+  const std::array<std::array<double, 2>, 3> n = {signed_range(along(g.L1, d.z_high), along(g.L1, d.z_low), d.signs[0]),
+                                                  signed_range(along(g.L2, d.z_high), along(g.L2, d.z_low), d.signs[1]),
+                                                  signed_range(l.tau_s * g.L3, g.L3 * l.psiC.sin, d.signs[2])};
   const double shaft = l.lw_max * l.phi.sin;
-  Box box = {{{-shaft, shaft}, {f.z_low, f.z_high}, {l.beta_min, l.beta_max}}};
+  Box box = {{{-shaft, shaft}, {d.z_low, d.z_high}, {l.beta_min, l.beta_max}}};
   for (std::size_t i = 0; i < 3; ++i) {
-    box[0][0] = std::fmax(box[0][0], f.lo[i] + n[i][0]);
-    box[0][1] = std::fmin(box[0][1], f.hi[i] + n[i][1]);
+    box[0][0] = std::fmax(box[0][0], d.lo[i] + n[i][0]);
+    box[0][1] = std::fmin(box[0][1], d.hi[i] + n[i][1]);
   }
-  // limb C reaches no point of the platform's circle beyond the angle K from the line through its rail
+  // C' is within reach of limb C only up to the angle acos(K) from the direction to its rail
   const double k0 = g.e * g.e - g.L3 * g.L3 * (1 - l.tau_s * l.tau_s);
-  const double near = std::hypot(g.d, f.z_low), far = std::hypot(g.d, f.z_high);
+  const double near = std::hypot(g.d, d.z_low), far = std::hypot(g.d, d.z_high);
   const double r = k0 > 0 ? std::clamp(std::sqrt(k0), near, far) : near;
   const double K = (r * r + k0) / (2 * g.e * r);
-  box[2][0] = std::fmax(box[2][0], -atan2(f.z_high, g.d));
-  box[2][1] = K < 1 ? std::fmin(box[2][1], acos(std::fmax(K, -1)) - atan2(f.z_low, g.d)) : box[2][0];
+  box[2][0] = std::fmax(box[2][0], -atan2(d.z_high, g.d));
+  box[2][1] = K < 1 ? std::fmin(box[2][1], acos(std::fmax(K, -1)) - atan2(d.z_low, g.d)) : box[2][0];
   for (const auto& [low, high] : box)
-    if (!(low < high)) return some;
+    if (!(low < high)) return any;
   return box;
 }
 
-void VoxelHeights::fill(const Frame<double>& f, const VoxelGrid& grid) {
-  const auto n = static_cast<std::size_t>(grid.cells[1] + kLanes);  // so that the last lanes may lie beyond the end
+void VoxelHeights::fill(const SlicedDesign<double>& d, const VoxelGrid& grid) {
+  const auto n = static_cast<std::size_t>(grid.cells[1] + kLanes);
   for (auto* list : {&z, &left, &right}) list->resize(n);
   for (std::size_t j = 0; j < n; ++j) {
     const double at = grid.centre(1, static_cast<std::int64_t>(j));
-    const double n1 = f.signs[0] * sqrt_or_zero((f.g.L1 - at) * (f.g.L1 + at));
-    const double n2 = f.signs[1] * sqrt_or_zero((f.g.L2 - at) * (f.g.L2 + at));
+    const double n1 = d.signs[0] * sqrt_or_zero((d.g.L1 - at) * (d.g.L1 + at));
+    const double n2 = d.signs[1] * sqrt_or_zero((d.g.L2 - at) * (d.g.L2 + at));
     z[j] = at;
-    left[j] = max(f.lo[0] + n1, f.lo[1] + n2);
-    right[j] = min(f.hi[0] + n1, f.hi[1] + n2);
+    left[j] = max(d.lo[0] + n1, d.lo[1] + n2);
+    right[j] = min(d.hi[0] + n1, d.hi[1] + n2);
   }
 }
 
 VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) const {
-  const Frame<double>& f = frame_;
-  const double beta = grid_.centre(2, k);
-  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {};
-  for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights_.z.size());
-  const Section<double> s = section(f, beta);
+  const SlicedDesign<double>& d = design;
+  const double beta = grid.centre(2, k);
+  if (d.empty || beta < d.l.beta_min || beta > d.l.beta_max) return {};
+  for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights.z.size());
+  const Slice<double> s = slice(d, beta);
   const double low = *std::ranges::max_element(s.lower), high = *std::ranges::min_element(s.upper);
-  const auto begin = heights_.z.begin(), end = begin + grid_.cells[1];
+  const auto begin = heights.z.begin(), end = begin + grid.cells[1];
   const auto first_z = static_cast<std::size_t>(std::lower_bound(begin, end, low) - begin);
   const auto end_z = std::max(first_z, static_cast<std::size_t>(std::upper_bound(begin, end, high) - begin));
   const Edge left_C{kCurveC, kLeft}, right_C{kCurveC, kRight};
@@ -70,12 +70,12 @@ VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) co
                               .hi_C = s.constant(right_C),
                               .z_high = high,
                               .hole_end = s.hole_end,
-                              .x_lower = grid_.lower[0],
-                              .x_step = grid_.step[0],
-                              .cells = static_cast<double>(grid_.cells[0]),
-                              .z = heights_.z.data(),
-                              .left = heights_.left.data(),
-                              .right = heights_.right.data(),
+                              .x_lower = grid.lower[0],
+                              .x_step = grid.step[0],
+                              .cells = static_cast<double>(grid.cells[0]),
+                              .z = heights.z.data(),
+                              .left = heights.left.data(),
+                              .right = heights.right.data(),
                               .first_z = first_z,
                               .end_z = end_z};
   return {first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
@@ -83,12 +83,12 @@ VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) co
 
 std::int64_t VoxelColumns::count(std::int64_t k, CellRuns& runs, bool& touches) const {
   const Columns at = find_runs(k, runs);
-  const auto some_at = [&](std::size_t j) {
+  const auto has_cells = [&](std::size_t j) {
     return at.first_z <= j && j < at.end_z && runs.hole[j] - runs.first[j] + (runs.end[j] - runs.after[j]) > 0;
   };
   if (at.tally.cells > 0)
-    touches = touches || at.tally.touches || grid_.at_end(2, k) || some_at(0) ||
-              some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
+    touches = touches || at.tally.touches || grid.at_end(2, k) || has_cells(0) ||
+              has_cells(static_cast<std::size_t>(grid.cells[1] - 1));
   return static_cast<std::int64_t>(at.tally.cells);
 }
 

@@ -1,40 +1,39 @@
-// Hybrid robot: voxels over (x, z, beta). At given z and beta the feasible x are an interval less another one
-// (section.hpp), so cells are counted by its ends, with no loop over x.
+// Hybrid robot: voxels over (x, z, beta). At given z and beta the feasible x form an interval, possibly with a hole
+// (slice.hpp), so that cells are counted by its endpoints.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "engine/accelerators/hybrid/cells.hpp"
-#include "engine/accelerators/hybrid/section.hpp"
+#include "engine/accelerators/hybrid/slice.hpp"
 #include "engine/workspace/cell_runs.hpp"
+#include "engine/workspace/grid_surveyor.hpp"
 
 namespace pkm::hybrid {
 
-/// A box that contains every feasible pose, as x, z, beta; where there is none, a box of some size.
-Box default_box(const Frame<double>& f);
+/// A box in x, z, beta that contains every feasible pose, or any box if there is none.
+Box default_box(const SlicedDesign<double>& d);
 
-/// What all columns at a height have in common.
+/// Quantities that depend on z only; with kLanes elements after the last cell, which kernels may read.
 struct VoxelHeights {
-  std::vector<double> z, left, right;  ///< heights, and what limbs A and B leave of x there [m]
+  std::vector<double> z, left, right;  ///< z, and the range of x that limbs A and B allow there [m]
 
-  void fill(const Frame<double>& f, const VoxelGrid& grid);
+  void fill(const SlicedDesign<double>& d, const VoxelGrid& grid);
 };
 
-/// The feasible cells of a grid, column by column along x. Threads may share it.
-class VoxelColumns {
- public:
-  /// @param frame, grid, heights  stay alive; the heights are theirs
-  VoxelColumns(const Frame<double>& frame, const VoxelGrid& grid, const VoxelHeights& heights)
-      : frame_(frame), grid_(grid), heights_(heights) {}
+/// A design on its grid, column by column along x.
+struct VoxelColumns : Gridded {
+  SlicedDesign<double> design;
+  const VoxelHeights& heights;  ///< of this design and grid
 
-  /// Cells at beta number k.
-  /// @param runs     overwritten
-  /// @param touches  set if some of them are at a side of the box
+  /// Number of feasible cells at beta number k.
+  /// @param runs     scratch memory
+  /// @param touches  set to true if one of them is at a face of the box
   std::int64_t count(std::int64_t k, CellRuns& runs, bool& touches) const;
 
   /// Calls visit(run) for every run of feasible cells along x at beta number k.
-  /// @param runs  overwritten
+  /// @param runs  scratch memory
   template <class Visit>
   void visit(std::int64_t k, CellRuns& runs, const Visit& visit) const {
     const Columns at = find_runs(k, runs);
@@ -54,10 +53,6 @@ class VoxelColumns {
     CellTally tally{0, false};
   };
   Columns find_runs(std::int64_t k, CellRuns& runs) const;
-
-  const Frame<double>& frame_;
-  const VoxelGrid& grid_;
-  const VoxelHeights& heights_;
 };
 
 }  // namespace pkm::hybrid

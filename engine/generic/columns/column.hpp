@@ -1,54 +1,58 @@
-// The length of columns whose ends are roots of polynomials of degree four or less, which is all that the fold of a
-// crank and a rod, a torus, lets one say exactly; or roots of any formulas, which intervals isolate.
+// Length of a column, whose endpoints are roots of polynomials of degree at most four (a crank and a rod describe a
+// torus), or roots of transcendental constraints, isolated by interval arithmetic.
 #pragma once
 
 #include <limits>
 
-#include "engine/generic/columns/ends.hpp"
-#include "engine/generic/columns/section_plan.hpp"
+#include "engine/generic/columns/endpoints.hpp"
+#include "engine/generic/columns/slice_plan.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/math/interval.hpp"
 #include "engine/math/quadrature.hpp"
 
 namespace pkm::generic {
 
-/// What a column overwrites. The label of an end is twice its surface, and one more where that falls.
-struct ColumnRoom {
+/// Scratch memory of Column. The label of an endpoint is twice its surface, plus one if the constraint decreases there.
+struct ColumnScratch {
   struct Piece {
     std::pair<double, EndLabel> lower, upper;
   };
   std::vector<Piece> pieces;
-  Ends ends;         ///< all places where surfaces change their signs and it may matter
-  Ends flat, steep;  ///< of surfaces of degree two or less and curves, in order; of others between two of those
+  Ends ends;  ///< all relevant sign changes of constraints
+  Ends quadratic,
+      high_degree;  ///< of quadratic and transcendental constraints, in order; of other ones between two of those
   std::vector<Interval> intervals;  ///< registers
-  std::vector<EndLabel> labels;     ///< of the pieces' ends
-  Structure structure = 0;
-  long halvings = 0;                                      ///< of intervals of curves, so far
-  long most_halvings = std::numeric_limits<long>::max();  ///< then TooManyHalvings
+  std::vector<EndLabel> labels;     ///< of the endpoints of pieces
+  SliceType type = 0;
+  long bisections = 0;                                     ///< so far, of intervals for transcendental constraints
+  long max_bisections = std::numeric_limits<long>::max();  ///< limit, beyond which TooManyBisections is thrown
 };
 
-/// Whether a column has so many ends that it takes much longer than a microsecond.
-inline bool is_long(const ColumnRoom& room) { return room.ends.size() > 64; }
+/// Whether a column has so many endpoints that it takes much longer than a microsecond.
+inline bool is_long(const ColumnScratch& scratch) { return scratch.ends.size() > 64; }
 
 /// Thrown by measure().
-struct TooManyHalvings {};
+struct TooManyBisections {};
 
 class Column {
  public:
   /// @param plan  of a SectionOrder without v
-  explicit Column(SectionPlan plan);
+  explicit Column(SlicePlan plan);
 
-  const SectionPlan& plan() const { return plan_; }
-  /// The length, its structure and its pieces. @param registers  after all stages but that of z
-  double measure(std::span<double> registers, ColumnRoom& room) const;
+  const SlicePlan& plan() const { return plan_; }
+  /// Computes the length, the type and the pieces. @param registers  after all stages but that of z
+  double measure(std::span<double> registers, ColumnScratch& scratch) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
-  void add_slopes(double factor, std::span<double> registers, std::span<double> adjoints, const ColumnRoom& room) const;
-  /// An end with its derivatives, after measure(). @param moving  registers after all stages but that of z
-  Dual4 moving_end(const std::pair<double, EndLabel>& end, std::span<Dual4> moving) const;
-  /// Calls visit(z, weight) with nodes inside the column, after measure(). @param end_of  an end as S
+  void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
+                    const ColumnScratch& scratch) const;
+  /// An endpoint with its derivatives, after measure(). @param dual_registers  after all stages but that of z
+  Dual4 differentiable_end(const std::pair<double, EndLabel>& end, std::span<Dual4> dual_registers) const;
+  /// Calls visit(z, weight) at quadrature nodes inside the column, after measure(). @param end_of  returns an endpoint
+  /// as S
   template <class S, class EndOf, class Visit>
-  void for_each_node(const GaussRule& along_z, const ColumnRoom& room, const EndOf& end_of, const Visit& visit) const {
-    for (const auto& piece : room.pieces) {
+  void for_each_node(const GaussRule& along_z, const ColumnScratch& scratch, const EndOf& end_of,
+                     const Visit& visit) const {
+    for (const auto& piece : scratch.pieces) {
       const S lower = end_of(piece.lower), length = end_of(piece.upper) - lower;
       for (std::size_t j = 0; j < along_z.node.size(); ++j)
         visit(lower + length * along_z.node[j], length * along_z.weight[j]);
@@ -56,30 +60,31 @@ class Column {
   }
 
  private:
-  bool find_flat_ends(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
-                      ColumnRoom& room) const;
-  /// Computes what depends on z; S is double, Dual4 or Interval.
+  bool find_quadratic_roots(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
+                            ColumnScratch& scratch) const;
+  /// Evaluates the stage of z; S is double, Dual4 or Interval.
   template <class S>
   void set_z(const S& z, std::span<S> registers) const {
     const expression::Program& program = plan_.program;
     for (const auto& input : program.stages().back().inputs) registers[input.to] = z;
     program.run<S>(program.stages().size() - 1, registers);
   }
-  void find_curve_ends(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
-                       ColumnRoom& room) const;
+  void find_transcendental_roots(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
+                                 ColumnScratch& scratch) const;
   void isolate(Signs curves, double from, double to, double narrow, std::span<double> registers,
-               ColumnRoom& room) const;
-  void add_slopes_of_curve(const Surface& surface, double z, double factor, std::span<double> registers,
-                           std::span<double> adjoints) const;
-  double root_between(std::size_t curve, double from, double to, std::span<double> registers) const;
-  void find_steep_ends(std::span<const double> registers, double from, double to, Signs& signs, ColumnRoom& room) const;
-  double blur(const std::pair<double, EndLabel>& end, std::span<const double> registers) const;
-  void settle(std::span<const double> registers, double tie, ColumnRoom& room) const;
+               ColumnScratch& scratch) const;
+  void add_gradient_of_transcendental(const Surface& surface, double z, double factor, std::span<double> registers,
+                                      std::span<double> adjoints) const;
+  double bracketed_root_of(std::size_t curve, double from, double to, std::span<double> registers) const;
+  void find_high_degree_roots(std::span<const double> registers, double from, double to, Signs& signs,
+                              ColumnScratch& scratch) const;
+  double root_error_bound(const std::pair<double, EndLabel>& end, std::span<const double> registers) const;
+  void merge_coincident_roots(std::span<const double> registers, double tie, ColumnScratch& scratch) const;
 
-  SectionPlan plan_;
-  Signs steep_ = 0;  ///< surfaces of degree three and four
-  Signs helps_ = 0;  ///< those of them that a formula holds the better with
-  Signs curves_ = 0;
+  SlicePlan plan_;
+  Signs high_degree_ = 0;        ///< constraints of degree three and four
+  Signs positive_literals_ = 0;  ///< those of them that occur only positively in the feasibility formula
+  Signs transcendental_ = 0;
 };
 
 }  // namespace pkm::generic

@@ -1,5 +1,6 @@
-// Ends of columns at the roots of any formulas. Intervals tell where a formula has no root, and where it rises or falls
-// all along and so has one at most; in between they are halved. None is missed.
+// Roots of transcendental constraints along a column, by interval branch and prune: an interval is discarded if the
+// constraint has no root in it, accepted if the constraint is monotonic in it, and otherwise bisected. No root is
+// missed.
 #include <bit>
 #include <cmath>
 
@@ -10,33 +11,33 @@
 
 namespace pkm::generic {
 
-/// Appends them to the flat ones. @param signs  of the curves at the lower end of the range are set
-void Column::find_curve_ends(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
-                             ColumnRoom& room) const {
-  room.intervals.resize(registers.size());
-  for (std::size_t i = 0; i < registers.size(); ++i) room.intervals[i] = Interval(registers[i]);
+/// Appends the roots to the quadratic ones. @param signs  receives those of transcendental constraints at the lower end
+void Column::find_transcendental_roots(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
+                                       ColumnScratch& scratch) const {
+  scratch.intervals.resize(registers.size());
+  for (std::size_t i = 0; i < registers.size(); ++i) scratch.intervals[i] = Interval(registers[i]);
   set_z<double>(range[0], registers);
-  for (Signs rest = curves_; rest != 0; rest &= rest - 1) {
+  for (Signs rest = transcendental_; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
     if (is_satisfied(registers[plan_.surfaces[k].coefficients[0]])) signs |= bit(k);
   }
-  isolate(curves_, range[0], range[1], 1e-12 * (range[1] - range[0]), registers, room);
+  isolate(transcendental_, range[0], range[1], 1e-12 * (range[1] - range[0]), registers, scratch);
 }
 
-/// @param narrow  where nothing is decided over so much, a change of sign is an end
+/// @param narrow  width below which an undecided sign change is accepted as a root
 void Column::isolate(Signs curves, double from, double to, double narrow, std::span<double> registers,
-                     ColumnRoom& room) const {
+                     ColumnScratch& scratch) const {
   check_stop();
-  if (++room.halvings > room.most_halvings) throw TooManyHalvings();
-  set_z<Interval>({from, to}, room.intervals);
+  if (++scratch.bisections > scratch.max_bisections) throw TooManyBisections();
+  set_z<Interval>({from, to}, scratch.intervals);
   const double middle = 0.5 * (from + to);
-  // A range of few units in the last place, or NaN, has no middle.
+  // An interval of a few ulp, or NaN, has no midpoint.
   const bool is_narrow = to - from <= narrow || !(from < middle && middle < to);
   Signs monotone = 0, undecided = 0;
   for (Signs rest = curves; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
     const auto& at = plan_.surfaces[k].coefficients;
-    const Interval &f = room.intervals[at[0]], &slope = room.intervals[at[1]];
+    const Interval &f = scratch.intervals[at[0]], &slope = scratch.intervals[at[1]];
     if (f.is_certified_satisfied() || f.is_certified_violated()) continue;
     const bool has_one =
         f.is_defined() && f.is_continuous() && slope.is_defined() && (slope.lower > 0 || slope.upper < 0);
@@ -49,15 +50,16 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
     const bool below = is_satisfied(registers[f]);
     set_z<double>(to, registers);
     if (below != is_satisfied(registers[f]))
-      room.flat.emplace_back(root_between(k, from, to, registers), static_cast<EndLabel>(2 * k + (below ? 1 : 0)));
+      scratch.quadratic.emplace_back(bracketed_root_of(k, from, to, registers),
+                                     static_cast<EndLabel>(2 * k + (below ? 1 : 0)));
   }
   if (undecided == 0) return;
-  isolate(undecided, from, middle, narrow, registers, room);
-  isolate(undecided, middle, to, narrow, registers, room);
+  isolate(undecided, from, middle, narrow, registers, scratch);
+  isolate(undecided, middle, to, narrow, registers, scratch);
 }
 
-/// The root of a formula that changes its sign once: Newton's method, kept inside by halving.
-double Column::root_between(std::size_t curve, double from, double to, std::span<double> registers) const {
+/// Root of a constraint with a single sign change: Newton's method safeguarded by bisection.
+double Column::bracketed_root_of(std::size_t curve, double from, double to, std::span<double> registers) const {
   const auto& at = plan_.surfaces[curve].coefficients;
   set_z<double>(from, registers);
   const bool below = is_satisfied(registers[at[0]]);
@@ -74,8 +76,8 @@ double Column::root_between(std::size_t curve, double from, double to, std::span
   return z;
 }
 
-void Column::add_slopes_of_curve(const Surface& surface, double z, double factor, std::span<double> registers,
-                                 std::span<double> adjoints) const {
+void Column::add_gradient_of_transcendental(const Surface& surface, double z, double factor,
+                                            std::span<double> registers, std::span<double> adjoints) const {
   const expression::Program& program = plan_.program;
   const std::size_t stage = program.stages().size() - 1;
   set_z<double>(z, registers);

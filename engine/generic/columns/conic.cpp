@@ -8,11 +8,12 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kStraight = 1e-5;  // of a conic's coefficients: s^2 counts that little, and formulas divide by it
+constexpr double kStraight =
+    1e-5;  // relative to the coefficients: a smaller one of s^2, by which formulas divide, is neglected
 
 bool bends(const Conic& P) { return std::fabs(P.c[5]) > kStraight * P.scale; }
 
-/// 12 nodes are as good as the last bit where conics bend little.
+/// 12 nodes are accurate to rounding for small curvature.
 const GaussRule& rule() {
   static const GaussRule gauss = gauss_legendre(12);
   return gauss;
@@ -23,7 +24,7 @@ struct Moments {
   double F, J0, J1, J2;
 };
 
-/// @param r, r2      R at both ends
+/// @param r, r2  R at both endpoints
 /// @param curvature  the coefficient of w^2 in q
 /// With y = q_2 h^2 / s^2, s = r + r2, d = r2 - r, and Y = y / (1 + sqrt(1 - y))^2,
 ///
@@ -63,7 +64,7 @@ Moments moments_of(const Conic& P, const Arc& arc) {
   const auto q = P.discriminant();
   const double middle = 0.5 * (arc.from + arc.to);
   const double noise = 4e-15 * (std::fabs(q[0]) + std::fabs(q[1]) + std::fabs(q[2]));
-  const auto root = [&](double w) {  // 0 at an end that is a root but for rounding
+  const auto root = [&](double w) {  // 0 at an endpoint that is a root up to rounding
     const double t = middle + w, square = q[0] + t * (q[1] + t * q[2]);
     return square > noise ? std::sqrt(square) : 0;
   };
@@ -79,7 +80,7 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     if (std::fabs(s) <= 1 + 1e-9 && count < points.size()) points[count++] = {t, s};
   };
   std::array<double, 8> at{};
-  // Of the pencil, the one without s^2: d0(t) + d1(t) s = 0. It is put into the one that bends more.
+  // The conic of the pencil without s^2, d0(t) + d1(t) s = 0, is substituted into the one with the larger curvature.
   const bool first = std::fabs(P.c[5]) * Q.scale >= std::fabs(Q.c[5]) * P.scale;
   const Conic &A = first ? P : Q, &B = first ? Q : P;
   std::array<double, 6> d = B.c;
@@ -89,9 +90,10 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     size = B.scale * A.scale;
   }
   const double d1 = std::fabs(d[2]) + std::fabs(d[4]);
-  if (std::fabs(d[0]) > std::fabs(d[1]) + std::fabs(d[3]) + d1 * (1 + 1e-9)) return 0;  // nowhere in the square
-  if (d1 <= kNothing * size) {
-    if (std::fabs(d[1]) + std::fabs(d[3]) <= kNothing * size) return 0;  // nowhere, or everywhere
+  if (std::fabs(d[0]) > std::fabs(d[1]) + std::fabs(d[3]) + d1 * (1 + 1e-9)) return 0;  // no intersection in the square
+  if (d1 <= kNegligibleCoefficient * size) {
+    if (std::fabs(d[1]) + std::fabs(d[3]) <= kNegligibleCoefficient * size)
+      return 0;  // no intersection, or identical conics
     const std::array<double, 3> of_t{d[0], d[1], d[3]};
     const std::size_t found = roots_between(of_t, at);
     for (std::size_t i = 0; i < found; ++i) {
@@ -141,14 +143,14 @@ double area_below(const Conic& P, const Arc& arc) {
   return middle * h + (arc.root == 0 ? -0.5 : 0.5) / std::fabs(P.c[5]) * moments_of(P, arc).F;
 }
 
-void add_slopes_of_area(const Conic& P, const Arc& arc, double factor, std::array<double, 6>& slopes) {
+void add_gradient_of_area(const Conic& P, const Arc& arc, double factor, std::array<double, 6>& gradient) {
   const double h = arc.to - arc.from;
   if (!bends(P)) {
     for (std::size_t i = 0; i < rule().node.size(); ++i) {
       const double t = arc.from + h * rule().node[i], s = place_on(P, arc.root, t);
       const double g = -factor * h * rule().weight[i] / (P.c[2] + t * P.c[4] + 2 * s * P.c[5]);
       const double powers[6] = {1, t, s, t * t, t * s, s * s};
-      for (std::size_t k = 0; k < 6; ++k) slopes[k] += g * powers[k];
+      for (std::size_t k = 0; k < 6; ++k) gradient[k] += g * powers[k];
     }
     return;
   }
@@ -156,12 +158,12 @@ void add_slopes_of_area(const Conic& P, const Arc& arc, double factor, std::arra
   const auto [F, J0, J1, J2] = moments_of(P, arc);
   const double m = 0.5 * (arc.from + arc.to), a = -0.5 * (P.c[2] + m * P.c[4]) / P.c[5], a1 = -0.5 * P.c[4] / P.c[5];
   const double b = (arc.root == 0 ? -0.5 : 0.5) / std::fabs(P.c[5]), g = -factor / (2 * P.c[5] * b);
-  slopes[0] += g * J0;
-  slopes[1] += g * (m * J0 + J1);
-  slopes[2] += g * (a * J0 + a1 * J1 + b * h);
-  slopes[3] += g * (m * m * J0 + 2 * m * J1 + J2);
-  slopes[4] += g * (m * a * J0 + (m * a1 + a) * J1 + a1 * J2 + b * m * h);
-  slopes[5] += g * (a * a * J0 + 2 * a * a1 * J1 + a1 * a1 * J2 + 2 * a * b * h + b * b * F);
+  gradient[0] += g * J0;
+  gradient[1] += g * (m * J0 + J1);
+  gradient[2] += g * (a * J0 + a1 * J1 + b * h);
+  gradient[3] += g * (m * m * J0 + 2 * m * J1 + J2);
+  gradient[4] += g * (m * a * J0 + (m * a1 + a) * J1 + a1 * J2 + b * m * h);
+  gradient[5] += g * (a * a * J0 + 2 * a * a1 * J1 + a1 * a1 * J2 + 2 * a * b * h + b * b * F);
 }
 
 }  // namespace pkm::generic

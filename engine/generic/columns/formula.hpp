@@ -1,4 +1,5 @@
-// When a place in a section is feasible, by the signs of surfaces there: one bit each, set where the surface is >= 0.
+// Feasibility of a point of a slice as a function of the signs of the constraint surfaces there: one bit each, set if
+// the surface is >= 0.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +8,9 @@
 namespace pkm::generic {
 
 using Signs = std::uint64_t;
-inline constexpr std::size_t kMostSurfaces = 64;
+inline constexpr std::size_t kMaxSurfaces = 64;
 
-/// limbs::CrankRange, by the surfaces' bits.
+/// limbs::CrankRange in terms of the bits of surfaces.
 struct CrankSigns {
   Signs at_min, at_max, after_min, before_max, reach;
   std::uint32_t half_turn;  ///< register
@@ -17,8 +18,8 @@ struct CrankSigns {
 };
 
 struct Formula {
-  Signs all = 0;           ///< have to hold
-  std::vector<Signs> any;  ///< of each at least one has to hold
+  Signs all = 0;           ///< all of these have to be set
+  std::vector<Signs> any;  ///< of each of these at least one has to be set
   std::vector<CrankSigns> cranks;
 
   bool is_simple() const { return any.empty() && cranks.empty(); }

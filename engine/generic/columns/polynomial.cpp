@@ -12,8 +12,8 @@ double value(std::span<const double> c, double x) {
   return sum;
 }
 
-/// The root of a monotone polynomial between ends of different signs: Newton's method, kept inside by halving.
-double root_between(std::span<const double> c, double low, double high, double at_low) {
+/// Root of a monotonic polynomial between endpoints of different signs: Newton's method safeguarded by bisection.
+double bracketed_root_of(std::span<const double> c, double low, double high, double at_low) {
   double x = 0.5 * (low + high);
   for (int step = 0; step < 80; ++step) {
     double f = 0, slope = 0;
@@ -31,7 +31,7 @@ double root_between(std::span<const double> c, double low, double high, double a
   return x;
 }
 
-/// Whether the Bernstein coefficients on [-1, 1] have one sign: then there is no root.
+/// Whether all Bernstein coefficients on [-1, 1] have one sign, so that there is no root.
 bool has_one_sign(std::span<const double> c) {
   // of (1 - x)^(n-k) (1 + x)^k, up to positive factors, by c_j sum over i of (-1)^(j-i) C(k, i) C(n-k, j-i)
   static constexpr int kBinomial[5][5] = {
@@ -60,15 +60,15 @@ bool has_one_sign(std::span<const double> c) {
   return positive || negative;
 }
 
-/// Without coefficients that are nothing, from the highest.
+/// Removes negligible leading coefficients.
 std::span<const double> trimmed(std::span<const double> c) {
   double scale = 0;
   for (const double each : c) scale = std::fabs(each) > scale ? std::fabs(each) : scale;
-  while (!c.empty() && std::fabs(c.back()) <= kNothing * scale) c = c.first(c.size() - 1);
+  while (!c.empty() && std::fabs(c.back()) <= kNegligibleCoefficient * scale) c = c.first(c.size() - 1);
   return c;
 }
 
-/// Roots in [-1, 1] and, where that is asked for, places that nearly are double ones.
+/// Finds the roots in [-1, 1] and, if requested, points that are nearly double roots.
 std::size_t find_roots(std::span<const double> coefficients, bool touches, std::array<double, 8>& roots) {
   double scale = 0;
   for (const double c : coefficients) scale = std::fabs(c) > scale ? std::fabs(c) : scale;
@@ -86,7 +86,7 @@ std::size_t find_roots(std::span<const double> coefficients, bool touches, std::
   if (degree == 2) {
     const Roots found = roots_of({coefficients[0], coefficients[1], coefficients[2]});
     for (int i = 0; i < found.count; ++i) keep(found.s[static_cast<std::size_t>(i)]);
-    if (found.count == 0 && touches) {  // it may be a double one
+    if (found.count == 0 && touches) {  // possibly a double root
       const double x = -0.5 * coefficients[1] / coefficients[2];
       if (std::fabs(value(coefficients, x)) <= 1e-13 * scale) keep(x);
     }
@@ -100,7 +100,7 @@ std::size_t find_roots(std::span<const double> coefficients, bool touches, std::
   for (std::size_t i = 0; i <= turn_count; ++i) {
     const double high = i < turn_count ? turns[i] : 1, at_high = value(coefficients, high);
     if ((at_low < 0) != (at_high < 0))
-      keep(root_between(coefficients, low, high, at_low));
+      keep(bracketed_root_of(coefficients, low, high, at_low));
     else if (touches && i < turn_count && std::fabs(at_high) <= 1e-13 * scale)
       keep(high);
     low = high;

@@ -1,4 +1,4 @@
-// Real roots in [-1, 1] of polynomials of degree four or less, by their coefficients, the lowest first.
+// Real roots in [-1, 1] of polynomials of degree at most four, given by their coefficients in ascending order.
 #pragma once
 
 #include <array>
@@ -7,21 +7,22 @@
 
 namespace pkm::generic {
 
-inline constexpr double kNothing = 1e-14;  ///< of the greatest coefficient
+inline constexpr double kNegligibleCoefficient =
+    1e-14;  ///< relative to the largest coefficient: smaller ones are neglected
 
 struct Roots {
   std::array<double, 2> s{};  ///< the lower one first
   int count = 0;
 };
 
-/// Of c[0] + c[1] s + c[2] s^2. A root of a line is number 0; where all coefficients are 0 there are none.
+/// Roots of c[0] + c[1] s + c[2] s^2. The root of a linear polynomial is number 0; the zero polynomial has none.
 Roots roots_of(const std::array<double, 3>& c);
 
-/// Roots in [-1, 1], in order, of a polynomial of degree four or less, and places where it nearly has two; the number
-/// of them.
+/// Finds the roots in [-1, 1] in ascending order, and points where the polynomial nearly has a double root. @return
+/// their number
 std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots);
 
-/// Where in (-1, 1) such a polynomial changes its sign, in order; their number.
+/// Finds the sign changes in (-1, 1) in ascending order. @return their number
 std::size_t sign_changes(std::span<const double> coefficients, std::array<double, 8>& places);
 
 }  // namespace pkm::generic

@@ -165,8 +165,8 @@ TEST(RealCatalogue, GradientsAreRefusedUnderAClearance) {
   EXPECT_EQ(complaint_of(gradient), "accepted");
   EXPECT_EQ(complaint_of(kClearance + gradient),
             "s.toml:13: stage[2].optimiser: the optimiser ipopt needs derivatives, but the study limits the clearance "
-            "of links (clearance_min), which may end columns where no formula says, and such surveys have no "
-            "derivatives; take an optimiser without gradients, or keep the sliders apart by h_min");
+            "of links (clearance_min), so that ends of columns have no closed form and the analysis has no derivatives; "
+            "use an optimiser without gradients, or keep the sliders apart by h_min");
   EXPECT_EQ(complaint_of(kClearance + "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"bobyqa\"\n"), "accepted");
 }
 

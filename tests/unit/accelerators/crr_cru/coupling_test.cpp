@@ -103,7 +103,7 @@ TEST(CrrCruCoupling, ThereIsNoneInAParallelSingularity) {
     const auto b = masses(MassModel::table, std::span<const double>(p));
     const double singular = kPi / 2 - offset(yaw(g));
     const auto inertia = [&](double phi) {
-      return joint_inertia(g, b, inertia_frame(g, b, phi), {0.15, 0.15, 0.2}, WorkingMode{-1, -1, 1, -1});
+      return joint_inertia(g, b, yaw_inertia(g, b, phi), {0.15, 0.15, 0.2}, WorkingMode{-1, -1, 1, -1});
     };
     for (const double phi : {singular - 1e-9, singular + 1e-9})
       for (const double index : coupling_indices(inertia(phi))) EXPECT_TRUE(std::isfinite(index)) << name;
@@ -111,8 +111,8 @@ TEST(CrrCruCoupling, ThereIsNoneInAParallelSingularity) {
       for (const double index : coupling_indices(inertia(phi))) EXPECT_TRUE(std::isnan(index)) << name;
       EXPECT_EQ(inertia_condition(inertia(phi)), 0) << name;
       std::vector<Dual4> dual(p.begin(), p.end());
-      const auto slopes = inertia_frame(geometry(platform, std::span<const Dual4>(dual)),
-                                        masses(MassModel::table, std::span<const Dual4>(dual)), Dual4(phi));
+      const auto slopes = yaw_inertia(geometry(platform, std::span<const Dual4>(dual)),
+                                      masses(MassModel::table, std::span<const Dual4>(dual)), Dual4(phi));
       EXPECT_TRUE(std::isnan(slopes.k.a)) << name;
     }
   }

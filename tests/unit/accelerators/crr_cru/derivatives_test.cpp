@@ -1,8 +1,8 @@
 // Derivatives of column surveys of (3CRR/R)&CRU and the Quadrupteron against central differences, on random designs,
 // for every parameter and every coordinate that may be held.
 //
-// Where a design lies on a kink of the volume - two slides end the same coordinate, a ring touches another's edge -
-// differences over a step that crosses it mean nothing. They are excluded by one rule: the differences over the steps
+// At a kink of the volume (two slides end at the same coordinate, or the circles of two annuli are tangent) differences
+// over a step that crosses it are meaningless. They are excluded by one rule: the differences over the steps
 // h and 2 h, which agree to O(h^2) where the volume is smooth, differ by more than a tenth of the tolerance.
 #include <cmath>
 
@@ -113,8 +113,8 @@ TEST(CrrCruDerivatives, OfTheMeanConditioningEqualDifferences) {
 }
 
 // With values of the same bits as without derivatives. At the default tolerance of 1e-8 nearly all slopes are as good
-// as 1e-7; where the adaptive rule stops early, near a structure that it hardly sees, a few are not. A hundredth of the
-// tolerance leaves none.
+// as 1e-7; where the adaptive rule stops early, near a component that it hardly resolves, a few are not. A hundredth of
+// the tolerance leaves none.
 TEST(CrrCruDerivatives, AreAsGoodAsTheTolerance) {
   const auto fine = random_plans(60, 3, 1e-13), usual = random_plans(60, 3, 1e-8), tight = random_plans(60, 3, 1e-10);
   int compared = 0, beyond = 0;

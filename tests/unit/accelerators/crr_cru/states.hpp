@@ -1,7 +1,7 @@
 // States of motion of (3CRR/R)&CRU and the Quadrupteron: the golden ones, and random feasible ones.
 #pragma once
 
-#include "engine/accelerators/crr_cru/frame.hpp"
+#include "engine/accelerators/crr_cru/position_set.hpp"
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/generic/equations.hpp"
 #include "engine/generic/newton_euler.hpp"
@@ -76,8 +76,8 @@ inline Eigen::VectorXd solve_square_system(const NewtonEuler& system) {
   });
 }
 
-/// Whether a position is feasible at the frame's yaw, by its ranges of the slides and its rings.
-inline bool in_frame(const Design<double>& d, const Frame<double>& f, const Vector3<double>& at) {
+/// Whether a position is in all ranges and all annuli of the set.
+inline bool in_position_set(const Design<double>& d, const PositionSet<double>& f, const Vector3<double>& at) {
   if (f.singular) return false;
   for (std::size_t k = 0; k < 3; ++k)
     if (at[k] < f.range[k].lower || at[k] > f.range[k].upper) return false;
@@ -98,7 +98,7 @@ inline State random_state(Uniform& uniform, const std::string& name, const Worki
   Pose<double> pose;
   do {
     pose = {uniform(0, 0.4), uniform(0, 0.4), uniform(0, 0.4), uniform(-1.4, 1.4)};
-  } while (!in_frame(limited, frame(limited, pose.angle), {pose.x, pose.y, pose.z}));
+  } while (!in_position_set(limited, position_set(limited, pose.angle), {pose.x, pose.y, pose.z}));
   s.motion.pose = pose;
   for (std::size_t k = 0; k < 4; ++k) {
     const double v = k < 3 ? 1.5 : 4, a = k < 3 ? 15 : 40;

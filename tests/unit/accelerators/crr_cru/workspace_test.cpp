@@ -39,7 +39,9 @@ std::string text(const Case& c) {
   return c.name + ", fixed " + std::to_string(c.held) + " at " + std::to_string(c.value);
 }
 
-Held held_of(const Case& c) { return {static_cast<std::size_t>(c.held), false, c.value}; }
+FixedCoordinate fixed_of(const Case& c) {
+  return {.coordinate = c.held, .kind = FixedCoordinate::Kind::value, .value = c.value};
+}
 
 Design<double> design_of_case(const Case& c) { return design(geometry_of(c.name, c.p), limits(c.limits)); }
 
@@ -58,7 +60,7 @@ TEST(CrrCruVoxels, CountsFromRowsEqualTheGenericEngines) {
     for (const std::array<std::int64_t, 3>& cells :
          {std::array<std::int64_t, 3>{13, 16, 18}, {9, 131, 64}, {70, 3, 65}}) {
       const WorkspacePlan p = voxels(c, cells);
-      const Box box = default_box(design_of_case(c), held_of(c));
+      const Box box = default_box(design_of_case(c), fixed_of(c));
       const VoxelMap map = voxel_map(mechanism(c.name), c.p, p),
                      expected = voxel_map(generic_engine(c.name), c.p, voxels(c, cells, box));
       EXPECT_TRUE(map.feasible == expected.feasible);
@@ -94,14 +96,14 @@ TEST(CrrCruVoxels, PosesOfTheOtherBranchDoNotCount) {
   }
 }
 
-TEST(CrrCruVoxels, FramesAndInspectionAgree) {
+TEST(CrrCruVoxels, PositionSetsAndInspectionAgree) {
   int inside = 0;
   Uniform uniform(3);
   for (const Case& c : random_cases(60, 3)) {
     const Design<double> d = design_of_case(c);
     for (int i = 0; i < 300; ++i) {
       const Pose<double> pose{uniform(-0.05, 0.45), uniform(-0.05, 0.45), uniform(0, 0.45), uniform(-2, 2)};
-      const bool feasible = in_frame(d, frame(d, pose.angle), {pose.x, pose.y, pose.z});
+      const bool feasible = in_position_set(d, position_set(d, pose.angle), {pose.x, pose.y, pose.z});
       inside += feasible;
       for (const char* mode : {"-,-,+,-", "+,+,-,+"}) {
         const PoseReport r = generic_engine(c.name).inspect(c.p, pose, mode, c.limits);
@@ -113,28 +115,28 @@ TEST(CrrCruVoxels, FramesAndInspectionAgree) {
   EXPECT_GT(inside, 1000);
 }
 
-// Closed-form areas against a fine midpoint sum over both axes of the section that knows of no breaks, and columns'
-// ends against the plain test.
-TEST(CrrCruColumns, SectionsEqualTheSumOfTheirCells) {
+// Closed-form areas against a fine midpoint sum over both axes of the slice, which uses no critical values, and against
+// the exact lengths of columns.
+TEST(CrrCruColumns, SlicesEqualTheSumOfTheirCells) {
   int positive = 0;
   for (const Case& c : random_cases(120, 4, 0.4)) {
     SCOPED_TRACE(text(c));
-    const auto s = sweeping(design_of_case(c), held_of(c));
-    const double outer = s.cuts.outer_is_phi ? 0.3 : 0.17;
-    const Frame<double> f = s.cuts.outer_is_phi ? frame(s.design, outer) : s.frame;
+    const auto s = sliced_design(design_of_case(c), fixed_of(c));
+    const double outer = s.axes.outer_is_phi ? 0.3 : 0.17;
+    const PositionSet<double> f = s.axes.outer_is_phi ? position_set(s.design, outer) : s.positions;
     ColumnScratch<double> scratch;
     constexpr int kSteps = 1000;
-    const double u0 = f.range[s.cuts.u].lower, u1 = f.range[s.cuts.u].upper, v0 = f.range[s.cuts.v].lower,
-                 v1 = f.range[s.cuts.v].upper;
+    const double u0 = f.range[s.axes.u].lower, u1 = f.range[s.axes.u].upper, v0 = f.range[s.axes.v].lower,
+                 v1 = f.range[s.axes.v].upper;
     if (!(u1 > u0)) continue;
     std::int64_t cells = 0;
     for (int i = 0; i < kSteps; ++i)
       for (int j = 0; j < kSteps; ++j) {
         Vector3<double> at;
-        at[s.cuts.normal] = s.cuts.outer_is_phi ? s.held : outer;
-        at[s.cuts.u] = u0 + (u1 - u0) * (i + 0.5) / kSteps;
-        at[s.cuts.v] = v0 + (v1 - v0) * (j + 0.5) / kSteps;
-        cells += in_frame(s.design, f, at);
+        at[s.axes.normal] = s.axes.outer_is_phi ? s.fixed : outer;
+        at[s.axes.u] = u0 + (u1 - u0) * (i + 0.5) / kSteps;
+        at[s.axes.v] = v0 + (v1 - v0) * (j + 0.5) / kSteps;
+        cells += in_position_set(s.design, f, at);
       }
     const double whole = (u1 - u0) * (v1 - v0);
     const double expected = whole * static_cast<double>(cells) / (kSteps * kSteps);
@@ -162,10 +164,10 @@ TEST(CrrCruColumns, ToleranceIsKept) {
 TEST(CrrCruColumns, VolumeEqualsAFineMidpointSum) {
   for (const Case& c : random_cases(48, 6, 0.4)) {
     SCOPED_TRACE(text(c));
-    const auto s = sweeping(design_of_case(c), held_of(c));
+    const auto s = sliced_design(design_of_case(c), fixed_of(c));
     ColumnScratch<double> scratch;
-    const double first = s.cuts.outer_is_phi ? -kPi : s.frame.range[0].lower;
-    const double last = s.cuts.outer_is_phi ? kPi : s.frame.range[0].upper;
+    const double first = s.axes.outer_is_phi ? -kPi : s.positions.range[0].lower;
+    const double last = s.axes.outer_is_phi ? kPi : s.positions.range[0].upper;
     constexpr int kSteps = 20000;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) sum += area_at(s, first + (last - first) * (i + 0.5) / kSteps, scratch);
@@ -190,7 +192,7 @@ TEST(CrrCruColumns, VolumesEqualVoxelsAtFourResolutionsAndAQuasiRandomCount) {
         EXPECT_LT(std::fabs(error), 1.0 / static_cast<double>(cells)) << cells;
       }
       const Design<double> d = design_of_case(c);
-      const Frame<double> f = frame(d, phi);
+      const PositionSet<double> f = position_set(d, phi);
       constexpr double kPlastic = 1.2207440846057596;  // x^4 = x + 1
       constexpr int kPoints = 6000000;
       Vector3<double> step{}, at{};
@@ -201,7 +203,7 @@ TEST(CrrCruColumns, VolumesEqualVoxelsAtFourResolutionsAndAQuasiRandomCount) {
           const double share = 0.5 + i * step[k];
           at[k] = -0.05 + 0.5 * (share - std::floor(share));
         }
-        inside += in_frame(d, f, at);
+        inside += in_position_set(d, f, at);
       }
       EXPECT_NEAR(inside * 0.125 / kPoints / exact, 1, 1e-4);
     }
@@ -237,11 +239,11 @@ TEST(CrrCruColumns, FixedNodesConvergeToTheTolerance) {
     const auto found = with({24, 24});
     EXPECT_NEAR(found.volume, best, 1e-5 * best);
     EXPECT_EQ(found.error, 0);
-    // the order of nodes is that of the swept coordinates: 60 columns over the inner one, 2 sections per piece
+    // the order of nodes is that of the swept coordinates: 60 columns over the inner one, 2 slices per piece
     const std::array<int, 2> nodes = c.held == 3 ? std::array<int, 2>{2, 60} : std::array<int, 2>{60, 2};
-    const auto sections = with(nodes);
+    const auto slices = with(nodes);
     if (!(best > 0)) continue;
-    EXPECT_NE(sections.volume, with({nodes[1], nodes[0]}).volume);
+    EXPECT_NE(slices.volume, with({nodes[1], nodes[0]}).volume);
   }
 }
 

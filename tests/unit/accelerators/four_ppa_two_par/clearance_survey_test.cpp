@@ -103,7 +103,7 @@ TEST(FourPpaClearance, ColumnsAgreeWithFineVoxels) {
     const auto p = with(e.changes);
     const auto g = geometry(std::span<const double>(p));
     auto l = limits(g, clearance(e.min_clearance));
-    ASSERT_TRUE(take_clearance(g, l)) << e.min_clearance;
+    ASSERT_TRUE(reduce_clearance(g, l)) << e.min_clearance;
     for (const double y : {p[kL0] / 2, 0.45}) {
       const FixedCoordinate fixed_y = at_y(y);
       LimitSpec folded = no_limits_of_four_ppa();
@@ -156,7 +156,7 @@ TEST(FourPpaClearance, IntegratedOverYEqualsTheSumOverPlanes) {
   const auto wide = with({{kA, 0.3}, {kB, 0.305}, {kD, 0.3}});
   const auto g = geometry(std::span<const double>(wide));
   auto l = limits(g, clearance(0.005));
-  ASSERT_TRUE(take_clearance(g, l));
+  ASSERT_TRUE(reduce_clearance(g, l));
   LimitSpec equal = no_limits_of_four_ppa();
   equal.given[kHMin] = l.h_min;
   EXPECT_NEAR(survey(wide, columns(clearance(0.005), over_y())).volume / survey(wide, columns(equal, over_y())).volume,
@@ -197,10 +197,10 @@ TEST(FourPpaClearance, NothingIsLeftWhereAPairIsTooNearAtEveryPose) {
 TEST(FourPpaClearance, HasNoDerivativesAndSaysWhy) {
   const auto limited = prepare_workspace(four_ppa(), columns(clearance(0.01)), {});
   EXPECT_EQ(limited->slopes(), nullptr);
-  EXPECT_EQ(limited->why_no_gradients(),
-            "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
-            "such surveys have no derivatives; take an optimiser without gradients, or keep the sliders apart by "
-            "h_min");
+  EXPECT_EQ(
+      limited->why_no_gradients(),
+      "the study limits the clearance of links (clearance_min), so that ends of columns have no closed form and the "
+      "analysis has no derivatives; use an optimiser without gradients, or keep the sliders apart by h_min");
   EXPECT_NE(prepare_workspace(four_ppa(), columns(no_limits_of_four_ppa()), {})->slopes(), nullptr);
 }
 

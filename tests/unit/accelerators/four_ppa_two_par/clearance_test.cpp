@@ -155,7 +155,7 @@ TEST(FourPpaClearance, NoPoseIsNearerThanTheBoundsSay) {
         visit_links(pair, [&](std::size_t m, std::size_t n) {
           distance = std::fmin(distance, segment_distance(all[m].axis, all[n].axis));
         });
-        const double bound = least_clearance(g, pair);
+        const double bound = clearance_lower_bound(g, pair);
         ASSERT_GE(distance, bound - kRoundoff) << "groups " << pair.first << ", " << pair.second;
         double& best = tightest[static_cast<std::size_t>(pair.first * kGroups + pair.second)];
         best = std::fmin(best, distance - bound);
@@ -179,7 +179,7 @@ TEST(FourPpaClearance, TakenApartItSaysTheSameOfEveryPose) {
     const auto g = geometry(std::span<const double>(c.p));
     const auto free = limits(g, no_limits_of_four_ppa()), given = limits(g, clearance(c.min_clearance));
     auto folded = given;
-    const auto test = take_clearance(g, folded);
+    const auto test = reduce_clearance(g, folded);
     EXPECT_FALSE(folded.clearance_min);
     tested += test.has_value();
     for (int k = 0; k < 200; ++k) {
@@ -208,7 +208,7 @@ TEST(FourPpaClearance, UsualProportionsLeaveNothingToTest) {
     const auto p = nominal();
     const auto g = geometry(std::span<const double>(p));
     auto l = limits(g, clearance(min_clearance));
-    EXPECT_FALSE(take_clearance(g, l));
+    EXPECT_FALSE(reduce_clearance(g, l));
     EXPECT_EQ(l.h_min, 0.07 + min_clearance / 2);
   }
 }

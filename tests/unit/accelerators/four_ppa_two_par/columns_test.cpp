@@ -13,12 +13,12 @@ namespace {
 
 using namespace four_ppa_two_par;
 
-// The closed-form area of a section against the plain pose test, by a fine sum over x of the exact z interval.
-TEST(FourPpaColumns, SectionAreaEqualsTheSumOverX) {
+// The closed-form area of a slice against the plain pose test, by a fine sum over x of the exact z interval.
+TEST(FourPpaColumns, SliceAreaEqualsTheSumOverX) {
   int positive = 0;
   for (const Case& c : random_cases(150, 4)) {
     const auto g = geometry(std::span<const double>(c.p));
-    const auto f = frame(g, limits(g, c.limits), c.y);
+    const auto f = sliced_design(g, limits(g, c.limits), c.y);
     if (f.empty) continue;
     for (const double theta : {0.0, 0.4, 0.9, 1.3}) {
       const auto [s, co] = sincos(theta);
@@ -41,7 +41,7 @@ TEST(FourPpaColumns, SectionAreaEqualsTheSumOverX) {
         sum += std::fmax(0.0, -std::fmax(top[0] + s1, top[1] + s2) + f.z_low + std::fmin(s1, s2));
       }
       const double expected = sum * g.l_d / kSteps;
-      EXPECT_NEAR(area(f, section(f, s, co)), expected, 2e-4 * g.l_u * g.l_d);
+      EXPECT_NEAR(area(f, slice(f, s, co)), expected, 2e-4 * g.l_u * g.l_d);
       positive += expected > 1e-3;
     }
   }
@@ -52,13 +52,13 @@ TEST(FourPpaColumns, SectionAreaEqualsTheSumOverX) {
 TEST(FourPpaColumns, VolumeEqualsAFineMidpointSum) {
   for (const Case& c : random_cases(120, 5)) {
     const auto g = geometry(std::span<const double>(c.p));
-    const auto f = frame(g, limits(g, c.limits), c.y);
+    const auto f = sliced_design(g, limits(g, c.limits), c.y);
     constexpr int kSteps = 10000;
     const double last = acos(f.l.cos_theta_min);
     double sum = 0;
     for (int i = 0; i < kSteps && !f.empty; ++i) {
       const auto [s, co] = sincos(last * (i + 0.5) / kSteps);
-      sum += area(f, section(f, s, co));
+      sum += area(f, slice(f, s, co));
     }
     const double expected = 2 * sum * last / kSteps;
     const auto found = survey(c.p, columns(c.limits, at_y(c.y)));
@@ -84,13 +84,13 @@ TEST(FourPpaColumns, StrongLimitsTogetherLoseNothing) {
   int compared = 0;
   for (const Case& c : strong_cases(400, 11)) {
     const auto g = geometry(std::span<const double>(c.p));
-    const auto f = frame(g, limits(g, c.limits), c.y);
+    const auto f = sliced_design(g, limits(g, c.limits), c.y);
     constexpr int kSteps = 4000;
     const double last = acos(f.l.cos_theta_min);
     double sum = 0;
     for (int i = 0; i < kSteps && !f.empty; ++i) {
       const auto [s, co] = sincos(last * (i + 0.5) / kSteps);
-      sum += area(f, section(f, s, co));
+      sum += area(f, slice(f, s, co));
     }
     const double expected = 2 * sum * last / kSteps;
     const auto found = survey(c.p, columns(c.limits, at_y(c.y)));
@@ -109,10 +109,10 @@ TEST(FourPpaColumns, NoDesignTakesLong) {
     EXPECT_LE(survey(c.p, columns(c.limits, fixed_y)).columns, 1000);
     const auto g = geometry(std::span<const double>(c.p));
     ColumnScratch<double> scratch;
-    find_pieces(frame(g, limits(g, c.limits), c.y), scratch.breaks, scratch.pieces);
-    if (scratch.pieces.empty()) continue;
+    find_theta_intervals(sliced_design(g, limits(g, c.limits), c.y), scratch.critical_values, scratch.intervals);
+    if (scratch.intervals.empty()) continue;
     for (const double rest : {1e-4, 1e-6, 1e-8}) {  // of theta, above where the workspace begins
-      c.limits.given[kCosThetaMin] = pkm::sincos(scratch.pieces[0].lower + rest).cos;
+      c.limits.given[kCosThetaMin] = pkm::sincos(scratch.intervals[0].lower + rest).cos;
       const auto found = survey(c.p, columns(c.limits, fixed_y));
       EXPECT_LE(found.columns, 1000) << found.volume;
       nearly_empty += found.volume > 0 && found.volume < 1e-8;
@@ -133,14 +133,14 @@ TEST(FourPpaColumns, PiecesLieWhereBothLimbsHaveDepth) {
   std::size_t pieces = 0;
   for (const Case& c : random_cases(300, 16)) {
     const auto g = geometry(std::span<const double>(c.p));
-    const auto f = frame(g, limits(g, c.limits), c.y);
+    const auto f = sliced_design(g, limits(g, c.limits), c.y);
     ColumnScratch<double> scratch;
-    find_pieces(f, scratch.breaks, scratch.pieces);
-    pieces += scratch.pieces.size();
-    for (const auto& piece : scratch.pieces)
+    find_theta_intervals(f, scratch.critical_values, scratch.intervals);
+    pieces += scratch.intervals.size();
+    for (const auto& piece : scratch.intervals)
       for (const double t : {0.01, 0.5, 0.99}) {
         const auto [s, co] = sincos(piece.lower + t * (piece.upper - piece.lower));
-        EXPECT_GT(section(f, s, co).depth[0], 0);
+        EXPECT_GT(slice(f, s, co).depth[0], 0);
       }
   }
   EXPECT_GT(pieces, 300u);
@@ -149,10 +149,10 @@ TEST(FourPpaColumns, PiecesLieWhereBothLimbsHaveDepth) {
 TEST(FourPpaColumns, OnTheMiddlePlaneBothLimbsHaveTheSameBits) {
   for (const Case& c : random_cases(200, 14)) {
     const auto g = geometry(std::span<const double>(c.p));
-    const auto f = frame(g, limits(g, c.limits), g.L0 / 2);
+    const auto f = sliced_design(g, limits(g, c.limits), g.L0 / 2);
     for (int i = 0; i < 50; ++i) {
       const auto [s, co] = sincos(0.03 * i);
-      const auto t = section(f, s, co);
+      const auto t = slice(f, s, co);
       EXPECT_EQ(t.depth[0], t.depth[1]);
     }
   }
@@ -203,11 +203,11 @@ TEST(FourPpaColumns, AreasOverYHaveNoKinkInsideAPiece) {
   for (Case& c : random_cases(400, 16)) {
     c.p[kL0] = uniform(0.8, 3.0) * c.p[kLu];
     const auto g = geometry(std::span<const double>(c.p));
-    const auto f = frame(g, limits(g, c.limits), g.L0 / 2);
+    const auto f = sliced_design(g, limits(g, c.limits), g.L0 / 2);
     if (f.empty) continue;
     for (int i = 0; i < 10; ++i) {
       const auto [s, co] = sincos(uniform(0, kPi / 2));
-      const auto t = section_range(f, s, co);
+      const auto t = slice_range(f, s, co);
       if (t.empty) continue;
       const double expected = area_over_y(f, t, many);
       EXPECT_NEAR(area_over_y(f, t, few), expected, 2e-9 * expected + 1e-15);

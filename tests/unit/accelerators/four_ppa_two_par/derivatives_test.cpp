@@ -172,11 +172,11 @@ TEST(FourPpaDerivatives, CriticalValuesEqualDifferences) {
         p.push_back({drawn.design[i] + t * step, {step}});
       }
       const auto g = geometry(std::span<const Scalar>(p));
-      const auto f = frame(g, limits(g, drawn.limits), Scalar(drawn.plane * drawn.design[kL0]));
+      const auto f = sliced_design(g, limits(g, drawn.limits), Scalar(drawn.plane * drawn.design[kL0]));
       ColumnScratch<Scalar> scratch;
-      find_pieces(f, scratch.breaks, scratch.pieces);
+      find_theta_intervals(f, scratch.critical_values, scratch.intervals);
       std::vector<Scalar> ends;
-      for (const auto& piece : scratch.pieces) ends.insert(ends.end(), {piece.lower, piece.upper});
+      for (const auto& piece : scratch.intervals) ends.insert(ends.end(), {piece.lower, piece.upper});
       return ends;
     };
     constexpr double kStep = 1e-6;

@@ -76,7 +76,7 @@ TEST(FourPpaGolden, VolumesAndGradientsOfEveryCase) {
     for (int i = 0; i < 6; ++i) moving[static_cast<std::size_t>(i)].v[i] = 1;
     const auto g = geometry(std::span<const Scalar>(moving));
     ColumnScratch<Scalar> scratch;
-    const Scalar v = plane_volume(frame(g, limits(g, limits_spec), Scalar(g.L0 * 0.5)), 1e-10, scratch).value;
+    const Scalar v = plane_volume(sliced_design(g, limits(g, limits_spec), Scalar(g.L0 * 0.5)), 1e-10, scratch).value;
     double largest = 0;
     for (const auto* key : keys) largest = std::max(largest, std::fabs(entry["volume_gradient"][key].get<double>()));
     for (int i = 0; i < 6; ++i)

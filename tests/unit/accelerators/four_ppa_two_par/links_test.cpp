@@ -8,7 +8,7 @@
 
 #include "engine/accelerators/four_ppa_two_par/links.hpp"
 #include "tests/unit/accelerators/four_ppa_two_par/clear_designs.hpp"
-#include "tests/unit/accelerators/four_ppa_two_par/limbs_at.hpp"
+#include "tests/unit/accelerators/four_ppa_two_par/plain_pose.hpp"
 
 namespace pkm::testing {
 namespace {

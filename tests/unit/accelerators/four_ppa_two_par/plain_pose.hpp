@@ -4,16 +4,21 @@
 
 #include <cmath>
 
-#include "engine/accelerators/four_ppa_two_par/links.hpp"
-#include "engine/accelerators/four_ppa_two_par/model.hpp"
+#include "tests/unit/accelerators/four_ppa_two_par/limbs_at.hpp"
 
 namespace pkm::testing {
 
-/// Of the lower mode.
-/// @param y  the plane as given, not mirrored
-inline bool feasible(const four_ppa_two_par::Geometry<double>& g, const four_ppa_two_par::Limits<double>& l, double x,
-                     double y, double z, double sin_theta, double cos_theta) {
-  using namespace four_ppa_two_par;
+/// The closest pair of links, by all pairs.
+template <class S>
+ClosestPair<S> nearest_links(const four_ppa_two_par::Links<S>& all) {
+  return closest_pair(all, [](const auto& visit) {
+    for (const auto& pair : four_ppa_two_par::kPairs) visit_links(pair, visit);
+  });
+}
+
+/// Whether a pose is feasible in the mode lower,lower. @param y  not mirrored
+inline bool feasible(const Geometry<double>& g, const four_ppa_two_par::Limits<double>& l, double x, double y, double z,
+                     double sin_theta, double cos_theta) {
   if (!(cos_theta >= l.cos_theta_min)) return false;
   const double half = g.a * cos_theta * 0.5;
   for (const double x_j : {x - half, g.b - x - half})  // most poses fail here, before a root is taken

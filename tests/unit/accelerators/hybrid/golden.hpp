@@ -57,6 +57,40 @@ inline std::vector<double> nominal() {
 
 inline Geometry<double> geometry_of(const std::vector<double>& p) { return geometry(std::span<const double>(p)); }
 
+/// Inverse kinematics in closed form. In masks, bit 0 is limb A, bit 1 B, bit 2 C. For a limb out of reach n is 0, and
+/// s is finite but meaningless.
+template <class S>
+struct Joints : Limbs<S> {
+  std::array<S, 4> s;      ///< drives s1, s2, s3, s4 [m]
+  unsigned unreached = 0;  ///< limbs out of reach
+  unsigned serial = 0;     ///< limbs normal to their rail, n = 0: serially singular
+  bool assembles() const { return unreached == 0; }
+};
+
+template <class S>
+Joints<S> inverse(const Geometry<S>& g, const SchoenfliesPose<S>& pose, const WorkingMode& mode) {
+  const auto [sin_b, cos_b] = sincos(pose.angle);
+  Joints<S> j;
+  const auto root = [&](const S& square, const S& L, std::size_t limb) {
+    const double tolerance = kRoundoff * value_of(L) * value_of(L);
+    const unsigned bit = 1u << limb;
+    if (value_of(square) < -tolerance) j.unreached |= bit;
+    if (std::fabs(value_of(square)) <= tolerance) j.serial |= bit;
+    return value_of(square) > tolerance ? S(sqrt(square) * static_cast<double>(mode[limb])) : S(0.0);
+  };
+  static_cast<Limbs<S>&>(j) = limbs(g, pose.z, sin_b, cos_b, root);
+  const S& x = pose.x;
+  j.s = {x - g.a + g.b1 - j.n1, pose.y, x + g.a - g.b2 - j.n2, x - g.c - j.n3};
+  return j;
+}
+
+/// The signs in a name such as "+,-,0".
+inline std::vector<int> signs_of(const std::string& name) {
+  std::vector<int> signs;
+  for (std::size_t i = 0; i < name.size(); i += 2) signs.push_back(name[i] == '+' ? 1 : name[i] == '-' ? -1 : 0);
+  return signs;
+}
+
 inline SchoenfliesPose<double> pose_of(const nlohmann::json& x) { return {x[0], x[1], x[2], x[3]}; }
 
 inline WorkingMode mode_of(const nlohmann::json& wm) { return {wm[0], wm[1], wm[2]}; }

@@ -5,17 +5,17 @@
 
 #include <array>
 
-#include "engine/accelerators/hybrid/section.hpp"
+#include "engine/accelerators/hybrid/slice.hpp"
 
 namespace pkm::testing::hybrid {
 
 using namespace pkm::hybrid;
 
-/// For a carriage within its stroke.
-inline bool feasible(const Frame<double>& frame, double x, double z, double beta) {
-  const Geometry<double>& g = frame.g;
-  const Limits<double>& l = frame.l;
-  const WorkingMode& signs = frame.signs;
+/// Whether a pose is feasible, if the carriage is within its stroke.
+inline bool feasible(const SlicedDesign<double>& d, double x, double z, double beta) {
+  const Geometry<double>& g = d.g;
+  const Limits<double>& l = d.l;
+  const WorkingMode& signs = d.signs;
   const auto inside = [](double value, double lower, double upper) { return value >= lower && value <= upper; };
   const auto least = [](double p, double q, double limit) { return p >= q * limit && q > 0; };
   const auto stroke = [&](std::size_t i, double s) { return inside(s, l.s_min[i], l.s_max[i]); };
@@ -48,7 +48,7 @@ inline bool feasible(const Frame<double>& frame, double x, double z, double beta
   const double k = g.e * turn.cos - g.d, N1 = z + g.e * turn.sin, N2 = g.e * (z * turn.cos + g.d * turn.sin);
   const double n3 = along_rail(g.L3 * g.L3 - k * k - N1 * N1, g.L3, signs[2]);
   return stroke(3, x - g.c - n3) && min(z, N1) - l.z_clear >= 0 && inclined(n3, g.L3, l.psiC.sin) &&
-         least(N2 * frame.branch, g.e * g.L3, l.tau_p) &&
+         least(N2 * d.branch, g.e * g.L3, l.tau_p) &&
          least(-k * home_side(g), sqrt_or_zero(k * k + N1 * N1), l.tau_c) && turned(-k, N1, l.lam) &&
          turned(k * turn.cos + N1 * turn.sin, N1 * turn.cos - k * turn.sin, l.mu);
 }

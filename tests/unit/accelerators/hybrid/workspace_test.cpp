@@ -46,10 +46,10 @@ VoxelMap map(const std::vector<double>& p, const WorkingMode& mode, const Worksp
 }
 
 template <class S>
-Frame<S> frame_of(const std::vector<S>& p, const WorkingMode& mode, const LimitSpec& spec = no_thresholds(),
-                  int branch = 1) {
+SlicedDesign<S> sliced(const std::vector<S>& p, const WorkingMode& mode, const LimitSpec& spec = no_thresholds(),
+                       int branch = 1) {
   const std::span<const S> all(p);
-  return frame(geometry(all), limits(all, spec), mode, branch);
+  return sliced_design(geometry(all), limits(all, spec), mode, branch);
 }
 
 /// Mean of two designs of the golden data, each shifted a little, so that nearly all have a workspace.
@@ -80,10 +80,10 @@ struct ColumnOfX {
     return upper - lower - std::fmax(0, std::fmin(upper, hole) - std::fmax(lower, -hole));
   }
 };
-ColumnOfX column_at(const Frame<double>& f, double z, double beta) {
+ColumnOfX column_at(const SlicedDesign<double>& f, double z, double beta) {
   ColumnOfX column;
   if (f.empty) return column;
-  const Section<double> s = section(f, beta);
+  const Slice<double> s = slice(f, beta);
   if (z < *std::ranges::max_element(s.lower) || z > *std::ranges::min_element(s.upper)) return column;
   column = {-1e9, 1e9, z < s.hole_end ? s.curve[kCurveH].root(z) : 0};
   for (std::uint8_t k = 0; k < kCurveH; ++k) {
@@ -97,7 +97,7 @@ TEST(HybridColumns, OfXAreTheGoldenOnes) {
   int holes = 0, empty = 0;
   for (const auto& entry : golden()["xcolumn"]) {
     SCOPED_TRACE(entry.dump());
-    const ColumnOfX column = column_at(frame_of(design_of(entry), {1, -1, -1}), entry["z"], entry["beta"]);
+    const ColumnOfX column = column_at(sliced(design_of(entry), {1, -1, -1}), entry["z"], entry["beta"]);
     EXPECT_NEAR(column.length(), entry["length"].get<double>(), 1e-13);
     ++(column.empty() ? empty : holes);
     if (column.empty()) continue;
@@ -115,7 +115,7 @@ TEST(HybridColumns, OfZEndWhereThePlainTestChanges) {
   int found = 0;
   for (const auto& entry : golden()["zcolumn"]) {
     SCOPED_TRACE(entry.dump());
-    const Frame<double> f = frame_of(design_of(entry), {1, -1, -1});
+    const SlicedDesign<double> f = sliced(design_of(entry), {1, -1, -1});
     const double x = entry["x"], beta = entry["beta"];
     const auto at = [&](double z) { return feasible(f, x, z, beta); };
     ASSERT_LE(entry["intervals"].size(), 1u);
@@ -138,7 +138,7 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
   for (const auto& entry : golden()["workspace"]) {
     const std::vector<double> p = design_of(entry);
     const WorkingMode mode = mode_of(entry["wm"]);
-    const Box box = default_box(frame_of(p, mode));
+    const Box box = default_box(sliced(p, mode));
     Demand demand;
     demand.add(kConditioning);
     for (const auto& grid : entry["grids"]) {
@@ -160,7 +160,7 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
     double sum = 0;
     for (int j = 0; j < nz; ++j)
       for (int k = 0; k < nbeta; ++k)
-        sum += column_at(frame_of(p, mode), box[1][0] + (box[1][1] - box[1][0]) * (j + 0.5) / nz,
+        sum += column_at(sliced(p, mode), box[1][0] + (box[1][1] - box[1][0]) * (j + 0.5) / nz,
                          box[2][0] + (box[2][1] - box[2][0]) * (k + 0.5) / nbeta)
                    .length();
     sum *= (box[1][1] - box[1][0]) / nz * (box[2][1] - box[2][0]) / nbeta;
@@ -206,7 +206,7 @@ TEST(HybridColumns, OfXHoldThePosesWhoseMarginsDo) {
   int inside = 0;
   for (const Case& c : random_cases(60, 8))
     for (const int branch : {1, -1}) {
-      const Frame<double> f = frame_of(c.p, c.mode, no_thresholds(), branch);
+      const SlicedDesign<double> f = sliced(c.p, c.mode, no_thresholds(), branch);
       for (int i = 0; i < 400; ++i) {
         const SchoenfliesPose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]),
                                            uniform(0.15, 0.3), uniform(-0.7, 0.7)};
@@ -224,7 +224,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
   std::int64_t total = 0;
   for (const Case& c : random_cases(24, 1)) {
     WorkspacePlan voxels = voxels_plan({19, 17, 23});
-    const Frame<double> f = frame_of(c.p, c.mode, voxels.limits);
+    const SlicedDesign<double> f = sliced(c.p, c.mode, voxels.limits);
     const Box box = default_box(f), wide = {{{-0.3, 0.3}, {0.0, 0.35}, {-1.2, 1.2}}};
     for (const bool given : {false, true}) {
       if (given) std::get<VoxelOptions>(voxels.method).box = wide;
@@ -246,7 +246,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
 // The branch N2 < 0 keeps nothing within the range of the universal joint at C'.
 TEST(HybridVoxels, TheOtherBranchIsEmpty) {
   for (const Case& c : random_cases(9, 2)) {
-    const Frame<double> f = frame_of(c.p, c.mode, no_thresholds(), -1);
+    const SlicedDesign<double> f = sliced(c.p, c.mode, no_thresholds(), -1);
     const VoxelGrid grid({15, 15, 40}, {{{-0.3, 0.3}, {0.05, 0.3}, {-1.5, 1.5}}});
     Survey<double> found;
     summarise(grid, test_every_cell(grid, [&](double x, double z, double beta) { return feasible(f, x, z, beta); }),
@@ -258,13 +258,13 @@ TEST(HybridVoxels, TheOtherBranchIsEmpty) {
 }
 
 // Closed-form areas against a fine midpoint sum over z of exact columns, and against the rule on strips.
-TEST(HybridColumns, SectionsEqualTheSumOfTheirColumns) {
+TEST(HybridColumns, SlicesEqualTheSumOfTheirColumns) {
   constexpr int kSteps = 20000;
   int positive = 0;
   ColumnScratch<double> scratch;
   const GaussRule rule = gauss_legendre(24);
   for (const Case& c : random_cases(60, 3)) {
-    const Frame<double> f = frame_of(c.p, c.mode);
+    const SlicedDesign<double> f = sliced(c.p, c.mode);
     for (const double beta : {-0.45, -0.31, -0.1, 0.0, 0.2, 0.4}) {
       const double found = area_at(f, beta, scratch);
       double sum = 0, by_rule = 0;

@@ -1,0 +1,48 @@
+// (3CRR/R)&CRU and Quadrupteron: settings that workspace analyses by columns and by voxels share, and their evaluators.
+#pragma once
+
+#include <memory>
+
+#include "engine/accelerators/crr_cru/masses.hpp"
+#include "engine/accelerators/crr_cru/yaw.hpp"
+#include "engine/mechanism/surveyor.hpp"
+#include "engine/workspace/pose_quantities.hpp"
+
+namespace pkm::crr_cru {
+
+struct AnalysisSettings {
+  Platform platform;
+  MassModel mass_model;
+  WorkingMode mode;  ///< for the inertia; feasibility does not depend on it
+  FixedCoordinate fixed;
+  Limits limits;
+  Demand demand;
+  bool with_conditioning = demand.has(kConditioning);
+
+  template <class S>
+  Masses<S> masses(std::span<const S> parameters) const {
+    Masses<S> all = crr_cru::masses(mass_model, parameters);
+    std::ranges::copy(demand.rotors, all.rotors.begin());
+    return all;
+  }
+  /// Conditioning of all positions at one phi.
+  template <class S>
+  S conditioning_at(const Geometry<S>& g, const S& phi) const {
+    const auto [s, c] = sincos(phi);
+    const S length = demand.characteristic_length ? S(*demand.characteristic_length) : characteristic_length(g);
+    return conditioning(arms(g, s, c), length);
+  }
+  /// Adds one sample that represents all positions at one phi.
+  template <class S>
+  void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, Survey<S>& survey) const {
+    if (!(value_of(weight) > 0)) return;
+    survey.weight.push_back(weight);
+    survey.find(kConditioning)->push_back(conditioning_at(g, phi));
+  }
+};
+
+std::unique_ptr<const WorkspaceEvaluator> make_evaluator(const AnalysisSettings& settings,
+                                                         const ColumnOptions& columns);
+std::unique_ptr<const VoxelEvaluator> make_evaluator(const AnalysisSettings& settings, const VoxelOptions& voxels);
+
+}  // namespace pkm::crr_cru

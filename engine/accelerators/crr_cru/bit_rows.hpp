@@ -1,0 +1,43 @@
+// (3CRR/R)&CRU and Quadrupteron: feasible cells of parallel lines as bit masks, one row of words per line: the cells in
+// an annulus, kLanes lines in one SIMD batch, and the number of cells in intersections of rows.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/core/instruction_set.hpp"
+#include "engine/math/lanes.hpp"
+
+namespace pkm::crr_cru {
+
+/// Parallel lines of cells and an annulus. A plain struct, so that kernels share no inline code with files that are
+/// compiled for another instruction set.
+struct AnnulusLines {
+  double lower, step, cells;  ///< of the axis along the lines
+  const double* across;       ///< coordinate of each line, padded to a multiple of kLanes
+  std::size_t lines;
+  double center_along, center_across;  ///< of the annulus
+  double in2, out2;                    ///< squared radii
+};
+
+/// Clears the bits of all cells outside the annulus, i.e. exactly those for which the floating-point comparison
+/// in2 <= (across - center_across)^2 + (cell - center_along)^2 <= out2 is false.
+/// @param rows  for each line a row of `words` words
+template <InstructionSet set>
+void mask_annulus(const AnnulusLines& lines, std::size_t words, std::uint64_t* rows);
+
+/// The cells of a plane: (u, v) is feasible if bit u of u_row, bit v of v_row and bit v of row u of v_at_u are set.
+struct PlaneRows {
+  const std::uint64_t *u_row, *v_row, *v_at_u;
+  std::size_t u_cells, v_cells, words;  ///< words: of a row of v
+};
+
+struct PlaneTally {
+  std::int64_t cells;  ///< number of feasible cells
+  bool touches;        ///< one of them is the first or last along u or v
+};
+
+template <InstructionSet set>
+PlaneTally tally(const PlaneRows& rows);
+
+}  // namespace pkm::crr_cru

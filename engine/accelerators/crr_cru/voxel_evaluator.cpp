@@ -1,0 +1,166 @@
+#include <algorithm>
+
+#include "engine/accelerators/crr_cru/analysis.hpp"
+#include "engine/accelerators/crr_cru/inertia_tables.hpp"
+#include "engine/accelerators/crr_cru/voxels.hpp"
+#include "engine/workspace/grid_surveyor.hpp"
+
+namespace pkm::crr_cru {
+namespace {
+
+/// The feasible cells at one phi, with their inertia if it is demanded.
+struct CellsAtPhi {
+  SliceCells cells;
+  InertiaTables tables;
+  double conditioning = 0;
+};
+
+/// Scratch memory of one thread.
+struct VoxelWorker {
+  CellsAtPhi own;
+  std::vector<std::uint64_t> row;
+  std::array<std::vector<double>, 4> dci;
+};
+
+/// A design on its grid, divided into slices, one for each outer cell.
+struct GriddedSlices : Gridded {
+  Design<double> d;
+  Masses<double> masses;
+  GridAxes axes;
+  bool over_phi;                     ///< phi is the outer coordinate, so that each slice has its own
+  std::array<std::size_t, 3> swept;  ///< the coordinate of each axis of the grid, ascending
+  double fixed;                      ///< value of the fixed coordinate
+  const CellsAtPhi& common;          ///< of all slices, if phi is fixed
+};
+
+class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
+ public:
+  ClosedFormVoxels(const AnalysisSettings& settings, const VoxelOptions& voxels)
+      : GridEvaluator(settings.demand),
+        settings_(settings),
+        voxels_(voxels),
+        beyond_coupling_(std::ranges::any_of(settings.demand.fields, [](const PoseQuantity* quantity) {
+          return quantity->needs_inertia() && quantity != &kCouplingIndex;
+        })) {}
+
+ private:
+  friend GridEvaluator;
+  using Rooms = GridRooms<CellsAtPhi, VoxelWorker>;
+
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    GridEvaluator::survey(parameters, scratch, survey);
+    if (!settings_.with_conditioning || !survey.weight.empty()) return;
+    const Geometry<double> g = geometry(settings_.platform, parameters);  // phi is fixed: one sample
+    settings_.add_conditioning(g, fixed_value(g, settings_.fixed), survey.volume, survey);
+  }
+
+  GriddedSlices start(std::span<const double> parameters, Rooms& rooms) const {
+    const FixedCoordinate& fixed = settings_.fixed;
+    const Design<double> d = design(geometry(settings_.platform, parameters), settings_.limits);
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, fixed));
+    GriddedSlices s{{grid, 0},
+                    d,
+                    settings_.demand.needs_inertia() ? settings_.masses(parameters) : Masses<double>{},
+                    grid_axes(fixed),
+                    slice_axes(fixed).outer_is_phi,
+                    {},
+                    fixed_value(d.g, fixed),
+                    rooms.common};
+    for (std::size_t k = 0, axis = 0; k < 4; ++k)
+      if (static_cast<int>(k) != fixed.coordinate) s.swept[axis++] = k;
+    if (s.over_phi || fill(s, s.fixed, rooms.common)) s.pieces = static_cast<std::size_t>(grid.cells[s.axes.outer]);
+    return s;
+  }
+
+  /// @return false if no cell is feasible
+  bool fill(const GriddedSlices& s, double phi, CellsAtPhi& to) const {
+    if (!to.cells.fill(s.d, settings_.fixed, s.grid, phi)) return false;
+    if (!settings_.demand.needs_inertia()) return true;
+    to.tables.fill(s.d.g, s.masses, settings_.mode, phi, s.grid, s.swept, s.axes.v, s.fixed);
+    if (settings_.with_conditioning) to.conditioning = settings_.conditioning_at(s.d.g, phi);
+    return true;
+  }
+  /// The cells of a slice; null if there are none.
+  const CellsAtPhi* cells_of(const GriddedSlices& s, std::size_t piece, VoxelWorker& worker) const {
+    if (!s.over_phi) return &s.common;
+    return fill(s, s.grid.centre(s.axes.outer, static_cast<std::int64_t>(piece)), worker.own) ? &worker.own : nullptr;
+  }
+
+  void find(const GriddedSlices& s, std::size_t, std::size_t piece, VoxelWorker& worker, Survey<double>& to) const {
+    const CellsAtPhi* const at = cells_of(s, piece, worker);
+    if (!at) return;
+    const auto k = static_cast<std::int64_t>(piece);
+    if (settings_.demand.needs_inertia()) {
+      visit_runs(s, *at, k, worker.row, [&](const CellRun& run) { sample(s, *at, run, worker.dci, to); });
+      return;
+    }
+    const PlaneTally plane = at->cells.count(s.over_phi ? 0 : piece);
+    to.feasible_cells += plane.cells;
+    to.touches_box = to.touches_box || (plane.cells > 0 && (plane.touches || s.grid.at_end(s.axes.outer, k)));
+    if (settings_.with_conditioning && s.over_phi)
+      settings_.add_conditioning(s.d.g, s.grid.centre(s.axes.outer, k),
+                                 static_cast<double>(plane.cells) * s.cell_volume, to);
+  }
+
+  /// Adds the cells of a run as samples with their inertia.
+  void sample(const GriddedSlices& s, const CellsAtPhi& at, const CellRun& run, std::array<std::vector<double>, 4>& dci,
+              Survey<double>& to) const {
+    count_cells(s.grid, run, to);
+    auto *const conditioning = to.find(kConditioning), *const indices = to.find(kCouplingIndex);
+    const std::size_t v = s.axes.v;
+    if (indices) {
+      Cell row = run.first;
+      row[v] = 0;
+      at.tables.coupling(row, static_cast<std::size_t>(run.first[v]), static_cast<std::size_t>(run.end), dci);
+    }
+    for_each_cell(run, [&](const Cell& cell) {
+      to.weight.push_back(s.cell_volume);
+      if (settings_.demand.poses) {
+        auto& pose = to.pose.emplace_back(4);
+        pose[static_cast<std::size_t>(settings_.fixed.coordinate)] = s.fixed;
+        for (std::size_t k = 0; k < 3; ++k) pose[s.swept[k]] = s.grid.centre(k, cell[k]);
+      }
+      if (conditioning) conditioning->push_back(at.conditioning);
+      for (std::size_t i = 0; indices && i < 4; ++i) indices[i].push_back(dci[i][static_cast<std::size_t>(cell[v])]);
+      if (beyond_coupling_) add_inertia(at.tables.at(cell), to, &kCouplingIndex);
+    });
+  }
+
+  template <class Visit>
+  void visit_cells(const GriddedSlices& s, Rooms& rooms, const Visit& visit) const {
+    VoxelWorker& worker = rooms.of[0];
+    for (std::size_t piece = 0; piece < s.pieces; ++piece)
+      if (const CellsAtPhi* const at = cells_of(s, piece, worker))
+        visit_runs(s, *at, static_cast<std::int64_t>(piece), worker.row,
+                   [&](const CellRun& run) { for_each_cell(run, visit); });
+  }
+
+  /// Calls visit(run) for the runs of feasible cells along v of slice number k, in ascending u.
+  /// @param row  scratch memory
+  template <class Visit>
+  void visit_runs(const GriddedSlices& s, const CellsAtPhi& at, std::int64_t k, std::vector<std::uint64_t>& row,
+                  const Visit& visit) const {
+    CellRun run{{}, s.axes.v, 0};
+    run.first[s.axes.outer] = k;
+    at.cells.visit_columns(s.over_phi ? 0 : static_cast<std::size_t>(k), row, [&](std::int64_t u) {
+      run.first[s.axes.u] = u;
+      for_each_run(row, [&](std::size_t first, std::size_t end) {
+        run.first[s.axes.v] = static_cast<std::int64_t>(first);
+        run.end = static_cast<std::int64_t>(end);
+        visit(run);
+      });
+    });
+  }
+
+  AnalysisSettings settings_;
+  VoxelOptions voxels_;
+  bool beyond_coupling_;  ///< other fields of the inertia than coupling indices are demanded
+};
+
+}  // namespace
+
+std::unique_ptr<const VoxelEvaluator> make_evaluator(const AnalysisSettings& settings, const VoxelOptions& voxels) {
+  return std::make_unique<ClosedFormVoxels>(settings, voxels);
+}
+
+}  // namespace pkm::crr_cru

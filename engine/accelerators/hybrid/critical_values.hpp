@@ -1,0 +1,104 @@
+// Hybrid robot: the intervals of beta, between critical values, on which slices have one combinatorial type.
+//
+// Slices are decomposed at samples of beta. If two adjacent samples differ in type, the degeneracy that changes the one
+// type into the other is identified, and Newton's method solves for it, in beta and in the heights of intersections
+// simultaneously. Decompositions slightly below and above the solution show whether further critical values exist
+// between the samples, which are then searched for recursively.
+#pragma once
+
+#include <deque>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "engine/accelerators/hybrid/strips.hpp"
+
+namespace pkm::hybrid {
+
+/// A slice of a design in double precision.
+struct SampledSlice {
+  double beta = 0;
+  Slice<double> slice;
+  Decomposition decomposition;
+};
+
+/// The degeneracy of a slice at a critical value.
+struct Degeneracy {
+  enum class Kind : std::uint8_t {
+    heights,  ///< `first` and `second` coincide
+    edges,    ///< `left` and `right` intersect at `first`, a bound of z
+    tangency  ///< `left` and `right` are tangent at the height of `first`, between two strips or where one vanishes
+  } kind = Kind::heights;
+  StripBound first, second;
+  Edge left, right;
+};
+
+/// An interval of beta on which slices have one type.
+struct BetaInterval {
+  double lower = 0, upper = 0;
+  std::optional<Degeneracy> at_lower, at_upper;  ///< at its endpoints, if known
+  Decomposition decomposition;                   ///< near the lower endpoint
+};
+
+/// Scratch memory of find_beta_intervals().
+struct CriticalValueScratch {
+  std::vector<BetaInterval> intervals;
+  std::size_t count = 0;  ///< number of intervals in use
+  std::deque<SampledSlice> samples;
+  StripScratch strips;
+};
+
+/// Finds the intervals on which slices are not empty, in ascending order.
+/// @param plain    the design in double precision
+/// @param by_beta  the design as constants, for derivatives with respect to beta
+/// @param scratch  receives them in `intervals`
+void find_beta_intervals(const SlicedDesign<double>& plain, const SlicedDesign<Dual<1>>& by_beta,
+                         CriticalValueScratch& scratch);
+
+/// The curve whose root vanishes at a bound of z; kCurves if there is none.
+inline std::size_t vanishing_curve(const StripBound& end) {
+  if (end.kind == StripBound::Kind::hole) return kCurveH;
+  if (end.kind == StripBound::Kind::intersection) return kCurves;
+  if (end.index == kEndP1 || end.index == kEndP2) return kCurveP;
+  if (end.index == kEndL && end.kind == StripBound::Kind::upper) return kCurveL;
+  return end.index == kEndQ && end.kind == StripBound::Kind::lower ? std::size_t{kCurveQ} : std::size_t{kCurves};
+}
+
+/// x of an edge at a bound of z, at which its root may vanish.
+template <class S>
+S edge_at_end(const Slice<S>& s, const Edge& edge, const StripBound& end) {
+  return edge.curve == vanishing_curve(end) ? S(0.0) : edge_at(s, edge, height(s, end));
+}
+
+/// Whether the area has a singularity (of power 3/2) at a degeneracy: a tangency, or a bound of z at which a root
+/// vanishes.
+inline bool has_sqrt_singularity(const Degeneracy& degeneracy) {
+  return degeneracy.kind == Degeneracy::Kind::tangency || vanishing_curve(degeneracy.first) != kCurves ||
+         (degeneracy.kind == Degeneracy::Kind::heights && vanishing_curve(degeneracy.second) != kCurves);
+}
+
+/// Distance of the degenerating features: 0 at the critical value.
+template <class S>
+S distance(const Slice<S>& s, const Degeneracy& degeneracy) {
+  if (degeneracy.kind == Degeneracy::Kind::tangency) {  // the minimum or maximum over z
+    const S z(degeneracy.first.z);
+    return edge_at(s, degeneracy.right, z) - edge_at(s, degeneracy.left, z);
+  }
+  if (degeneracy.kind == Degeneracy::Kind::edges)
+    return edge_at_end(s, degeneracy.right, degeneracy.first) - edge_at_end(s, degeneracy.left, degeneracy.first);
+  return height(s, degeneracy.second) - height(s, degeneracy.first);
+}
+
+/// The beta of a degeneracy with its derivatives, by the implicit function theorem.
+template <class S>
+S lift_critical_value(const SlicedDesign<S>& d, const SlicedDesign<Dual<1>>& by_beta, double at,
+                      const Degeneracy& degeneracy) {
+  if constexpr (std::is_same_v<S, double>) {
+    return at;
+  } else {
+    const double slope = distance(slice(by_beta, Dual<1>::variable(at, 0)), degeneracy).v[0];
+    return implicit_root(at, distance(slice(d, S(at)), degeneracy), slope);
+  }
+}
+
+}  // namespace pkm::hybrid

@@ -1,0 +1,94 @@
+#include "engine/accelerators/hybrid/intersections.hpp"
+
+#include <cmath>
+
+namespace pkm::hybrid {
+namespace {
+
+/// Intersection of two edges of the chain on one side.
+double chain_intersection(const Slice<double>& s, const Edge& first, const Edge& second) {
+  const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
+  return (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
+}
+
+/// Difference of x of two edges at one z.
+struct Gap {
+  double value, slope, bend;  ///< bend: bound of the second derivative
+  double step() const { return -value / slope; }
+  /// Whether Newton's method has converged to rounding accuracy after this step.
+  bool is_last(double z) const {
+    constexpr double kRelative = 1e-17;
+    return step() * step() * bend <= kRelative * z * std::fabs(slope);
+  }
+};
+Gap gap(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
+  const auto at = [&](const Edge& e) {
+    const Curve<double>& c = s.curve[e.curve];
+    const double root = c.root(z), slope = c.slope(z, root), sign = s.sign(e);
+    return Gap{s.constant(e) + root * sign, sign * slope, (std::fabs(c.curvature()) + slope * slope) / root};
+  };
+  const Gap a = at(first), b = at(second);
+  return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
+}
+
+/// Intersection of two circular edges between two heights, the one closest to z; kNoIntersection if there is none, if
+/// an edge is not circular, or if the circles are tangent to working precision.
+double circle_intersection(const Slice<double>& s, const Edge& first, const Edge& second, double z, double low,
+                           double high) {
+  const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
+  if (!circle(first) || !circle(second)) return kNoIntersection;
+  // centres and radii
+  const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
+  const double z1 = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
+  const double dx = s.constant(second) - s.constant(first), dz = 0.5 * (d.a - d.b) - z1,
+               inverse2 = 1 / (dx * dx + dz * dz);
+  // relative to the distance of the centres
+  const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * inverse2), across2 = r1 * r1 * inverse2 - along * along;
+  constexpr double kTangent = 1e-4;
+  if (!(across2 >= kTangent * along * along)) return kNoIntersection;
+  const double across = std::sqrt(across2);
+  double smallest = std::numeric_limits<double>::infinity(), nearest = kNoIntersection;
+  for (const double h : {across, -across}) {
+    const double at = z1 + along * dz + h * dx, from_first = along * dx - h * dz, from_second = from_first - dx;
+    const bool on_both = from_first * s.sign(first) >= 0 && from_second * s.sign(second) >= 0;
+    if (!on_both || !(at > low && at < high) || std::fabs(at - z) >= smallest) continue;
+    smallest = std::fabs(at - z);
+    nearest = at;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+double intersection(const Slice<double>& s, const Edge& first, const Edge& second, double p, double q) {
+  if (of_chain(first, second)) return std::fmin(std::fmax(chain_intersection(s, first, second), p), q);
+  if (const double z = circle_intersection(s, first, second, 0.5 * (p + q), p, q); z == z) return z;
+  const double at_p = gap(s, first, second, p).value, at_q = gap(s, first, second, q).value;
+  double z = p - at_p * (q - p) / (at_q - at_p);
+  for (int step = 0; step < 80; ++step) {
+    if (!(z > p && z < q)) z = 0.5 * (p + q);
+    const Gap here = gap(s, first, second, z);
+    ((here.value >= 0) == (at_p >= 0) ? p : q) = z;
+    if (!(q - p > 4e-16 * z)) break;
+    z += here.step();
+    if (here.is_last(z)) return std::fmin(std::fmax(z, p), q);
+  }
+  return z;
+}
+
+double intersection_near(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
+  if (of_chain(first, second)) return chain_intersection(s, first, second);
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  if (const double at = circle_intersection(s, first, second, z, 0, kUnbounded); at == at) return at;
+  double first_slope = 0;
+  for (int step = 0; step < 8; ++step) {
+    const Gap here = gap(s, first, second, z);
+    if (step == 0) first_slope = here.slope;
+    if (!(first_slope * here.slope > 0)) return kNoIntersection;
+    z += here.step();
+    if (here.is_last(z)) return z;
+  }
+  return kNoIntersection;
+}
+
+}  // namespace pkm::hybrid

@@ -1,0 +1,69 @@
+// Interval branch and prune for components that the sampled slices missed. Boxes proven empty by interval arithmetic
+// are discarded, the quadratic constraints contract v and z, and the remaining boxes are bisected.
+#pragma once
+
+#include "engine/generic/columns/slice_plan.hpp"
+#include "engine/geometry/pose.hpp"
+#include "engine/math/interval.hpp"
+
+namespace pkm::generic {
+
+/// Scratch memory of ComponentSearch.
+struct SearchScratch {
+  struct Box {
+    std::array<Interval, kMaxCoordinates> side;  ///< of each outer coordinate, v and z, if they exist
+    Signs open = ~Signs{0};                      ///< constraints that can be negative there
+
+    const Interval& outermost() const { return side[0]; }
+  };
+  std::vector<Box> boxes;  ///< that can contain feasible points
+  std::size_t examined = 0;
+
+  Box whole;                                            ///< the ranges of all coordinates
+  std::array<Interval, kMaxCoordinates + 1> evaluated;  ///< by stage: the side for which the registers were computed
+  std::vector<Interval> registers;
+  std::vector<Box> non_empty;  ///< boxes with a non-empty slice
+  std::vector<Box> halves;
+  std::vector<std::array<double, 2>> uncovered;
+};
+
+class ComponentSearch {
+ public:
+  explicit ComponentSearch(const SlicePlan& plan) : plan_(plan) {}
+
+  /// Begins without boxes. @param registers  after the stage of the design
+  void start(std::span<const double> registers, SearchScratch& scratch) const;
+  /// Adds a box: an interval of the outermost coordinate and the whole ranges of the others.
+  void add(double from, double to, SearchScratch& scratch) const;
+  /// Discards boxes that are proven empty, and contracts the others.
+  void examine(SearchScratch& scratch) const;
+  /// Whether bisect() will bisect the outermost coordinate.
+  bool bisects_outermost(const SearchScratch::Box& box, const SearchScratch& scratch) const {
+    return longest(box, scratch) == 0;
+  }
+  void bisect(SearchScratch& scratch) const;
+  /// Removes the boxes that contain a non-empty slice: the refinement around that slice covers them.
+  void remove_containing(double at, SearchScratch& scratch) const;
+  /// Adds samples on one side of the boxes: in each interval that they cover without gaps as many as there are adjacent
+  /// boxes, at least `count`.
+  /// @param at  only boxes that contain this value of the outermost coordinate; std::nullopt: all boxes
+  void add_samples(std::size_t side, std::optional<double> at, int count, std::vector<double>& places,
+                   SearchScratch& scratch) const;
+  /// Volume of the remaining boxes, except those adjacent to non-empty slices.
+  double undecided_volume(SearchScratch& scratch) const;
+
+ private:
+  struct BoxQuadratic;
+
+  std::size_t outer() const { return plan_.order.outer.size(); }
+  std::size_t sides() const { return outer() + (plan_.order.v ? 2 : 1); }
+  bool may_be_feasible(SearchScratch::Box& box, SearchScratch& scratch) const;
+  bool evaluate(const SearchScratch::Box& box, SearchScratch& scratch) const;
+  BoxQuadratic in_box(const Surface& surface, const SearchScratch::Box& box, std::span<const Interval> registers) const;
+  double volume(const SearchScratch::Box& box) const;
+  std::size_t longest(const SearchScratch::Box& box, const SearchScratch& scratch) const;
+
+  const SlicePlan& plan_;
+};
+
+}  // namespace pkm::generic

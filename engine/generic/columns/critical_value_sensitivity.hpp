@@ -1,0 +1,34 @@
+// Sensitivity of a critical value at which the vertices of a planar slice change, by the implicit function theorem. A
+// few boundary curves degenerate there, and their gradients in the slice are linearly dependent: two tangent curves,
+// three through one point, a conic that is a single point. With factors f such that sum f grad P = 0, all P = 0 gives
+//
+//   dx/dp = - sum f P_p / sum f P_x.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/generic/columns/planar_slice_sensitivity.hpp"
+
+namespace pkm::generic {
+
+/// Endpoint of an arc.
+struct ArcEnd {
+  std::uint32_t label;  ///< of the vertex
+  std::uint32_t surface;
+  double v, z;
+};
+
+/// Endpoints of the arcs of a slice, after measure().
+std::vector<ArcEnd> arc_ends(const PlanarSlice& planar_slice, const PlanarSliceScratch& scratch);
+
+/// A critical value with its derivatives; std::nullopt if the degenerating curves are not identified.
+/// @param inside, outside  endpoints of arcs on both sides of it
+/// @param scratch          of the slice inside
+/// @param by_design, by_x  sensitivities with respect to the design, and to the outer coordinate
+std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> outside,
+                                                   const PlanarSliceScratch& scratch,
+                                                   const PlanarSliceSensitivity& by_design,
+                                                   const PlanarSliceSensitivity& by_x);
+
+}  // namespace pkm::generic

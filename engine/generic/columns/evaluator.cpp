@@ -1,0 +1,286 @@
+#include "engine/generic/columns/evaluator.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/generic/clearance.hpp"
+#include "engine/generic/columns/nested_integral.hpp"
+#include "engine/generic/conditioning.hpp"
+#include "engine/generic/dynamics.hpp"
+#include "engine/generic/inertia_batch.hpp"
+#include "engine/workspace/pose_quantities.hpp"
+#include "engine/workspace/with_slopes.hpp"
+
+namespace pkm::generic {
+namespace {
+
+using Kind = FixedCoordinate::Kind;
+
+/// The orders of coordinates in which slices can have closed forms: each pair of swept ones as (v, z), or each one as
+/// z, with the others as outer coordinates (in a single order for lines); integrated ones are outermost.
+std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
+  std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
+  for (const int coordinate : sweep.held)
+    if (how_fixed(plan, coordinate).kind == Kind::integrated)
+      integrated.push_back(static_cast<std::size_t>(coordinate));
+  std::ranges::sort(swept);
+  std::vector<CoordinateOrder> orders;
+  do {
+    CoordinateOrder order{.outer = integrated, .v = {}, .z = swept.back()};
+    std::span<const std::size_t> outer = std::span(swept).first(swept.size() - 1);
+    if (!are_lines && !outer.empty()) {
+      order.v = outer.back();
+      outer = outer.first(outer.size() - 1);
+    }
+    order.outer.insert(order.outer.end(), outer.begin(), outer.end());
+    if (!are_lines || std::ranges::is_sorted(outer)) orders.push_back(order);
+  } while (std::ranges::next_permutation(swept).found);
+  return orders;
+}
+
+Ranges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& columns) {
+  Ranges box(coordinates);
+  if (columns.box)
+    for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+      box[static_cast<std::size_t>(sweep.swept[axis])] = (*columns.box)[axis];
+  return box;
+}
+
+struct Plans {
+  std::vector<SlicePlan> all;
+  std::string why_not;  ///< if there are no plans
+};
+
+/// Slices of conics if possible, otherwise lines bounded by polynomials, otherwise any lines. @param max_evaluations
+/// maximum number of plans
+Plans plans_of(const Evaluation& evaluation, std::size_t mode, const Sweep& sweep, const WorkspacePlan& plan,
+               const Ranges& box, std::size_t max_evaluations = 100) {
+  Plans plans;
+  for (const auto& [are_lines, curves] : {std::pair{false, false}, {true, false}, {true, true}}) {
+    if (!plans.all.empty()) break;
+    for (const CoordinateOrder& order : orders_of(sweep, plan, are_lines)) {
+      if (plans.all.size() == max_evaluations) return plans;
+      SlicePlan made = plan_slices(evaluation, mode, order, curves, box);
+      if (made.why_not.empty())
+        plans.all.push_back(std::move(made));
+      else
+        plans.why_not = made.why_not;
+    }
+  }
+  return plans;
+}
+
+class GenericColumns final : public WithGradients<GenericColumns> {
+ public:
+  GenericColumns(const Mechanism& mechanism, const Evaluation& evaluation, const WorkspacePlan& plan,
+                 const ColumnOptions& columns, const Demand& demand)
+      : mechanism_(mechanism),
+        e_(evaluation),
+        plan_(plan),
+        demand_(demand),
+        sweep_(sweep_of(mechanism.info(), plan)),
+        mode_(number_of_mode(mechanism.info(), demand.mode)),
+        inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
+        outer_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {
+    if (demand.characteristic_length)
+      throw std::invalid_argument("mechanism " + mechanism.info().name +
+                                  " has its own characteristic length only; leave out characteristic_length");
+    const Ranges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
+    auto [plans, why_not] = plans_of(evaluation, mode_, sweep_, plan, box);
+    if (plans.empty())
+      throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
+                                  "; take workspace.method = \"voxels\"");
+    SlicePlan best = fastest(std::move(plans));
+    // Derivatives lose digits at a kink of the measure that no change of the type indicates; with conics two more
+    // digits are cheap.
+    const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
+    integral_.emplace(std::move(best), tolerance);
+    if (demand.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
+    if (demand.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, demand.rotors);
+  }
+
+ private:
+  friend WithGradients<GenericColumns>;
+  static constexpr int kSampleNodes = 6;
+
+  struct Known {
+    const GenericColumns* of = nullptr;
+    std::vector<Dual4> inputs;
+    std::vector<double> by_input;
+    Integral<double> volume;
+  };
+  struct Room {
+    std::vector<double> inputs;
+    IntegralScratch integral;
+    InertiaScratch inertia;
+    Known known;
+  };
+  template <class S>
+  struct SampleRoom {
+    std::vector<S> inputs;
+    ConditioningScratch<S> conditioning;
+  };
+
+  /// The swept and integrated coordinates.
+  std::vector<int> dual_registers() const {
+    const CoordinateOrder& order = integral_->plan().order;
+    std::vector<int> all(order.outer.begin(), order.outer.end());
+    if (order.v) all.push_back(static_cast<int>(*order.v));
+    all.push_back(static_cast<int>(order.z));
+    return all;
+  }
+
+  /// The plan whose analysis of the default design at low accuracy takes the fewest slices; plans that take too long
+  /// are excluded unless all do.
+  SlicePlan fastest(std::vector<SlicePlan> plans) const {
+    const double tolerance = plans.front().order.v ? 1e-3 : 1e-2;
+    if (plans.size() == 1 || plans.front().order.outer.empty()) return std::move(plans.front());
+    std::vector<double> design;
+    for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
+    constexpr long kMaxBisections = 2'000'000;  // a few seconds
+    Room memory;
+    std::size_t best = 0;
+    double least = 1e7;
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      const NestedIntegral trial(plans[i], tolerance);
+      const auto curves =
+          static_cast<std::size_t>(std::ranges::count(plans[i].surfaces, true, &Surface::is_transcendental));
+      const auto per_section =
+          static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].independent.back().size() + 400 * curves);
+      fill_inputs<double>(design, memory.inputs);
+      memory.integral.column.bisections = 0;
+      memory.integral.column.max_bisections = kMaxBisections;
+      try {
+        trial.measure(memory.inputs, memory.integral, std::max(1L, static_cast<long>(least / per_section)));
+      } catch (const TooManyBisections&) {
+        continue;
+      }
+      const double work = static_cast<double>(memory.integral.evaluations) * per_section;
+      if (i > 0 && work >= least) continue;
+      best = i;
+      least = work;
+    }
+    return std::move(plans[best]);
+  }
+
+  /// The inputs, with fixed coordinates at their values.
+  template <class S>
+  void fill_inputs(std::span<const S> parameters, std::vector<S>& inputs) const {
+    const Inputs& at = e_.model.inputs;
+    inputs.resize(at.count());
+    e_.fill_inputs<S>(parameters, plan_.limits, mode_, inputs);
+    for (const int coordinate : sweep_.held) {
+      const auto i = static_cast<std::size_t>(coordinate);
+      const FixedCoordinate held = how_fixed(plan_, coordinate);
+      if (held.kind == Kind::integrated) continue;
+      S& input = inputs[at.coordinate(i)];
+      const auto middle = held.kind == Kind::middle ? e_.of_design<S>(e_.default_values[i], parameters) : std::nullopt;
+      if (held.kind == Kind::middle && !middle) refuse_middle(coordinate);
+      input = middle ? *middle : S(held.kind == Kind::listed ? held.values.front() : held.value);
+    }
+  }
+
+  [[noreturn]] void refuse_middle(int coordinate) const {
+    const MechanismInfo& info = mechanism_.info();
+    throw std::invalid_argument("mechanism " + info.name + " does not say where the middle of " +
+                                info.coordinates[static_cast<std::size_t>(coordinate)].name + " is; give a value");
+  }
+
+  template <class S>
+  void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
+    Room& memory = scratch.get<Room>();
+    SampleRoom<S>& samples = scratch.get<SampleRoom<S>>();
+    survey.clear(demand_.fields);
+    fill_inputs<S>(parameters, samples.inputs);
+    memory.inputs.resize(samples.inputs.size());
+    std::ranges::transform(samples.inputs, memory.inputs.begin(), [](const S& x) { return value_of(x); });
+    Integral<double> found;
+    if constexpr (std::is_same_v<S, double>) {
+      memory.known.of = nullptr;
+      found = integral_->measure(memory.inputs, memory.integral);
+    } else {
+      found = with_slopes(samples.inputs, memory);
+    }
+    take_volume(found, survey);
+    if (found.value == 0 && found.error > 0) survey.error = 1;
+    if constexpr (!std::is_same_v<S, double>) {
+      for (std::size_t i = 0; i < samples.inputs.size(); ++i)
+        survey.volume.v = survey.volume.v + samples.inputs[i].v * memory.known.by_input[i];
+    }
+    if (demand_.needs_samples()) add_samples(parameters, samples, memory, survey);
+  }
+
+  /// The volume and its derivatives with respect to all inputs. Parameters come in blocks of four (forward mode), of
+  /// which the first one computes the results for all, because only the derivatives differ.
+  Integral<double> with_slopes(const std::vector<Dual4>& inputs, Room& memory) const {
+    Known& known = memory.known;
+    const auto same_slopes = [](const Dual4& x, const Dual4& y) { return std::ranges::equal(x.v.d, y.v.d); };
+    if (known.of == this && std::ranges::equal(known.inputs, inputs, {}, &Dual4::a, &Dual4::a) &&
+        !std::ranges::equal(known.inputs, inputs, same_slopes))
+      return known.volume;
+    known.of = this;
+    known.inputs = inputs;
+    known.volume = integral_->measure_for_gradient(memory.inputs, memory.integral);
+    known.by_input.assign(memory.inputs.size(), 0);
+    integral_->add_gradient(known.by_input, memory.integral);
+    return known.volume;
+  }
+
+  template <class S>
+  void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& memory, Survey<S>& survey) const {
+    const std::vector<S>& inputs = samples.inputs;
+    const CoordinateOrder& order = integral_->plan().order;
+    if (inertia_) {
+      check_masses(e_, parameters);
+      inertia_->start(inputs, memory.inertia);
+    }
+    if (conditioning_) conditioning_->start(parameters, inputs, samples.conditioning);
+    Pose<S> pose(e_.model.inputs.coordinates);
+    std::copy_n(&inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
+    std::vector<S>* const conditioning = survey.find(kConditioning);
+    integral_->for_each_node<S>(inputs, outer_rule_, inner_rule_, memory.integral,
+                                [&](const std::vector<S>& outer, const S& v, const S& z, const S& weight) {
+                                  for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
+                                  if (order.v) pose[*order.v] = v;
+                                  pose[order.z] = z;
+                                  survey.weight.push_back(weight);
+                                  if (demand_.poses) survey.pose.push_back(pose);
+                                  if (conditioning)
+                                    conditioning->push_back(conditioning_->at(pose, samples.conditioning));
+                                  if (inertia_) inertia_->add(pose, memory.inertia, survey);
+                                });
+    if (inertia_) inertia_->finish(memory.inertia, survey);
+  }
+
+  const Mechanism& mechanism_;
+  const Evaluation& e_;
+  WorkspacePlan plan_;
+  Demand demand_;
+  const Sweep& sweep_;
+  std::size_t mode_;
+  GaussRule inner_rule_, outer_rule_;
+  std::optional<NestedIntegral> integral_;
+  std::optional<SampleConditioning> conditioning_;  ///< if they are demanded
+  std::optional<InertiaBatch> inertia_;
+};
+
+}  // namespace
+
+std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluation) {
+  const WorkspacePlan usual{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
+  const Sweep& sweep = mechanism.info().sweeps.front();
+  const std::size_t coordinates = evaluation.model.inputs.coordinates;
+  const Plans plans = plans_of(evaluation, 0, sweep, usual, box_of(sweep, coordinates, {}), 1);
+  return plans.all.empty() ? plans.why_not : "";
+}
+
+std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
+                                                          const WorkspacePlan& plan, const ColumnOptions& columns,
+                                                          const Demand& demand) {
+  refuse_clearance(evaluation.model, plan.limits,
+                   "has no column surveys under a clearance (clearance_min), because links that meet end columns where "
+                   "no formula says; take workspace.method = \"voxels\"");
+  return std::make_unique<GenericColumns>(mechanism, evaluation, plan, columns, demand);
+}
+
+}  // namespace pkm::generic

@@ -1,0 +1,351 @@
+#include "engine/generic/columns/nested_integral.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/stop.hpp"
+#include "engine/math/hash.hpp"
+#include "engine/math/lanes.hpp"
+#include "engine/math/satisfied.hpp"
+
+namespace pkm::generic {
+namespace {
+
+constexpr double kMinWidth = 1e-12;  // relative to the range: shorter intervals are ignored
+constexpr double kMinResolvableWidth =
+    1e-6;  // relative to the range: shorter intervals can have types that rounding mixes
+constexpr double kBlurredInLines = 1e-4;
+constexpr std::size_t kMostParts = 3000;
+constexpr int kBisectionsOfJump = 5;    // consecutive ones that leave nearly all of a change in one half
+constexpr double kEndTolerance = 1e-7;  // relative to the largest slice, if derivatives will be computed
+
+/// Value at t in [0, 1] of the polynomial through the nodes of kronrod_rule(), by the barycentric formula.
+double through_nodes(const std::array<Slice, NestedRule::kNodes>& slices, double t) {
+  static const std::array<double, NestedRule::kNodes> kWeights = [] {
+    std::array<double, NestedRule::kNodes> weights;
+    const auto& node = kronrod_rule().node;
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      double product = 1;
+      for (std::size_t j = 0; j < node.size(); ++j)
+        if (j != i) product *= 4 * (node[i] - node[j]);
+      weights[i] = 1 / product;
+    }
+    return weights;
+  }();
+  double above = 0, below = 0;
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+    const double term = kWeights[i] / (t - kronrod_rule().node[i]);
+    above += term * slices[i].measure;
+    below += term;
+  }
+  return above / below;
+}
+
+/// Error at the endpoints of the polynomial through the nodes of an interval. A square-root singularity just outside
+/// the interval hardly affects the integral, but its derivative: that of sqrt(t^2 + e) with respect to e is as large as
+/// 1/sqrt(e) between 0 and the first node.
+double missed_at_ends(const SmoothInterval& part, const std::array<Slice, NestedRule::kNodes>& slices) {
+  const auto& piece = part.piece;
+  const double width = piece.upper - piece.lower, both = piece.sqrt_at_lower && piece.sqrt_at_upper ? 3 : 1;
+  const double from = (part.below.at - piece.lower) / width, to = (piece.upper - part.above.at) / width;
+  const double at_lower = through_nodes(slices, piece.sqrt_at_lower ? std::sqrt(from / both) : from);
+  const double at_upper = through_nodes(slices, 1 - (piece.sqrt_at_upper ? std::sqrt(to / both) : to));
+  return std::max(std::fabs(at_lower - part.below.measure), std::fabs(at_upper - part.above.measure));
+}
+
+/// Whether nearly all of a change is in one half, as at a discontinuity; for a square root it is 71 %.
+bool is_one_sided(const Slice& below, const Slice& middle, const Slice& above) {
+  const double first = std::fabs(middle.measure - below.measure), second = std::fabs(above.measure - middle.measure);
+  return std::max(first, second) > 0.95 * (first + second);
+}
+
+}  // namespace
+
+NestedIntegral::NestedIntegral(SlicePlan plan, double tolerance)
+    : innermost_(plan.order.v ? std::variant<PlanarSlice, Column>(PlanarSlice(std::move(plan)))
+                              : std::variant<PlanarSlice, Column>(Column(std::move(plan)))),
+      tolerance_(tolerance) {
+  const SlicePlan& own = this->plan();
+  // transcendental constraints depend on all preceding stages
+  if (!ends_in_lines() || levels() == 0 || std::ranges::any_of(own.surfaces, &Surface::is_transcendental)) return;
+  const auto stage = static_cast<int>(levels());
+  const auto keep = [&](std::uint32_t at) {
+    if (own.program.stage_of()[at] == stage && std::ranges::find(line_registers_, at) == line_registers_.end())
+      line_registers_.push_back(at);
+  };
+  for (const Surface& surface : own.surfaces) std::ranges::for_each(surface.coefficients, keep);
+  for (const CrankSigns& crank : own.formula.cranks) keep(crank.half_turn);
+  for (const auto& ends : own.range) std::ranges::for_each(ends, keep);
+  std::ranges::for_each(own.independent[levels()], keep);
+  lines_.emplace(own.program, levels(), line_registers_);
+}
+
+Integral<double> NestedIntegral::measure(std::span<const double> inputs, IntegralScratch& scratch,
+                                         long max_evaluations) const {
+  scratch.for_gradient = false;
+  return measure_all(inputs, scratch, max_evaluations);
+}
+
+Integral<double> NestedIntegral::measure_for_gradient(std::span<const double> inputs, IntegralScratch& scratch) const {
+  scratch.for_gradient = true;
+  return measure_all(inputs, scratch, 0);
+}
+
+Integral<double> NestedIntegral::measure_all(std::span<const double> inputs, IntegralScratch& scratch,
+                                             long max_evaluations) const {
+  const expression::Program& program = plan().program;
+  scratch.registers.resize(program.registers());
+  scratch.levels.resize(levels() + 1);
+  scratch.evaluations = 0;
+  scratch.max_evaluations = max_evaluations > 0 ? max_evaluations : levels() < 2 ? 100'000 : 20'000'000;
+  for (IntegralScratch::Level& level : scratch.levels) level.largest = 0;
+  program.start<double>(scratch.registers);
+  program.run<double>(0, inputs, scratch.registers);
+  scratch.measured = scratch.has_hints = false;
+  scratch.kept.clear();
+  const Slice all = inside(0, scratch);
+  scratch.measured = true;
+  return {all.measure, all.error, scratch.evaluations};
+}
+
+void NestedIntegral::set(std::size_t level, double at, IntegralScratch& scratch) const {
+  scratch.levels[level].at = at;
+  for (const auto& input : plan().program.stages()[level + 1].inputs) scratch.registers[input.to] = at;
+  plan().program.run<double>(level + 1, std::span<double>(scratch.registers));
+}
+
+Slice NestedIntegral::inside(std::size_t level, IntegralScratch& scratch) const {
+  const auto& independent = plan().independent[level];
+  for (std::size_t i = 0; i < independent.size(); ++i)
+    if (!is_satisfied(scratch.registers[independent[i]])) return {.violated = static_cast<std::uint32_t>(i + 1)};
+  if (level < levels()) return integrate(level, scratch);
+  constexpr long kColumnsPerCheck = 16;  // a column takes a microsecond
+  if (!ends_in_lines() || scratch.evaluations % kColumnsPerCheck == 0 || is_long(scratch.column)) check_stop();
+  ++scratch.evaluations;
+  const auto measured = [&](const auto& innermost, auto& own) {
+    const double measure = innermost.measure(scratch.registers, own);
+    return Slice{.measure = measure, .hash = own.type};
+  };
+  const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_);
+  return planar_slice ? measured(*planar_slice, scratch.planar_slice)
+                      : measured(std::get<Column>(innermost_), scratch.column);
+}
+
+Slice NestedIntegral::slice(std::size_t level, double at, IntegralScratch& scratch) const {
+  set(level, at, scratch);
+  if (level == 0 && scratch.has_hints) add_hints(at, scratch);
+  return set_slice(level, at, scratch);
+}
+
+Slice NestedIntegral::set_slice(std::size_t level, double at, IntegralScratch& scratch) const {
+  Slice found = inside(level + 1, scratch);
+  found.at = at;
+  if (!scratch.measured) scratch.levels[level].largest = std::max(scratch.levels[level].largest, found.measure);
+  return found;
+}
+
+/// The operations that differ between lines are evaluated in SIMD batches.
+void NestedIntegral::find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
+                                 IntegralScratch& scratch) const {
+  if (!lines_ || level + 1 < levels()) {
+    for (std::size_t i = 0; i < places.size(); ++i) slices[i] = slice(level, places[i], scratch);
+    return;
+  }
+  scratch.rows.resize(lines_->slots() * expression::kRow);
+  for (std::size_t first = 0; first < places.size(); first += expression::kRow) {
+    const auto now = places.subspan(first, std::min(expression::kRow, places.size() - first));
+    const std::size_t count = (now.size() + kLanes - 1) / kLanes * kLanes;
+    for (const std::uint32_t input : lines_->inputs()) {
+      double* const row = &scratch.rows[input * expression::kRow];
+      std::fill(std::copy(now.begin(), now.end(), row), row + count, now.back());
+    }
+    lines_->run(scratch.registers.data(), scratch.rows.data(), count);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      for (const std::uint32_t at : line_registers_)
+        scratch.registers[at] = scratch.rows[lines_->operand(at).index * expression::kRow + i];
+      slices[first + i] = set_slice(level, now[i], scratch);
+    }
+  }
+}
+
+Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) const {
+  IntegralScratch::Level& own = scratch.levels[level];
+  own.parts.clear();
+  own.irreducible_error = 0;
+  own.scanned.clear();
+  scratch.levels[level + 1].seen_count = 0;
+  const auto [from, to] = plan().range[level];
+  const double low = scratch.registers[from], high = scratch.registers[to], whole = high - low;
+  if (!(whole > 0)) return {};
+  CriticalValues& critical_values = own.critical_values[0];
+  critical_values.clear();
+  choose_samples(level, low, high, scratch);
+  if (level == 0) scratch.is_scanning = true;
+  own.scanned.resize(own.places.size());
+  find_slices(level, own.places, own.scanned, scratch);
+  if (level == 0) search_empty_gaps(scratch);
+  if (levels() == 1 && !ends_in_lines()) refine_support(scratch);
+  if (level == 0) scratch.is_scanning = false;
+  if (level + 1 < levels()) resample_changes(level, scratch);
+  critical_values.push_back({low, false, {}, own.scanned.front(), true});
+  for (std::size_t i = 1; i < own.scanned.size(); ++i)
+    find_critical_values(level, own.scanned[i - 1], own.scanned[i], whole, critical_values, scratch);
+  critical_values.push_back({high, false, own.scanned.back(), {}, true});
+  add_intervals(level, critical_values, whole, 0, scratch);
+  refine(level, whole, scratch);
+
+  std::sort(own.parts.begin(), own.parts.end(),
+            [](const SmoothInterval& x, const SmoothInterval& y) { return x.piece.lower < y.piece.lower; });
+  Slice sum;
+  sum.error = own.irreducible_error;
+  Fnv1a hash;
+  std::uint64_t last = 0;
+  for (const SmoothInterval& part : own.parts) {
+    sum.measure += part.value;
+    sum.error += part.error + part.irreducible_error;
+    if (part.below.hash != last) hash.add(part.below.hash);
+    last = part.below.hash;
+    // The bound of an interval can change, and the measure be discontinuous, while the intervals stay the same.
+    for (const IntervalBound closing : {part.lower, part.upper})
+      if (closing != kCriticalValue) hash.add(closing);
+  }
+  if (!own.parts.empty()) {
+    sum.hash = hash.value() | 1U;
+    if (level > 0) record_intervals(scratch.levels[level - 1].at, own);
+  }
+  return sum;
+}
+
+void NestedIntegral::add_intervals(std::size_t level, const CriticalValues& critical_values, double whole, int depth,
+                                   IntegralScratch& scratch) const {
+  const auto closing = [](const CriticalValue& at, const Slice& outside) {
+    return at.is_box ? kBox : outside.hash == 0 ? outside.violated : kCriticalValue;
+  };
+  for (std::size_t i = 1; i < critical_values.size(); ++i) {
+    const CriticalValue &lower = critical_values[i - 1], &upper = critical_values[i];
+    scratch.levels[level].irreducible_error += lower.missed_error;
+    if (lower.above.hash == 0 && upper.below.hash == 0) continue;
+    add_interval(level,
+                 {.piece = {lower.at, upper.at, lower.root, upper.root},
+                  .below = lower.above,
+                  .above = upper.below,
+                  .lower = closing(lower, lower.below),
+                  .upper = closing(upper, upper.above),
+                  .beyond_lower = lower.below.measure,
+                  .beyond_upper = upper.above.measure},
+                 whole, depth, scratch);
+  }
+}
+
+/// Integrates over an interval; if its nodes differ in type, over the intervals between the critical values.
+void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double whole, int depth,
+                                  IntegralScratch& scratch) const {
+  IntegralScratch::Level& own = scratch.levels[level];
+  const double width = part.piece.upper - part.piece.lower;
+  if (width < kMinWidth * whole) {
+    own.irreducible_error += width * std::max(part.below.measure, part.above.measure);
+    return;
+  }
+  const NestedRule& rule = kronrod_rule();
+  const NestedRule::Level& weights = rule.level.front();
+  std::array<double, NestedRule::kNodes> jacobians;
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+    const auto [at, jacobian] = map_node(part.piece, rule.node[i]);
+    part.at[i] = at;
+    jacobians[i] = jacobian;
+  }
+  std::array<Slice, NestedRule::kNodes> slices;
+  if (scratch.for_gradient && level == 0 && levels() == 2) {
+    part.kept = scratch.kept.size();
+    for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+      slices[i] = slice(level, part.at[i], scratch);
+      scratch.kept.push_back(scratch.levels[1].parts);
+    }
+  } else {
+    find_slices(level, part.at, slices, scratch);
+  }
+  double less = 0, add_samples = 0;
+  bool same = part.below.hash == part.above.hash;
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+    const double jacobian = jacobians[i];
+    part.weight[i] = jacobian * weights.weight[i];
+    part.value += part.weight[i] * slices[i].measure;
+    part.irreducible_error += part.weight[i] * slices[i].error;
+    less += jacobian * weights.fewer[i] * slices[i].measure;
+    same = same && slices[i].hash == part.below.hash;
+  }
+  if (!same && depth < kMaxDepth && width > (ends_in_lines() ? kBlurredInLines : kMinResolvableWidth) * whole &&
+      scratch.evaluations < scratch.max_evaluations) {
+    CriticalValues& critical_values = own.critical_values[static_cast<std::size_t>(depth) + 1];
+    const Slice below{.measure = part.beyond_lower, .violated = part.lower};
+    const Slice above{.measure = part.beyond_upper, .violated = part.upper};
+    critical_values.assign(1, {part.piece.lower, part.piece.sqrt_at_lower, below, part.below, part.lower == kBox});
+    Slice before = part.below;
+    for (Slice& next : slices) {
+      find_critical_values(level, before, next, whole, critical_values, scratch);
+      before = next;
+    }
+    find_critical_values(level, before, part.above, whole, critical_values, scratch);
+    critical_values.push_back({part.piece.upper, part.piece.sqrt_at_upper, part.above, above, part.upper == kBox});
+    return add_intervals(level, critical_values, whole, depth + 1, scratch);
+  }
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
+    add_samples += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
+  part.error = quadpack_error(std::fabs(part.value - less), add_samples);
+  if (scratch.for_gradient && same) part.missed_at_ends = missed_at_ends(part, slices);
+  if (!same) {
+    const auto [least, largest] = std::ranges::minmax(slices, {}, &Slice::measure);
+    part.irreducible_error += width * (largest.measure - least.measure);
+  }
+  own.parts.push_back(part);
+}
+
+/// Bisects the interval with the largest error until the sum is small enough, then those inaccurate at their endpoints.
+void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& scratch) const {
+  IntegralScratch::Level& own = scratch.levels[level];
+  // The error of an inner integral need not be below what the largest one allows.
+  const double share = level == 0 ? 1 : ends_in_lines() ? 0.5 : 0.1;
+  const double least = level == 0 ? 0 : share * tolerance_ * scratch.levels[level - 1].largest;
+  const double may_miss = std::max(kEndTolerance, 10 * tolerance_) * own.largest;
+  const auto misses = [&](const SmoothInterval& part) {
+    return part.missed_at_ends > may_miss && part.piece.upper - part.piece.lower > kMinWidth * whole;
+  };
+  while (own.parts.size() < kMostParts && scratch.evaluations < scratch.max_evaluations) {
+    double value = 0, error = 0;
+    for (const SmoothInterval& part : own.parts) {
+      value += part.value;
+      error += part.error;
+    }
+    const bool is_vague = error > std::max({least, share * tolerance_ * value, 1e-15 * value});
+    const auto at = is_vague ? std::ranges::max_element(own.parts, {}, &SmoothInterval::error)
+                             : std::ranges::find_if(own.parts, misses);
+    if (at == own.parts.end()) return;
+    const SmoothInterval part = *at;
+    own.parts.erase(at);
+    const auto [first, second] = halves(part.piece);
+    const Slice middle = slice(level, first.upper, scratch);
+    const double change = std::fabs(part.above.measure - part.below.measure);
+    const bool may_be_jump = level + 1 < levels() && change > kDiscontinuity * own.largest;
+    const int one_sided_bisections =
+        may_be_jump && is_one_sided(part.below, middle, part.above) ? part.one_sided_bisections + 1 : 0;
+    if (one_sided_bisections == kBisectionsOfJump) own.irreducible_error += change * whole / kSamplesOfLines;
+    SmoothInterval low{.piece = first,
+                       .below = part.below,
+                       .above = middle,
+                       .lower = part.lower,
+                       .one_sided_bisections = one_sided_bisections};
+    low.beyond_lower = part.beyond_lower;
+    low.beyond_upper = middle.measure;
+    SmoothInterval high{.piece = second,
+                        .below = middle,
+                        .above = part.above,
+                        .upper = part.upper,
+                        .one_sided_bisections = one_sided_bisections};
+    high.beyond_lower = middle.measure;
+    high.beyond_upper = part.beyond_upper;
+    add_interval(level, low, whole, 0, scratch);
+    add_interval(level, high, whole, 0, scratch);
+  }
+}
+
+}  // namespace pkm::generic

@@ -1,0 +1,157 @@
+// Area of a planar slice in closed form: the conics that bound it intersect at roots of polynomials of degree four, and
+// between those the endpoints of columns are arcs whose areas have closed forms.
+#pragma once
+
+#include <algorithm>
+
+#include "engine/generic/columns/conic.hpp"
+#include "engine/generic/columns/critical_value_solver.hpp"
+#include "engine/generic/columns/endpoints.hpp"
+#include "engine/generic/columns/slice_plan.hpp"
+#include "engine/math/quadrature.hpp"
+
+namespace pkm::generic {
+
+/// Scratch memory of PlanarSlice, in coordinates t, s in [-1, 1] for v and z.
+struct PlanarSliceScratch {
+  struct Vertex {
+    double t;
+    std::uint32_t label;
+    bool touches = false;  ///< an intersection of conics that are tangent there
+    double s = 0;          ///< of intersections and turning points
+  };
+  struct Span {
+    EndLabel lower, upper;
+
+    bool operator==(const Span&) const = default;
+  };
+  struct Piece {
+    double from, to;
+    std::size_t from_vertex, to_vertex;  ///< the first vertex at this t; after the last one: the sides of the slice
+    std::size_t first, count;            ///< range in `spans`
+  };
+  /// The constraints that a conic represents: several can be equal, or equal up to the sign.
+  struct Meaning {
+    Signs same, opposite;
+  };
+  std::array<Conic, kMaxSurfaces> conics;
+  std::array<Meaning, kMaxSurfaces> meaning;
+  std::array<double, 2> v, z;       ///< centre and half width
+  std::vector<std::size_t> active;  ///< conics that change their sign in the slice, each once
+  Signs always = 0;                 ///< constraints that are >= 0 in the whole slice
+  std::vector<Vertex> vertices;
+  std::vector<Piece> pieces;
+  std::vector<Span> spans, column;
+  Ends ends;
+  std::vector<double> before, now, other_adjoints;
+  SliceType type = 0;
+};
+
+/// s of an endpoint of the column at t.
+inline double end_at(EndLabel end, double t, const PlanarSliceScratch& scratch) {
+  return place_on(scratch.conics[end >> 1U], static_cast<int>(end & 1U), t);
+}
+
+/// Endpoints of pieces and columns as numbers (PlanarSliceSensitivity: with derivatives).
+struct PlanarSliceValues {
+  using Scalar = double;
+  const PlanarSliceScratch& scratch;
+
+  double vertex(std::size_t, double t) const { return t; }
+  double end(EndLabel end, double t) const { return end_at(end, t, scratch); }
+};
+
+class PlanarSlice {
+ public:
+  explicit PlanarSlice(SlicePlan plan) : plan_(std::move(plan)) {}
+
+  const SlicePlan& plan() const { return plan_; }
+  /// Computes the area, the type and the pieces. @param registers  after all stages but that of v
+  double measure(std::span<double> registers, PlanarSliceScratch& scratch) const;
+  /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
+  void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
+                    PlanarSliceScratch& scratch) const;
+  /// Calls visit(v, z, weight) at quadrature nodes inside the columns, after measure(). @param ends  PlanarSliceValues
+  /// or PlanarSliceSensitivity
+  template <class Ends, class Visit>
+  void for_each_node(const GaussRule& along_v, const GaussRule& along_z, const PlanarSliceScratch& scratch,
+                     const Ends& ends, const Visit& visit) const {
+    using S = typename Ends::Scalar;
+    for (const auto& piece : scratch.pieces) {
+      const Piece<S> range{ends.vertex(piece.from_vertex, piece.from), ends.vertex(piece.to_vertex, piece.to),
+                           has_sqrt_singularity(piece.from_vertex, scratch),
+                           has_sqrt_singularity(piece.to_vertex, scratch)};
+      visit_nodes(range, along_v, [&](const S& t, const S& jacobian, double weight_v) {
+        for (std::size_t k = piece.first; k < piece.first + piece.count; ++k) {
+          const S low = ends.end(scratch.spans[k].lower, t), high = ends.end(scratch.spans[k].upper, t);
+          const S weight = scratch.v[1] * scratch.z[1] * jacobian * weight_v * (high - low);
+          for (std::size_t j = 0; j < along_z.node.size(); ++j)
+            visit(scratch.v[0] + scratch.v[1] * t, scratch.z[0] + scratch.z[1] * (low + (high - low) * along_z.node[j]),
+                  weight * along_z.weight[j]);
+        }
+      });
+    }
+  }
+
+  /// Calls visit(end, first vertex there, t) for each endpoint of an arc, after measure().
+  template <class Visit>
+  void for_each_arc_end(const PlanarSliceScratch& scratch, const Visit& visit) const {
+    const auto continues = [&](const PlanarSliceScratch::Piece& piece, EndLabel end, bool above) {
+      return std::any_of(
+          scratch.spans.begin() + static_cast<std::ptrdiff_t>(piece.first),
+          scratch.spans.begin() + static_cast<std::ptrdiff_t>(piece.first + piece.count),
+          [&](const PlanarSliceScratch::Span& span) { return (above ? span.upper : span.lower) == end; });
+    };
+    for (std::size_t p = 0; p < scratch.pieces.size(); ++p) {
+      const auto& piece = scratch.pieces[p];
+      const auto* const before = p > 0 && scratch.pieces[p - 1].to == piece.from ? &piece - 1 : nullptr;
+      const auto* const after =
+          p + 1 < scratch.pieces.size() && scratch.pieces[p + 1].from == piece.to ? &piece + 1 : nullptr;
+      for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
+        for (const bool above : {false, true}) {
+          const EndLabel end = above ? scratch.spans[i].upper : scratch.spans[i].lower;
+          if (!before || !continues(*before, end, above)) visit(end, piece.from_vertex, piece.from);
+          if (!after || !continues(*after, end, above)) visit(end, piece.to_vertex, piece.to);
+        }
+    }
+  }
+  /// Appends the intervals of v in which the columns have the same endpoints, after measure().
+  void add_pieces(const PlanarSliceScratch& scratch, std::vector<Piece<double>>& pieces) const;
+  /// The feasible intervals of z at v in ascending order, after measure().
+  std::vector<std::array<double, 2>> columns(double v, std::span<double> registers, PlanarSliceScratch& scratch) const;
+  /// Finds the vertices that define the type, after measure().
+  void find_features(const PlanarSliceScratch& scratch, BoundaryFeatures& features) const;
+  /// Relative residual of a vertex in the surfaces that intersect at a vertex of a neighbouring slice; infinity if it
+  /// is on them, or if one of the two is not an intersection.
+  static double distance(const BoundaryFeature& vertex, const BoundaryFeature& other,
+                         const PlanarSliceScratch& scratch);
+  /// Derivative with respect to v of constraint k, which is independent of z, at t. @param by  as of
+  /// expression::stage_derivative()
+  double slope_of_independent(std::size_t k, double t, std::span<double> registers, const PlanarSliceScratch& scratch,
+                              std::vector<double>& by) const;
+
+ private:
+  bool load(std::span<const double> registers, PlanarSliceScratch& scratch) const;
+  void find_vertices(PlanarSliceScratch& scratch) const;
+  void add_vertex(double t, double s, Signs of, std::uint32_t label, PlanarSliceScratch& scratch) const;
+  void find_independent_vertices(std::span<double> registers, PlanarSliceScratch& scratch) const;
+  void find_pieces(bool independent, std::span<double> registers, PlanarSliceScratch& scratch) const;
+  void find_column(double t, const double* registers, PlanarSliceScratch& scratch) const;
+  /// Evaluates the stage of v at t.
+  void set_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
+  /// Evaluates the constraints that are independent of z at t.
+  void evaluate_independent(double t, std::span<double> registers, const PlanarSliceScratch& scratch,
+                            std::vector<double>& values) const;
+  bool independent_hold(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
+  /// Integrals of 1, s and s^2 over the columns of a piece at t.
+  std::array<double, 3> moments(const PlanarSliceScratch::Piece& piece, double t,
+                                const PlanarSliceScratch& scratch) const;
+  void find_type(PlanarSliceScratch& scratch) const;
+  /// Whether the length of columns has a square-root singularity there.
+  static bool has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch);
+  std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
+
+  SlicePlan plan_;
+};
+
+}  // namespace pkm::generic

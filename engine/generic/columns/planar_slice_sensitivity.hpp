@@ -1,0 +1,51 @@
+// Sensitivities of the vertices and columns of a planar slice; the quadrature nodes between them are functions of them.
+#pragma once
+
+#include <vector>
+
+#include "engine/generic/columns/planar_slice.hpp"
+#include "engine/math/dual.hpp"
+
+namespace pkm::generic {
+
+/// A root with the derivatives -sum / by; 0 if that is infinite.
+Dual4 differentiable_root(double at, const Components<4>& sum, double by);
+
+/// Derivatives of a quantity with the gradient `by` with respect to the registers.
+Components<4> tangent(std::span<const double> by, std::span<const Dual4> registers);
+
+/// Endpoints of pieces and columns, for PlanarSlice::for_each_node().
+class PlanarSliceSensitivity {
+ public:
+  using Scalar = Dual4;
+
+  /// @param scratch       after measure()
+  /// @param differentiable     registers after all stages but that of v
+  /// @param registers  their values
+  PlanarSliceSensitivity(const PlanarSlice& planar_slice, const PlanarSliceScratch& scratch,
+                         std::span<const Dual4> dual_registers, std::span<double> registers)
+      : section_(planar_slice), room_(scratch), moving_(dual_registers), registers_(registers) {}
+
+  /// @param first  the first vertex at t
+  Dual4 vertex(std::size_t first, double t) const;
+  Dual4 end(EndLabel end, const Dual4& t) const;
+
+  /// Derivatives of a boundary curve with respect to t, s, and the design at constant t and s.
+  struct Boundary {
+    double t, s;
+    Components<4> change;
+  };
+  /// @param of  a surface, or the label of a vertex at a side or a independent condition
+  Boundary boundary(std::uint32_t of, double t, double s) const;
+
+ private:
+  Dual4 crossing(const PlanarSliceScratch::Vertex& at) const;
+  Dual4 turning_point(std::uint32_t surface, const PlanarSliceScratch::Vertex& at) const;
+
+  const PlanarSlice& section_;
+  const PlanarSliceScratch& room_;
+  std::span<const Dual4> moving_;
+  std::span<double> registers_;
+};
+
+}  // namespace pkm::generic

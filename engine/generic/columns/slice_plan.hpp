@@ -1,0 +1,48 @@
+// Constraints of a workspace in slices: in planes (v, z) at given outer coordinates as conics whose coefficients a
+// program computes, or in lines along z as polynomials of degree at most four or as transcendental functions.
+#pragma once
+
+#include <string>
+
+#include "engine/expression/program.hpp"
+#include "engine/generic/columns/formula.hpp"
+#include "engine/generic/evaluation.hpp"
+
+namespace pkm::generic {
+
+/// A constraint surface in a slice: a conic or a polynomial, given by the registers of its coefficients.
+struct Surface {
+  /// Coefficients of 1, v, z, v^2, v z, z^2; without v of 1, z, z^2, z^3, z^4. Transcendental: f(z) and its derivative,
+  /// which the last stage of the program computes.
+  std::array<std::uint32_t, 6> coefficients;
+  bool has_z;              ///< for a conic
+  bool is_high_degree;     ///< for a polynomial: its degree is three or four
+  bool is_transcendental;  ///< transcendental
+};
+
+/// Roles of the coordinates.
+struct CoordinateOrder {
+  std::vector<std::size_t> outer;  ///< outer coordinates, the outermost first
+  std::optional<std::size_t> v;    ///< std::nullopt: slices are lines
+  std::size_t z = 0;
+};
+
+using Ranges = std::vector<std::optional<std::array<double, 2>>>;
+
+struct SlicePlan {
+  CoordinateOrder order;
+  expression::Program program;  ///< stages: the design, each outer coordinate, v; with transcendental constraints z
+  std::vector<Surface> surfaces;
+  Formula formula;
+  std::vector<std::vector<std::uint32_t>>
+      independent;  ///< constraints independent of the inner coordinates, by stage: registers, >= 0 if satisfied
+  std::vector<std::array<std::uint32_t, 2>> range;  ///< registers of the bounds of each outer coordinate, v and z
+  std::string why_not;                              ///< if not empty: why these slices have no closed form
+};
+
+/// @param curves  whether transcendental constraints are allowed in lines
+/// @param box     by coordinate; std::nullopt: the range of the model
+SlicePlan plan_slices(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,
+                      const Ranges& box);
+
+}  // namespace pkm::generic

@@ -1,0 +1,20 @@
+// Labels of the vertices of a planar slice.
+#pragma once
+
+#include "engine/generic/columns/planar_slice.hpp"
+
+namespace pkm::generic {
+
+// Kinds of vertices; of coincident ones the first kind in this order represents all.
+inline constexpr std::uint32_t kSide = 1U << 28, kIndependent = 2U << 28, kVertical = 3U << 28, kCrossing = 4U << 28,
+                               kTurningPoint = 5U << 28, kKind = 15U << 28;
+
+/// Gradient with respect to t and s.
+inline std::array<double, 2> gradient(const Conic& P, double t, double s) {
+  return {P.c[1] + 2 * t * P.c[3] + s * P.c[4], P.c[2] + t * P.c[4] + 2 * s * P.c[5]};
+}
+
+/// The vertex among those at one t at which arcs of a surface end; constraints independent of z end all arcs.
+std::uint32_t vertex_of(std::size_t surface, std::size_t first, double t, const PlanarSliceScratch& scratch);
+
+}  // namespace pkm::generic
