@@ -5,7 +5,7 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/accelerators/four_ppa_two_par/clearance.hpp"
 #include "engine/math/random.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/accelerators/four_ppa_two_par/plain_pose.hpp"
 
 namespace pkm::benchmarks {
@@ -47,11 +47,11 @@ std::vector<double> thick_design() {
 
 void analyse(benchmark::State& state, const std::vector<double>& all, double clearance_min, WorkspacePlan plan) {
   plan.limits.given[kClearanceMin] = clearance_min;
-  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
+  const auto evaluator = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, scratch, result);
+    evaluator->evaluate(all, scratch, result);
     benchmark::DoNotOptimize(result.volume);
   }
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);

@@ -6,7 +6,7 @@
 #include "benchmarks/timing.hpp"
 #include "engine/accelerators/four_ppa_two_par/columns.hpp"
 #include "engine/math/dual.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -16,13 +16,13 @@ using Designs = std::vector<std::vector<double>>;
 
 // Analyses the designs one after the other; times and rates are per design.
 void analyse(benchmark::State& state, const Designs& designs, const WorkspacePlan& plan) {
-  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
+  const auto evaluator = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   std::int64_t columns = 0;
   std::size_t next = 0;
   for (auto _ : state) {
-    surveyor->survey(designs[next], scratch, result);
+    evaluator->evaluate(designs[next], scratch, result);
     benchmark::DoNotOptimize(result.volume);
     columns += result.columns;
     next = next + 1 < designs.size() ? next + 1 : 0;

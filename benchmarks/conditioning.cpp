@@ -4,7 +4,7 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/accelerators/four_ppa_two_par/conditioning.hpp"
 #include "engine/math/random.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -42,17 +42,17 @@ void pose(benchmark::State& state) {
 BENCHMARK(pose)->Name("conditioning/pose")->Unit(benchmark::kMicrosecond);
 
 void analyse(benchmark::State& state, WorkspacePlan plan) {
-  Demand demand;
-  demand.add(kConditioning);
-  const auto surveyor = prepare_workspace(four_ppa(), plan, demand);
+  FieldRequest request;
+  request.add(kConditioning);
+  const auto evaluator = prepare_workspace(four_ppa(), plan, request);
   const auto all = original_design();
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, scratch, result);
-    benchmark::DoNotOptimize(result.of(kConditioning).data());
+    evaluator->evaluate(all, scratch, result);
+    benchmark::DoNotOptimize(result.field(kConditioning).data());
   }
-  const auto poses = static_cast<double>(result.of(kConditioning).size());
+  const auto poses = static_cast<double>(result.field(kConditioning).size());
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["poses"] = benchmark::Counter(poses, benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -4,8 +4,8 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/math/statistics.hpp"
-#include "engine/mechanism/drive_along.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/mechanism/inverse_dynamics.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -17,7 +17,7 @@ std::vector<double> nominal(const Mechanism& m) {
 }
 
 WorkspacePlan plan_of(const std::variant<ColumnOptions, VoxelOptions>& method) {
-  WorkspacePlan plan{.method = method, .held = {fixed_at(3, 0.3)}};
+  WorkspacePlan plan{.method = method, .fixed = {fixed_at(3, 0.3)}};
   plan.limits = no_limits(mechanism_named("quadrupteron").info());
   plan.limits.given[0] = 0.2;
   plan.limits.given[1] = 0.1;
@@ -27,10 +27,10 @@ WorkspacePlan plan_of(const std::variant<ColumnOptions, VoxelOptions>& method) {
 constexpr std::array<std::int64_t, 3> kCells = {40, 40, 40};
 constexpr Box kInside = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
 
-Demand coupling() {
-  Demand demand;
-  demand.add(kCouplingIndex);
-  return demand;
+FieldRequest coupling() {
+  FieldRequest request;
+  request.add(kCouplingIndex);
+  return request;
 }
 
 /// Workspace analysis on 40 x 40 x 40 voxels of the whole search box. The counter per_pose is the time per feasible
@@ -38,12 +38,12 @@ Demand coupling() {
 void voxels(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
-  const auto surveyor = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells}), coupling());
+  const auto evaluator = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells}), coupling());
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(parameters, scratch, result);
-    benchmark::DoNotOptimize(result.of(kCouplingIndex, 0).data());
+    evaluator->evaluate(parameters, scratch, result);
+    benchmark::DoNotOptimize(result.field(kCouplingIndex, 0).data());
   }
   state.counters["feasible"] = static_cast<double>(result.weight.size());
   state.counters["per_pose"] =
@@ -55,12 +55,12 @@ void voxels(benchmark::State& state, const char* name) {
 void full_box(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
-  const auto surveyor = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells, .box = kInside}), coupling());
+  const auto evaluator = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells, .box = kInside}), coupling());
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(parameters, scratch, result);
-    benchmark::DoNotOptimize(result.of(kCouplingIndex, 0).data());
+    evaluator->evaluate(parameters, scratch, result);
+    benchmark::DoNotOptimize(result.field(kCouplingIndex, 0).data());
   }
   state.counters["feasible"] = static_cast<double>(result.weight.size());
   state.counters["per_pose"] =
@@ -75,13 +75,13 @@ void task_box(benchmark::State& state) {
   const auto values = nominal(m);
   const std::vector<S> parameters(values.begin(), values.end());
   WorkspacePlan plan = plan_of(ColumnOptions{.nodes = {4, 4}, .box = kInside});
-  plan.held = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {-1, -0.5, 0, 0.5, 1}}};
-  const auto surveyor = prepare_workspace(m, plan, coupling());
+  plan.fixed = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {-1, -0.5, 0, 0.5, 1}}};
+  const auto evaluator = prepare_workspace(m, plan, coupling());
   Scratch scratch;
-  Survey<S> result;
+  WorkspaceResult<S> result;
   for (auto _ : state) {
-    evaluate_workspace<S>(*surveyor, parameters, scratch, result);
-    benchmark::DoNotOptimize(weighted_mean(result.weight, result.of(kCouplingIndex, 3)));
+    evaluate_workspace<S>(*evaluator, parameters, scratch, result);
+    benchmark::DoNotOptimize(weighted_mean(result.weight, result.field(kCouplingIndex, 3)));
   }
   state.counters["poses"] = static_cast<double>(result.weight.size());
 }
@@ -98,12 +98,13 @@ void inverse_dynamics(benchmark::State& state, const char* name) {
     samples[k].velocity = {0.3, -0.2, 0.1, 1};
     samples[k].acceleration = {5, -4, 3, 20};
   }
-  DriveScratch<double> scratch;
+  InverseDynamicsScratch<double> scratch;
   std::size_t states = 0;
   for (auto _ : state) {
     double sum = 0;
-    states = drive_along<double>(*m.dynamics(), parameters, m.info().modes.front(), samples, {}, scratch,
-                                 [&](std::size_t, const Drive<double>& drive) { sum += drive.forces[0]; });
+    states = inverse_dynamics_along<double>(
+        *m.dynamics(), parameters, m.info().modes.front(), samples, {}, scratch,
+        [&](std::size_t, const ActuatorState<double>& drive) { sum += drive.forces[0]; });
     benchmark::DoNotOptimize(sum);
   }
   if (states < samples.size()) state.SkipWithError("a pose does not assemble");

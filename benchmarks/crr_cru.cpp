@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 template <class Method>
 WorkspacePlan plan_of(const MechanismInfo& info, const Method& method, int fixed_index) {
   WorkspacePlan plan{
-      .method = method, .held = {fixed_at(fixed_index, fixed_index == 3 ? 0.3 : 0.21)}, .limits = no_limits(info)};
+      .method = method, .fixed = {fixed_at(fixed_index, fixed_index == 3 ? 0.3 : 0.21)}, .limits = no_limits(info)};
   plan.limits.given[0] = 0.2;  // s_min
   plan.limits.given[1] = 0.1;  // c_min
   return plan;
@@ -24,12 +24,12 @@ void analyse(benchmark::State& state, const char* name, const Method& method) {
   const Mechanism& mechanism = mechanism_named(name);
   std::vector<S> parameters;
   for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
-  const auto surveyor =
+  const auto evaluator =
       prepare_workspace(mechanism, plan_of(mechanism.info(), method, static_cast<int>(state.range(0))), {});
   Scratch scratch;
-  Survey<S> result;
+  WorkspaceResult<S> result;
   for (auto _ : state) {
-    evaluate_workspace<S>(*surveyor, parameters, scratch, result);
+    evaluate_workspace<S>(*evaluator, parameters, scratch, result);
     benchmark::DoNotOptimize(result.volume);
   }
 }

@@ -28,7 +28,7 @@ DesignProblem problem_of(const std::string& objective, const std::vector<std::si
   parts.space = DesignSpace(variables);
   const Options options = default_options(entry.options);
   const EntryContext context{*parts.mechanism, parts.plan, options};
-  entry.demand(context, parts.demand);
+  entry.request(context, parts.request);
   parts.objectives.push_back({entry.name, entry.unit(context), entry.meaning, entry.direction, entry.make(context)});
   return DesignProblem(parts);
 }

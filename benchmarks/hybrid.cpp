@@ -5,7 +5,7 @@
 #include "engine/accelerators/hybrid/voxels.hpp"
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/math/random.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/accelerators/hybrid/plain_pose.hpp"
 #include "tests/unit/generic/plain_loop.hpp"
 
@@ -31,24 +31,24 @@ std::vector<std::vector<double>> designs(std::size_t count) {
 
 /// Times are per design. @tparam S  with Dual4: with derivatives by four variables
 template <class S, class Method>
-void analyse(benchmark::State& state, const Method& method, std::size_t count, const Demand& demand = {}) {
+void analyse(benchmark::State& state, const Method& method, std::size_t count, const FieldRequest& request = {}) {
   std::vector<std::vector<S>> all;
   for (const auto& design : designs(count)) all.emplace_back(design.begin(), design.end());
-  const auto surveyor = prepare_workspace(hybrid_robot(), plan_of(method), demand);
+  const auto evaluator = prepare_workspace(hybrid_robot(), plan_of(method), request);
   Scratch scratch;
-  Survey<S> result;
+  WorkspaceResult<S> result;
   std::size_t next = 0;
   for (auto _ : state) {
-    evaluate_workspace<S>(*surveyor, all[next], scratch, result);
+    evaluate_workspace<S>(*evaluator, all[next], scratch, result);
     benchmark::DoNotOptimize(result.volume);
     next = next + 1 < count ? next + 1 : 0;
   }
 }
 
-Demand with_conditioning() {
-  Demand demand;
-  demand.add(kConditioning);
-  return demand;
+FieldRequest with_conditioning() {
+  FieldRequest request;
+  request.add(kConditioning);
+  return request;
 }
 
 void columns(benchmark::State& state) { analyse<double>(state, ColumnOptions(), 1); }
@@ -69,7 +69,7 @@ hybrid::SlicedDesign<double> nominal_design() {
 void loop(benchmark::State& state) {
   const hybrid::SlicedDesign<double> design = nominal_design();
   const VoxelGrid grid(kPaperGrid.cells, hybrid::default_box(design));
-  Survey<double> loop_result, result;
+  WorkspaceResult<double> loop_result, result;
   for (auto _ : state) {
     summarise(grid,
               testing::test_every_cell(

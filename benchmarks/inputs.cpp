@@ -5,7 +5,7 @@
 #include "constraints/all.hpp"
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/math/random.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm::benchmarks {
@@ -22,9 +22,9 @@ Study experiment(const std::string& name) {
   return load_study_toml(std::string(PKM_EXPERIMENTS) + "/4ppa-2par/" + name, catalogues());
 }
 
-double volume(const WorkspaceEvaluator& surveyor, std::span<const double> parameters) {
-  Survey<double> survey;
-  evaluate_once(surveyor, parameters, survey);
+double volume(const WorkspaceEvaluator& evaluator, std::span<const double> parameters) {
+  WorkspaceResult<double> survey;
+  evaluate_once(evaluator, parameters, survey);
   return survey.volume;
 }
 
@@ -74,7 +74,7 @@ WorkspacePlan voxel_plan(const LimitSpec& limits) { return {.method = kPaperGrid
 
 WorkspacePlan column_plan(const LimitSpec& limits, const std::vector<FixedCoordinate>& fixed_coordinates,
                           double tolerance) {
-  return {.method = ColumnOptions{.tolerance = tolerance}, .held = fixed_coordinates, .limits = limits};
+  return {.method = ColumnOptions{.tolerance = tolerance}, .fixed = fixed_coordinates, .limits = limits};
 }
 
 Study paper_study() { return experiment("paper-problem.toml"); }

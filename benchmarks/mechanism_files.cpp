@@ -15,9 +15,9 @@
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/config/mechanism_file.hpp"
 #include "engine/core/team.hpp"
-#include "engine/mechanism/drive_along.hpp"
+#include "engine/mechanism/inverse_dynamics.hpp"
 #include "engine/workspace/pose_quantities.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -52,7 +52,7 @@ BENCHMARK_CAPTURE(read, delta, "rotary-delta")->Name("mechanism_file/read/rotary
 
 /// Voxel plan of the mechanism file with limit values of the built-in mechanism.
 WorkspacePlan plan_of(const Mechanism& mechanism, const LimitSpec& own, const VoxelOptions& voxels) {
-  WorkspacePlan plan{.method = voxels, .held = {}, .limits = no_limits(mechanism.info())};
+  WorkspacePlan plan{.method = voxels, .fixed = {}, .limits = no_limits(mechanism.info())};
   for (std::size_t i = 0; i < plan.limits.given.size(); ++i) {
     const auto& known = four_ppa().info().limits;
     const auto at = std::ranges::find(known, mechanism.info().limits[i].name, &LimitInfo::name);
@@ -67,14 +67,14 @@ template <class Loop>
 void compare_with_loop(benchmark::State& state, const Mechanism& mechanism, const WorkspacePlan& plan,
                        const Loop& loop) {
   const SerialScope alone;
-  const auto surveyor = prepare_workspace(mechanism, plan, {});
+  const auto evaluator = prepare_workspace(mechanism, plan, {});
   const std::vector<double> design = nominal(mechanism);
   std::int64_t cells = 0;
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   const PairedTimes times = time_alternately(
       state, "loop_s", [&] { benchmark::DoNotOptimize(cells = loop()); }, "analysis_s",
-      [&] { surveyor->survey(design, scratch, result); });
+      [&] { evaluator->evaluate(design, scratch, result); });
   state.counters["share"] = times.second / times.first;  // of the time of the loop
   state.counters["cells_found"] = static_cast<double>(result.feasible_cells);
   if (cells != result.feasible_cells) state.SkipWithError("the loop and the workspace analysis count different voxels");
@@ -115,7 +115,7 @@ void rotary_delta(benchmark::State& state) {
   const std::vector<double> p = nominal(mechanism);
   const peers::Delta delta{p[0], p[1], p[2], p[3], p[4], p[5]};
   const WorkspacePlan plan{
-      .method = VoxelOptions{.cells = {64, 64, 64}}, .held = {}, .limits = no_limits(mechanism.info())};
+      .method = VoxelOptions{.cells = {64, 64, 64}}, .fixed = {}, .limits = no_limits(mechanism.info())};
   compare_with_loop(state, mechanism, plan, [&] { return peers::feasible_cells(delta, 64); });
 }
 BENCHMARK(rotary_delta)->Name("mechanism_file/compared_with_loop/rotary-delta_64_cubed")->Unit(benchmark::kMicrosecond);
@@ -127,13 +127,13 @@ void grid(benchmark::State& state, const std::string& name) {
   const Mechanism& mechanism = mechanism_file(name);
   const std::int64_t n = state.range(0);
   const WorkspacePlan plan{
-      .method = VoxelOptions{.cells = {n, n, n}}, .held = {}, .limits = no_limits(mechanism.info())};
-  const auto surveyor = prepare_workspace(mechanism, plan, {});
+      .method = VoxelOptions{.cells = {n, n, n}}, .fixed = {}, .limits = no_limits(mechanism.info())};
+  const auto evaluator = prepare_workspace(mechanism, plan, {});
   const std::vector<double> design = nominal(mechanism);
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(design, scratch, result);
+    evaluator->evaluate(design, scratch, result);
     benchmark::DoNotOptimize(result.feasible_cells);
   }
   const auto columns = static_cast<double>(n * n);
@@ -158,7 +158,7 @@ const Mechanism& find_mechanism(const std::string& name) {
                                 [&](const auto& m) { return m.name() == name.substr(built_in.size()); });
 }
 WorkspacePlan plan_of_60_cubed(const Mechanism& mechanism) {
-  WorkspacePlan plan{.method = VoxelOptions{.cells = {60, 60, 60}}, .held = {}, .limits = no_limits(mechanism.info())};
+  WorkspacePlan plan{.method = VoxelOptions{.cells = {60, 60, 60}}, .fixed = {}, .limits = no_limits(mechanism.info())};
   for (std::size_t i = 0; i < mechanism.info().limits.size(); ++i)
     if (mechanism.info().limits[i].name == "s_min") plan.limits.given[i] = 0.2;
   return plan;
@@ -168,12 +168,12 @@ WorkspacePlan plan_of_60_cubed(const Mechanism& mechanism) {
 void coupling(benchmark::State& state, const std::string& name) {
   const SerialScope alone;
   const Mechanism& mechanism = find_mechanism(name);
-  const auto surveyor = prepare_workspace(mechanism, plan_of_60_cubed(mechanism), {.fields = {&kCouplingIndex}});
+  const auto evaluator = prepare_workspace(mechanism, plan_of_60_cubed(mechanism), {.fields = {&kCouplingIndex}});
   const std::vector<double> design = nominal(mechanism);
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(design, scratch, result);
+    evaluator->evaluate(design, scratch, result);
     benchmark::DoNotOptimize(result.weight.data());
   }
   state.counters["per_pose"] =
@@ -188,7 +188,7 @@ BENCHMARK_CAPTURE(coupling, delta, "rotary-delta")->Name("mechanism_file/couplin
 void inverse_dynamics(benchmark::State& state, const std::string& name) {
   const Mechanism& mechanism = find_mechanism(name);
   const std::vector<double> design = nominal(mechanism);
-  Survey<double> found;
+  WorkspaceResult<double> found;
   evaluate_once<double>(
       *prepare_workspace(mechanism, plan_of_60_cubed(mechanism), {.fields = {&kCouplingIndex}, .poses = true}), design,
       found);
@@ -198,11 +198,11 @@ void inverse_dynamics(benchmark::State& state, const std::string& name) {
     samples[k].velocity = samples[k].pose * 0.5;
     samples[k].acceleration = samples[k].pose * 3.0;
   }
-  DriveScratch<double> scratch;
+  InverseDynamicsScratch<double> scratch;
   for (auto _ : state) {
     double sum = 0;
-    drive_along<double>(*mechanism.dynamics(), design, mechanism.info().modes.front(), samples, {}, scratch,
-                        [&](std::size_t, const Drive<double>& drive) { sum += drive.forces[0]; });
+    inverse_dynamics_along<double>(*mechanism.dynamics(), design, mechanism.info().modes.front(), samples, {}, scratch,
+                                   [&](std::size_t, const ActuatorState<double>& drive) { sum += drive.forces[0]; });
     benchmark::DoNotOptimize(sum);
   }
   state.counters["per_pose"] = benchmark::Counter(
@@ -216,14 +216,14 @@ BENCHMARK_CAPTURE(inverse_dynamics, delta, "rotary-delta")->Name("mechanism_file
 void columns(benchmark::State& state, const std::string& name, bool limited, std::optional<int> fixed_coordinate = {}) {
   const SerialScope alone;
   const Mechanism& mechanism = mechanism_file(name);
-  WorkspacePlan plan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
-  if (fixed_coordinate) plan.held = {{.coordinate = *fixed_coordinate}};
+  WorkspacePlan plan{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(mechanism.info())};
+  if (fixed_coordinate) plan.fixed = {{.coordinate = *fixed_coordinate}};
   if (limited) plan.limits = plan_of(mechanism, with_limits(), kPaperGrid).limits;
-  const auto surveyor = prepare_workspace(mechanism, plan, {});
+  const auto evaluator = prepare_workspace(mechanism, plan, {});
   const std::vector<double> design = nominal(mechanism);
   Scratch scratch;
-  Survey<double> result;
-  Survey<Dual4> with_gradient;
+  WorkspaceResult<double> result;
+  WorkspaceResult<Dual4> with_gradient;
   std::vector<Dual4> duals(design.begin(), design.end());
   const auto original = original_design();
   const auto g = four_ppa_two_par::geometry(std::span<const double>(original));
@@ -232,14 +232,14 @@ void columns(benchmark::State& state, const std::string& name, bool limited, std
   double loop_s = 0, value_s = 0, gradient_s = 0;
   for (auto _ : state) {
     loop_s += seconds_of([&] { benchmark::DoNotOptimize(peers::feasible_cells(voxels, lengths)); });
-    value_s += seconds_of([&] { surveyor->survey(design, scratch, result); });
+    value_s += seconds_of([&] { evaluator->evaluate(design, scratch, result); });
     scratch = Scratch();  // discards cached results of the design
     gradient_s += seconds_of([&] {
       for (std::size_t first = 0; first < duals.size(); first += 4) {
         for (std::size_t i = 0; i < duals.size(); ++i) duals[i] = Dual4(design[i]);
         for (std::size_t i = first; i < std::min(first + 4, duals.size()); ++i)
           duals[i] = Dual4::variable(design[i], static_cast<int>(i - first));
-        surveyor->slopes()->survey(duals, scratch, with_gradient);
+        evaluator->gradients()->evaluate(duals, scratch, with_gradient);
       }
     });
   }

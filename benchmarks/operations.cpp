@@ -19,7 +19,7 @@
 #include "engine/accelerators/four_ppa_two_par/columns.hpp"
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/dynamics/coupling.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -29,18 +29,18 @@ struct Case {
   const Mechanism& mechanism;
   std::vector<double> parameters;
   WorkspacePlan plan;
-  Demand demand = {};
+  FieldRequest request = {};
 };
 
 /// Times the workspace analysis, and reports the ratio to the bounds from its number of operations.
 template <class Count>
 void compare_with_bound(benchmark::State& state, const Case& benchmark_case, const Count& operations_of) {
-  const auto surveyor = prepare_workspace(benchmark_case.mechanism, benchmark_case.plan, benchmark_case.demand);
+  const auto evaluator = prepare_workspace(benchmark_case.mechanism, benchmark_case.plan, benchmark_case.request);
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   double seconds = 0;
   for (auto _ : state) {
-    const double elapsed = seconds_of([&] { surveyor->survey(benchmark_case.parameters, scratch, result); });
+    const double elapsed = seconds_of([&] { evaluator->evaluate(benchmark_case.parameters, scratch, result); });
     state.SetIterationTime(elapsed);
     seconds += elapsed;
   }
@@ -59,16 +59,16 @@ void compare_with_bound(benchmark::State& state, const Case& benchmark_case, con
   state.counters["percent_of_peak"] = 50 * bound / seconds_each;
 }
 
-Demand conditioning_too() {
-  Demand demand;
-  demand.add(kConditioning);
-  return demand;
+FieldRequest conditioning_too() {
+  FieldRequest request;
+  request.add(kConditioning);
+  return request;
 }
 
 // 4PPa-2PaR: optimal design on the symmetry plane.
 
-Case four_ppa_on(const WorkspacePlan& plan, const Demand& demand = {}) {
-  return {four_ppa(), optimal_design(), plan, demand};
+Case four_ppa_on(const WorkspacePlan& plan, const FieldRequest& request = {}) {
+  return {four_ppa(), optimal_design(), plan, request};
 }
 
 // Counted by hand from four_ppa_two_par_cells_kernel.cpp: a column takes 25 additions and multiplications (3 each in
@@ -77,7 +77,7 @@ Case four_ppa_on(const WorkspacePlan& plan, const Demand& demand = {}) {
 void voxels(benchmark::State& state) {
   constexpr Operations kColumn{15, 10, 0, 2};
   compare_with_bound(state, four_ppa_on(voxel_plan(without_limits())),
-                     [&](const Survey<double>&) { return 16 * 32 * kColumn; });
+                     [&](const WorkspaceResult<double>&) { return 16 * 32 * kColumn; });
 }
 
 void conditioning_of_voxels(benchmark::State& state) {
@@ -86,8 +86,9 @@ void conditioning_of_voxels(benchmark::State& state) {
     const ColumnPoses<Counted> column{0.7, 1.0, 0.1, 0.99, {0.3, 0.4}, {0.6, 0.5}};
     benchmark::DoNotOptimize(conditioning<Counted, Counted>(column, {-0.3, -0.4}));
   });
-  compare_with_bound(state, four_ppa_on(voxel_plan(without_limits()), conditioning_too()),
-                     [&](const Survey<double>& s) { return static_cast<std::int64_t>(s.weight.size()) * pose; });
+  compare_with_bound(
+      state, four_ppa_on(voxel_plan(without_limits()), conditioning_too()),
+      [&](const WorkspaceResult<double>& s) { return static_cast<std::int64_t>(s.weight.size()) * pose; });
 }
 
 void columns(benchmark::State& state) {
@@ -108,17 +109,17 @@ void columns(benchmark::State& state) {
   const Operations operations_per_slice{slice_operations.sums / kSlices, slice_operations.products / kSlices,
                                         slice_operations.quotients / kSlices, slice_operations.roots / kSlices};
   compare_with_bound(state, four_ppa_on(column_plan(without_limits())),
-                     [&](const Survey<double>& result) { return result.columns * operations_per_slice; });
+                     [&](const WorkspaceResult<double>& result) { return result.columns * operations_per_slice; });
 }
 
 // The other mechanisms: nominal designs.
 
 Case nominal(const std::string& name, const std::vector<FixedCoordinate>& fixed_coordinates,
-             const Demand& demand = {}) {
+             const FieldRequest& request = {}) {
   const Mechanism& m = mechanism_named(name);
-  Case benchmark_case{m, {}, {}, demand};
+  Case benchmark_case{m, {}, {}, request};
   for (const Parameter& p : m.info().parameters) benchmark_case.parameters.push_back(p.nominal);
-  benchmark_case.plan = {.method = kPaperGrid, .held = fixed_coordinates, .limits = no_limits(m.info())};
+  benchmark_case.plan = {.method = kPaperGrid, .fixed = fixed_coordinates, .limits = no_limits(m.info())};
   return benchmark_case;
 }
 
@@ -127,7 +128,8 @@ Case nominal(const std::string& name, const std::vector<FixedCoordinate>& fixed_
 // square root if a column has a hole.
 void hybrid_voxels(benchmark::State& state) {
   constexpr Operations kColumn{21, 14, 0, 2};
-  compare_with_bound(state, nominal("2t1r-p-hybrid", {}), [&](const Survey<double>&) { return 34 * 60 * kColumn; });
+  compare_with_bound(state, nominal("2t1r-p-hybrid", {}),
+                     [&](const WorkspaceResult<double>&) { return 34 * 60 * kColumn; });
 }
 
 void hybrid_conditioning(benchmark::State& state) {
@@ -141,7 +143,7 @@ void hybrid_conditioning(benchmark::State& state) {
                           }) +
                           Operations{11, 17, 0, 3};  // by hand: k, N1, N2, and the three n with their square roots
   constexpr Operations kColumn{21, 14, 0, 2};
-  compare_with_bound(state, nominal("2t1r-p-hybrid", {}, conditioning_too()), [&](const Survey<double>& s) {
+  compare_with_bound(state, nominal("2t1r-p-hybrid", {}, conditioning_too()), [&](const WorkspaceResult<double>& s) {
     return 34 * 60 * kColumn + static_cast<std::int64_t>(s.weight.size()) * pose;
   });
 }
@@ -156,7 +158,7 @@ void jointed_voxels(benchmark::State& state) {
   Case benchmark_case = nominal("3crr-r-cru", {fixed_at(3, 0.3)});
   benchmark_case.plan.limits.given[0] = 0.2;
   benchmark_case.plan.limits.given[1] = 0.1;
-  compare_with_bound(state, benchmark_case, [&](const Survey<double>&) { return (32 + 2 * 32 + 40) * kLine; });
+  compare_with_bound(state, benchmark_case, [&](const WorkspaceResult<double>&) { return (32 + 2 * 32 + 40) * kLine; });
 }
 
 // x fixed: at each of 60 phi, 32 lines along z for limb 1, and one line, rounded up to a SIMD vector, for the other
@@ -165,13 +167,13 @@ void jointed_voxels_over_phi(benchmark::State& state) {
   Case benchmark_case = nominal("3crr-r-cru", {fixed_at(0, 0.21)});
   benchmark_case.plan.limits.given[0] = 0.2;
   benchmark_case.plan.limits.given[1] = 0.1;
-  compare_with_bound(state, benchmark_case, [&](const Survey<double>&) { return 60 * (32 + 3 * 8) * kLine; });
+  compare_with_bound(state, benchmark_case, [&](const WorkspaceResult<double>&) { return 60 * (32 + 3 * 8) * kLine; });
 }
 
 void coupling_of_voxels(benchmark::State& state) {
   using namespace crr_cru;
   Case benchmark_case = nominal("3crr-r-cru", {fixed_at(3, 0.3)});
-  benchmark_case.demand.add(kCouplingIndex);
+  benchmark_case.request.add(kCouplingIndex);
   benchmark_case.plan.method = VoxelOptions{.cells = {40, 40, 40}};
   const Operations pose =
       count([] {
@@ -179,8 +181,9 @@ void coupling_of_voxels(benchmark::State& state) {
         benchmark::DoNotOptimize(joint_inertia(YawInertia<Counted>{}, std::array{limb, limb, limb, limb}));
       }) +
       Operations{8 + 4 * 16, 4 * 17, 4, 0};  // by hand: coupling_indices, with four portable exponential functions
-  compare_with_bound(state, benchmark_case,
-                     [&](const Survey<double>& s) { return static_cast<std::int64_t>(s.weight.size()) * pose; });
+  compare_with_bound(state, benchmark_case, [&](const WorkspaceResult<double>& s) {
+    return static_cast<std::int64_t>(s.weight.size()) * pose;
+  });
 }
 
 void add(const char* name, void (*benchmark_case)(benchmark::State&)) {

@@ -10,7 +10,7 @@
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/accelerators/four_ppa_two_par/plain_pose.hpp"
 
 namespace pkm::benchmarks {
@@ -49,11 +49,11 @@ BENCHMARK(pose_test)->Unit(benchmark::kMicrosecond);
 
 void analyse(benchmark::State& state, Design design, LimitSpec (*limits_of)()) {
   const auto all = design();
-  const auto surveyor = prepare_workspace(four_ppa(), voxel_plan(limits_of()), {});
+  const auto evaluator = prepare_workspace(four_ppa(), voxel_plan(limits_of()), {});
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, scratch, result);
+    evaluator->evaluate(all, scratch, result);
     benchmark::DoNotOptimize(result.feasible_cells);
   }
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
@@ -73,12 +73,12 @@ BENCHMARK_CAPTURE(analyse, limits, original_design, with_limits)
 void off_plane(benchmark::State& state) {
   const auto all = optimal_design();
   WorkspacePlan plan = voxel_plan(without_limits());
-  plan.held = {fixed_at(1, 1.2)};
-  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
+  plan.fixed = {fixed_at(1, 1.2)};
+  const auto evaluator = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, scratch, result);
+    evaluator->evaluate(all, scratch, result);
     benchmark::DoNotOptimize(result.feasible_cells);
   }
 }
@@ -87,14 +87,14 @@ BENCHMARK(off_plane)->Name("voxels/off_plane")->Unit(benchmark::kMicrosecond);
 // Effect of wider vectors; `set` is 0 for the baseline instruction set, 1 for AVX2, 2 for AVX-512.
 void with_instruction_set(benchmark::State& state, bool conditioning) {
   const auto all = optimal_design();
-  Demand demand;
-  if (conditioning) demand.add(kConditioning);
-  const auto surveyor = prepare_workspace(four_ppa(), voxel_plan(without_limits()), demand);
+  FieldRequest request;
+  if (conditioning) request.add(kConditioning);
+  const auto evaluator = prepare_workspace(four_ppa(), voxel_plan(without_limits()), request);
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   use_instruction_set(static_cast<InstructionSet>(state.range(0)));
   for (auto _ : state) {
-    surveyor->survey(all, scratch, result);
+    evaluator->evaluate(all, scratch, result);
     benchmark::DoNotOptimize(result.volume);
   }
   use_instruction_set(widest_instruction_set());
@@ -116,11 +116,11 @@ void grid(benchmark::State& state) {
   const auto all = optimal_design();
   WorkspacePlan plan = voxel_plan(without_limits());
   plan.method = VoxelOptions{.cells = {state.range(0), state.range(0), state.range(0)}};
-  const auto surveyor = prepare_workspace(four_ppa(), plan, {});
+  const auto evaluator = prepare_workspace(four_ppa(), plan, {});
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, scratch, result);
+    evaluator->evaluate(all, scratch, result);
     benchmark::DoNotOptimize(result.feasible_cells);
   }
   const auto n = static_cast<double>(state.range(0));
@@ -131,18 +131,18 @@ BENCHMARK(grid)->Name("voxels/grid")->RangeMultiplier(2)->Range(16, 1024)->Unit(
 
 // One design on a fine grid of n^3 voxels, on one and on two threads.
 void fine_grid(benchmark::State& state, const Mechanism& mechanism, std::vector<double> parameters, std::int64_t n,
-               const Demand& demand = {}) {
+               const FieldRequest& request = {}) {
   const WorkspacePlan plan{.method = VoxelOptions{.cells = {n, n, n}}, .limits = no_limits(mechanism.info())};
-  const auto surveyor = prepare_workspace(mechanism, plan, demand);
+  const auto evaluator = prepare_workspace(mechanism, plan, request);
   if (parameters.empty())
     for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   const auto by_one = [&] {
     const SerialScope alone;
-    surveyor->survey(parameters, scratch, result);
+    evaluator->evaluate(parameters, scratch, result);
   };
-  const auto by_two = [&] { surveyor->survey(parameters, scratch, result); };
+  const auto by_two = [&] { evaluator->evaluate(parameters, scratch, result); };
   PairedTimes times;
   with_team(2, [&] {
     times = time_alternately(state, "ten_by_one_thread_s", repeat_10_times(by_one), "ten_by_two_threads_s",
@@ -152,9 +152,9 @@ void fine_grid(benchmark::State& state, const Mechanism& mechanism, std::vector<
 }
 void fine_four_ppa(benchmark::State& state) { fine_grid(state, four_ppa(), optimal_design(), 512); }
 void fine_conditioning(benchmark::State& state) {
-  Demand demand;
-  demand.add(kConditioning);
-  fine_grid(state, four_ppa(), optimal_design(), 128, demand);
+  FieldRequest request;
+  request.add(kConditioning);
+  fine_grid(state, four_ppa(), optimal_design(), 128, request);
 }
 void fine_hybrid(benchmark::State& state) { fine_grid(state, mechanism_named("2t1r-p-hybrid"), {}, 512); }
 void fine_jointed(benchmark::State& state) { fine_grid(state, mechanism_named("3crr-r-cru"), {}, 512); }
@@ -166,15 +166,15 @@ BENCHMARK(fine_jointed)->Name("fine_grid/3crr-r-cru_512_cubed")->Unit(benchmark:
 void compare_with_loop(benchmark::State& state, Design design) {
   const auto all = design();
   const auto g = geometry(std::span<const double>(all));
-  const auto surveyor = prepare_workspace(four_ppa(), voxel_plan(without_limits()), {});
+  const auto evaluator = prepare_workspace(four_ppa(), voxel_plan(without_limits()), {});
   const peers::Voxels voxels{g.d, g.L0, {32, 34, 60}, 0, 0, kPi / 2, 0, 0, 0};  // the paper's grid, no limits
   const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
   std::int64_t loop_count = 0;
   Scratch scratch;
-  Survey<double> result;
+  WorkspaceResult<double> result;
   const PairedTimes times = time_alternately(
       state, "loop_s", [&] { benchmark::DoNotOptimize(loop_count = peers::feasible_cells(voxels, lengths)); },
-      "analysis_s", [&] { surveyor->survey(all, scratch, result); });
+      "analysis_s", [&] { evaluator->evaluate(all, scratch, result); });
   state.counters["speedup"] = times.ratio();
   if (loop_count != result.feasible_cells)
     state.SkipWithError("the loop and the workspace analysis count different voxels");

@@ -56,7 +56,8 @@ ConstraintEntry expression_constraint() {
       .unit = expression_unit,
       .make = make,
       .needs_workspace = [](const EntryContext& context) { return Expression(context).needs_workspace(); },
-      .demand = [](const EntryContext& context, Demand& demand) { Expression(context).add_demand(context, demand); },
+      .request = [](const EntryContext& context,
+                    FieldRequest& request) { Expression(context).add_request(context, request); },
       .detail = detail,
   };
 }

@@ -36,7 +36,7 @@ std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& in
   if (!plan.box()) throw std::invalid_argument("task-workspace needs a box, and region '" + region.name + "' has none");
   const Sweep& sweep = sweep_of(info, plan);
   std::vector<Pose<double>> poses = {Pose<double>(info.coordinates.size())};
-  for (const int coordinate : sweep.held) {
+  for (const int coordinate : sweep.fixed) {
     const FixedCoordinate how = how_fixed(plan, coordinate);
     using Kind = FixedCoordinate::Kind;
     if (how.kind != Kind::value && how.kind != Kind::listed)

@@ -12,7 +12,8 @@ ObjectiveEntry expression_objective() {
       .direction = Direction::maximise,
       .options = expression_options(),
       .unit = expression_unit,
-      .demand = [](const EntryContext& context, Demand& demand) { Expression(context).add_demand(context, demand); },
+      .request = [](const EntryContext& context,
+                    FieldRequest& request) { Expression(context).add_request(context, request); },
       .make =
           [](const EntryContext& context) {
             return make_quantity(

@@ -14,7 +14,7 @@
 #include "engine/core/team.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/math/statistics.hpp"
-#include "engine/mechanism/drive_along.hpp"
+#include "engine/mechanism/inverse_dynamics.hpp"
 #include "engine/problem/motion_options.hpp"
 #include "engine/problem/pose_options.hpp"
 #include "objectives/list.hpp"
@@ -48,7 +48,7 @@ struct LoadScratch {
   };
   std::vector<S> loads;
   std::vector<Batch> batches;
-  std::vector<DriveScratch<S>> by_worker;
+  std::vector<InverseDynamicsScratch<S>> by_worker;
 };
 
 class PeakLoad final : public Quantity {
@@ -62,11 +62,11 @@ class PeakLoad final : public Quantity {
         sharpness_(context.options.number("sharpness")),
         load_(load),
         by_rms_(load == Load::motor_torque && context.options.word("statistic") == "rms") {
-    if (const Unsupported reason = no_joint_forces(context.mechanism))
+    if (const Unsupported reason = why_no_joint_forces(context.mechanism))
       why_no_derivatives_ = "joint speeds along a motion have no derivatives without dynamics: " + *reason;
   }
 
-  Unsupported no_derivatives() const override { return why_no_derivatives_; }
+  Unsupported why_no_derivatives() const override { return why_no_derivatives_; }
 
   double value(const DesignView<double>& design) const override {
     std::vector<double>& loads = design.scratch.get<LoadScratch<double>>().loads;
@@ -113,9 +113,9 @@ class PeakLoad final : public Quantity {
     if constexpr (std::is_same_v<S, double>)
       if (why_no_derivatives_) return collect_rates(design, loads);
     if (has_team()) return collect_with_team(design, loads);
-    return drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
-                          design.scratch.template get<DriveScratch<S>>(),
-                          [&](std::size_t, const Drive<S>& drive) { append(design, drive, loads); });
+    return inverse_dynamics_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
+                                     design.scratch.template get<InverseDynamicsScratch<S>>(),
+                                     [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, loads); });
   }
   /// As collect(), by influence coefficients: for mechanisms without joint forces.
   std::size_t collect_rates(const DesignView<double>& design, std::vector<double>& loads) const {
@@ -124,8 +124,8 @@ class PeakLoad final : public Quantity {
       const auto joints = design.mechanism.velocities()->influence(design.parameters, at.pose, mode_);
       if (!joints) return k;
       append(design,
-             Drive<double>{.speeds = joints->G * at.velocity,
-                           .accelerations = accelerations<double, 0>(*joints, at.velocity, at.acceleration)},
+             ActuatorState<double>{.speeds = joints->G * at.velocity,
+                                   .accelerations = accelerations<double, 0>(*joints, at.velocity, at.acceleration)},
              loads);
     }
     return samples_.size();
@@ -133,21 +133,22 @@ class PeakLoad final : public Quantity {
   template <class S>
   std::size_t collect_with_team(const DesignView<S>& design, std::vector<S>& loads) const {
     LoadScratch<S>& buffers = design.scratch.template get<LoadScratch<S>>();
-    buffers.batches.resize((samples_.size() + kDriveBatch - 1) / kDriveBatch);
+    buffers.batches.resize((samples_.size() + kInverseDynamicsBatch - 1) / kInverseDynamicsBatch);
     buffers.by_worker.resize(workers());
     parallel_for(buffers.batches.size(), [&](std::size_t number, std::size_t end, std::size_t worker) {
       for (; number < end; ++number) {
         typename LoadScratch<S>::Batch& batch = buffers.batches[number];
         batch.loads.clear();
-        const auto some = std::span(samples_).subspan(number * kDriveBatch);
-        batch.assembled =
-            drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_,
-                           some.first(std::min(kDriveBatch, some.size())), wrench_, buffers.by_worker[worker],
-                           [&](std::size_t, const Drive<S>& drive) { append(design, drive, batch.loads); });
+        const auto some = std::span(samples_).subspan(number * kInverseDynamicsBatch);
+        batch.assembled = inverse_dynamics_along<S>(
+            *design.mechanism.dynamics(), design.parameters, mode_,
+            some.first(std::min(kInverseDynamicsBatch, some.size())), wrench_, buffers.by_worker[worker],
+            [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, batch.loads); });
       }
     });
     std::size_t assembled = 0;
-    for (std::size_t number = 0; number < buffers.batches.size() && assembled == number * kDriveBatch; ++number) {
+    for (std::size_t number = 0; number < buffers.batches.size() && assembled == number * kInverseDynamicsBatch;
+         ++number) {
       const auto& batch = buffers.batches[number];
       loads.insert(loads.end(), batch.loads.begin(), batch.loads.end());
       assembled += batch.assembled;
@@ -156,7 +157,7 @@ class PeakLoad final : public Quantity {
   }
   /// Appends the loads of one sample: of the selected joint, of all joints ("worst"), or their sum ("total").
   template <class S>
-  void append(const DesignView<S>& design, const Drive<S>& drive, std::vector<S>& loads) const {
+  void append(const DesignView<S>& design, const ActuatorState<S>& drive, std::vector<S>& loads) const {
     S total(0.0);
     for (std::size_t i = 0; i < drive.speeds.size(); ++i) {
       const S load = load_of(design, drive, i);
@@ -166,7 +167,7 @@ class PeakLoad final : public Quantity {
     if (joint_ == "total") loads.push_back(magnitude(total));
   }
   template <class S>
-  S load_of(const DesignView<S>& design, const Drive<S>& drive, std::size_t joint) const {
+  S load_of(const DesignView<S>& design, const ActuatorState<S>& drive, std::size_t joint) const {
     if (load_ == Load::force) return drive.forces[joint];
     if (load_ == Load::power) return drive.power(joint);
     if (load_ == Load::joint_speed) return drive.speeds[joint];
@@ -252,7 +253,7 @@ std::string acceleration_unit(const EntryContext& context) {
 }
 
 Unsupported check_speeds(const std::string& objective, const Mechanism& mechanism) {
-  if (mechanism.velocities() || !no_joint_forces(mechanism)) return {};
+  if (mechanism.velocities() || !why_no_joint_forces(mechanism)) return {};
   return "objective " + objective + " needs joint speeds, and mechanism " + mechanism.info().name +
          " has neither influence coefficients nor masses";
 }

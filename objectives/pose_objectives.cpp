@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/problem/no_conditioning.hpp"
+#include "engine/problem/availability.hpp"
 #include "engine/problem/pose_statistic.hpp"
 #include "objectives/list.hpp"
 
@@ -25,8 +25,8 @@ std::string name_of(const PoseQuantity& quantity) {
 
 /// Range of the values: ", in [0, 1]"; "" if it is unbounded.
 std::string range_text(const PoseQuantity& quantity) {
-  if (!std::isfinite(quantity.least) || !std::isfinite(quantity.greatest)) return {};
-  return ", in [" + shortest(quantity.least) + ", " + shortest(quantity.greatest) + "]";
+  if (!std::isfinite(quantity.lower) || !std::isfinite(quantity.upper)) return {};
+  return ", in [" + shortest(quantity.lower) + ", " + shortest(quantity.upper) + "]";
 }
 
 OptionSpec limb_option(Worst worst) {
@@ -34,12 +34,12 @@ OptionSpec limb_option(Worst worst) {
           .kind = OptionKind::word,
           .initial = std::string("worst"),
           .choices = joint_choices({"worst", "mean"}),
-          .meaning = std::string("number of a limb, worst (the ") + (worst == Worst::least ? "minimum" : "maximum") +
+          .meaning = std::string("number of a limb, worst (the ") + (worst == Worst::minimum ? "minimum" : "maximum") +
                      " over the limbs at each pose) or mean (over the limbs)"};
 }
 
 std::vector<OptionSpec> options_of(const PoseQuantity& quantity, bool with_statistic) {
-  const bool worst_is_min = quantity.worst == Worst::least;
+  const bool worst_is_min = quantity.worst == Worst::minimum;
   std::vector<OptionSpec> options;
   if (with_statistic)
     options.push_back({.name = "statistic",
@@ -67,10 +67,11 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
       .unit = [&quantity](const EntryContext&) { return std::string(quantity.unit); },
       .refusal = [&quantity, name](const Mechanism& mechanism) -> Unsupported {
         if (quantity.needs_inertia()) return check_dynamics(name, mechanism);
-        const Unsupported reason = no_conditioning(mechanism.info());
+        const Unsupported reason = why_no_conditioning(mechanism.info());
         return reason ? "objective " + name + " is unavailable: " + *reason : Unsupported();
       },
-      .demand = [&quantity](const EntryContext& context, Demand& demand) { demand_field(quantity, context, demand); },
+      .request = [&quantity](const EntryContext& context,
+                             FieldRequest& request) { request_field(quantity, context, request); },
       .make = [&quantity, name, statistic](const EntryContext& context) -> std::unique_ptr<const Quantity> {
         const Options& options = context.options;
         PoseStatistic of{quantity, statistic};
@@ -87,8 +88,8 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
       },
       .range = [&quantity, statistic](const EntryContext& context) -> Range {
         if ((statistic.empty() ? context.options.word("statistic") : statistic) != "std")
-          return {quantity.least, quantity.greatest};
-        return {0, (quantity.greatest - quantity.least) / 2};
+          return {quantity.lower, quantity.upper};
+        return {0, (quantity.upper - quantity.lower) / 2};
       },
   };
 }
@@ -98,7 +99,7 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
 std::vector<ObjectiveEntry> pose_objectives() {
   std::vector<ObjectiveEntry> entries;
   for (const PoseQuantity* const quantity : pose_quantities()) {
-    const bool worst_is_min = quantity->worst == Worst::least;
+    const bool worst_is_min = quantity->worst == Worst::minimum;
     const std::string name = name_of(*quantity), meaning = quantity->meaning;
     entries.push_back(entry(*quantity, name,
                             meaning + (quantity->per_joint ? " of the joints" : "") + " over the workspace" +

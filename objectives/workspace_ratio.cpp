@@ -30,7 +30,7 @@ ObjectiveEntry workspace_ratio() {
       .make =
           [](const EntryContext&) {
             return make_quantity([]<class S>(const DesignView<S>& design) {
-              return S(design.survey->volume / design.mechanism.size()->of(design.parameters));
+              return S(design.workspace->volume / design.mechanism.size()->of(design.parameters));
             });
           },
       .range = nonnegative,

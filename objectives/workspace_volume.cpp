@@ -8,12 +8,12 @@ namespace {
 
 /// From 0 to the volume of the study's box, if there is one and no fixed coordinate is integrated over.
 Range range_of(const EntryContext& context) {
-  Range range{.least = 0};
+  Range range{.lower = 0};
   const WorkspacePlan& plan = context.plan;
   const auto integrated = [](const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; };
-  if (!plan.box() || std::ranges::any_of(plan.held, integrated)) return range;
-  range.greatest = 1;
-  for (const auto& [lower, upper] : *plan.box()) range.greatest *= upper - lower;
+  if (!plan.box() || std::ranges::any_of(plan.fixed, integrated)) return range;
+  range.upper = 1;
+  for (const auto& [lower, upper] : *plan.box()) range.upper *= upper - lower;
   return range;
 }
 
@@ -26,7 +26,9 @@ ObjectiveEntry workspace_volume() {
       .direction = Direction::maximise,
       .unit = [](const EntryContext& context) { return volume_unit(context.mechanism.info(), context.plan); },
       .make =
-          [](const EntryContext&) { return make_quantity([](const auto& design) { return design.survey->volume; }); },
+          [](const EntryContext&) {
+            return make_quantity([](const auto& design) { return design.workspace->volume; });
+          },
       .range = range_of,
   };
 }

@@ -45,13 +45,13 @@ void write_parameters(std::ostream& out, const Study& study) {
   out << format_titled_table("fixed parameters", fixed);
 }
 
-/// How a coordinate is held.
-std::string held_text(const FixedCoordinate& held, const std::string& unit) {
+/// How a coordinate is fixed.
+std::string held_text(const FixedCoordinate& fixed, const std::string& unit) {
   using Kind = FixedCoordinate::Kind;
-  if (held.kind == Kind::middle) return "middle of each design";
-  if (held.kind == Kind::integrated) return "integrated over its range";
-  if (held.kind == Kind::value) return with_degrees(held.value, unit);
-  return join_of(held.values, [&unit](double value) { return with_degrees(value, unit); });
+  if (fixed.kind == Kind::default_value) return "middle of each design";
+  if (fixed.kind == Kind::integrated) return "integrated over its range";
+  if (fixed.kind == Kind::value) return with_degrees(fixed.value, unit);
+  return join_of(fixed.values, [&unit](double value) { return with_degrees(value, unit); });
 }
 
 std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& plan) {
@@ -73,11 +73,11 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
     if (const auto& given = plan.box())
       box.push_back(axis.name + " = " + format_range((*given)[k][0], (*given)[k][1], axis.unit));
   }
-  for (std::size_t k = 0; k < plan.held.size(); ++k) {
-    const FixedCoordinate& held = plan.held[k];
-    if (held.cells == 0) continue;
-    cells.push_back(coordinate(held.coordinate).name + " = " + std::to_string(held.cells));
-    usual_cells = usual_cells && held.cells == usual.held[k].cells;
+  for (std::size_t k = 0; k < plan.fixed.size(); ++k) {
+    const FixedCoordinate& fixed = plan.fixed[k];
+    if (fixed.cells == 0) continue;
+    cells.push_back(coordinate(fixed.coordinate).name + " = " + std::to_string(fixed.cells));
+    usual_cells = usual_cells && fixed.cells == usual.fixed[k].cells;
   }
   std::vector<Row> rows = {{"method", plan.voxels() ? "voxels" : "columns", mark(!plan.voxels())}};
   const bool usual_sweep = &sweep == info.sweeps.data();
@@ -93,10 +93,10 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
                       mark(columns->tolerance == usual.columns()->tolerance)});
     if (columns->certain) rows.push_back({"certain", "within bounds of the gap " + shortest(*columns->certain)});
   }
-  for (const int i : sweep.held) {
-    const FixedCoordinate held = how_fixed(plan, i);
-    rows.push_back(
-        {coordinate(i).name, held_text(held, coordinate(i).unit), mark(held.kind == FixedCoordinate::Kind::middle)});
+  for (const int i : sweep.fixed) {
+    const FixedCoordinate fixed = how_fixed(plan, i);
+    rows.push_back({coordinate(i).name, held_text(fixed, coordinate(i).unit),
+                    mark(fixed.kind == FixedCoordinate::Kind::default_value)});
   }
   return rows;
 }

@@ -14,7 +14,7 @@
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/problem/no_conditioning.hpp"
+#include "engine/problem/availability.hpp"
 
 namespace pkm {
 namespace {
@@ -34,10 +34,10 @@ std::vector<Pose<double>> grid_of_poses(const Mechanism& mechanism, std::span<co
   if (!ranges) return {};
   const Sweep& sweep = info.sweeps.front();
   Pose<double> pose(info.coordinates.size());
-  for (const int held : sweep.held) {
-    const auto middle = mechanism.middle(parameters, held);
+  for (const int fixed : sweep.fixed) {
+    const auto middle = mechanism.default_value(parameters, fixed);
     if (!middle) return {};
-    pose[static_cast<std::size_t>(held)] = *middle;
+    pose[static_cast<std::size_t>(fixed)] = *middle;
   }
   std::vector<Pose<double>> poses = {pose};
   for (const int coordinate : sweep.swept) {
@@ -130,7 +130,7 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
   tell(mechanism.columns(), "exact workspace by columns",
        "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
   tell(mechanism.bounds(), "certain bounds of the workspace", "pkmopt certify, by intervals", "");
-  const Unsupported undefined = no_conditioning(mechanism.info());
+  const Unsupported undefined = why_no_conditioning(mechanism.info());
   tell(!undefined, "conditioning", "", undefined.value_or(""));
   tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
   tell(mechanism.forward(), "forward kinematics", "Newton's method from many poses: it need not find every assembly",
@@ -141,7 +141,7 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
        "constraint clearance or limit clearance_min: of poses, voxels, task-workspace, motions; not columns or bounds",
        "there are no two links, of limbs with a radius or by [[link]], that could meet");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
-  const Unsupported no_forces = no_joint_forces(mechanism);
+  const Unsupported no_forces = why_no_joint_forces(mechanism);
   tell(!no_forces, "forces and coupling", no_forces ? "" : why_no_masses(mechanism), no_forces.value_or(""));
   tell(mechanism.reactions(), "forces in the joints", "pkmopt dynamics and trajectory --reactions",
        mechanism.why_no_reactions());

@@ -2,7 +2,7 @@
 
 #include "engine/config/sections.hpp"
 #include "engine/core/catalogue.hpp"
-#include "engine/mechanism/driven.hpp"
+#include "engine/mechanism/with_drive_trains.hpp"
 
 namespace pkm {
 namespace {
@@ -43,7 +43,7 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
   const std::vector<ConfigValue> tables = tables_of(root, "drive_train");
   if (tables.empty()) return;
   const auto& joints = draft.info().joints;
-  const Unsupported no_forces = no_joint_forces(*draft.parts.mechanism);
+  const Unsupported no_forces = why_no_joint_forces(*draft.parts.mechanism);
   std::vector<std::string> names = {"all"};
   for (const AxisInfo& joint : joints) names.push_back(joint.name);
   std::vector<std::optional<DriveTrain>> trains(joints.size());

@@ -83,8 +83,8 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
   }
   for (const ConfigValue& table : tables_of(root, "design")) {
     table.allow({"name", "formula", "unit", "meaning", "required"});
-    if (model.tests.size() == kMostDesignTests)
-      throw table.refusal("a mechanism has at most " + std::to_string(kMostDesignTests) + " tests of the design");
+    if (model.tests.size() == kMaxDesignTests)
+      throw table.refusal("a mechanism has at most " + std::to_string(kMaxDesignTests) + " tests of the design");
     const std::string name = name_of(table, model.tests), unit = unit_of(table);
     constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_. ";
     if (name.find_first_not_of(kLetters) != std::string::npos)

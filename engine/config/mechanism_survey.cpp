@@ -104,7 +104,7 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         columns_along, [&](int coordinate) { return std::ranges::find(sweep.swept, coordinate) != sweep.swept.end(); });
     if (along != columns_along.end()) sweep.column = *along;
     sweep.integrates = std::ranges::all_of(
-        sweep.held, [&](int coordinate) { return model.box[static_cast<std::size_t>(coordinate)].has_value(); });
+        sweep.fixed, [&](int coordinate) { return model.box[static_cast<std::size_t>(coordinate)].has_value(); });
   }
 }
 

@@ -53,7 +53,7 @@ void read_obstacles(const ConfigValue& root, StudyDraft& draft) {
     throw tables.front().refusal("links keep clear of obstacles, and mechanism " + info.name +
                                  " has no links with a radius that could meet anything");
   for (const ConfigValue& table : tables) plan.limits.obstacles.push_back(read_obstacle(table, plan.limits.obstacles));
-  if (!asks_clearance(plan, static_cast<std::size_t>(limit - info.limits.begin())))
+  if (!requires_clearance(info, plan))
     draft.study.warnings.push_back(
         "the obstacles cut nothing from the workspace, because the study asks for no clearance; [[constraint]] type = "
         "\"clearance\" does");

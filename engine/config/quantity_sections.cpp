@@ -36,19 +36,19 @@ std::string default_name(const ObjectiveEntry& entry, const Options& options) {
 
 /// Adds what an entry needs to the demands of those before it. All samples of a survey share one characteristic length
 /// and one working mode.
-void add_demand(const ConfigValue& table, const Demand& own, Demand& demand) {
+void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest& request) {
   if (own.needs_jacobian()) {
-    if (demand.needs_jacobian() && own.characteristic_length != demand.characteristic_length)
+    if (request.needs_jacobian() && own.characteristic_length != request.characteristic_length)
       throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
-    demand.characteristic_length = own.characteristic_length;
+    request.characteristic_length = own.characteristic_length;
   }
   if (own.needs_inertia()) {
-    if (demand.needs_inertia() && own.mode != demand.mode)
-      throw table.refusal("the inertia is asked for in two different working modes, " + demand.mode + " and " +
+    if (request.needs_inertia() && own.mode != request.mode)
+      throw table.refusal("the inertia is asked for in two different working modes, " + request.mode + " and " +
                           own.mode + "; a survey has one (name another [[region]] for the other)");
-    demand.mode = own.mode;
+    request.mode = own.mode;
   }
-  for (const PoseQuantity* const quantity : own.fields) demand.add(*quantity);
+  for (const PoseQuantity* const quantity : own.fields) request.add(*quantity);
 }
 
 /// The survey that an entry reads: 0 the workspace's, k that of the k-th region, which `region = ".."` names.
@@ -81,15 +81,15 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
   const EntryContext context{*draft.parts.mechanism, region ? region->plan : draft.parts.plan, options,
                              draft.parts.regions, draft.study.motions};
   return table.explained([&]() -> NamedQuantity {
-    Demand own;
-    entry.demand(context, own);
-    add_demand(table, own, region ? region->demand : draft.parts.demand);
+    FieldRequest own;
+    entry.request(context, own);
+    add_request(table, own, region ? region->request : draft.parts.request);
     return {.name = name,
             .unit = entry.unit(context),
             .meaning = entry.detail ? entry.detail(context) : entry.meaning,
             .direction = entry.direction,
             .quantity = entry.make(context),
-            .survey = survey,
+            .analysis = survey,
             .uses_workspace = entry.reads(context),
             .range = entry.range(context)};
   });
@@ -125,7 +125,7 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
     throw table.refusal("found both min and max; a constraint has one of them (write two [[constraint]] tables)");
   NamedQuantity made = make_objective(table, entry, draft.study.constraints, draft);
   const double bound = (least ? least : greatest)->number(made.unit);
-  (least ? made.least : made.greatest) = bound;
+  (least ? made.lower_bound : made.upper_bound) = bound;
   const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
   made.meaning = "margin of " + role + ": " + made.meaning;
   draft.study.constraints.back().role = role;
@@ -155,9 +155,9 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
       draft.parts.followed.push_back({motion_of(context).name, motion_of(context).motion, mode_of(context)});
     made.meaning = entry.detail ? entry.detail(context) : entry.meaning;
     made.uses_workspace = entry.needs_workspace && entry.needs_workspace(context);
-    Demand own;
-    entry.demand(context, own);
-    add_demand(table, own, draft.parts.demand);
+    FieldRequest own;
+    entry.request(context, own);
+    add_request(table, own, draft.parts.request);
   });
   draft.study.constraints.push_back({entry.name, made.name, "margin >= 0, " + in_unit(made.unit), specs, options});
   (made.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));

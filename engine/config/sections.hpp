@@ -39,7 +39,7 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft);
 void read_variables(const ConfigValue& root, StudyDraft& draft);
 /// [baseline]
 void read_baseline(const ConfigValue& root, StudyDraft& draft);
-/// [workspace]: method, grid or accuracy, held coordinate, limits.
+/// [workspace]: method, grid or accuracy, fixed coordinate, limits.
 void read_workspace(const ConfigValue& root, StudyDraft& draft);
 /// Cells and accuracy of a survey by the plan's method where a study names none.
 void set_usual(const MechanismInfo& info, WorkspacePlan& plan);

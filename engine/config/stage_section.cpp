@@ -28,7 +28,7 @@ Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, cons
     if (!can.discrete && variable.step > 0)
       return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
   if (can.needs_gradient)
-    if (const Unsupported reason = problem.no_derivatives()) return who + "needs derivatives, but " + *reason;
+    if (const Unsupported reason = problem.why_no_derivatives()) return who + "needs derivatives, but " + *reason;
   return {};
 }
 

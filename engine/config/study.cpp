@@ -10,7 +10,7 @@
 #include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/diagnosis.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 namespace {
@@ -61,7 +61,7 @@ void warn_of_empty_workspace(Study& study) {
   if (const VoxelOptions* const voxels = plan.voxels()) {
     std::int64_t cells = 1;
     for (const std::int64_t n : voxels->cells) cells *= n;  // at most 2^28
-    for (const FixedCoordinate& held : plan.held) cells *= std::max<std::int64_t>(1, held.cells);
+    for (const FixedCoordinate& fixed : plan.fixed) cells *= std::max<std::int64_t>(1, fixed.cells);
     if (cells > kMostCellsOfACheck) return;
   }
   std::vector<double> design = parts.parameters;
@@ -86,13 +86,13 @@ void warn_of_empty_workspace(Study& study) {
     return;  // a mass that is not positive has a message of its own when the design is evaluated
   }
   std::string where;
-  for (const int coordinate : sweep_of(info, plan).held) {
+  for (const int coordinate : sweep_of(info, plan).fixed) {
     using Kind = FixedCoordinate::Kind;
     const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
-    const FixedCoordinate held = how_fixed(plan, coordinate);
-    if (held.kind == Kind::value) where += " on the plane " + axis.name + " = " + with_unit(held.value, axis.unit);
-    if (held.kind == Kind::middle) where += " on its middle plane";
-    if (held.kind == Kind::integrated) where += " at any " + axis.name;
+    const FixedCoordinate fixed = how_fixed(plan, coordinate);
+    if (fixed.kind == Kind::value) where += " on the plane " + axis.name + " = " + with_unit(fixed.value, axis.unit);
+    if (fixed.kind == Kind::default_value) where += " on its middle plane";
+    if (fixed.kind == Kind::integrated) where += " at any " + axis.name;
   }
   study.warnings.push_back("the workspace of " + what + " is empty: no pose" + where +
                            (plan.box() ? " in the box" : "") + " is feasible");
@@ -107,11 +107,11 @@ void warn_of_targets(Study& study) {
     const NamedQuantity& q = objectives[0];
     const double target = options.number("target");
     const bool up = q.direction == Direction::maximise;
-    if (up ? target > q.range.greatest : target < q.range.least)
+    if (up ? target > q.range.upper : target < q.range.lower)
       study.warnings.push_back(
           "stage " + std::to_string(s + 1) + ": the target " + with_unit(target, q.unit) +
           " is never reached, because values of " + q.name + " are never " +
-          (up ? "above " + with_unit(q.range.greatest, q.unit) : "below " + with_unit(q.range.least, q.unit)));
+          (up ? "above " + with_unit(q.range.upper, q.unit) : "below " + with_unit(q.range.lower, q.unit)));
   }
 }
 

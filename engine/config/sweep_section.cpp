@@ -37,19 +37,19 @@ FixedCoordinate read_fixed(const ConfigValue& value, const MechanismInfo& info, 
   return {.coordinate = coordinate, .kind = Kind::value, .value = number};
 }
 
-/// A list of values of a held coordinate.
+/// A list of values of a fixed coordinate.
 FixedCoordinate read_fixed_values(const ConfigValue& list, const MechanismInfo& info, int coordinate, bool integrates) {
   const std::string expected = "a list of values of " + axis_of(info, coordinate).name;
-  FixedCoordinate held{.coordinate = coordinate, .kind = FixedCoordinate::Kind::listed};
+  FixedCoordinate fixed{.coordinate = coordinate, .kind = FixedCoordinate::Kind::listed};
   for (const ConfigValue& value : list.elements(expected))
-    held.values.push_back(read_fixed(value, info, coordinate, integrates).value);
-  if (held.values.empty()) throw list.error(expected);
-  return held;
+    fixed.values.push_back(read_fixed(value, info, coordinate, integrates).value);
+  if (fixed.values.empty()) throw list.error(expected);
+  return fixed;
 }
 
 /// Whether the sweep holds all of these coordinates.
 bool holds(const Sweep& sweep, const std::vector<int>& coordinates) {
-  return std::ranges::all_of(coordinates, [&](int c) { return contains(sweep.held, c); });
+  return std::ranges::all_of(coordinates, [&](int c) { return contains(sweep.fixed, c); });
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::
 std::vector<int> holdable(const MechanismInfo& info) {
   std::vector<int> coordinates;
   for (const Sweep& sweep : info.sweeps)
-    for (const int coordinate : sweep.held)
+    for (const int coordinate : sweep.fixed)
       if (!contains(coordinates, coordinate)) coordinates.push_back(coordinate);
   return coordinates;
 }
@@ -105,9 +105,9 @@ void read_held_coordinates(const ConfigValue& table, const MechanismInfo& info, 
       throw value->refusal("a survey holds one coordinate and sweeps the others, but both " +
                            axis_of(info, named.front()).name + " and " + axis_of(info, coordinate).name + " are given");
     const bool integrates = std::ranges::any_of(
-        info.sweeps, [&](const Sweep& sweep) { return sweep.integrates && contains(sweep.held, coordinate); });
-    plan.held.push_back(of_region && value->is_list() ? read_fixed_values(*value, info, coordinate, integrates)
-                                                      : read_fixed(*value, info, coordinate, integrates));
+        info.sweeps, [&](const Sweep& sweep) { return sweep.integrates && contains(sweep.fixed, coordinate); });
+    plan.fixed.push_back(of_region && value->is_list() ? read_fixed_values(*value, info, coordinate, integrates)
+                                                       : read_fixed(*value, info, coordinate, integrates));
   }
 }
 

@@ -12,20 +12,20 @@ namespace pkm {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid: the one of the 4PPa-2PaR paper
-constexpr std::int64_t kHeldCells = 32;  // and its default where the held coordinate is integrated over
+constexpr std::int64_t kHeldCells = 32;  // and its default where the fixed coordinate is integrated over
 constexpr std::int64_t kMostCellsPerAxis = 1 << 20;
 constexpr std::int64_t kMostCells = std::int64_t{1} << 28;  // a voxel map takes a byte per cell
 constexpr double kFinestTolerance = 1e-13, kCoarsestTolerance = 0.1;
 constexpr std::int64_t kMostNodes = 200;
 constexpr double kUsualGap = 1e-2;  // of certain = true
 
-bool integrated(const FixedCoordinate& held) { return held.kind == FixedCoordinate::Kind::integrated; }
+bool integrated(const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; }
 
 /// The coordinates that have cells: the swept ones, then those that are integrated over.
 std::vector<std::string> names_with_cells(const MechanismInfo& info, const WorkspacePlan& plan) {
   std::vector<std::string> names = coordinate_names(info, sweep_of(info, plan).swept);
-  for (const FixedCoordinate& held : plan.held)
-    if (integrated(held)) names.push_back(axis_of(info, held.coordinate).name);
+  for (const FixedCoordinate& fixed : plan.fixed)
+    if (integrated(fixed)) names.push_back(axis_of(info, fixed.coordinate).name);
   return names;
 }
 
@@ -36,8 +36,8 @@ std::int64_t set_cells(const MechanismInfo& info, WorkspacePlan& plan, const Cel
   auto& cells = std::get<VoxelOptions>(plan.method).cells;
   std::int64_t all = 1;
   for (std::size_t k = 0; k < swept.size(); ++k) all *= cells[k] = cells_of(axis_of(info, swept[k]).name);  // to 2^60
-  for (FixedCoordinate& held : plan.held)
-    if (integrated(held)) held.cells = cells_of(axis_of(info, held.coordinate).name);
+  for (FixedCoordinate& fixed : plan.fixed)
+    if (integrated(fixed)) fixed.cells = cells_of(axis_of(info, fixed.coordinate).name);
   return all;
 }
 
@@ -152,11 +152,11 @@ ConfigError of_other_method(const ConfigValue& key, const WorkspacePlan& plan) {
 
 void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_region, WorkspacePlan& plan) {
   const MechanismInfo& info = mechanism.info();
-  const bool columns_take_box = mechanism.columns() && mechanism.columns()->take_box();
+  const bool columns_support_box = mechanism.columns() && mechanism.columns()->supports_box();
   if (const auto method = table.find("method"); method && method->word({"columns", "voxels"}) == "voxels")
     plan.method = VoxelOptions{};
   for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
-    const bool of_voxels = key == "cells" || key == "box", of_both = key == "box" && columns_take_box;
+    const bool of_voxels = key == "cells" || key == "box", of_both = key == "box" && columns_support_box;
     if (!of_both && of_voxels != (plan.voxels() != nullptr) && table.has(key))
       throw of_other_method(*table.find(key), plan);
   }
@@ -188,8 +188,8 @@ void set_usual(const MechanismInfo& info, WorkspacePlan& plan) {
   VoxelOptions voxels;
   std::copy_n(kPaperCells.begin(), sweep_of(info, plan).swept.size(), voxels.cells.begin());
   plan.method = voxels;
-  for (FixedCoordinate& held : plan.held)
-    if (integrated(held)) held.cells = kHeldCells;
+  for (FixedCoordinate& fixed : plan.fixed)
+    if (integrated(fixed)) fixed.cells = kHeldCells;
 }
 
 void read_workspace(const ConfigValue& root, StudyDraft& draft) {

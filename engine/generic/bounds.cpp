@@ -13,7 +13,7 @@
 namespace pkm::generic {
 namespace {
 
-using bounds::Conditions, bounds::Ranges;
+using bounds::Constraints, bounds::Ranges;
 
 void refuse_clearance_of_boxes(const Model& model, const LimitSpec& limits) {
   refuse_clearance(model, limits,
@@ -27,7 +27,7 @@ std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e,
   const std::vector<Interval> design(parameters.begin(), parameters.end());
   std::vector<Interval> inputs(e.model.inputs.count());
   e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
-  for (const int coordinate : sweep_of(mechanism.info(), plan).held)
+  for (const int coordinate : sweep_of(mechanism.info(), plan).fixed)
     inputs[e.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
         fixed_value(mechanism, parameters, plan, coordinate);
   return inputs;
@@ -35,12 +35,12 @@ std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e,
 
 }  // namespace
 
-void refuse_bounds(const Model& model, const WorkspacePlan& plan) {
+void require_bounds(const Model& model, const WorkspacePlan& plan) {
   refuse_clearance_of_boxes(model, plan.limits);
-  for (const int coordinate : sweep_of(model.info, plan).held) {
-    const FixedCoordinate held = how_fixed(plan, coordinate);
-    const bool integrated = held.kind == FixedCoordinate::Kind::integrated;
-    if (integrated || (held.kind == FixedCoordinate::Kind::listed && held.values.size() > 1))
+  for (const int coordinate : sweep_of(model.info, plan).fixed) {
+    const FixedCoordinate fixed = how_fixed(plan, coordinate);
+    const bool integrated = fixed.kind == FixedCoordinate::Kind::integrated;
+    if (integrated || (fixed.kind == FixedCoordinate::Kind::listed && fixed.values.size() > 1))
       throw std::invalid_argument("certified bounds need a single value of " +
                                   model.info.coordinates[static_cast<std::size_t>(coordinate)].name +
                                   ", but the workspace analysis " +
@@ -50,7 +50,7 @@ void refuse_bounds(const Model& model, const WorkspacePlan& plan) {
 
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
                           const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options) {
-  refuse_bounds(e.model, plan);
+  require_bounds(e.model, plan);
   const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
   const Ranges given = e.search_box(parameters, plan, mode, swept);
   for (std::size_t i = 0; i < swept.size(); ++i)
@@ -65,7 +65,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
 
   // Try each coordinate as the innermost one with few boxes, and use the one that gives the smallest gap.
   struct Order {
-    Conditions conditions;
+    Constraints conditions;
     Ranges ranges;
     std::vector<std::size_t> coordinates;  ///< by axis
   };
@@ -80,13 +80,13 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
       positions.push_back(e.model.inputs.coordinate(coordinates.back()));
       ranges[i] = given[axis];
     }
-    Order order{Conditions(constraints.graph, constraints.all, positions, inputs), ranges, coordinates};
-    if (order.conditions.size() > bounds::kMostConditions)
-      throw std::invalid_argument("certified bounds support at most " + std::to_string(bounds::kMostConditions) +
+    Order order{Constraints(constraints.graph, constraints.all, positions, inputs), ranges, coordinates};
+    if (order.conditions.size() > bounds::kMaxConstraints)
+      throw std::invalid_argument("certified bounds support at most " + std::to_string(bounds::kMaxConstraints) +
                                   " constraints, but mechanism " + mechanism.info().name + " has " +
                                   std::to_string(order.conditions.size()));
     BoundsOptions few = options;
-    few.most_boxes = std::min<std::size_t>(options.most_boxes, 1024);
+    few.max_boxes = std::min<std::size_t>(options.max_boxes, 1024);
     const VolumeBounds tried = bounds::volume_bounds(order.conditions, order.ranges, few);
     if (best && tried.upper - tried.lower >= min_gap) continue;
     min_gap = tried.upper - tried.lower;
@@ -99,7 +99,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
 
   const MechanismInfo& info = mechanism.info();
   bounds::Statement statement{.graph = constraints.graph,
-                              .conditions = best->conditions,
+                              .constraints = best->conditions,
                               .axes = {},
                               .positions = {},
                               .ranges = best->ranges,
@@ -198,14 +198,14 @@ bounds::Matrices jacobians_along(const Motion& motion, const Model& model, std::
 
 }  // namespace
 
-PosesCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const WorkspacePlan& plan,
-                             std::size_t mode, std::span<const std::array<double, 2>> ranges,
-                             const BoundsOptions& options) {
+PoseCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const WorkspacePlan& plan,
+                            std::size_t mode, std::span<const std::array<double, 2>> ranges,
+                            const BoundsOptions& options) {
   std::vector<Interval> inputs = inputs_of(e, parameters, plan.limits, mode);
   std::vector<std::size_t> axes;
   for (std::size_t i = 0; i < ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
   const IntervalConstraints constraints = interval_constraints(e.model, inputs);
-  const Conditions conditions(constraints.graph, constraints.all, axes, inputs);
+  const Constraints conditions(constraints.graph, constraints.all, axes, inputs);
   Graph graph;
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
@@ -213,13 +213,13 @@ PosesCertificate certify_box(const Evaluation& e, std::span<const double> parame
     const auto named = jacobians(e.model, graph, inputs);
     matrices.emplace(graph, named, axes, inputs);
   }
-  PosesCertificate found = bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
-  if (not_examined) found.regular.what = *not_examined;
+  PoseCertificate found = bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
+  if (not_examined) found.regular.detail = *not_examined;
   return found;
 }
 
-PosesCertificate certify_motion(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
-                                std::size_t mode, const Motion& motion, const BoundsOptions& options) {
+PoseCertificate certify_motion(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
+                               std::size_t mode, const Motion& motion, const BoundsOptions& options) {
   const std::vector<Interval> design = inputs_of(e, parameters, limits, mode);
   IntervalConstraints constraints = interval_constraints(e.model, design);
   std::vector<Node> roots;
@@ -227,7 +227,7 @@ PosesCertificate certify_motion(const Evaluation& e, std::span<const double> par
   std::vector<Interval> inputs = design;
   const std::size_t time = substitute_motion(motion, e.model.inputs, constraints.graph, inputs, roots);
   for (std::size_t i = 0; i < roots.size(); ++i) constraints.all[i].node = roots[i];
-  const Conditions conditions(constraints.graph, constraints.all, {time}, inputs);
+  const Constraints conditions(constraints.graph, constraints.all, {time}, inputs);
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
   if (!not_examined) matrices = jacobians_along(motion, e.model, design);
@@ -236,22 +236,22 @@ PosesCertificate certify_motion(const Evaluation& e, std::span<const double> par
     const std::array<double, 2> times = {0, end};
     return bounds::certify(conditions, regular, {&times, 1}, options);
   };
-  PosesCertificate found = certify_until(motion.duration(), matrices ? &*matrices : nullptr);
-  const auto time_of = [](const PosesFinding& finding) { return (*finding.where)[0]; };
+  PoseCertificate found = certify_until(motion.duration(), matrices ? &*matrices : nullptr);
+  const auto time_of = [](const PropertyResult& finding) { return (*finding.pose)[0]; };
   // The infeasible instant that was found need not be the first one: search before it until it stays there.
   double later = motion.duration();
-  while (found.feasible.kind == PosesFinding::Kind::fails &&
+  while (found.feasible.kind == PropertyResult::Kind::fails &&
          later - time_of(found.feasible) > 1e-6 * motion.duration()) {
     later = time_of(found.feasible);
-    PosesCertificate before = certify_until(later, nullptr);
+    PoseCertificate before = certify_until(later, nullptr);
     found.boxes += before.boxes;
-    if (before.feasible.kind == PosesFinding::Kind::fails) found.feasible = before.feasible;
+    if (before.feasible.kind == PropertyResult::Kind::fails) found.feasible = before.feasible;
   }
-  if (not_examined) found.regular.what = *not_examined;
-  for (PosesFinding* const finding : {&found.feasible, &found.regular})
-    if (finding->where) {
+  if (not_examined) found.regular.detail = *not_examined;
+  for (PropertyResult* const finding : {&found.feasible, &found.regular})
+    if (finding->pose) {
       finding->time = time_of(*finding);
-      finding->where = motion.at(*finding->time).pose;
+      finding->pose = motion.at(*finding->time).pose;
     }
   return found;
 }

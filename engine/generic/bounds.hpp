@@ -7,14 +7,14 @@
 namespace pkm::generic {
 
 /// Throws std::invalid_argument with a message if bounds do not support a plan.
-void refuse_bounds(const Model& model, const WorkspacePlan& plan);
+void require_bounds(const Model& model, const WorkspacePlan& plan);
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& evaluation, std::span<const double> parameters,
                           const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options);
-PosesCertificate certify_box(const Evaluation& evaluation, std::span<const double> parameters,
-                             const WorkspacePlan& plan, std::size_t mode, std::span<const std::array<double, 2>> ranges,
-                             const BoundsOptions& options);
-PosesCertificate certify_motion(const Evaluation& evaluation, std::span<const double> parameters,
-                                const LimitSpec& limits, std::size_t mode, const Motion& motion,
-                                const BoundsOptions& options);
+PoseCertificate certify_box(const Evaluation& evaluation, std::span<const double> parameters, const WorkspacePlan& plan,
+                            std::size_t mode, std::span<const std::array<double, 2>> ranges,
+                            const BoundsOptions& options);
+PoseCertificate certify_motion(const Evaluation& evaluation, std::span<const double> parameters,
+                               const LimitSpec& limits, std::size_t mode, const Motion& motion,
+                               const BoundsOptions& options);
 
 }  // namespace pkm::generic

@@ -121,7 +121,7 @@ S SampleConditioning::at(const Pose<S>& pose, ConditioningScratch<S>& scratch) c
   const std::optional<S> found = conditioning_of<S>(e_.model, scratch.lengths, pose, J);
   if (found && std::isfinite(value_of(*found))) return *found;
   check(e_.model.info, scratch.lengths);
-  return S(kConditioning.without_value);  // J is infinite: the pose is singular
+  return S(kConditioning.value_if_undefined);  // J is infinite: the pose is singular
 }
 
 template std::optional<double> conditioning_of(const Model&, const CharacteristicLengths<double>&, const Pose<double>&,

@@ -192,7 +192,7 @@ class AssemblySet {
 
   std::vector<double> inputs(const Pose<double>& pose, const std::string& mode) const {
     const MechanismInfo& info = e_.model.info;
-    std::vector<double> inputs = e_.inputs(parameters_, no_limits(info), number_of_mode(info, mode));
+    std::vector<double> inputs = e_.inputs(parameters_, no_limits(info), mode_index(info, mode));
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
     return inputs;
   }

@@ -34,11 +34,11 @@ void InertiaBatch::start(const std::vector<double>& inputs, InertiaScratch& scra
   batch_.start(inputs, scratch.poses);
 }
 
-void InertiaBatch::add(const Pose<double>& pose, InertiaScratch& scratch, Survey<double>& to) const {
+void InertiaBatch::add(const Pose<double>& pose, InertiaScratch& scratch, WorkspaceResult<double>& to) const {
   if (batch_.add(pose, scratch.poses)) finish(scratch, to);
 }
 
-void InertiaBatch::finish(InertiaScratch& scratch, Survey<double>& to) const {
+void InertiaBatch::finish(InertiaScratch& scratch, WorkspaceResult<double>& to) const {
   const std::size_t count = scratch.poses.count;
   if (count == 0) return;
   const std::size_t padded = batch_.run(scratch.poses);
@@ -89,7 +89,7 @@ void InertiaBatch::start(const std::vector<Dual4>& inputs, InertiaScratch& scrat
   batch_.start<Dual4>(inputs, scratch.dual_registers);
 }
 
-void InertiaBatch::add(const Pose<Dual4>& pose, InertiaScratch& scratch, Survey<Dual4>& to) const {
+void InertiaBatch::add(const Pose<Dual4>& pose, InertiaScratch& scratch, WorkspaceResult<Dual4>& to) const {
   batch_.run<Dual4>(pose, scratch.dual_registers);
   add_inertia(inertia_of<Dual4>([&](std::size_t output) { return scratch.dual_registers[batch_.outputs()[output]]; }),
               to);

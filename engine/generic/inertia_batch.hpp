@@ -15,19 +15,19 @@ struct InertiaScratch {
 class InertiaBatch {
  public:
   /// @param evaluation  of a model with bodies
-  /// @param rotors      Demand::rotors
+  /// @param rotors      FieldRequest::rotors
   InertiaBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
                const std::vector<double>& rotors);
 
   /// As PoseBatch::start().
   void start(const std::vector<double>& inputs, InertiaScratch& scratch) const;
   /// Adds a pose, whose values are appended to the fields of the survey when the batch is full or finish() is called.
-  void add(const Pose<double>& pose, InertiaScratch& scratch, Survey<double>& to) const;
-  void finish(InertiaScratch& scratch, Survey<double>& to) const;
+  void add(const Pose<double>& pose, InertiaScratch& scratch, WorkspaceResult<double>& to) const;
+  void finish(InertiaScratch& scratch, WorkspaceResult<double>& to) const;
   /// With derivatives: poses are evaluated one by one.
   void start(const std::vector<Dual4>& inputs, InertiaScratch& scratch) const;
-  void add(const Pose<Dual4>& pose, InertiaScratch& scratch, Survey<Dual4>& to) const;
-  void finish(InertiaScratch&, Survey<Dual4>&) const {}
+  void add(const Pose<Dual4>& pose, InertiaScratch& scratch, WorkspaceResult<Dual4>& to) const;
+  void finish(InertiaScratch&, WorkspaceResult<Dual4>&) const {}
 
  private:
   /// Inertia matrix M_q of a single pose. @param output  output(i): value of output i of batch_

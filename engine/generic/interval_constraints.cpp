@@ -81,7 +81,7 @@ Node is_finite(Graph& graph, Node node) {
 /// Finds operations whose arguments are within the domain if all constraints are satisfied.
 class DomainTest {
  public:
-  DomainTest(Graph& graph, const std::vector<bounds::NamedCondition>& constraints) : graph_(graph) {
+  DomainTest(Graph& graph, const std::vector<bounds::NamedConstraint>& constraints) : graph_(graph) {
     for (const auto& constraint : constraints) known_.insert(constraint.node);
   }
 
@@ -107,7 +107,7 @@ class DomainTest {
 
 IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs) {
   Graph graph = model.graph;
-  std::vector<bounds::NamedCondition> constraints;
+  std::vector<bounds::NamedConstraint> constraints;
   for (const auto* const list : {&model.domains, &model.margins})
     for (const Result& result : *list) {
       std::optional<Node> quotient;

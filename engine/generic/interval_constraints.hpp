@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "engine/generic/model.hpp"
-#include "engine/workspace/bounds/conditions.hpp"
+#include "engine/workspace/bounds/constraints.hpp"
 
 namespace pkm::generic {
 
 struct IntervalConstraints {
   Graph graph;
-  std::vector<bounds::NamedCondition> all;  ///< nodes of `graph`
+  std::vector<bounds::NamedConstraint> all;  ///< nodes of `graph`
 };
 
 /// Rewrites the domains and margins. All of the result are satisfied if and only if all of the model are, but they

@@ -15,7 +15,7 @@
 #include "engine/generic/newton_euler.hpp"
 #include "engine/generic/pose_margins.hpp"
 #include "engine/generic/voxels.hpp"
-#include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanism/scalar_dispatch.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -32,8 +32,8 @@ class GenericMechanism final : public Mechanism,
                                DesignTests,
                                Size,
                                JointReactions,
-                               PoseMarginsOf<GenericMechanism>,
-                               DynamicsOf<GenericMechanism> {
+                               PoseMarginsDispatch<GenericMechanism>,
+                               DynamicsDispatch<GenericMechanism> {
  public:
   GenericMechanism(Model model, Accelerators accelerators)
       : e_(std::move(model)),
@@ -49,11 +49,11 @@ class GenericMechanism final : public Mechanism,
   }
   std::vector<double> quantities(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
                                  const MotionSample& at) const override {
-    return quantities_at(e_, parameters, number_of_mode(info(), mode), limits, at);
+    return quantities_at(e_, parameters, mode_index(info(), mode), limits, at);
   }
   PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
                      const LimitSpec& limits) const override {
-    return inspect_pose(e_, parameters, pose, number_of_mode(info(), mode), limits);
+    return inspect_pose(e_, parameters, pose, mode_index(info(), mode), limits);
   }
   std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double> parameters) const override {
     std::vector<std::array<double, 2>> all;
@@ -71,7 +71,7 @@ class GenericMechanism final : public Mechanism,
                to = e_.of_design<double>(e_.reach_upper[i], parameters);
     return from && to ? std::optional(std::array{*from, *to}) : std::nullopt;
   }
-  std::optional<double> middle(std::span<const double> parameters, int coordinate) const override {
+  std::optional<double> default_value(std::span<const double> parameters, int coordinate) const override {
     return e_.of_design<double>(e_.default_values[static_cast<std::size_t>(coordinate)], parameters);
   }
   void thresholds(std::span<const double> parameters, const LimitSpec& limits,
@@ -100,19 +100,19 @@ class GenericMechanism final : public Mechanism,
   std::string why_no_reactions() const override { return e_.model.why_no_reactions; }
 
  private:
-  friend DynamicsOf<GenericMechanism>;
-  friend PoseMarginsOf<GenericMechanism>;
+  friend DynamicsDispatch<GenericMechanism>;
+  friend PoseMarginsDispatch<GenericMechanism>;
 
-  std::string common_margin_unit() const { return e_.model.margin_unit; }
+  std::string margin_unit() const override { return e_.model.margin_unit; }
   template <class S>
   void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,
                     std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) const {
-    append_margins(e_, parameters, number_of_mode(info(), mode), limits, poses, scratch, margins);
+    append_margins(e_, parameters, mode_index(info(), mode), limits, poses, scratch, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
                      std::span<PoseDynamics<S>> found) const {
-    generic::find_dynamics(e_, parameters, number_of_mode(info(), mode), states, found);
+    generic::find_dynamics(e_, parameters, mode_index(info(), mode), states, found);
   }
   const std::vector<std::string>& mass_models() const override { return e_.model.mass_models; }
   const std::string& mass_model() const override { return e_.model.mass_model; }
@@ -125,25 +125,25 @@ class GenericMechanism final : public Mechanism,
                  const AxisVector<double>& acceleration, const Wrench<double>& wrench) const override {
     const PoseReport report = inspect(parameters, state.pose, mode, no_limits(info()));
     if (report.assembles)
-      return pkm::reactions(newton_euler(e_, parameters, number_of_mode(info(), mode), state, acceleration, wrench));
+      return pkm::reactions(newton_euler(e_, parameters, mode_index(info(), mode), state, acceleration, wrench));
     Reactions none;
     none.reason = report.reason;
     return none;
   }
 
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                const Demand& demand) const override {
-    if (accelerators_.voxels && accelerators_.voxels->serves(plan, voxels, demand))
-      return accelerators_.voxels->prepare(plan, voxels, demand);
-    return prepare_voxels(*this, e_, plan, voxels, demand, accelerated_box(plan, demand));
+                                                const FieldRequest& request) const override {
+    if (accelerators_.voxels && accelerators_.voxels->serves(plan, voxels, request))
+      return accelerators_.voxels->prepare(plan, voxels, request);
+    return prepare_voxels(*this, e_, plan, voxels, request, accelerated_box(plan, request));
   }
   /// The search box of the accelerator's voxels, so that the generic engine counts the same cells; null if there is no
   /// accelerator.
-  BoxOfDesign accelerated_box(const WorkspacePlan& plan, const Demand& demand) const {
+  BoxOfDesign accelerated_box(const WorkspacePlan& plan, const FieldRequest& request) const {
     WorkspacePlan unlimited = plan;
     unlimited.limits = no_limits(info());
     const VoxelOptions no_box;
-    const Demand of_mode{.mode = demand.mode};
+    const FieldRequest of_mode{.mode = request.mode};
     if (!accelerators_.voxels || !accelerators_.voxels->serves(unlimited, no_box, of_mode)) return {};
     for (std::size_t i = 0; i < unlimited.limits.given.size(); ++i)
       if (i != e_.model.clearance_limit) {
@@ -158,31 +158,31 @@ class GenericMechanism final : public Mechanism,
       return box;
     };
   }
-  bool take_rotors() const override { return true; }
-  bool take_obstacles() const override { return true; }
+  bool supports_rotors() const override { return true; }
+  bool supports_obstacles() const override { return true; }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                    const Demand& demand) const override {
-    if (accelerators_.columns && accelerators_.columns->serves(plan, columns, demand))
-      return accelerators_.columns->prepare(plan, columns, demand);
-    return prepare_columns(*this, e_, plan, columns, demand);
+                                                    const FieldRequest& request) const override {
+    if (accelerators_.columns && accelerators_.columns->serves(plan, columns, request))
+      return accelerators_.columns->prepare(plan, columns, request);
+    return prepare_columns(*this, e_, plan, columns, request);
   }
-  bool take_box() const override { return true; }
-  void refuse_bounds(const WorkspacePlan& plan) const override { generic::refuse_bounds(e_.model, plan); }
+  bool supports_box() const override { return true; }
+  void require_bounds(const WorkspacePlan& plan) const override { generic::require_bounds(e_.model, plan); }
   VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                       const BoundsOptions& options) const override {
-    return bound_volume(*this, e_, parameters, plan, number_of_mode(info(), mode), options);
+    return bound_volume(*this, e_, parameters, plan, mode_index(info(), mode), options);
   }
-  PosesCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
-                       std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
-    return certify_box(e_, parameters, plan, number_of_mode(info(), mode), ranges, options);
+  PoseCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                      std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
+    return certify_box(e_, parameters, plan, mode_index(info(), mode), ranges, options);
   }
-  PosesCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
-                          const Motion& motion, const BoundsOptions& options) const override {
-    return certify_motion(e_, parameters, limits, number_of_mode(info(), mode), motion, options);
+  PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
+                         const Motion& motion, const BoundsOptions& options) const override {
+    return certify_motion(e_, parameters, limits, mode_index(info(), mode), motion, options);
   }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {
-    return influence_at(e_, parameters, pose, number_of_mode(info(), mode));
+    return influence_at(e_, parameters, pose, mode_index(info(), mode));
   }
   std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
                                        const AxisVector<double>& joints) const override {
@@ -204,7 +204,7 @@ class GenericMechanism final : public Mechanism,
   }
   std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
                                 const std::string& mode) const override {
-    std::vector<double> inputs = e_.inputs(parameters, no_limits(info()), number_of_mode(info(), mode));
+    std::vector<double> inputs = e_.inputs(parameters, no_limits(info()), mode_index(info(), mode));
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
     if (!assembles_at(e_, inputs)) return {};
     const std::vector<Capsule<double>> capsules = capsules_at(e_, inputs);
@@ -250,7 +250,7 @@ std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, st
                                                   const Pose<double>& pose, const std::string& mode) {
   const auto* const generic_mechanism = dynamic_cast<const GenericMechanism*>(&mechanism);
   if (!generic_mechanism || !generic_mechanism->evaluation().model.jointed) return {};
-  return mobility_at(generic_mechanism->evaluation(), parameters, pose, number_of_mode(mechanism.info(), mode));
+  return mobility_at(generic_mechanism->evaluation(), parameters, pose, mode_index(mechanism.info(), mode));
 }
 
 std::shared_ptr<const Mechanism> make_mechanism(Model model, Accelerators accelerators) {

@@ -11,7 +11,7 @@
 #include "engine/generic/inertia_batch.hpp"
 #include "engine/generic/kinematics.hpp"
 #include "engine/workspace/cell_runs.hpp"
-#include "engine/workspace/grid_surveyor.hpp"
+#include "engine/workspace/grid_evaluator.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm::generic {
@@ -20,21 +20,21 @@ namespace {
 class GenericVoxels final : public GridEvaluator<GenericVoxels> {
  public:
   GenericVoxels(const Mechanism& mechanism, const Evaluation& evaluation, const WorkspacePlan& plan,
-                const VoxelOptions& voxels, const Demand& demand, BoxOfDesign default_box)
-      : GridEvaluator(demand),
+                const VoxelOptions& voxels, const FieldRequest& request, BoxOfDesign default_box)
+      : GridEvaluator(request),
         mechanism_(mechanism),
         e_(evaluation),
         plan_(plan),
         voxels_(voxels),
-        demand_(demand),
+        request_(request),
         sweep_(sweep_of(mechanism.info(), plan)),
-        mode_(number_of_mode(mechanism.info(), demand.mode)),
+        mode_(mode_index(mechanism.info(), request.mode)),
         default_box_(std::move(default_box)),
         test_(CellPlan::fastest(evaluation, sweep_.swept, voxels.cells, mode_)) {
-    if (demand.characteristic_length)
+    if (request.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
-    if (demand.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, demand.rotors);
+    if (request.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, request.rotors);
     if (const auto limit = clearance_of(evaluation.model, plan.limits))
       clearance_.emplace(evaluation, sweep_.swept, mode_, *limit, plan.limits.obstacles);
   }
@@ -51,44 +51,44 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   };
   struct Common {
     std::vector<double> inputs;
-    std::vector<FixedCells> held;
+    std::vector<FixedCells> fixed;
   };
-  using Rooms = GridRooms<Common, WorkerScratch>;
+  using Buffers = GridBuffers<Common, WorkerScratch>;
 
-  /// A design on its grids. The units of work (pieces) are the slices of the outer loop.
-  struct GriddedSlices : Gridded {
+  /// A design and its grids, whose blocks are slices of the outer loop.
+  struct GriddedSlices : GriddedDesign {
     std::span<const double> parameters;
     const Common& common;
   };
 
-  GriddedSlices start(std::span<const double> parameters, Rooms& rooms) const {
+  GriddedSlices start(std::span<const double> parameters, Buffers& buffers) const {
     if (inertia_) check_masses(e_, parameters);
-    if (demand_.has(kConditioning)) check_lengths(e_, parameters);
+    if (request_.has(kConditioning)) check_lengths(e_, parameters);
     const bool is_default = !voxels_.box && default_box_;
     const VoxelGrid grid(voxels_.cells,
                          is_default ? default_box_(parameters) : e_.search_box(parameters, plan_, mode_, sweep_.swept));
-    Common& common = rooms.common;
+    Common& common = buffers.shared;
     find_fixed_cells(
-        sweep_.held, plan_,
+        sweep_.fixed, plan_,
         [&](int coordinate) {
           return e_.required_range(parameters, plan_.limits, mode_, static_cast<std::size_t>(coordinate));
         },
-        common.held);
+        common.fixed);
     fill_inputs(parameters, common.inputs);
-    for (WorkerScratch& scratch : rooms.of) scratch.number.reset();
-    return {{grid, test_.shape(grid)[0], common.held}, parameters, common};
+    for (WorkerScratch& scratch : buffers.per_worker) scratch.number.reset();
+    return {{grid, test_.shape(grid)[0], common.fixed}, parameters, common};
   }
   void find(const GriddedSlices& slices, std::size_t number, std::size_t slice, WorkerScratch& scratch,
-            Survey<double>& to) const {
+            WorkspaceResult<double>& to) const {
     prepare(slices.common, number, scratch);
-    const CellTally tally = find_cells(slices.grid, slice, demand_.needs_samples(), scratch);
+    const CellTally tally = find_cells(slices.grid, slice, request_.needs_samples(), scratch);
     to.feasible_cells += tally.cells;
     to.touches_box = to.touches_box || tally.touches_box;
-    if (demand_.needs_samples()) add_slice(slices.parameters, slices.grid, slice, slices.cell_volume, scratch, to);
+    if (request_.needs_samples()) add_slice(slices.parameters, slices.grid, slice, slices.cell_volume, scratch, to);
   }
   template <class Visit>
-  void visit_cells(const GriddedSlices& slices, Rooms& rooms, const Visit& visit) const {
-    WorkerScratch& scratch = rooms.of[0];
+  void visit_cells(const GriddedSlices& slices, Buffers& buffers, const Visit& visit) const {
+    WorkerScratch& scratch = buffers.per_worker[0];
     prepare(slices.common, 0, scratch);
     const auto [count, columns, cells] = test_.shape(slices.grid);
     for (std::size_t slice = 0; slice < count; ++slice) {
@@ -103,7 +103,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     if (scratch.number == number) return;
     scratch.number = number;
     scratch.inputs = common.inputs;
-    set_fixed(common.held, number, [&](std::size_t coordinate) -> double& {
+    set_fixed_cells(common.fixed, number, [&](std::size_t coordinate) -> double& {
       return scratch.inputs[e_.model.inputs.coordinate(coordinate)];
     });
     test_.start(scratch.inputs, scratch.cells);
@@ -114,7 +114,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   void fill_inputs(std::span<const double> parameters, std::vector<double>& inputs) const {
     inputs.resize(e_.model.inputs.count());
     e_.fill_inputs<double>(parameters, plan_.limits, mode_, inputs);
-    for (const int coordinate : sweep_.held)
+    for (const int coordinate : sweep_.fixed)
       if (how_fixed(plan_, coordinate).kind != FixedCoordinate::Kind::integrated)
         inputs[e_.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
             fixed_value(mechanism_, parameters, plan_, coordinate);
@@ -165,7 +165,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
 
   /// Appends the samples of a slice to the survey.
   void add_slice(std::span<const double> parameters, const VoxelGrid& grid, std::size_t slice, double measure,
-                 WorkerScratch& scratch, Survey<double>& to) const {
+                 WorkerScratch& scratch, WorkspaceResult<double>& to) const {
     const auto [slices, columns, cells] = test_.shape(grid);
     for_each_cell(scratch.cells, columns, cells, [&](std::size_t j, std::size_t k) {
       add_sample(parameters, pose_of(grid, test_.cell(slice, j, k), scratch), measure, scratch, to);
@@ -174,27 +174,27 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   }
   /// Writes the coordinates of the pose to scratch.inputs.
   void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight, WorkerScratch& scratch,
-                  Survey<double>& to) const {
+                  WorkspaceResult<double>& to) const {
     check_stop();
     to.weight.push_back(weight);
-    if (demand_.poses) to.pose.push_back(pose);
+    if (request_.poses) to.pose.push_back(pose);
     if (inertia_) inertia_->add(pose, scratch.inertia, to);
-    if (!demand_.needs_jacobian()) return;
+    if (!request_.needs_jacobian()) return;
     std::vector<double>& inputs = scratch.inputs;
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
     const PoseReport report =
-        std::ranges::all_of(demand_.fields,
+        std::ranges::all_of(request_.fields,
                             [](const PoseQuantity* q) { return q == &kConditioning || q->needs_inertia(); })
             ? inspect_sample(e_, parameters, pose, inputs)
             : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
-    add_reported(report, e_.model.inputs.joints, to);
+    add_report(report, e_.model.inputs.joints, to);
   }
 
   const Mechanism& mechanism_;
   const Evaluation& e_;
   WorkspacePlan plan_;
   VoxelOptions voxels_;
-  Demand demand_;
+  FieldRequest request_;
   const Sweep& sweep_;
   std::size_t mode_;
   BoxOfDesign default_box_;
@@ -207,8 +207,8 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
 
 std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism, const Evaluation& evaluation,
                                                      const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                     const Demand& demand, BoxOfDesign default_box) {
-  return std::make_unique<GenericVoxels>(mechanism, evaluation, plan, voxels, demand, std::move(default_box));
+                                                     const FieldRequest& request, BoxOfDesign default_box) {
+  return std::make_unique<GenericVoxels>(mechanism, evaluation, plan, voxels, request, std::move(default_box));
 }
 
 }  // namespace pkm::generic

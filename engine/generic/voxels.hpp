@@ -17,6 +17,6 @@ using BoxOfDesign = std::function<Box(std::span<const double> parameters)>;
 /// @param default_box            null: the box of the file
 std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism, const Evaluation& evaluation,
                                                      const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                     const Demand& demand, BoxOfDesign default_box = {});
+                                                     const FieldRequest& request, BoxOfDesign default_box = {});
 
 }  // namespace pkm::generic

@@ -1,4 +1,4 @@
-// Closed forms of one mechanism that replace abilities of the generic engine where they are measurably faster.
+// Closed forms of one mechanism, which replace abilities of the generic engine where they are measurably faster.
 #pragma once
 
 #include <algorithm>
@@ -10,38 +10,40 @@
 
 namespace pkm {
 
-/// Columns in closed form, for some plans.
+/// Columns in closed form, for the plans that it serves.
 class ColumnAccelerator {
  public:
   virtual ~ColumnAccelerator() = default;
-  /// Whether it serves the plan; else the generic engine does. It may throw std::invalid_argument with a sentence where
-  /// nothing serves the plan.
-  virtual bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand) const = 0;
+  /// @return false if the generic engine has to be used. May throw std::invalid_argument with one sentence if the
+  /// generic engine cannot serve the plan either.
+  virtual bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest& request) const = 0;
   virtual std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                            const Demand& demand) const = 0;
+                                                            const FieldRequest& request) const = 0;
 };
 
-/// Feasible cells in closed form, for some plans.
+/// Feasible voxels in closed form, for the plans that it serves.
 class VoxelAccelerator {
  public:
   virtual ~VoxelAccelerator() = default;
-  virtual bool serves(const WorkspacePlan& plan, const VoxelOptions& voxels, const Demand& demand) const = 0;
+  virtual bool serves(const WorkspacePlan& plan, const VoxelOptions& voxels, const FieldRequest& request) const = 0;
   virtual std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                        const Demand& demand) const = 0;
+                                                        const FieldRequest& request) const = 0;
 };
 
-/// Whether a plan sweeps these coordinates, those that a plan sweeps which names none of them.
-inline bool sweeps(const WorkspacePlan& plan, const std::vector<int>& usual) {
-  if (!plan.swept.empty()) return std::ranges::is_permutation(plan.swept, usual);
-  return std::ranges::none_of(
-      plan.held, [&](const FixedCoordinate& held) { return std::ranges::find(usual, held.coordinate) != usual.end(); });
+/// @return true if a plan sweeps the coordinates `default_swept`: it names them, or it names no swept coordinates and
+/// fixes none of these
+inline bool sweeps(const WorkspacePlan& plan, const std::vector<int>& default_swept) {
+  if (!plan.swept.empty()) return std::ranges::is_permutation(plan.swept, default_swept);
+  return std::ranges::none_of(plan.fixed, [&](const FixedCoordinate& fixed) {
+    return std::ranges::find(default_swept, fixed.coordinate) != default_swept.end();
+  });
 }
 
-/// Each may be null: there is none.
+/// The accelerators of a mechanism; null if there is none of a kind.
 struct Accelerators {
   std::shared_ptr<const ColumnAccelerator> columns = {};
   std::shared_ptr<const VoxelAccelerator> voxels = {};
-  std::shared_ptr<const ForwardKinematics> forward = {};  ///< every assembly mode
+  std::shared_ptr<const ForwardKinematics> forward = {};  ///< finds every assembly mode
 };
 
 }  // namespace pkm

@@ -32,7 +32,7 @@ void Mechanism::thresholds(std::span<const Dual4>, const LimitSpec& limits, std:
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = limits.given[i].value_or(info().limits[i].inactive);
 }
 
-Unsupported no_joint_forces(const Mechanism& mechanism) {
+Unsupported why_no_joint_forces(const Mechanism& mechanism) {
   const MechanismInfo& info = mechanism.info();
   const std::size_t joints = info.joints.size(), coordinates = info.coordinates.size();
   if (!mechanism.dynamics()) return "mechanism " + info.name + " has no masses";
@@ -46,8 +46,8 @@ NamedValues quantities_of_design(const Mechanism& mechanism, std::span<const dou
   const auto& infos = mechanism.info().quantities;
   NamedValues found;
   if (std::ranges::none_of(infos, &QuantityInfo::of_design)) return found;
-  const MotionSample anywhere{.pose = Pose<double>(mechanism.info().coordinates.size())};
-  const auto values = mechanism.quantities(parameters, mechanism.info().modes.front(), limits, anywhere);
+  const MotionSample any_pose{.pose = Pose<double>(mechanism.info().coordinates.size())};
+  const auto values = mechanism.quantities(parameters, mechanism.info().modes.front(), limits, any_pose);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (infos[i].of_design) found.emplace_back(infos[i].name, values[i]);
   return found;
@@ -56,8 +56,8 @@ NamedValues quantities_of_design(const Mechanism& mechanism, std::span<const dou
 const Sweep& sweep_of(const MechanismInfo& info, const WorkspacePlan& plan) {
   for (const Sweep& sweep : info.sweeps)
     if ((plan.swept.empty() || std::ranges::is_permutation(sweep.swept, plan.swept)) &&
-        std::ranges::all_of(plan.held, [&](const FixedCoordinate& named) {
-          return std::ranges::find(sweep.held, named.coordinate) != sweep.held.end();
+        std::ranges::all_of(plan.fixed, [&](const FixedCoordinate& named) {
+          return std::ranges::find(sweep.fixed, named.coordinate) != sweep.fixed.end();
         }))
       return sweep;
   const auto name_of = [&info](int coordinate) {
@@ -65,34 +65,35 @@ const Sweep& sweep_of(const MechanismInfo& info, const WorkspacePlan& plan) {
     return known ? info.coordinates[static_cast<std::size_t>(coordinate)].name
                  : "coordinate number " + std::to_string(coordinate + 1);
   };
-  std::vector<std::string> swept, held;
+  std::vector<std::string> swept, fixed;
   for (const int coordinate : plan.swept) swept.push_back(name_of(coordinate));
-  for (const FixedCoordinate& named : plan.held) held.push_back(name_of(named.coordinate));
-  throw std::invalid_argument(
-      "mechanism " + info.name + " has no survey that " + (swept.empty() ? "" : "sweeps " + join(swept)) +
-      (swept.empty() || held.empty() ? "" : " and ") + (held.empty() ? "" : "holds " + join(held, " and ")));
+  for (const FixedCoordinate& named : plan.fixed) fixed.push_back(name_of(named.coordinate));
+  throw std::invalid_argument("mechanism " + info.name + " has no sweep" +
+                              (swept.empty() ? "" : " over " + join(swept)) +
+                              (fixed.empty() ? "" : " with " + join(fixed, " and ") + " fixed"));
 }
 
-std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual) {
+std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& default_swept) {
   const int n = static_cast<int>(coordinates.size());
   const auto sweep_over = [n](const std::vector<int>& swept) {
-    Sweep sweep{.swept = swept, .held = {}, .column = swept.back()};
+    Sweep sweep{.swept = swept, .fixed = {}, .column = swept.back()};
     for (int i = 0; i < n; ++i)
-      if (std::ranges::find(swept, i) == swept.end()) sweep.held.push_back(i);
+      if (std::ranges::find(swept, i) == swept.end()) sweep.fixed.push_back(i);
     return sweep;
   };
-  std::vector<Sweep> sweeps = {sweep_over(usual)};
+  std::vector<Sweep> sweeps = {sweep_over(default_swept)};
   for (std::size_t count = 3; count >= 1; --count)
     for (int bits = (1 << n) - 1; bits > 0; --bits) {
       std::vector<int> swept;
       for (int i = 0; i < n; ++i)
         if (bits & (1 << (n - 1 - i))) swept.push_back(i);
-      if (swept.size() == count && !std::ranges::is_permutation(swept, usual)) sweeps.push_back(sweep_over(swept));
+      if (swept.size() == count && !std::ranges::is_permutation(swept, default_swept))
+        sweeps.push_back(sweep_over(swept));
     }
   return sweeps;
 }
 
-std::size_t number_of_mode(const MechanismInfo& info, const std::string& name) {
+std::size_t mode_index(const MechanismInfo& info, const std::string& name) {
   if (name.empty()) return 0;
   const auto found = std::ranges::find(info.modes, name);
   if (found == info.modes.end()) throw std::invalid_argument("unknown working mode " + name);
@@ -101,13 +102,22 @@ std::size_t number_of_mode(const MechanismInfo& info, const std::string& name) {
 
 double fixed_value(const Mechanism& mechanism, std::span<const double> parameters, const WorkspacePlan& plan,
                    int coordinate) {
-  const FixedCoordinate held = how_fixed(plan, coordinate);
-  if (held.kind == FixedCoordinate::Kind::value) return held.value;
-  if (held.kind == FixedCoordinate::Kind::listed) return held.values.front();
-  if (const auto middle = mechanism.middle(parameters, coordinate)) return *middle;
-  throw std::invalid_argument("mechanism " + mechanism.info().name + " does not say where the middle of " +
-                              mechanism.info().coordinates[static_cast<std::size_t>(coordinate)].name +
-                              " is; give a value");
+  const FixedCoordinate fixed = how_fixed(plan, coordinate);
+  if (fixed.kind == FixedCoordinate::Kind::value) return fixed.value;
+  if (fixed.kind == FixedCoordinate::Kind::listed) return fixed.values.front();
+  if (const auto value = mechanism.default_value(parameters, coordinate)) return *value;
+  throw_no_default_value(mechanism.info(), coordinate);
+}
+
+void throw_no_default_value(const MechanismInfo& info, int coordinate) {
+  throw std::invalid_argument("mechanism " + info.name + " has no default value of " +
+                              info.coordinates[static_cast<std::size_t>(coordinate)].name + "; give a value");
+}
+
+bool requires_clearance(const MechanismInfo& info, const WorkspacePlan& plan) {
+  for (std::size_t i = 0; i < info.limits.size(); ++i)
+    if (info.limits[i].group == "clearance" && requires_clearance(plan, i)) return true;
+  return false;
 }
 
 std::string unit_of_product(const MechanismInfo& info, const std::vector<int>& coordinates) {
@@ -122,8 +132,8 @@ std::string unit_of_product(const MechanismInfo& info, const std::vector<int>& c
 
 std::string volume_unit(const MechanismInfo& info, const WorkspacePlan& plan) {
   std::vector<int> measured = sweep_of(info, plan).swept;
-  for (const FixedCoordinate& held : plan.held)
-    if (held.kind == FixedCoordinate::Kind::integrated) measured.push_back(held.coordinate);
+  for (const FixedCoordinate& fixed : plan.fixed)
+    if (fixed.kind == FixedCoordinate::Kind::integrated) measured.push_back(fixed.coordinate);
   return unit_of_product(info, measured);
 }
 

@@ -1,4 +1,4 @@
-// A mechanism as the rest of the program sees it: a core that every mechanism has, and abilities that are there or not.
+// Interface of a mechanism: a core that every mechanism implements, and optional abilities.
 #pragma once
 
 #include <memory>
@@ -19,38 +19,38 @@
 
 namespace pkm {
 
-/// A threshold of a pose-level constraint.
+/// Description of a limit: the threshold of a constraint of poses.
 struct LimitInfo {
   std::string name;  ///< "beta_max"
   std::string unit;
-  double inactive = 0;  ///< value that cuts nothing; the default. Of a limit that is called like a parameter: its
-                        ///< nominal value; where no threshold is given, the parameter of the design holds
-  double lower = 0;     ///< allowed range of a given threshold
+  double inactive = 0;  ///< default threshold, which excludes no pose. Of a limit with the name of a parameter: the
+                        ///< nominal value; unless a threshold is given, the design's parameter is the threshold
+  double lower = 0;     ///< range of thresholds that a study may give
   double upper = 0;
   std::string group;       ///< the constraint that owns it: "interference", "singularity-margin" or "clearance"
-  std::string derivation;  ///< formula from the parameters, "" when there is none
+  std::string derivation;  ///< formula of the threshold from the parameters; "" if there is none
   std::string meaning;
 };
 
-/// One to three coordinates that a survey sweeps over, the others being held.
+/// One to three coordinates over which a workspace is analysed; the others are fixed.
 struct Sweep {
-  std::vector<int> swept;   ///< outermost of a voxel map first
-  std::vector<int> held;    ///< the others, in their order
-  int column = 0;           ///< the swept coordinate that columns run along; the others, in order, have nodes
+  std::vector<int> swept;   ///< in the order of the axes of a voxel map, outermost first
+  std::vector<int> fixed;   ///< the others, in their order
+  int column = 0;           ///< swept coordinate along which columns run; the others, in order, are integrated
   bool integrates = false;  ///< FixedCoordinate::Kind::integrated is available
 };
 
-/// What quantities depend on beside the pose: the angle of an input shaft, a phase.
+/// A value beside the pose on which quantities depend, such as the angle of an input shaft.
 struct InputInfo {
   std::string name, unit, meaning;
   double value = 0;  ///< default
 };
 
-/// A named number of the design, of the pose or of its motion.
+/// Description of a named number that depends on the design, the pose or the motion.
 struct QuantityInfo {
   std::string name, unit, meaning;
   bool of_design = false;  ///< depends on parameters and limits alone
-  bool of_motion = false;  ///< depends on inputs, or on rates
+  bool of_motion = false;  ///< depends on inputs or on time derivatives
 };
 
 struct MechanismInfo {
@@ -59,15 +59,15 @@ struct MechanismInfo {
   std::string source;  ///< the paper
   std::vector<Parameter> parameters;
   std::vector<AxisInfo> coordinates;  ///< of the pose, 1 to kMaxCoordinates: translations and rotations
-  std::vector<AxisInfo> joints;       ///< the actuated ones, 1 to kMaxJoints
+  std::vector<AxisInfo> joints;       ///< actuated joints, 1 to kMaxJoints
   std::vector<std::string> modes;     ///< working modes; the first is the default
-  std::vector<std::string> branches;  ///< signs that a mode may require behind a "/"; the first goes without saying
-  std::vector<Sweep> sweeps;          ///< those that it can be surveyed by, the usual one first
+  std::vector<std::string> branches;  ///< signs that a mode may require after a "/"; the first is the default
+  std::vector<Sweep> sweeps;          ///< all supported sweeps, the default one first
   std::vector<LimitInfo> limits;
   std::vector<InputInfo> inputs;
   std::vector<QuantityInfo> quantities;
-  std::string characteristic_length;      ///< formula of the default one; "": no pose has a conditioning
-  std::vector<std::string> closed_forms;  ///< how inverse kinematics finds each joint, for people; or none
+  std::string characteristic_length;      ///< formula of its default; "" if the conditioning is undefined
+  std::vector<std::string> closed_forms;  ///< by joint: method of the inverse kinematics, for people; or empty
 };
 
 class Mechanism {
@@ -75,37 +75,37 @@ class Mechanism {
   virtual ~Mechanism() = default;
   virtual const MechanismInfo& info() const = 0;
 
-  /// Why the parameters describe no mechanism (a length <= 0, ...): here, because one is outside its range.
+  /// Checks that the parameters describe a mechanism. By default each has to be within its range.
+  /// @return the reason if they do not
   virtual Unsupported refuse(std::span<const double> parameters) const;
-  /// Inverse kinematics, with named margins.
+  /// Inverse kinematics: joint coordinates, Jacobian, conditioning and named margins.
   /// @param mode  one of MechanismInfo::modes
   virtual PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
                              const LimitSpec& limits) const = 0;
-  /// Ranges of all coordinates that hold the workspace, for surveys that give no box [m, rad]; none: it does not say.
+  /// Ranges of all coordinates that contain the workspace, for plans without a box [m, rad]; std::nullopt: unknown.
   virtual std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double>) const { return {}; }
-  /// Where a coordinate that a sweep holds has to lie for any pose to be feasible [m or rad]; none: it does not say.
-  /// Here as `ranges` has it. Over a box of parameters its ends are greatest and least at corners of the box.
-  /// @param coordinate  one that a sweep of the mechanism holds
+  /// Range outside of which no value of a fixed coordinate has feasible poses [m or rad]; std::nullopt: unknown. By
+  /// default from ranges(). Over a box of parameters, both ends have their minimum and maximum at vertices of the box.
+  /// @param coordinate  fixed coordinate of one of the sweeps
   virtual std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const;
-  /// What FixedCoordinate::Kind::middle means for a design: the value at which a map holds that coordinate, unless its
-  /// plan says another [m or rad]; none: it does not say.
-  /// @param coordinate  one that a sweep of the mechanism holds
-  virtual std::optional<double> middle(std::span<const double>, int /*coordinate*/) const { return {}; }
-  /// The thresholds in force for a design, order of MechanismInfo::limits: here the given and the inactive ones. Those
-  /// that the design derives are the mechanism's to fill in, for both scalars.
+  /// Default value of a fixed coordinate, for FixedCoordinate::Kind::default_value [m or rad]; std::nullopt: none.
+  /// @param coordinate  fixed coordinate of one of the sweeps
+  virtual std::optional<double> default_value(std::span<const double>, int /*coordinate*/) const { return {}; }
+  /// Computes the effective thresholds of a design, in the order of MechanismInfo::limits: by default the given ones,
+  /// otherwise the inactive ones. Mechanisms with derived limits override both overloads.
   virtual void thresholds(std::span<const double> parameters, const LimitSpec& limits, std::span<double> values) const;
   virtual void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const;
   /// The values of MechanismInfo::quantities at a pose and motion, NaN where they are undefined.
-  /// @param at  MotionSample::inputs are in the order of MechanismInfo::inputs, or empty: the defaults, at rest
+  /// @param at  MotionSample::inputs are in the order of MechanismInfo::inputs; empty: the defaults, constant in time
   virtual std::vector<double> quantities(std::span<const double> /*parameters*/, const std::string& /*mode*/,
                                          const LimitSpec&, const MotionSample& /*at*/) const {
     return {};
   }
 
-  // Abilities; null: the mechanism has it not.
+  // Abilities; null if the mechanism does not have them.
   virtual const Voxels* voxels() const { return nullptr; }  ///< faster than testing every cell
   virtual const Columns* columns() const { return nullptr; }
-  virtual std::string why_no_columns() const { return ""; }  ///< "": there is nothing to say about it
+  virtual std::string why_no_columns() const { return ""; }  ///< "": unspecified
   virtual const Size* size() const { return nullptr; }
   virtual const DesignTests* design_tests() const { return nullptr; }
   virtual const PoseMargins* pose_margins() const { return nullptr; }
@@ -114,31 +114,35 @@ class Mechanism {
   virtual const Links* links() const { return nullptr; }
   virtual const Dynamics* dynamics() const { return nullptr; }
   virtual const JointReactions* reactions() const { return nullptr; }
-  virtual std::string why_no_reactions() const { return ""; }  ///< "": there is nothing to say about it
+  virtual std::string why_no_reactions() const { return ""; }  ///< "": unspecified
   virtual const DriveTrains* drive_trains() const { return nullptr; }
   virtual const RigorousBounds* bounds() const { return nullptr; }
 };
 
-/// Why a mechanism has no coupling indices, no inertia at its joints and no forces of its drives: it has no masses, or
-/// they would need the inverse of a Jacobian that is not square.
-Unsupported no_joint_forces(const Mechanism& mechanism);
+/// Why coupling indices, joint-space inertia and drive forces are undefined: the mechanism has no masses, or a Jacobian
+/// that is not square and therefore has no inverse. Empty if they are defined.
+Unsupported why_no_joint_forces(const Mechanism& mechanism);
 
-/// The sweep of a plan: over the coordinates that the plan names; where it names none, the first that holds all that it
-/// holds. Throws std::invalid_argument when the mechanism has none.
+/// The sweep of a plan: the first one over the coordinates that the plan sweeps, if it names them, with all of its
+/// fixed coordinates fixed. Throws std::invalid_argument if the mechanism has no such sweep.
 const Sweep& sweep_of(const MechanismInfo& info, const WorkspacePlan& plan);
 
-/// Every sweep over three coordinates, over two and over one, in this order, for mechanisms that are surveyed cell by
-/// cell.
-/// @param usual  comes first: the swept coordinates
-std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual);
+/// Lists every sweep over three, two and one coordinates, in this order.
+/// @param default_swept  swept coordinates of the sweep that is put first
+std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& default_swept);
 
-/// The number of a working mode, 0 for "". Throws std::invalid_argument where the mechanism has none of that name.
-std::size_t number_of_mode(const MechanismInfo& info, const std::string& name);
+/// Index of a working mode by its name, 0 for "". Throws std::invalid_argument if the name is unknown.
+std::size_t mode_index(const MechanismInfo& info, const std::string& name);
 
-/// Where a plan's map holds a coordinate for a design [m or rad]: at the plan's value, the first of several, else in
-/// the middle. Throws std::invalid_argument where nothing says.
+/// Value of a fixed coordinate in maps [m or rad]: the plan's value, the first one of a list, otherwise the default
+/// value of the design. Throws std::invalid_argument if there is none.
 double fixed_value(const Mechanism& mechanism, std::span<const double> parameters, const WorkspacePlan& plan,
                    int coordinate);
+/// Throws std::invalid_argument: a fixed coordinate has neither a value nor a default value.
+[[noreturn]] void throw_no_default_value(const MechanismInfo& info, int coordinate);
+
+/// @return true if a plan sets a limit on the clearance of links
+bool requires_clearance(const MechanismInfo& info, const WorkspacePlan& plan);
 
 /// Unit of a product of coordinates: "m^2 rad".
 std::string unit_of_product(const MechanismInfo& info, const std::vector<int>& coordinates);
@@ -149,7 +153,7 @@ std::string volume_unit(const MechanismInfo& info, const WorkspacePlan& plan);
 NamedValues quantities_of_design(const Mechanism& mechanism, std::span<const double> parameters,
                                  const LimitSpec& limits);
 
-/// No limit given or derived.
+/// A LimitSpec in which no limit is given or derived.
 inline LimitSpec no_limits(const MechanismInfo& info) {
   return {std::vector<std::optional<double>>(info.limits.size()), std::vector<bool>(info.limits.size(), false)};
 }

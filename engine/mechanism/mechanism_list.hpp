@@ -1,4 +1,4 @@
-// A catalogue of mechanisms, each of which is made when it is first used.
+// Catalogue of mechanisms with lazy construction: each is constructed at its first use.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace pkm {
 
-/// A mechanism of a catalogue, made when it is first used. Threads may share it.
+/// A mechanism of a catalogue, constructed at its first use. Thread-safe.
 class MechanismEntry {
  public:
   using Make = std::function<std::shared_ptr<const Mechanism>()>;
@@ -42,7 +42,7 @@ class MechanismEntry {
   Make make_;
 };
 
-/// The mechanisms that studies can name.
+/// The mechanisms that a study can refer to by name.
 using MechanismList = std::vector<MechanismEntry>;
 
 }  // namespace pkm

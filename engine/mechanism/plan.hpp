@@ -1,4 +1,4 @@
-// How a workspace is to be surveyed.
+// Input of a workspace analysis: method and box, swept and fixed coordinates, limits, and the quantities to compute.
 #pragma once
 
 #include <algorithm>
@@ -19,40 +19,40 @@ namespace pkm {
 struct LimitSpec {
   std::vector<std::optional<double>> given;  ///< threshold set by the study
   std::vector<bool> derived;                 ///< computed from the design's parameters by the mechanism's formula
-  Obstacles obstacles = {};                  ///< what links keep clear of beside each other
+  Obstacles obstacles = {};                  ///< obstacles to which a clearance limit refers, in addition to links
 };
 
-/// One coordinate that is not swept over: held at a value, at the design's own middle, at each of several values (one
-/// survey each, all of the same weight), or integrated over.
+/// A coordinate that is not swept: fixed at the default value of the design, at a given value, at each value of a list
+/// (the analyses are averaged), or integrated over.
 struct FixedCoordinate {
-  enum class Kind { middle, value, listed, integrated };
-  int coordinate = 0;  ///< which one, of MechanismInfo::coordinates
-  Kind kind = Kind::middle;
+  enum class Kind { default_value, value, listed, integrated };
+  int coordinate = 0;  ///< index of MechanismInfo::coordinates
+  Kind kind = Kind::default_value;
   double value = 0;
-  std::vector<double> values = {};  ///< listed
-  std::int64_t cells = 0;           ///< voxels integrated over it: their number
+  std::vector<double> values = {};  ///< of Kind::listed
+  std::int64_t cells = 0;           ///< of Kind::integrated with voxels: number of cells
 };
 
-/// Ranges of the swept coordinates, in the order of Sweep::swept; what is not swept has [0, 1].
+/// Ranges of the swept coordinates, in the order of Sweep::swept; [0, 1] for axes without a swept coordinate.
 using Box = std::array<std::array<double, 2>, 3>;
 
 struct VoxelOptions {
-  std::array<std::int64_t, 3> cells{1, 1, 1};  ///< in the order of Sweep::swept; 1 where nothing is swept
-  std::optional<Box> box;                      ///< none: derived from each design
+  std::array<std::int64_t, 3> cells{1, 1, 1};  ///< in the order of Sweep::swept; 1 for axes without a coordinate
+  std::optional<Box> box;                      ///< std::nullopt: computed for each design
 };
 
 struct ColumnOptions {
-  double tolerance = 1e-8;     ///< relative
-  std::array<int, 2> nodes{};  ///< fixed nodes per piece and coordinate; 0: chosen from the tolerance
-  std::optional<Box> box;      ///< cuts the workspace, where the mechanism's can be cut
-  std::optional<double> certain =
-      {};  ///< gap of certain bounds that the volume of a design that is kept must be within
+  double tolerance = 1e-8;     ///< relative error of the volume
+  std::array<int, 2> nodes{};  ///< nodes per subinterval and outer coordinate; 0: adaptive, from the tolerance
+  std::optional<Box> box;      ///< restricts the workspace, if Columns::supports_box()
+  /// Relative gap of certified bounds that the volume of a recorded design must satisfy; std::nullopt: not checked.
+  std::optional<double> certain = {};
 };
 
 struct WorkspacePlan {
   std::variant<ColumnOptions, VoxelOptions> method;
-  std::vector<int> swept = {};        ///< all of them, where the study names them; else what it holds decides
-  std::vector<FixedCoordinate> held;  ///< those that the study names; the others of the sweep are in the middle
+  std::vector<int> swept = {};         ///< all of them, if the study names them; empty: derived from `fixed`
+  std::vector<FixedCoordinate> fixed;  ///< those that the study names; the other ones have their default values
   LimitSpec limits;
 
   const VoxelOptions* voxels() const { return std::get_if<VoxelOptions>(&method); }
@@ -60,29 +60,30 @@ struct WorkspacePlan {
   const std::optional<Box>& box() const { return voxels() ? voxels()->box : columns()->box; }
 };
 
-/// Of links: they overlap by the sum of their radii at most, and no radius is greater than 1 m.
+/// Clearance limit that no pose violates [m]: radii are at most 1 m, so two links overlap by at most 2 m.
 inline constexpr double kInactiveClearance = -2;
 
-/// Whether a plan asks for a clearance.
-/// @param limit  the mechanism's number of it
-inline bool asks_clearance(const WorkspacePlan& plan, std::size_t limit) {
+/// @return true if a plan requires a clearance
+/// @param limit  index of the clearance limit in MechanismInfo::limits
+inline bool requires_clearance(const WorkspacePlan& plan, std::size_t limit) {
   return plan.limits.given[limit].value_or(kInactiveClearance) > kInactiveClearance;
 }
 
-/// How the plan holds a coordinate: in the middle where it does not name it.
+/// The plan's specification of a fixed coordinate; the default value if the plan does not name it.
 inline FixedCoordinate how_fixed(const WorkspacePlan& plan, int coordinate) {
-  for (const FixedCoordinate& held : plan.held)
-    if (held.coordinate == coordinate) return held;
+  for (const FixedCoordinate& fixed : plan.fixed)
+    if (fixed.coordinate == coordinate) return fixed;
   return {.coordinate = coordinate};
 }
 
-/// What objectives and constraints need beyond the volume. The union over all of them is computed in one pass.
-struct Demand {
+/// Per-pose quantities to compute in addition to the volume: the union over all objectives and constraints, so that one
+/// pass serves them all.
+struct FieldRequest {
   std::vector<const PoseQuantity*> fields;
-  bool poses = false;                           ///< where the samples are, of those of inertia
-  std::optional<double> characteristic_length;  ///< of all fields that need no inertia [m]; none: the mechanism's own
-  std::string mode;                             ///< working mode of those that do; "": the mechanism's default
-  std::vector<double> rotors;                   ///< by joint, what drive trains add to M_q; empty: nothing
+  bool poses = false;                           ///< also store poses; columns may omit them if no field needs inertia
+  std::optional<double> characteristic_length;  ///< for fields without inertia [m]; std::nullopt: the mechanism's
+  std::string mode;                             ///< working mode for fields of inertia; "": the mechanism's default
+  std::vector<double> rotors;                   ///< by joint: reflected inertia of drive trains; empty: none
 
   bool has(const PoseQuantity& quantity) const { return std::ranges::find(fields, &quantity) != fields.end(); }
   void add(const PoseQuantity& quantity) {

@@ -1,5 +1,6 @@
-// A number of every pose, or of every joint at every pose: stated once. Surveys of any mechanism, objectives, names of
-// expressions, pictures and exports follow from the definition. Those there are: engine/workspace/pose_quantities.hpp.
+// Definition of a per-pose quantity: a number of each pose, or of each joint at each pose. Workspace analyses,
+// objectives, names in expressions, plots and exports are derived from the definition. The list of all quantities is in
+// engine/workspace/pose_quantities.hpp.
 #pragma once
 
 #include <array>
@@ -10,7 +11,8 @@
 
 namespace pkm {
 
-/// [](const auto& M_q, auto* values) {...}, for every kind of matrix that surveys have.
+/// A generic lambda [](const auto& M_q, auto* values) {...}, instantiated for every matrix type of a joint-space
+/// inertia.
 class InertiaFunction {
  public:
   constexpr InertiaFunction() = default;
@@ -37,29 +39,30 @@ class InertiaFunction {
       functions_;
 };
 
-/// A number that expressions know as `name_statistic`.
-struct PoseResult {
-  const char* statistic;  ///< "mean", "min", "max", or "worst": the mean of the worst joint
+/// A statistic of a quantity over the workspace, which expressions call `name_statistic`.
+struct NamedStatistic {
+  const char* statistic;  ///< "mean", "min", "max", or "worst": mean over the poses of the worst joint
   const char* meaning;
 };
 
 struct PoseQuantity {
-  enum class Worst { least, greatest };
+  enum class Worst { minimum, maximum };
 
-  const char* name;        ///< of its field, "inertia_condition"; that of its objective has hyphens
-  const char* unit;        ///< SI, "1"
-  const char* meaning;     ///< "inverse condition number of the Jacobian"
-  double least, greatest;  ///< what its values can be
-  Worst worst;             ///< which value a design is judged by; objectives go the other way
-  double without_value;    ///< of a pose where it is not finite, and of a workspace without poses
+  const char* name;           ///< of its field, "inertia_condition"; that of its objective has hyphens
+  const char* unit;           ///< SI, "1"
+  const char* meaning;        ///< "inverse condition number of the Jacobian"
+  double lower, upper;        ///< range of possible values
+  Worst worst;                ///< which extreme value of a workspace is bad; objectives improve it
+  double value_if_undefined;  ///< for poses where the value is not finite, and for workspaces without poses
   bool per_joint = false;
-  std::array<PoseResult, 2> results = {};  ///< without a statistic: none
-  // Its values at a pose, one or as many as joints, from one of the following; the other is not set.
-  void (*of_report)(const PoseReport&, double* values) = nullptr;  ///< what inverse kinematics says: J, margins, ...
-  InertiaFunction of_inertia = {};                                 ///< the inertia M_q that the joints feel [kg]
+  std::array<NamedStatistic, 2> results = {};  ///< an entry without a statistic is unused
+  // Function that computes the values at a pose, one or one per joint: exactly one of the following is set.
+  void (*from_report)(const PoseReport&, double* values) = nullptr;  ///< from inverse kinematics: J, margins, ...
+  InertiaFunction from_inertia = {};                                 ///< from the joint-space inertia M_q
 
-  /// Then it needs dynamics and a working mode; else a Jacobian, and may depend on a characteristic length.
-  bool needs_inertia() const { return !of_report; }
+  /// @return true if it needs dynamics and a working mode; otherwise it is computed from a PoseReport and may depend on
+  /// a characteristic length
+  bool needs_inertia() const { return !from_report; }
 };
 
 }  // namespace pkm

@@ -6,14 +6,14 @@
 namespace pkm {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of what is compared; of a couple over a force in m
+constexpr double kRounding = 1e-12;  // relative; compares couples with forces as if levers were 1 m long
 
-/// Of a joint by its number.
-/// @param kind  its force, or its couple
-CarriedLoad load_of(const Trajectory& trajectory, std::size_t joint,
+/// Load of the joint with index `joint`.
+/// @param kind  &JointReaction::force or &JointReaction::couple
+LoadSummary load_of(const Trajectory& trajectory, std::size_t joint,
                     std::array<std::optional<double>, 3> JointReaction::*kind) {
   const auto at = [&](const TrajectoryPoint& p) -> const auto& { return p.reactions->joints[joint].*kind; };
-  CarriedLoad load;
+  LoadSummary load;
   for (const TrajectoryPoint& p : trajectory.points)
     for (std::size_t k = 0; k < 3; ++k) load.determined[k] = load.determined[k] && at(p)[k];
   std::vector<double> sizes;
@@ -31,8 +31,8 @@ CarriedLoad load_of(const Trajectory& trajectory, std::size_t joint,
   return load;
 }
 
-/// Couples where a joint carries forces alone, or forces where it carries couples.
-void clear_rounding(CarriedLoad& load, const CarriedLoad& other) {
+/// Sets a load to zero if it is a rounding error: the couple of a joint that transmits forces only, or the reverse.
+void clear_rounding(LoadSummary& load, const LoadSummary& other) {
   if (load.peak < kRounding * other.peak) load.peak = load.rms = 0;
 }
 
@@ -50,17 +50,17 @@ void add_reactions(const Mechanism& mechanism, std::span<const double> parameter
   }
 }
 
-std::vector<CarryingJoint> carried_along(const Trajectory& trajectory) {
-  std::vector<CarryingJoint> carried;
+std::vector<ReactionLoads> reaction_loads(const Trajectory& trajectory) {
+  std::vector<ReactionLoads> loads;
   const std::vector<JointReaction>& first = trajectory.points.front().reactions->joints;
   for (std::size_t joint = 0; joint < first.size(); ++joint) {
-    CarriedLoad force = load_of(trajectory, joint, &JointReaction::force),
+    LoadSummary force = load_of(trajectory, joint, &JointReaction::force),
                 couple = load_of(trajectory, joint, &JointReaction::couple);
     clear_rounding(couple, force);
     clear_rounding(force, couple);
-    carried.push_back({first[joint].name, first[joint].on, force, couple});
+    loads.push_back({first[joint].name, first[joint].on, force, couple});
   }
-  return carried;
+  return loads;
 }
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// What the joints of a mechanism carry along a motion: what bearings are chosen by.
+// Joint reactions along a trajectory, and their peak and RMS values, by which bearings are selected.
 #pragma once
 
 #include <array>
@@ -10,26 +10,26 @@
 
 namespace pkm {
 
-/// Fills in the reactions of every sample.
-/// @param mechanism  has reactions()
-/// @param wrench     that the trajectory was followed under
+/// Computes the reactions of every sample.
+/// @param mechanism  reactions() is not null
+/// @param wrench     the load on the platform for which the trajectory was computed [N, N m]
 void add_reactions(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
                    const Wrench<double>& wrench, Trajectory& trajectory);
 
-/// The size of a joint's force, or of its couple, over the samples. It is made of the components that are determined
-/// at every sample; 0 where it is rounding beside the other of the two.
-struct CarriedLoad {
+/// Magnitude of a joint's force or couple over the samples, from the components that are determined at every sample.
+/// Zero if it is a rounding error relative to the joint's couple or force.
+struct LoadSummary {
   std::array<bool, 3> determined = {true, true, true};  ///< along x, y, z
-  double peak = 0, rms = 0;                             ///< greatest, and root of the mean square [N, N m]
-  std::size_t at = 0;                                   ///< the first sample of the greatest, to rounding
+  double peak = 0, rms = 0;                             ///< maximum, and root of the mean square [N, N m]
+  std::size_t at = 0;                                   ///< index of the first sample with the maximum, to rounding
 };
 
-struct CarryingJoint {
-  std::string name, on;  ///< as JointReaction has them
-  CarriedLoad force, couple;
+struct ReactionLoads {
+  std::string name, on;  ///< see JointReaction
+  LoadSummary force, couple;
 };
 
-/// Of samples that all have reactions; every joint that these name.
-std::vector<CarryingJoint> carried_along(const Trajectory& trajectory);
+/// Loads of every joint. All samples must have reactions.
+std::vector<ReactionLoads> reaction_loads(const Trajectory& trajectory);
 
 }  // namespace pkm

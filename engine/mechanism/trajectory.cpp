@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/mechanism/drive_along.hpp"
+#include "engine/mechanism/inverse_dynamics.hpp"
 
 namespace pkm {
 namespace {
@@ -40,7 +40,7 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::siz
       s.peak_motor_speed[i] = std::fmax(s.peak_motor_speed[i], std::fabs((*p.motor_speeds)[i]));
     }
     s.peak_total_power = k == 0 ? total : std::fmax(s.peak_total_power, total);
-    s.least_total_power = k == 0 ? total : std::fmin(s.least_total_power, total);
+    s.min_total_power = k == 0 ? total : std::fmin(s.min_total_power, total);
     if (k > 0) {
       const double half_step = (p.motion.time - points[k - 1].motion.time) / 2;
       s.energy += half_step * (total + total_before);
@@ -54,7 +54,7 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::siz
   return s;
 }
 
-/// The sample's joints, as far as they are finite.
+/// Stores joint speeds and accelerations that are finite.
 void set_rates(TrajectoryPoint& point, const AxisVector<double>& speeds, const AxisVector<double>& accelerations) {
   if (is_finite(speeds)) point.speeds = speeds;
   if (is_finite(accelerations)) point.accelerations = accelerations;
@@ -67,13 +67,14 @@ void mark_singular(TrajectoryPoint& point) {
 
 }  // namespace
 
-Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
-                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench) {
+Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
+                              const LimitSpec& limits, const Motion& motion, std::size_t count,
+                              const Wrench<double>& wrench) {
   const MechanismInfo& info = mechanism.info();
-  const Dynamics* const dynamics = no_joint_forces(mechanism) ? nullptr : mechanism.dynamics();
+  const Dynamics* const dynamics = why_no_joint_forces(mechanism) ? nullptr : mechanism.dynamics();
   const DriveTrains* const trains = mechanism.drive_trains();
   const Velocities* const velocities = mechanism.velocities();
-  DriveScratch<double> scratch;
+  InverseDynamicsScratch<double> scratch;
   Trajectory trajectory;
   trajectory.duration = motion.duration();
   trajectory.periodic = is_periodic(motion, info.coordinates);
@@ -95,7 +96,7 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
     point.conditioning = report.conditioning;
     point.joints = report.joints;
     if (dynamics && report.assembles) {
-      const auto visit = [&](std::size_t, const Drive<double>& drive) {
+      const auto visit = [&](std::size_t, const ActuatorState<double>& drive) {
         set_rates(point, drive.speeds, drive.accelerations);
         if (!is_finite(drive.forces)) return mark_singular(point);
         point.forces = drive.forces;
@@ -108,7 +109,7 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
           (*point.motor_speeds)[i] = drive.speeds[i] * (*trains)[i].ratio;
         }
       };
-      drive_along<double>(*dynamics, parameters, mode, {&at, 1}, wrench, scratch, visit);
+      inverse_dynamics_along<double>(*dynamics, parameters, mode, {&at, 1}, wrench, scratch, visit);
     } else if (velocities && report.assembles) {
       const auto joints = velocities->influence(parameters, at.pose, mode);
       if (joints)

@@ -1,4 +1,5 @@
-// A mechanism that follows a motion: joints, limits, conditioning and, with masses, forces and power.
+// Inverse kinematics and inverse dynamics of a mechanism along a motion: joints, limits, conditioning and, with masses,
+// forces and power.
 #pragma once
 
 #include <array>
@@ -12,50 +13,50 @@
 
 namespace pkm {
 
-/// One sample. What does not exist (the pose does not assemble, no masses) is absent. Where J is singular to working
-/// precision (engine/geometry/singular.hpp) no forces give the motion: the sample is not feasible and has none.
-/// Redundant drives have no unique forces: their samples have speeds alone, by the same rule.
+/// One sample. Values that do not exist (the pose cannot be assembled, there are no masses) are empty. If J is singular
+/// to working precision (engine/geometry/singular.hpp), no forces produce the motion: the sample is infeasible and has
+/// no forces. The forces of redundant drives are not unique: samples have joint speeds, but no forces.
 struct TrajectoryPoint {
   MotionSample motion;
   bool feasible = false;
-  std::string reason;  ///< why it is not; "" when feasible
+  std::string reason;  ///< why it is infeasible; "" if feasible
   std::optional<double> conditioning;
   std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
   std::optional<AxisVector<double>> forces, power;          ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
   std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, with drive trains [N m, rad/s]
   std::vector<double> quantities;                           ///< by MechanismInfo::quantities; NaN: undefined
-  std::optional<Reactions> reactions;                       ///< in the joints, where add_reactions() has looked
+  std::optional<Reactions> reactions;                       ///< of the joints, set by add_reactions()
 };
 
-/// Over the samples that have the numbers; the rest is told by `infeasible`.
+/// Statistics by joint over all samples that have the value.
 struct TrajectorySummary {
-  std::size_t infeasible = 0;
-  std::optional<AxisVector<double>> peak_speed;  ///< greatest |qdot| [m/s, rad/s]; absent when no sample has any
-  bool has_forces = false;                       ///< of every sample; the following are set
-  AxisVector<double> peak_force, rms_force;      ///< greatest |tau|; root of the mean square over the samples [N]
-  AxisVector<double> peak_power;                 ///< greatest |tau qdot|, driving or braking [W]
+  std::size_t infeasible = 0;                    ///< number of infeasible samples
+  std::optional<AxisVector<double>> peak_speed;  ///< maximum |qdot| [m/s, rad/s]; empty if no sample has speeds
+  bool has_forces = false;                       ///< true if every sample has forces; otherwise the following are 0
+  AxisVector<double> peak_force, rms_force;      ///< maximum |tau|; root of the mean square over the samples [N, N m]
+  AxisVector<double> peak_power;                 ///< maximum |tau qdot|, driving or braking [W]
   AxisVector<double> peak_torque, rms_torque, peak_motor_speed;  ///< of the motors, with drive trains [N m, rad/s]
-  double peak_total_power = 0, least_total_power = 0;            ///< of the sum over the joints [W]
-  /// Integrals over the time, by the trapezoidal rule [J]: of the sum of tau qdot (what is left of it when braking
-  /// gives back what it takes), and of each joint's tau qdot where it drives (when it gives back nothing).
+  double peak_total_power = 0, min_total_power = 0;              ///< extrema of the sum over the joints [W]
+  /// Time integrals by the trapezoidal rule [J]: of the total power (energy with full regeneration), and of the
+  /// positive parts of the joints' powers (energy without regeneration).
   double energy = 0, energy_drawn = 0;
 };
 
 struct Trajectory {
   double duration = 0;
-  bool periodic = false;  ///< the motion ends as it begins: energies are those of a cycle
+  bool periodic = false;  ///< is_periodic(): energies are those of one cycle
   std::vector<TrajectoryPoint> points;
   TrajectorySummary summary;
 };
 
-/// Follows `count` samples, both ends included.
-///
-/// Speeds and accelerations of the joints are exact; a mechanism without dynamics and influence coefficients has none.
-/// Throws DesignError where a mass is not positive.
+/// Computes `count` >= 2 samples at equidistant times, including the start and the end of the motion. Joint speeds and
+/// accelerations need dynamics or influence coefficients; they are not computed by differences. Throws
+/// DesignError if a mass is not positive.
 /// @param parameters  all parameters of the design
 /// @param mode        one of MechanismInfo::modes
-/// @param wrench      on the platform, the same all the time
-Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
-                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench = {});
+/// @param wrench      constant load on the platform [N, N m]
+Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
+                              const LimitSpec& limits, const Motion& motion, std::size_t count,
+                              const Wrench<double>& wrench = {});
 
 }  // namespace pkm

@@ -21,7 +21,7 @@ ParetoArchive::ParetoArchive(const ParetoArchivePlan& plan, const Problem& probl
     for (std::size_t k = 0; k < objectives.size(); ++k)
       target_scores.values.push_back(sign(k) * point.at(objectives[k].name));
   const Ranges extent = ranges_of(target_scores);
-  for (std::size_t k = 0; k < extent.least.size(); ++k) ranges_.push_back(extent.range(k) > 0 ? extent.range(k) : 1);
+  for (std::size_t k = 0; k < extent.minimum.size(); ++k) ranges_.push_back(extent.range(k) > 0 ? extent.range(k) : 1);
   reference_front_ = std::move(target_scores.values);
 }
 
@@ -56,7 +56,7 @@ bool ParetoArchive::fix_reference_point(const Scores& feasible) {
   for (std::size_t k = 0; k < sample_.objectives; ++k)
     if (!(extent.range(k) > 0)) return false;
   for (std::size_t k = 0; k < sample_.objectives; ++k) {
-    reference_scores_.push_back(extent.greatest[k] + kMargin * extent.range(k));
+    reference_scores_.push_back(extent.maximum[k] + kMargin * extent.range(k));
     front_.reference.push_back(sign(k) * reference_scores_[k]);
   }
   return true;

@@ -8,8 +8,8 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/diagnosis.hpp"
-#include "engine/workspace/picture_plan.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
+#include "engine/workspace/visualisation_plan.hpp"
 
 namespace pkm {
 namespace {
@@ -90,7 +90,7 @@ void compare_limits(const ProblemParts& parts, const std::vector<std::vector<dou
 /// Finds values of fixed coordinates that no vertex design reaches.
 void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double>>& designs, const WorkspacePlan& plan,
                  const std::string& table, bool is_contradiction, Findings& found) {
-  for (const FixedCoordinate& fixed : plan.held) {
+  for (const FixedCoordinate& fixed : plan.fixed) {
     if (fixed.kind != Kind::value && fixed.kind != Kind::listed) continue;
     Interval1D hull = kEmpty;
     for (const auto& design : designs)
@@ -114,12 +114,12 @@ void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double
 void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<double>>& designs, WorkspacePlan plan,
                     Box& hull) {
   std::visit([](auto& method) { method.box.reset(); }, plan.method);
-  WorkspacePlan picture = picture_plan(mechanism.info(), plan, {1, 1, 1});
+  WorkspacePlan picture = visualisation_plan(mechanism.info(), plan, {1, 1, 1});
   std::get<VoxelOptions>(picture.method).cells = {1, 1, 1};
   try {
-    const auto surveyor = prepare_map(mechanism, picture);
+    const auto evaluator = prepare_voxel_map(mechanism, picture);
     for (const auto& design : designs) {
-      const VoxelMap map = surveyor->map(design);
+      const VoxelMap map = evaluator->map(design);
       for (std::size_t axis = 0; axis < 3; ++axis) widen(hull[axis], {map.lower[axis], map.upper[axis]});
     }
   } catch (const std::invalid_argument&) {
@@ -132,10 +132,10 @@ void check_box(const ProblemParts& parts, const std::vector<std::vector<double>>
                const std::string& table, bool is_contradiction, Findings& found) {
   if (!plan.box()) return;
   std::vector<WorkspacePlan> plans = {plan};
-  for (std::size_t h = 0; h < plan.held.size(); ++h)
-    for (const double value : plan.held[h].values) {
+  for (std::size_t h = 0; h < plan.fixed.size(); ++h)
+    for (const double value : plan.fixed[h].values) {
       plans.push_back(plan);
-      plans.back().held[h] = {plan.held[h].coordinate, Kind::value, value};
+      plans.back().fixed[h] = {plan.fixed[h].coordinate, Kind::value, value};
     }
   Box hull;
   hull.fill(kEmpty);
@@ -158,22 +158,25 @@ void check_bounds(const ProblemParts& parts, Findings& found) {
   for (const auto* const list : {&parts.design_margins, &parts.workspace_margins})
     for (const NamedQuantity& q : *list) {
       const auto& [min, max] = q.range;
-      const std::string what = "constraint " + q.name + (q.least ? " >= " + with_unit(*q.least, q.unit) : "") +
-                               (q.greatest ? " <= " + with_unit(*q.greatest, q.unit) : "");
+      const std::string what = "constraint " + q.name +
+                               (q.lower_bound ? " >= " + with_unit(*q.lower_bound, q.unit) : "") +
+                               (q.upper_bound ? " <= " + with_unit(*q.upper_bound, q.unit) : "");
       const std::string always = ", because its values are never ";
       const std::string below = always + "below " + with_unit(min, q.unit),
                         above = always + "above " + with_unit(max, q.unit);
-      if (q.least && *q.least > max) found.add(true, q.name, what + " is satisfied by no design" + above);
-      if (q.greatest && *q.greatest < min) found.add(true, q.name, what + " is satisfied by no design" + below);
-      if (q.least && *q.least < min) found.add(false, q.name, what + " is satisfied by every design" + below);
-      if (q.greatest && *q.greatest > max) found.add(false, q.name, what + " is satisfied by every design" + above);
+      if (q.lower_bound && *q.lower_bound > max) found.add(true, q.name, what + " is satisfied by no design" + above);
+      if (q.upper_bound && *q.upper_bound < min) found.add(true, q.name, what + " is satisfied by no design" + below);
+      if (q.lower_bound && *q.lower_bound < min)
+        found.add(false, q.name, what + " is satisfied by every design" + below);
+      if (q.upper_bound && *q.upper_bound > max)
+        found.add(false, q.name, what + " is satisfied by every design" + above);
     }
 }
 
 /// Whether an objective or a constraint uses a workspace analysis (0: the workspace, k: the k-th region). Only then
 /// does an empty analysis make every design useless.
-bool is_essential(const ProblemParts& parts, std::size_t survey) {
-  const auto reads = [survey](const NamedQuantity& q) { return q.uses_workspace && q.survey == survey; };
+bool is_essential(const ProblemParts& parts, std::size_t analysis) {
+  const auto reads = [analysis](const NamedQuantity& q) { return q.uses_workspace && q.analysis == analysis; };
   return std::ranges::any_of(parts.objectives, reads) || std::ranges::any_of(parts.workspace_margins, reads);
 }
 
@@ -181,9 +184,9 @@ Findings findings(const ProblemParts& parts) {
   Findings found;
   const auto designs = vertex_designs(parts);
   compare_limits(parts, designs, found);
-  const auto check_plan = [&](const WorkspacePlan& plan, const std::string& table, std::size_t survey) {
-    check_fixed(parts, designs, plan, table, is_essential(parts, survey), found);
-    check_box(parts, designs, plan, table, is_essential(parts, survey), found);
+  const auto check_plan = [&](const WorkspacePlan& plan, const std::string& table, std::size_t analysis) {
+    check_fixed(parts, designs, plan, table, is_essential(parts, analysis), found);
+    check_box(parts, designs, plan, table, is_essential(parts, analysis), found);
   };
   check_plan(parts.plan, "workspace", 0);
   for (std::size_t k = 0; k < parts.regions.size(); ++k)

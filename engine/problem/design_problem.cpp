@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/core/error.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 namespace {
@@ -12,17 +12,17 @@ namespace {
 /// The margin of a constraint, from the value of its quantity and its bounds.
 template <class S>
 S margin_of(const NamedQuantity& named, const S& value) {
-  if (named.least) return value - *named.least;
-  if (named.greatest) return *named.greatest - value;
+  if (named.lower_bound) return value - *named.lower_bound;
+  if (named.upper_bound) return *named.upper_bound - value;
   return value;
 }
 
 /// For each workspace analysis, whether a quantity uses it: the workspace's first, then those of the regions.
-std::vector<bool> used_surveys(const ProblemParts& parts) {
+std::vector<bool> used_analyses(const ProblemParts& parts) {
   std::vector<bool> used(1 + parts.regions.size());
   for (const auto* list : {&parts.objectives, &parts.workspace_margins, &parts.reports})
     for (const auto& q : *list)
-      if (q.uses_workspace) used[q.survey] = true;
+      if (q.uses_workspace) used[q.analysis] = true;
   return used;
 }
 
@@ -31,30 +31,30 @@ std::vector<bool> used_surveys(const ProblemParts& parts) {
 struct DesignProblem::Buffers {
   std::vector<double> parameters;
   std::vector<Dual4> duals;  ///< the parameters with derivatives
-  Surveys<double> surveys;
-  Surveys<Dual4> dual_surveys;
+  WorkspaceResults<double> workspaces;
+  WorkspaceResults<Dual4> dual_workspaces;
 };
 
-DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), used_(used_surveys(parts_)) {
-  surveyors_.push_back(prepare_workspace(*parts_.mechanism, parts_.plan, parts_.demand));
+DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), used_(used_analyses(parts_)) {
+  workspace_evaluators_.push_back(prepare_workspace(*parts_.mechanism, parts_.plan, parts_.request));
   if (const ColumnOptions* const columns = parts_.plan.columns(); columns && columns->certain)
-    parts_.mechanism->bounds()->refuse_bounds(parts_.plan);
+    parts_.mechanism->bounds()->require_bounds(parts_.plan);
   for (const Region& region : parts_.regions)
-    surveyors_.push_back(prepare_workspace(*parts_.mechanism, region.plan, region.demand));
+    workspace_evaluators_.push_back(prepare_workspace(*parts_.mechanism, region.plan, region.request));
   for (const auto& q : parts_.objectives) objectives_.push_back({q.name, q.unit, q.meaning, q.direction});
   for (const auto* list : {&parts_.design_margins, &parts_.workspace_margins})
     for (const auto& q : *list) margins_.push_back({q.name, q.unit, q.meaning});
   for (const auto& q : parts_.reports) reports_.push_back({q.name, q.unit, q.meaning});
 }
 
-Unsupported DesignProblem::no_derivatives() const {
+Unsupported DesignProblem::why_no_derivatives() const {
   for (std::size_t k = 0; k < used_.size(); ++k) {
     if (!used_[k]) continue;
-    if (!surveyors_[k]->slopes()) return surveyors_[k]->why_no_gradients();
+    if (!workspace_evaluators_[k]->gradients()) return workspace_evaluators_[k]->why_no_derivatives();
   }
   for (const auto* list : {&parts_.objectives, &parts_.design_margins, &parts_.workspace_margins})
     for (const auto& q : *list)
-      if (const Unsupported reason = q.quantity->no_derivatives()) return reason;
+      if (const Unsupported reason = q.quantity->why_no_derivatives()) return reason;
   return {};
 }
 
@@ -64,24 +64,25 @@ std::vector<double> DesignProblem::parameters(std::span<const double> design) co
   return all;
 }
 
-Survey<double> DesignProblem::workspace(std::span<const double> parameters, std::size_t k) const {
-  Survey<double> survey;
-  evaluate_once(*surveyors_[k], parameters, survey);
-  return survey;
+WorkspaceResult<double> DesignProblem::workspace(std::span<const double> parameters, std::size_t k) const {
+  WorkspaceResult<double> result;
+  evaluate_once(*workspace_evaluators_[k], parameters, result);
+  return result;
 }
 
 template <class S>
-void DesignProblem::survey(std::span<const S> parameters, bool all, Scratch& scratch, Surveys<S>& surveys) const {
-  surveys.resize(surveyors_.size());
-  for (std::size_t k = 0; k < surveyors_.size(); ++k)
+void DesignProblem::analyse(std::span<const S> parameters, bool all, Scratch& scratch,
+                            WorkspaceResults<S>& results) const {
+  results.resize(workspace_evaluators_.size());
+  for (std::size_t k = 0; k < workspace_evaluators_.size(); ++k)
     if (used_[k] || (all && k == 0))
-      evaluate_workspace(*surveyors_[k], parameters, scratch, surveys[k]);
+      evaluate_workspace(*workspace_evaluators_[k], parameters, scratch, results[k]);
     else
-      surveys[k].clear();
+      results[k].clear();
 }
 
 Status DesignProblem::compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const {
-  Surveys<double>& surveys = scratch.get<Buffers>().surveys;
+  WorkspaceResults<double>& workspaces = scratch.get<Buffers>().workspaces;
   DesignView<double> view{*parts_.mechanism, parameters, nullptr, scratch};
   bool satisfied = true, usable = true, violated = false;
   const auto put = [&](double& target, double value) {
@@ -101,13 +102,13 @@ Status DesignProblem::compute(std::span<const double> parameters, Scratch& scrat
   const bool rejected = !satisfied;
 
   if (result.detail == Detail::derivatives) {
-    differentiate(parameters, parts_.varies, result.slopes, scratch);
-    for (const double derivative : result.slopes) usable = usable && std::isfinite(derivative);
+    differentiate(parameters, parts_.varies, result.derivatives, scratch);
+    for (const double derivative : result.derivatives) usable = usable && std::isfinite(derivative);
   } else {
-    survey(parameters, result.detail == Detail::complete, scratch, surveys);
+    analyse(parameters, result.detail == Detail::complete, scratch, workspaces);
   }
   const auto value = [&](const NamedQuantity& q) {
-    view.survey = &surveys[q.survey];
+    view.workspace = &workspaces[q.analysis];
     return q.quantity->value(view);
   };
   for (const auto& q : parts_.workspace_margins)
@@ -123,16 +124,16 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
   constexpr std::size_t kDirections = 4;  // of Dual4
   Buffers& buffers = scratch.get<Buffers>();
   std::vector<Dual4>& all = buffers.duals;
-  Surveys<double>& surveys = buffers.surveys;
-  Surveys<Dual4>& dual_surveys = buffers.dual_surveys;
+  WorkspaceResults<double>& workspaces = buffers.workspaces;
+  WorkspaceResults<Dual4>& dual_workspaces = buffers.dual_workspaces;
   const std::size_t width = 1 + by.size();
   for (std::size_t first = 0; first < std::max<std::size_t>(by.size(), 1); first += kDirections) {
     const std::size_t count = std::min(kDirections, by.size() - first);
     all.assign(parameters.begin(), parameters.end());
     for (std::size_t k = 0; k < count; ++k) all[by[first + k]].v[static_cast<int>(k)] = 1;
-    survey(std::span<const Dual4>(all), false, scratch, dual_surveys);
-    surveys.resize(dual_surveys.size());
-    for (std::size_t k = 0; first == 0 && k < surveys.size(); ++k) copy_values(dual_surveys[k], surveys[k]);
+    analyse(std::span<const Dual4>(all), false, scratch, dual_workspaces);
+    workspaces.resize(dual_workspaces.size());
+    for (std::size_t k = 0; first == 0 && k < workspaces.size(); ++k) copy_values(dual_workspaces[k], workspaces[k]);
     DesignView<Dual4> view{*parts_.mechanism, all, nullptr, scratch};
     std::size_t row = 0;
     const auto put = [&](const Dual4& value) {
@@ -141,7 +142,7 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
       for (std::size_t k = 0; k < count; ++k) target[1 + first + k] = value.v[static_cast<int>(k)];
     };
     const auto smooth = [&](const NamedQuantity& q) {
-      view.survey = &dual_surveys[q.survey];
+      view.workspace = &dual_workspaces[q.analysis];
       return q.quantity->smooth(view);
     };
     const auto put_margins = [&](const std::vector<NamedQuantity>& list) {
@@ -155,11 +156,12 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
   }
 }
 
-std::vector<double> DesignProblem::slopes(std::span<const double> parameters, std::span<const std::size_t> by) const {
-  std::vector<double> derivatives((objectives_.size() + margins_.size()) * (1 + by.size()));
+std::vector<double> DesignProblem::derivatives(std::span<const double> parameters,
+                                               std::span<const std::size_t> by) const {
+  std::vector<double> values((objectives_.size() + margins_.size()) * (1 + by.size()));
   Scratch scratch;
-  differentiate(parameters, by, derivatives, scratch);
-  return derivatives;
+  differentiate(parameters, by, values, scratch);
+  return values;
 }
 
 void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const {
@@ -177,7 +179,7 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
 /// then objectives.
 std::string DesignProblem::failure_reason(const DesignReport& report) const {
   Scratch scratch;
-  const DesignView<double> view{*parts_.mechanism, report.parameters, &report.survey, scratch};
+  const DesignView<double> view{*parts_.mechanism, report.parameters, &report.workspace, scratch};
   std::vector<double> computed = report.margins;
   computed.insert(computed.end(), report.objectives.begin(), report.objectives.end());
   auto value = computed.begin();
@@ -201,14 +203,15 @@ DesignReport DesignProblem::empty_report(std::span<const double> parameters) con
 
 std::string DesignProblem::failure_reason(std::span<const double> design, Detail detail) const {
   DesignReport report = empty_report(parameters(design));
-  std::vector<double> derivatives(shape(detail).slopes());
+  std::vector<double> derivatives(shape(detail).derivatives());
   try {
     Scratch scratch;
     const Status status =
         compute(report.parameters, scratch,
                 {report.objectives, report.margins, report.reports, report.status, detail, derivatives});
     if (status != Status::failed) return "the failure cannot be reproduced by this program";
-    if (auto& surveys = scratch.get<Buffers>().surveys; !surveys.empty()) report.survey = surveys.front();
+    if (auto& workspaces = scratch.get<Buffers>().workspaces; !workspaces.empty())
+      report.workspace = workspaces.front();
     const auto is_finite = [](double value) { return std::isfinite(value); };
     if (std::ranges::all_of(report.margins, is_finite) && std::ranges::all_of(report.objectives, is_finite))
       return "a derivative is not a finite number";
@@ -224,7 +227,8 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
     Scratch scratch;
     report.status = compute(parameters, scratch,
                             {report.objectives, report.margins, report.reports, report.status, Detail::complete});
-    if (auto& surveys = scratch.get<Buffers>().surveys; !surveys.empty()) report.survey = std::move(surveys.front());
+    if (auto& workspaces = scratch.get<Buffers>().workspaces; !workspaces.empty())
+      report.workspace = std::move(workspaces.front());
     if (report.status == Status::failed) {
       report.reason = failure_reason(report);
       const auto design_margins = std::span(report.margins).first(parts_.design_margins.size());

@@ -17,12 +17,12 @@ struct NamedQuantity {
   std::string meaning;
   Direction direction = Direction::maximise;  ///< objectives only
   std::shared_ptr<const Quantity> quantity;
-  std::size_t survey = 0;  ///< workspace analysis that it uses: 0 the workspace, k the k-th region
+  std::size_t analysis = 0;  ///< workspace analysis that it uses: 0 the workspace, k the k-th region
   bool uses_workspace = true;
   Range range = {};  ///< possible values of the quantity
-  /// Bounds of a constraint on a quantity: its margin is value - least, or greatest - value. Neither: the quantity is
-  /// the margin itself.
-  std::optional<double> least, greatest;
+  /// Bound of a constraint on a quantity: its margin is value - lower_bound, or upper_bound - value. Neither: the
+  /// quantity is the margin itself.
+  std::optional<double> lower_bound, upper_bound;
 };
 
 /// A motion along which a constraint requires every pose to satisfy its limits.
@@ -38,7 +38,7 @@ struct ProblemParts {
   DesignSpace space;
   std::vector<std::size_t> varies;  ///< variable i is parameter varies[i]
   WorkspacePlan plan;
-  Demand demand;
+  FieldRequest request;
   std::vector<Region> regions;
   std::vector<NamedQuantity> objectives;
   std::vector<NamedQuantity> design_margins;     ///< constraints without workspace analysis: evaluated first
@@ -53,7 +53,7 @@ struct DesignReport {
   std::vector<double> objectives, margins, reports;  ///< NaN: not computed
   Status status = Status::failed;
   std::string reason;  ///< why a value is missing (also of a rejected design); "" if none is
-  Survey<double> survey;
+  WorkspaceResult<double> workspace;
 };
 
 class DesignProblem final : public Problem {
@@ -67,13 +67,13 @@ class DesignProblem final : public Problem {
   const std::vector<OutputInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const override;
   /// There are none if a workspace analysis in use or a quantity has none.
-  Unsupported no_derivatives() const override;
+  Unsupported why_no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
   /// The full parameter vector of a design. @param design  one value per variable
   std::vector<double> parameters(std::span<const double> design) const;
   /// A single workspace analysis. @param k  0: the workspace; otherwise the k-th region, from 1
-  Survey<double> workspace(std::span<const double> parameters, std::size_t k = 0) const;
+  WorkspaceResult<double> workspace(std::span<const double> parameters, std::size_t k = 0) const;
   /// Evaluates a full parameter vector, which may violate the bounds of the variables (as a baseline may). Continues
   /// if a design-level constraint is violated.
   DesignReport report(std::span<const double> parameters) const;
@@ -82,13 +82,13 @@ class DesignProblem final : public Problem {
   std::string failure_reason(std::span<const double> design, Detail detail) const;
   /// Derivatives of objectives and margins with respect to any parameters, also those that are not variables.
   /// @param by  indices of the parameters
-  /// @return (objectives + margins) rows of 1 + by.size() numbers, as for EvaluationShape::slopes
-  std::vector<double> slopes(std::span<const double> parameters, std::span<const std::size_t> by) const;
+  /// @return (objectives + margins) rows of 1 + by.size() numbers, as for EvaluationShape::derivatives
+  std::vector<double> derivatives(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
   /// The analyses of a design: of the workspace, then of the regions; empty if no quantity uses it.
   template <class S>
-  using Surveys = std::vector<Survey<S>>;
+  using WorkspaceResults = std::vector<WorkspaceResult<S>>;
 
   struct Buffers;  ///< scratch memory of evaluations
 
@@ -101,10 +101,10 @@ class DesignProblem final : public Problem {
                      Scratch& scratch) const;
   /// Runs the workspace analyses in use. @param all  also the workspace's, if no quantity uses it
   template <class S>
-  void survey(std::span<const S> parameters, bool all, Scratch& scratch, Surveys<S>& surveys) const;
+  void analyse(std::span<const S> parameters, bool all, Scratch& scratch, WorkspaceResults<S>& results) const;
 
   ProblemParts parts_;
-  std::vector<std::unique_ptr<const WorkspaceEvaluator>> surveyors_;
+  std::vector<std::unique_ptr<const WorkspaceEvaluator>> workspace_evaluators_;
   std::vector<bool> used_;  ///< by workspace analysis: whether a quantity uses it
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;

@@ -32,7 +32,7 @@ inline ConstraintEntry design_test(const std::string& name, const std::string& m
             const auto index = static_cast<std::size_t>(find_named(tests, name) - tests.data());
             return make_quantity(
                 [index, limits = context.plan.limits, count = tests.size()]<class S>(const DesignView<S>& design) {
-                  std::array<S, kMostDesignTests> margins{};
+                  std::array<S, kMaxDesignTests> margins{};
                   PKM_EXPECTS(count <= margins.size());
                   design.mechanism.design_tests()->test(design.parameters, limits, std::span(margins).first(count));
                   return margins[index];

@@ -8,8 +8,8 @@
 #include "engine/core/printable.hpp"
 #include "engine/problem/margin_tally.hpp"
 #include "engine/problem/ranking.hpp"
-#include "engine/workspace/picture_plan.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
+#include "engine/workspace/visualisation_plan.hpp"
 
 namespace pkm {
 namespace {
@@ -56,7 +56,7 @@ bool has_empty_value(const Designs& designs, const TableRow& at, std::size_t obj
   const ProblemParts& parts = designs.problem->parts();
   const NamedQuantity& q = parts.objectives[objective];
   if (!q.uses_workspace) return false;
-  const Survey<double> empty;
+  const WorkspaceResult<double> empty;
   Scratch scratch;
   const std::vector<double> parameters = designs.parameters(at);
   return value == q.quantity->value({*parts.mechanism, parameters, &empty, scratch});
@@ -65,10 +65,10 @@ bool has_empty_value(const Designs& designs, const TableRow& at, std::size_t obj
 /// Whether all workspaces that the objectives of a design use are empty.
 bool has_empty_workspace(const Designs& designs, const TableRow& at) {
   const std::vector<double> parameters = designs.parameters(at);
-  std::set<std::size_t> surveys;
-  for (const NamedQuantity& q : designs.problem->parts().objectives) surveys.insert(q.survey);
+  std::set<std::size_t> analyses;
+  for (const NamedQuantity& q : designs.problem->parts().objectives) analyses.insert(q.analysis);
   return std::ranges::all_of(
-      surveys, [&](std::size_t survey) { return designs.problem->workspace(parameters, survey).volume == 0; });
+      analyses, [&](std::size_t analysis) { return designs.problem->workspace(parameters, analysis).volume == 0; });
 }
 
 /// Whether a feasible design is useful: it is, unless all objectives have the value of an empty workspace and the
@@ -107,14 +107,14 @@ TableRow best_ranked(const Designs& designs) {
 std::vector<Pose<double>> poses_of(const DesignProblem& problem, const std::vector<double>& parameters) {
   const ProblemParts& parts = problem.parts();
   const MechanismInfo& info = parts.mechanism->info();
-  WorkspacePlan plan = picture_plan(info, parts.plan, {1, 1, 1});
+  WorkspacePlan plan = visualisation_plan(info, parts.plan, {1, 1, 1});
   const Sweep& sweep = sweep_of(info, plan);
   auto& cells = std::get<VoxelOptions>(plan.method).cells;
   cells = {1, 1, 1};
   plan.limits = no_limits(info);
   const VoxelMap map = voxel_map(*parts.mechanism, parameters, plan);
   std::vector<Pose<double>> poses = {Pose<double>(info.coordinates.size())};
-  for (const int fixed : sweep.held)
+  for (const int fixed : sweep.fixed)
     poses[0][static_cast<std::size_t>(fixed)] = fixed_value(*parts.mechanism, parameters, plan, fixed);
   for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis) {
     std::vector<Pose<double>> more;
@@ -134,7 +134,7 @@ std::vector<Pose<double>> poses_of(const DesignProblem& problem, const std::vect
 /// no box of poses.
 std::vector<Reason> limits_of_empty_workspace(const DesignProblem& problem, const std::vector<double>& parameters) {
   const ProblemParts& parts = problem.parts();
-  const std::string& requested = parts.demand.mode;
+  const std::string& requested = parts.request.mode;
   const std::string& mode = requested.empty() ? parts.mechanism->info().modes.front() : requested;
   MarginTally tally;
   try {
@@ -213,7 +213,7 @@ std::optional<Diagnosis> diagnose(const std::vector<const EvaluationTable*>& tab
   if (problem) add(contradictions(problem->parts()));
   if (feasible == 0) add(violated_constraints(designs));
   if (failed > 0) add({reason_of_failures(designs, failed, all)});
-  if (problem && status_of(best) != Status::failed && problem->report(designs.parameters(best)).survey.volume == 0)
+  if (problem && status_of(best) != Status::failed && problem->report(designs.parameters(best)).workspace.volume == 0)
     add(limits_of_empty_workspace(*problem, designs.parameters(best)));
   return diagnosis;
 }

@@ -29,7 +29,7 @@ void EvaluationTable::copy_results(std::size_t row, const EvaluationTable& from,
   std::ranges::copy(from.objective_row(source), to.objectives.begin());
   std::ranges::copy(from.margin_row(source), to.margins.begin());
   std::ranges::copy(from.output_row(source), to.reports.begin());
-  std::ranges::copy(from.derivative_row(source), to.slopes.begin());
+  std::ranges::copy(from.derivative_row(source), to.derivatives.begin());
   status[row] = from.status[source];
   seconds[row] = from.seconds[source];
 }
@@ -40,7 +40,7 @@ void EvaluationTable::resize(std::size_t rows) {
   objectives.resize(rows * shape_.objectives, nan);
   margins.resize(rows * shape_.margins, nan);
   reports.resize(rows * shape_.reports, nan);
-  slopes.resize(rows * shape_.slopes(), nan);
+  derivatives.resize(rows * shape_.derivatives(), nan);
   status.resize(rows, Status::failed);
   seconds.resize(rows);
 }

@@ -33,9 +33,11 @@ struct EvaluationShape {
   Detail detail = Detail::enough;
   bool operator==(const EvaluationShape&) const = default;
 
-  /// Number of derivative values: for each objective, then for each margin, one row of 1 + variables numbers: the value
+  /// Number of derivative values. For each objective, then for each margin, there are 1 + variables numbers: the value
   /// of the smooth approximation and its derivative with respect to each variable.
-  std::size_t slopes() const { return detail == Detail::derivatives ? (objectives + margins) * (1 + variables) : 0; }
+  std::size_t derivatives() const {
+    return detail == Detail::derivatives ? (objectives + margins) * (1 + variables) : 0;
+  }
 };
 
 /// Destination of the results of one evaluation. Objectives keep their unit and direction (no sign change).
@@ -45,7 +47,7 @@ struct EvaluationSlot {
   std::span<double> reports;
   Status& status;
   Detail detail = Detail::enough;
-  std::span<double> slopes = {};  ///< with Detail::derivatives only: layout of EvaluationShape::slopes
+  std::span<double> derivatives = {};  ///< with Detail::derivatives only: layout of EvaluationShape::derivatives
 };
 
 /// Evaluations in the order of their requests. Row r of each array belongs to evaluation r.
@@ -78,23 +80,25 @@ class EvaluationTable {
   std::span<const double> objective_row(std::size_t row) const { return row_of(objectives, row, shape_.objectives); }
   std::span<const double> margin_row(std::size_t row) const { return row_of(margins, row, shape_.margins); }
   std::span<const double> output_row(std::size_t row) const { return row_of(reports, row, shape_.reports); }
-  std::span<const double> derivative_row(std::size_t row) const { return row_of(slopes, row, shape_.slopes()); }
+  std::span<const double> derivative_row(std::size_t row) const {
+    return row_of(derivatives, row, shape_.derivatives());
+  }
   EvaluationSlot slot(std::size_t row) {
     return {row_of(objectives, row, shape_.objectives),
             row_of(margins, row, shape_.margins),
             row_of(reports, row, shape_.reports),
             status[row],
             shape_.detail,
-            row_of(slopes, row, shape_.slopes())};
+            row_of(derivatives, row, shape_.derivatives())};
   }
 
-  std::vector<double> designs;     ///< rows x variables
-  std::vector<double> objectives;  ///< rows x objectives
-  std::vector<double> margins;     ///< rows x margins
-  std::vector<double> reports;     ///< rows x reports
-  std::vector<double> slopes;      ///< rows x shape().slopes()
-  std::vector<Status> status;      ///< rows
-  std::vector<float> seconds;      ///< rows; evaluation time, excluded from reproducibility checks
+  std::vector<double> designs;      ///< rows x variables
+  std::vector<double> objectives;   ///< rows x objectives
+  std::vector<double> margins;      ///< rows x margins
+  std::vector<double> reports;      ///< rows x reports
+  std::vector<double> derivatives;  ///< rows x shape().derivatives()
+  std::vector<Status> status;       ///< rows
+  std::vector<float> seconds;       ///< rows; evaluation time, excluded from reproducibility checks
 
  private:
   void resize(std::size_t rows);

@@ -8,7 +8,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/expression/formula_lexer.hpp"
-#include "engine/problem/no_conditioning.hpp"
+#include "engine/problem/availability.hpp"
 #include "engine/problem/pose_statistic.hpp"
 
 namespace pkm {
@@ -35,7 +35,7 @@ const std::string& formula_text(const EntryContext& context) {
   const std::string& formula = context.options.word("expression");
   for (const AnalysisResult& result : analysis_results()) {
     if (!result.quantity || !has_word(formula, result.name)) continue;
-    if (const Unsupported reason = unavailable(context.mechanism, *result.quantity))
+    if (const Unsupported reason = why_unavailable(context.mechanism, *result.quantity))
       throw std::invalid_argument("the formula \"" + formula + "\" uses " + result.name + ", but " + *reason);
   }
   return formula;
@@ -46,14 +46,14 @@ const std::string& formula_text(const EntryContext& context) {
 using Origin = ExpressionName::Origin;
 
 template <class S>
-S AnalysisResult::value(const Survey<S>& survey, double sharpness, Scratch& scratch) const {
-  if (!quantity) return survey.volume;
-  if (statistic == "worst") return PoseStatistic{*quantity, "mean", "worst"}(survey, scratch);
-  return PoseStatistic{*quantity, statistic, statistic == "mean" ? "mean" : "worst", sharpness}(survey, scratch);
+S AnalysisResult::value(const WorkspaceResult<S>& workspace, double sharpness, Scratch& scratch) const {
+  if (!quantity) return workspace.volume;
+  if (statistic == "worst") return PoseStatistic{*quantity, "mean", "worst"}(workspace, scratch);
+  return PoseStatistic{*quantity, statistic, statistic == "mean" ? "mean" : "worst", sharpness}(workspace, scratch);
 }
 
-template double AnalysisResult::value(const Survey<double>&, double, Scratch&) const;
-template Dual4 AnalysisResult::value(const Survey<Dual4>&, double, Scratch&) const;
+template double AnalysisResult::value(const WorkspaceResult<double>&, double, Scratch&) const;
+template Dual4 AnalysisResult::value(const WorkspaceResult<Dual4>&, double, Scratch&) const;
 
 const std::vector<AnalysisResult>& analysis_results() {
   static const std::vector<AnalysisResult> list = [] {
@@ -85,8 +85,8 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const W
     names.push_back({"size", size->unit(), size->meaning(), Origin::size, 0});
   for (std::size_t i = 0; i < analysis_results().size(); ++i) {
     const auto& [name, meaning, quantity, statistic] = analysis_results()[i];
-    if (!quantity || !unavailable(mechanism, *quantity))
-      names.push_back({name, quantity ? quantity->unit : volume_unit(info, plan), meaning, Origin::survey, i});
+    if (!quantity || !why_unavailable(mechanism, *quantity))
+      names.push_back({name, quantity ? quantity->unit : volume_unit(info, plan), meaning, Origin::workspace, i});
   }
   return names;
 }
@@ -113,30 +113,30 @@ Expression::Expression(const EntryContext& context)
       formula_(formula_text(context), names_of(names_)),
       limits_(context.plan.limits),
       sharpness_(context.options.number("sharpness")) {
-  Demand demand;
-  add_demand(context, demand);
-  refuse_unused_options(context.options, demand);
+  FieldRequest request;
+  add_request(context, request);
+  refuse_unused_options(context.options, request);
 }
 
 bool Expression::uses(Origin origin) const {
   return std::ranges::any_of(formula_.used(), [&](std::size_t i) { return names_[i].origin == origin; });
 }
 
-bool Expression::needs_workspace() const { return uses(Origin::survey); }
+bool Expression::needs_workspace() const { return uses(Origin::workspace); }
 
-void Expression::add_demand(const EntryContext& context, Demand& demand) const {
+void Expression::add_request(const EntryContext& context, FieldRequest& request) const {
   for (const std::size_t i : formula_.used())
-    if (names_[i].origin == Origin::survey)
+    if (names_[i].origin == Origin::workspace)
       if (const auto* const quantity = analysis_results()[names_[i].index].quantity)
-        demand_field(*quantity, context, demand);
+        request_field(*quantity, context, request);
 }
 
 /// Rejects options without effect: most likely the user expects the expression to use another quantity.
-void Expression::refuse_unused_options(const Options& options, const Demand& demand) const {
-  if (options.has("characteristic_length") && !demand.needs_jacobian())
+void Expression::refuse_unused_options(const Options& options, const FieldRequest& request) const {
+  if (options.has("characteristic_length") && !request.needs_jacobian())
     throw std::invalid_argument("characteristic_length has no effect: the expression does not use the conditioning");
   const bool has_extremum = std::ranges::any_of(formula_.used(), [&](std::size_t i) {
-    if (names_[i].origin != Origin::survey) return false;
+    if (names_[i].origin != Origin::workspace) return false;
     const std::string& statistic = analysis_results()[names_[i].index].statistic;
     return statistic == "min" || statistic == "max";
   });
@@ -162,8 +162,8 @@ S Expression::value(const DesignView<S>& design) const {
       case Origin::size:
         values[i] = design.mechanism.size()->of(design.parameters);
         break;
-      case Origin::survey:
-        values[i] = analysis_results()[index].value(*design.survey, sharpness_, design.scratch);
+      case Origin::workspace:
+        values[i] = analysis_results()[index].value(*design.workspace, sharpness_, design.scratch);
     }
   }
   return formula_.value(std::span<const S>(values), stack);

@@ -15,7 +15,7 @@ namespace pkm {
 
 /// A name that an expression may use, and the value that it stands for.
 struct ExpressionName {
-  enum class Origin { parameter, threshold, size, survey };
+  enum class Origin { parameter, threshold, size, workspace };
 
   std::string name;
   std::string unit;
@@ -29,12 +29,12 @@ struct AnalysisResult {
   std::string name;
   std::string meaning;
   const PoseQuantity* quantity = nullptr;  ///< null: the volume
-  std::string statistic = {};              ///< as in PoseResult
+  std::string statistic = {};              ///< as in NamedStatistic
 
   /// With derivatives (Dual4), a worst case is replaced by its smooth approximation.
   /// @param sharpness  of the smooth approximation
   template <class S>
-  S value(const Survey<S>& survey, double sharpness, Scratch& scratch) const;
+  S value(const WorkspaceResult<S>& workspace, double sharpness, Scratch& scratch) const;
 };
 
 /// The volume and the statistics of all pose quantities.
@@ -54,15 +54,15 @@ class Expression {
 
   bool needs_workspace() const;
   /// Adds the fields that the workspace analysis has to compute.
-  void add_demand(const EntryContext& context, Demand& demand) const;
-  /// With derivatives (Dual4), worst cases are replaced by smooth approximations. design.survey may be null if
+  void add_request(const EntryContext& context, FieldRequest& request) const;
+  /// With derivatives (Dual4), worst cases are replaced by smooth approximations. design.workspace may be null if
   /// needs_workspace() is false.
   template <class S>
   S value(const DesignView<S>& design) const;
 
  private:
   bool uses(ExpressionName::Origin origin) const;
-  void refuse_unused_options(const Options& options, const Demand& demand) const;
+  void refuse_unused_options(const Options& options, const FieldRequest& request) const;
 
   std::vector<ExpressionName> names_;
   Formula formula_;

@@ -48,14 +48,14 @@ Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationT
 }
 
 Ranges ranges_of(const Scores& front) {
-  Ranges e;
+  Ranges ranges;
   for (std::size_t k = 0; front.size() > 0 && k < front.objectives; ++k) {
     std::vector<double> column;
     for (std::size_t i = 0; i < front.size(); ++i) column.push_back(front[i][k]);
-    e.least.push_back(std::ranges::min(column));
-    e.greatest.push_back(std::ranges::max(column));
+    ranges.minimum.push_back(std::ranges::min(column));
+    ranges.maximum.push_back(std::ranges::max(column));
   }
-  return e;
+  return ranges;
 }
 
 Scores normalised(const Scores& front) {
@@ -64,7 +64,7 @@ Scores normalised(const Scores& front) {
   for (std::size_t i = 0; i < front.size(); ++i)
     for (std::size_t k = 0; k < front.objectives; ++k) {
       const double range = extent.range(k);
-      result.values[i * front.objectives + k] = range > 0 ? (front[i][k] - extent.least[k]) / range : 0;
+      result.values[i * front.objectives + k] = range > 0 ? (front[i][k] - extent.minimum[k]) / range : 0;
     }
   return result;
 }

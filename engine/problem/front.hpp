@@ -42,8 +42,8 @@ Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationT
 
 /// Minimum and maximum of each score over a front (its ideal and nadir points).
 struct Ranges {
-  std::vector<double> least, greatest;
-  double range(std::size_t k) const { return greatest[k] - least[k]; }
+  std::vector<double> minimum, maximum;
+  double range(std::size_t k) const { return maximum[k] - minimum[k]; }
 };
 Ranges ranges_of(const Scores& front);
 

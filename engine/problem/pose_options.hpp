@@ -6,9 +6,6 @@
 
 namespace pkm {
 
-/// Whether the conditioning of the mechanism's Jacobian is defined: it needs a characteristic length.
-inline bool has_conditioning(const Mechanism& mechanism) { return !mechanism.info().characteristic_length.empty(); }
-
 inline OptionSpec characteristic_length_option() {
   return {.name = "characteristic_length",
           .kind = OptionKind::number,
@@ -29,11 +26,9 @@ inline OptionSpec sharpness_option(const std::string& value) {
               "sharpness of the smooth approximation of " + value + " for gradient solvers; larger is more accurate"};
 }
 
-inline bool has_dynamics(const Mechanism& mechanism) { return mechanism.dynamics() != nullptr; }
-
-/// Whether the mechanism has the dynamics that the objective needs; empty if it has.
+/// Why the mechanism does not have the dynamics that an objective needs; empty if it has.
 inline Unsupported check_dynamics(const std::string& objective, const Mechanism& mechanism) {
-  const Unsupported reason = no_joint_forces(mechanism);
+  const Unsupported reason = why_no_joint_forces(mechanism);
   return reason ? "objective " + objective + " needs dynamics, and " + *reason : Unsupported();
 }
 

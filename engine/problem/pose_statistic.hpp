@@ -12,23 +12,18 @@ namespace pkm {
 
 /// Text on the value of an empty workspace: "; 1 if no pose is feasible", or "" if that value is 0.
 inline std::string empty_workspace_note(const PoseQuantity& quantity) {
-  if (quantity.without_value == 0) return {};
-  return "; " + shortest(quantity.without_value) + " if no pose is feasible";
-}
-
-/// Whether workspace analyses of the mechanism can compute the quantity.
-inline bool gives(const Mechanism& mechanism, const PoseQuantity& quantity) {
-  return quantity.needs_inertia() ? has_dynamics(mechanism) : has_conditioning(mechanism);
+  if (quantity.value_if_undefined == 0) return {};
+  return "; " + shortest(quantity.value_if_undefined) + " if no pose is feasible";
 }
 
 /// Adds the quantity of an entry to the fields that the workspace analysis computes, with the entry's options.
-inline void demand_field(const PoseQuantity& quantity, const EntryContext& context, Demand& demand) {
+inline void request_field(const PoseQuantity& quantity, const EntryContext& context, FieldRequest& request) {
   const Options& options = context.options;
   if (options.has("limb")) validate_joint(context.mechanism, options.word("limb"));
-  demand.add(quantity);
-  if (quantity.needs_inertia()) demand.mode = mode_of(context);
+  request.add(quantity);
+  if (quantity.needs_inertia()) request.mode = mode_of(context);
   if (!quantity.needs_inertia() && options.has("characteristic_length"))
-    demand.characteristic_length = options.number("characteristic_length");
+    request.characteristic_length = options.number("characteristic_length");
 }
 
 template <class S>
@@ -40,18 +35,18 @@ struct JointFieldScratch {
 /// the joints. The reference is valid until the next call with this scratch.
 /// @param joint  "1" to "8", "worst" or "mean"; ignored for quantities with one value per pose
 template <class S>
-const std::vector<S>& reduced_field(const Survey<S>& survey, const PoseQuantity& quantity, const std::string& joint,
-                                    Scratch& scratch) {
-  if (!quantity.per_joint) return survey.of(quantity);
-  if (joint != "worst" && joint != "mean") return survey.of(quantity, static_cast<std::size_t>(joint[0] - '1'));
+const std::vector<S>& reduced_field(const WorkspaceResult<S>& workspace, const PoseQuantity& quantity,
+                                    const std::string& joint, Scratch& scratch) {
+  if (!quantity.per_joint) return workspace.field(quantity);
+  if (joint != "worst" && joint != "mean") return workspace.field(quantity, static_cast<std::size_t>(joint[0] - '1'));
   std::vector<S>& field = scratch.get<JointFieldScratch<S>>().field;
   std::array<const S*, kMaxJoints> of_joint;
   std::size_t joints = 0;
-  for (; joints < kMaxJoints && !survey.of(quantity, joints).empty(); ++joints)
-    of_joint[joints] = survey.of(quantity, joints).data();
-  field.resize(survey.of(quantity).size());
+  for (; joints < kMaxJoints && !workspace.field(quantity, joints).empty(); ++joints)
+    of_joint[joints] = workspace.field(quantity, joints).data();
+  field.resize(workspace.field(quantity).size());
   const auto combine = [&, mean = joint == "mean"](const S& a, const S& b) {
-    return mean ? S(a + b) : quantity.worst == PoseQuantity::Worst::least ? min(a, b) : max(a, b);
+    return mean ? S(a + b) : quantity.worst == PoseQuantity::Worst::minimum ? min(a, b) : max(a, b);
   };
   // Pairwise reduction in a fixed order, ((1, 2), (3, 4)) for four joints: rounding does not depend on the caller.
   std::array<S, kMaxJoints> at;
@@ -72,10 +67,10 @@ struct PoseStatistic {
   double sharpness = 200;       ///< of the smooth approximation of "min" and "max" with derivatives
 
   template <class S>
-  S operator()(const Survey<S>& survey, Scratch& scratch) const {
-    const std::vector<S>& weight = survey.weight;
-    if (weight.empty()) return S(quantity.without_value);
-    const std::vector<S>& field = reduced_field(survey, quantity, joint, scratch);
+  S operator()(const WorkspaceResult<S>& workspace, Scratch& scratch) const {
+    const std::vector<S>& weight = workspace.weight;
+    if (weight.empty()) return S(quantity.value_if_undefined);
+    const std::vector<S>& field = reduced_field(workspace, quantity, joint, scratch);
     if (statistic == "mean") return weighted_mean(weight, field);
     if (statistic == "std") return weighted_standard_deviation(weight, field);
     if constexpr (std::is_same_v<S, double>) {
@@ -87,7 +82,7 @@ struct PoseStatistic {
   }
   template <class S>
   S operator()(const DesignView<S>& design) const {
-    return (*this)(*design.survey, design.scratch);
+    return (*this)(*design.workspace, design.scratch);
   }
 
  private:

@@ -49,7 +49,7 @@ class Problem {
   ///                may end as soon as a design-level constraint is violated.
   virtual void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const = 0;
   /// Empty if the problem supports Detail::derivatives, else the reason why not.
-  virtual Unsupported no_derivatives() const { return "the problem gives no derivatives"; }
+  virtual Unsupported why_no_derivatives() const { return "the problem gives no derivatives"; }
 
   EvaluationShape shape(Detail detail = Detail::enough) const {
     return {space().dimension(), objectives().size(), margins().size(), reports().size(), detail};

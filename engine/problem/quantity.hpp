@@ -22,9 +22,9 @@ namespace pkm {
 template <class S>
 struct DesignView {
   const Mechanism& mechanism;
-  std::span<const S> parameters;  ///< all of the mechanism's parameters
-  const Survey<S>* survey;        ///< null for design-level quantities
-  Scratch& scratch;               ///< scratch memory, reused from design to design
+  std::span<const S> parameters;        ///< all of the mechanism's parameters
+  const WorkspaceResult<S>* workspace;  ///< null for design-level quantities
+  Scratch& scratch;                     ///< scratch memory, reused from design to design
 };
 
 class Quantity {
@@ -35,7 +35,7 @@ class Quantity {
   /// The value with derivatives for gradient solvers; for a non-smooth value (a worst case), a smooth approximation.
   virtual Dual4 smooth(const DesignView<Dual4>& design) const = 0;
   /// Empty if smooth() is supported, else the reason why not.
-  virtual Unsupported no_derivatives() const { return {}; }
+  virtual Unsupported why_no_derivatives() const { return {}; }
   /// The reason why the value is not finite; "" if no specific reason is known.
   virtual std::string why_undefined(const DesignView<double>&) const { return {}; }
 };
@@ -44,21 +44,21 @@ class Quantity {
 /// @param function       the value
 /// @param approximation  its smooth approximation, if the value has kinks; called with Dual4 only
 template <class F, class G>
-std::unique_ptr<const Quantity> make_quantity(F function, G approximation, Unsupported no_derivatives = {}) {
+std::unique_ptr<const Quantity> make_quantity(F function, G approximation, Unsupported why_no_derivatives = {}) {
   class Wrapped final : public Quantity {
    public:
     Wrapped(F f, G g, Unsupported why)
-        : function_(std::move(f)), smooth_(std::move(g)), no_derivatives_(std::move(why)) {}
+        : function_(std::move(f)), smooth_(std::move(g)), why_no_derivatives_(std::move(why)) {}
     double value(const DesignView<double>& design) const override { return function_(design); }
     Dual4 smooth(const DesignView<Dual4>& design) const override { return smooth_(design); }
-    Unsupported no_derivatives() const override { return no_derivatives_; }
+    Unsupported why_no_derivatives() const override { return why_no_derivatives_; }
 
    private:
     F function_;
     G smooth_;
-    Unsupported no_derivatives_;
+    Unsupported why_no_derivatives_;
   };
-  return std::make_unique<Wrapped>(std::move(function), std::move(approximation), std::move(no_derivatives));
+  return std::make_unique<Wrapped>(std::move(function), std::move(approximation), std::move(why_no_derivatives));
 }
 template <class F>
 std::unique_ptr<const Quantity> make_quantity(F function) {
@@ -67,16 +67,18 @@ std::unique_ptr<const Quantity> make_quantity(F function) {
 
 /// A quantity without derivatives.
 template <class F>
-std::unique_ptr<const Quantity> make_quantity_without_derivatives(F function, const std::string& no_derivatives) {
-  const auto none = [no_derivatives](const DesignView<Dual4>&) -> Dual4 { throw std::logic_error(no_derivatives); };
-  return make_quantity(std::move(function), none, no_derivatives);
+std::unique_ptr<const Quantity> make_quantity_without_derivatives(F function, const std::string& why_no_derivatives) {
+  const auto none = [why_no_derivatives](const DesignView<Dual4>&) -> Dual4 {
+    throw std::logic_error(why_no_derivatives);
+  };
+  return make_quantity(std::move(function), none, why_no_derivatives);
 }
 
 /// A named part of the workspace, `[[region]]` of a study, with its own workspace analysis.
 struct Region {
   std::string name;
   WorkspacePlan plan;
-  Demand demand;  ///< union over all quantities that use the region
+  FieldRequest request;  ///< union over all quantities that use the region
 };
 
 /// Input of a catalogue entry when a study uses it.
@@ -90,15 +92,15 @@ struct EntryContext {
 
 /// Bounds on the values of a quantity, for any design.
 struct Range {
-  double least = -std::numeric_limits<double>::infinity();
-  double greatest = std::numeric_limits<double>::infinity();
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
 };
 inline Range unbounded(const EntryContext&) { return {}; }
-inline Range nonnegative(const EntryContext&) { return {.least = 0}; }
+inline Range nonnegative(const EntryContext&) { return {.lower = 0}; }
 
 inline std::string unit_one(const EntryContext&) { return "1"; }
 inline Unsupported supports_every_mechanism(const Mechanism&) { return {}; }
-inline void no_demand(const EntryContext&, Demand&) {}
+inline void no_request(const EntryContext&, FieldRequest&) {}
 inline std::vector<OptionSpec> no_options(const MechanismInfo&) { return {}; }
 
 /// An entry of the catalogue of objectives.
@@ -111,13 +113,13 @@ struct ObjectiveEntry {
   std::function<Unsupported(const Mechanism&)> refusal =
       supports_every_mechanism;  ///< empty if the mechanism supports it
   /// Adds the fields that the workspace analysis has to compute.
-  std::function<void(const EntryContext&, Demand&)> demand = no_demand;
+  std::function<void(const EntryContext&, FieldRequest&)> request = no_request;
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// Description of the objective with given options; nullptr: `meaning`.
   std::function<std::string(const EntryContext&)> detail = nullptr;
   std::function<Range(const EntryContext&)> range = unbounded;  ///< of its values
   bool uses_workspace = true;  ///< uses the analysis of the workspace or of a region; false: depends on the design only
-  /// Whether the objective with given options uses the workspace analysis; nullptr: as `uses_workspace` says.
+  /// Whether the objective with given options uses the workspace analysis; nullptr: `uses_workspace` holds for all.
   bool (*needs_workspace)(const EntryContext&) = nullptr;
 
   bool reads(const EntryContext& context) const { return needs_workspace ? needs_workspace(context) : uses_workspace; }
@@ -138,7 +140,7 @@ struct ConstraintEntry {
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// Whether the constraint with given options uses the workspace analysis (nullptr: no), and the fields it adds to it.
   bool (*needs_workspace)(const EntryContext&) = nullptr;
-  void (*demand)(const EntryContext&, Demand&) = no_demand;
+  void (*request)(const EntryContext&, FieldRequest&) = no_request;
   /// Description of the constraint with given options; nullptr: `meaning`.
   std::string (*detail)(const EntryContext&) = nullptr;
 

@@ -46,7 +46,7 @@ void for_each_result(Table& table, const Action& action) {
   action(table.objectives, shape.objectives);
   action(table.margins, shape.margins);
   action(table.reports, shape.reports);
-  action(table.slopes, shape.slopes());
+  action(table.derivatives, shape.derivatives());
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ std::uint64_t hash_of_rows(const EvaluationTable& table, std::size_t first, std:
   add(table.objectives, shape.objectives);
   add(table.margins, shape.margins);
   add(table.reports, shape.reports);
-  add(table.slopes, shape.slopes());
+  add(table.derivatives, shape.derivatives());
   for (std::size_t row = first; row < end; ++row) hash.add(static_cast<std::uint64_t>(table.status[row]));
   return hash.value();
 }

@@ -9,8 +9,8 @@ VolumeBounds verify_volume(const DesignProblem& problem, DesignReport& report, d
   constexpr double kRoundoff = 1e-9;  // relative; rounding errors of closed forms, not part of the error estimate
   const ProblemParts& parts = problem.parts();
   const VolumeBounds bounds =
-      parts.mechanism->bounds()->volume(report.parameters, parts.plan, parts.demand.mode, {.gap = gap, .stop = stop});
-  const double volume = report.survey.volume, error = (report.survey.error + kRoundoff) * volume;
+      parts.mechanism->bounds()->volume(report.parameters, parts.plan, parts.request.mode, {.gap = gap, .stop = stop});
+  const double volume = report.workspace.volume, error = (report.workspace.error + kRoundoff) * volume;
   if (bounds.lower <= volume + error && bounds.upper >= volume - error) return bounds;
   const std::string unit = volume_unit(parts.mechanism->info(), parts.plan);
   report.status = Status::failed;

@@ -5,7 +5,7 @@
 #include "engine/problem/pose_statistic.hpp"
 #include "engine/report/packed_array.hpp"
 #include "engine/report/panels.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 namespace {
@@ -17,7 +17,7 @@ constexpr std::size_t kFixedRotations = 13;  // sampled rotations
 /// The coupling indices of the feasible poses at each of several rotations.
 struct CouplingByRotation {
   std::vector<double> rotations;
-  std::vector<Survey<double>> surveys;
+  std::vector<WorkspaceResult<double>> surveys;
 };
 
 /// The rotation is swept: groups the workspace's cells by rotation.
@@ -40,23 +40,23 @@ CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size
 
 /// The rotation is fixed: analyses the workspace on coarse voxels at rotations from the range in which poses are
 /// feasible.
-/// @param fixed  index of the rotation in WorkspaceFields::held
+/// @param fixed  index of the rotation in WorkspaceFields::fixed
 CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDesign& design, std::size_t fixed) {
   CouplingByRotation result;
-  const int coordinate = design.workspace->held[fixed].coordinate;
+  const int coordinate = design.workspace->fixed[fixed].coordinate;
   const auto [lower, upper] = design.fixed_range[fixed];
   result.surveys.resize(kFixedRotations);
   for (std::size_t k = 0; k < kFixedRotations; ++k)
     result.rotations.push_back(lower + (upper - lower) * static_cast<double>(k) / (kFixedRotations - 1));
-  const Demand demand{.fields = {&kCouplingIndex}, .mode = shown.mode};
+  const FieldRequest request{.fields = {&kCouplingIndex}, .mode = shown.mode};
   parallel_for(kFixedRotations, [&](std::size_t k, std::size_t end) {
     for (; k < end; ++k) {
       WorkspacePlan plan = shown.plan;
       for (std::size_t axis = 0; axis < design.workspace->axes.size(); ++axis)
         std::get<VoxelOptions>(plan.method).cells[axis] = kCellsPerAxis;
-      std::erase_if(plan.held, [&](const FixedCoordinate& other) { return other.coordinate == coordinate; });
-      plan.held.push_back({coordinate, FixedCoordinate::Kind::value, result.rotations[k]});
-      evaluate_once<double>(*prepare_workspace(shown.mechanism, plan, demand), design.parameters, result.surveys[k]);
+      std::erase_if(plan.fixed, [&](const FixedCoordinate& other) { return other.coordinate == coordinate; });
+      plan.fixed.push_back({coordinate, FixedCoordinate::Kind::value, result.rotations[k]});
+      evaluate_once<double>(*prepare_workspace(shown.mechanism, plan, request), design.parameters, result.surveys[k]);
     }
   });
   return result;
@@ -70,7 +70,7 @@ CouplingByRotation coupling_by_rotation(const ShownDesigns& shown, const ShownDe
   };
   const std::size_t axis = find_in(workspace.axes);
   return axis < workspace.axes.size() ? group_by_rotation(workspace, axis, shown.mechanism.info().joints.size())
-                                      : analyse_at_rotations(shown, design, find_in(workspace.held));
+                                      : analyse_at_rotations(shown, design, find_in(workspace.fixed));
 }
 
 /// Mean, 95 % quantile and maximum of the coupling index of a limb at each rotation; NaN if no pose is feasible there.
@@ -79,7 +79,7 @@ Json statistics_by_rotation(const CouplingByRotation& coupling, const std::strin
   Scratch scratch;
   Json json;
   for (const char* const statistic : {"mean", "p95", "max"})
-    for (const Survey<double>& survey : coupling.surveys)
+    for (const WorkspaceResult<double>& survey : coupling.surveys)
       json[statistic].push_back(
           survey.weight.empty() ? std::nan("") : PoseStatistic{kCouplingIndex, statistic, limb}(survey, scratch));
   return json;
@@ -89,7 +89,7 @@ Json statistics_by_rotation(const CouplingByRotation& coupling, const std::strin
 
 Json coupling_data(const ShownDesigns& shown) {
   const MechanismInfo& info = shown.mechanism.info();
-  if (!shown.coupling || no_joint_forces(shown.mechanism)) return {};
+  if (!shown.coupling || why_no_joint_forces(shown.mechanism)) return {};
   const auto rotation = std::ranges::find_if(info.coordinates, &AxisInfo::turns);
   const bool has_rotation = rotation != info.coordinates.end();
   std::vector<std::string> joints, limbs;

@@ -30,7 +30,7 @@ using Sliders = std::vector<Slider>;
 
 Sliders make_sliders(const ShownDesign& design, const PageDetail& detail) {
   const WorkspaceFields& workspace = *design.workspace;
-  const std::size_t coordinates = workspace.axes.size() + workspace.held.size();
+  const std::size_t coordinates = workspace.axes.size() + workspace.fixed.size();
   std::vector<std::array<double, 2>> range(coordinates, {1e300, -1e300});
   for (const std::size_t cell : workspace.feasible_cells()) {
     const Pose<double> pose = workspace.pose(cell);
@@ -39,8 +39,8 @@ Sliders make_sliders(const ShownDesign& design, const PageDetail& detail) {
   }
   Sliders sliders;
   for (const auto& [lower, upper] : range) sliders.push_back(equidistant_values(lower, upper, detail.steps));
-  if (!workspace.held.empty())
-    sliders[static_cast<std::size_t>(workspace.held[0].coordinate)] =
+  if (!workspace.fixed.empty())
+    sliders[static_cast<std::size_t>(workspace.fixed[0].coordinate)] =
         equidistant_values(design.fixed_range[0][0], design.fixed_range[0][1], detail.fixed_steps);
   return sliders;
 }

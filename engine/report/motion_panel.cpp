@@ -77,7 +77,8 @@ Json motion_summary(const TrajectorySummary& s, bool has_drive_trains) {
 }
 
 Json design_along(const ShownDesigns& shown, const ShownDesign& design, const Motion& motion) {
-  const Trajectory found = follow(shown.mechanism, design.parameters, shown.mode, shown.limits, motion, kSamples);
+  const Trajectory found =
+      compute_trajectory(shown.mechanism, design.parameters, shown.mode, shown.limits, motion, kSamples);
   const MechanismInfo& info = shown.mechanism.info();
   const std::size_t joints = info.joints.size();
   std::vector<double> conditioning;

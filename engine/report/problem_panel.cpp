@@ -9,7 +9,7 @@ namespace {
 Json gradients_unsupported(const DesignProblem& problem) {
   for (const Variable& v : problem.parts().space.variables())
     if (v.step > 0) return "the variable " + v.name + " has a step";
-  const Unsupported reason = problem.no_derivatives();
+  const Unsupported reason = problem.why_no_derivatives();
   return reason ? Json(*reason) : Json();
 }
 

@@ -9,7 +9,7 @@
 #include "engine/problem/front.hpp"
 #include "engine/report/comparison.hpp"
 #include "engine/report/thinning.hpp"
-#include "engine/workspace/picture_plan.hpp"
+#include "engine/workspace/visualisation_plan.hpp"
 
 namespace pkm {
 namespace {
@@ -19,7 +19,7 @@ constexpr PageDetail kFrontDetail = {16, 5, 3, false};  // resolution of these d
 
 /// The study's plan with voxels, at most max_cells per axis.
 WorkspacePlan page_plan(const MechanismInfo& info, const WorkspacePlan& plan, std::int64_t max_cells) {
-  WorkspacePlan picture = picture_plan(info, plan, {max_cells, max_cells, max_cells});
+  WorkspacePlan picture = visualisation_plan(info, plan, {max_cells, max_cells, max_cells});
   for (std::int64_t& cells : std::get<VoxelOptions>(picture.method).cells) cells = std::min(cells, max_cells);
   return picture;
 }
@@ -80,8 +80,8 @@ bool uses_masses(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const Dynamics* const dynamics = parts.mechanism->dynamics();
   if (!dynamics) return false;
-  if (dynamics->mass_model() != dynamics->mass_models().front() || parts.demand.needs_inertia() ||
-      std::ranges::any_of(parts.regions, [](const Region& region) { return region.demand.needs_inertia(); }))
+  if (dynamics->mass_model() != dynamics->mass_models().front() || parts.request.needs_inertia() ||
+      std::ranges::any_of(parts.regions, [](const Region& region) { return region.request.needs_inertia(); }))
     return true;
   for (const auto* const entries : {&study.objectives, &study.constraints, &study.reports})
     if (std::ranges::any_of(*entries, [](const StudyEntry& entry) { return entry.type.starts_with("peak-"); }))
@@ -96,7 +96,7 @@ bool uses_masses(const Study& study) {
 
 ShownDesigns prepare_study_designs(const PageStudy& page, const PageDetail& detail) {
   const ProblemParts& parts = page.study->problem->parts();
-  ShownDesigns shown = prepare_designs(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions, detail);
+  ShownDesigns shown = prepare_designs(*parts.mechanism, parts.plan, parts.request.mode, page.study->motions, detail);
   shown.coupling = uses_masses(*page.study);
   return shown;
 }
@@ -105,7 +105,8 @@ void add_design(ShownDesigns& shown, const std::string& name, const std::vector<
   ShownDesign design{name, parameters, {}};
   try {
     design.workspace = workspace_fields(shown.mechanism, parameters, shown.plan, shown.mode);
-    for (const auto& fixed : design.workspace->held) design.fixed_range.push_back(feasible_range(fixed, shown, design));
+    for (const auto& fixed : design.workspace->fixed)
+      design.fixed_range.push_back(feasible_range(fixed, shown, design));
     if (!(design.workspace->volume > 0)) {
       design.workspace.reset();
       design.problem = "it has no feasible pose";

@@ -55,8 +55,9 @@ std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& inf
   const auto number = [&](const std::string& name, const std::string& unit, const std::string& meaning, double value) {
     file.array(Leaf{notes + "/" + name, meaning, {unit}}, std::vector{value}, {1});
   };
-  for (std::size_t i = 0; i < workspace.held.size(); ++i)
-    number("held_" + workspace.held[i].name, workspace.held[i].unit, workspace.fixed_note[i], workspace.held[i].lower);
+  for (std::size_t i = 0; i < workspace.fixed.size(); ++i)
+    number("held_" + workspace.fixed[i].name, workspace.fixed[i].unit, workspace.fixed_note[i],
+           workspace.fixed[i].lower);
   number("volume", workspace.volume_unit, "volume of the feasible cells", workspace.volume);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
@@ -88,14 +89,14 @@ void write_vtk_image(const std::string& path, const WorkspaceFields& workspace, 
 
 CsvTable workspace_table(const WorkspaceFields& workspace) {
   std::vector<std::string> columns;
-  for (const auto* const axes : {&workspace.axes, &workspace.held})
+  for (const auto* const axes : {&workspace.axes, &workspace.fixed})
     for (const WorkspaceAxis& axis : *axes) columns.push_back(column_header(axis.name, axis.unit));
   for (const WorkspaceField& field : workspace.fields) columns.push_back(column_header(field.name, field.unit));
   CsvTable table(columns);
   for (std::size_t cell = 0; cell < workspace.cells(); ++cell) {
     const Pose<double> pose = workspace.pose(cell);
     table.begin_row();
-    for (const auto* const axes : {&workspace.axes, &workspace.held})
+    for (const auto* const axes : {&workspace.axes, &workspace.fixed})
       for (const WorkspaceAxis& axis : *axes) table.add(pose[static_cast<std::size_t>(axis.coordinate)]);
     for (const WorkspaceField& field : workspace.fields) table.add(field.values[cell]);
   }

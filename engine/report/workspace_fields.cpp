@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "engine/core/team.hpp"
-#include "engine/workspace/picture_plan.hpp"
 #include "engine/workspace/pose_quantities.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
+#include "engine/workspace/visualisation_plan.hpp"
 
 namespace pkm {
 namespace {
@@ -22,11 +22,11 @@ WorkspaceAxis axis_of(const MechanismInfo& info, int coordinate, double lower, d
 }
 
 /// Origin of the value of a fixed coordinate, for people.
-std::string note_of(const FixedCoordinate& held) {
+std::string note_of(const FixedCoordinate& fixed) {
   using Kind = FixedCoordinate::Kind;
-  if (held.kind == Kind::value) return "as given";
-  if (held.kind == Kind::middle) return "default value of the design";
-  return held.kind == Kind::listed ? "the first of the listed values" : "default value; the study integrates over it";
+  if (fixed.kind == Kind::value) return "as given";
+  if (fixed.kind == Kind::default_value) return "default value of the design";
+  return fixed.kind == Kind::listed ? "the first of the listed values" : "default value; the study integrates over it";
 }
 
 /// Evaluates the fields of a sequence of poses in parallel, in blocks of consecutive poses. The first field must exist;
@@ -56,7 +56,7 @@ class Evaluator {
     add_quantities(false);
     joints_ = fields_.size();
     for (const AxisInfo& joint : info_.joints) add(joint.name, joint.unit, "position of joint " + joint.name);
-    if (!no_joint_forces(mechanism)) add_quantities(true);
+    if (!why_no_joint_forces(mechanism)) add_quantities(true);
   }
 
   static constexpr std::size_t kFeasible = 0;  ///< number of the field that exists before
@@ -74,7 +74,7 @@ class Evaluator {
   void evaluate_block(std::size_t number, FieldScratch& scratch) const {
     const std::size_t first = number * block_, end = std::min(first + block_, fields_[kFeasible].values.size());
     for (std::size_t cell = first; cell < end; ++cell) evaluate_pose(cell, scratch);
-    if (!no_joint_forces(mechanism_)) evaluate_inertia_fields(first, end, scratch);
+    if (!why_no_joint_forces(mechanism_)) evaluate_inertia_fields(first, end, scratch);
   }
 
   void evaluate_all() const {
@@ -91,13 +91,14 @@ class Evaluator {
     fields_.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
     fields_.back().values.assign(fields_[kFeasible].values.size(), kUndefined);
   }
-  void add_quantities(bool of_inertia) {
+  void add_quantities(bool from_inertia) {
     const std::string& length = info_.characteristic_length;
     for (const PoseQuantity* const quantity : pose_quantities()) {
-      if (quantity->needs_inertia() != of_inertia) continue;
+      if (quantity->needs_inertia() != from_inertia) continue;
       const std::string name = quantity->name, meaning = quantity->meaning;
       if (!quantity->per_joint) {
-        add(name, quantity->unit, meaning + (of_inertia || length.empty() ? "" : ", characteristic length " + length));
+        add(name, quantity->unit,
+            meaning + (from_inertia || length.empty() ? "" : ", characteristic length " + length));
         continue;
       }
       for (std::size_t limb = 1; limb <= info_.joints.size(); ++limb)
@@ -106,16 +107,16 @@ class Evaluator {
           (min_is_worst(*quantity) ? "minimum " : "maximum ") + meaning + " of the limbs");
     }
   }
-  static bool min_is_worst(const PoseQuantity& quantity) { return quantity.worst == PoseQuantity::Worst::least; }
+  static bool min_is_worst(const PoseQuantity& quantity) { return quantity.worst == PoseQuantity::Worst::minimum; }
 
   /// Stores all quantities with or without inertia at one cell.
   /// @param field     number of the first of their fields; they are stored in the order of add_quantities()
   /// @param evaluate  evaluate(quantity, values) computes the values of a quantity
   template <class Evaluate>
-  void store(std::size_t field, std::size_t cell, bool of_inertia, const Evaluate& evaluate) const {
+  void store(std::size_t field, std::size_t cell, bool from_inertia, const Evaluate& evaluate) const {
     std::array<double, kMaxJoints> values;
     for (const PoseQuantity* const quantity : pose_quantities()) {
-      if (quantity->needs_inertia() != of_inertia) continue;
+      if (quantity->needs_inertia() != from_inertia) continue;
       evaluate(*quantity, values.data());
       const std::size_t count = quantity->per_joint ? info_.joints.size() : 1;
       for (std::size_t i = 0; i < count; ++i) at(field++, cell) = values[i];
@@ -135,7 +136,7 @@ class Evaluator {
     if (!feasible(cell)) return;
     const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
     store(kQuantities, cell, false,
-          [&](const PoseQuantity& quantity, double* values) { quantity.of_report(report, values); });
+          [&](const PoseQuantity& quantity, double* values) { quantity.from_report(report, values); });
     for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(joints_ + i, cell) = (*report.joints)[i];
   }
 
@@ -162,7 +163,7 @@ class Evaluator {
       if (!dynamics[k].assembles) continue;
       const AxisMatrix<double> inertia = joint_inertia(dynamics[k]);
       store(joints_ + info_.joints.size(), cells[k], true,
-            [&](const PoseQuantity& quantity, double* values) { quantity.of_inertia(inertia, values); });
+            [&](const PoseQuantity& quantity, double* values) { quantity.from_inertia(inertia, values); });
     }
   }
 
@@ -208,8 +209,8 @@ Pose<double> WorkspaceFields::pose(std::size_t cell) const {
 }
 
 Pose<double> WorkspaceFields::pose(const std::array<double, 3>& at) const {
-  Pose<double> all(axes.size() + held.size());
-  for (const WorkspaceAxis& fixed : held) all[static_cast<std::size_t>(fixed.coordinate)] = fixed.lower;
+  Pose<double> all(axes.size() + fixed.size());
+  for (const WorkspaceAxis& fixed : fixed) all[static_cast<std::size_t>(fixed.coordinate)] = fixed.lower;
   for (std::size_t i = 0; i < axes.size(); ++i) all[static_cast<std::size_t>(axes[i].coordinate)] = at[i];
   return all;
 }
@@ -248,7 +249,7 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
                                  const WorkspacePlan& plan, const std::string& mode) {
   const MechanismInfo& info = mechanism.info();
   if (const Unsupported reason = mechanism.refuse(parameters)) throw std::invalid_argument(*reason);
-  const WorkspacePlan picture = picture_plan(info, plan, {kPictureCells, kPictureCells, kPictureCells});
+  const WorkspacePlan picture = visualisation_plan(info, plan, {kPictureCells, kPictureCells, kPictureCells});
   const Sweep& sweep = sweep_of(info, picture);
   const VoxelMap map = voxel_map(mechanism, parameters, picture);
 
@@ -256,9 +257,9 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
   found.mechanism = info.name;
   for (std::size_t i = 0; i < sweep.swept.size(); ++i)
     found.axes.push_back(axis_of(info, sweep.swept[i], map.lower[i], map.upper[i], map.cells[i]));
-  for (const int coordinate : sweep.held) {
+  for (const int coordinate : sweep.fixed) {
     const double value = fixed_value(mechanism, parameters, picture, coordinate);
-    found.held.push_back(axis_of(info, coordinate, value, value, 0));
+    found.fixed.push_back(axis_of(info, coordinate, value, value, 0));
     found.fixed_note.push_back(note_of(how_fixed(plan, coordinate)));
   }
   found.fields.push_back({"feasible",
@@ -266,7 +267,7 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
                           "1 where the pose at the cell's centre is feasible, else 0",
                           {map.feasible.begin(), map.feasible.end()}});
   const VoxelGrid grid = found.grid();
-  Survey<double> summary;
+  WorkspaceResult<double> summary;
   summarise(grid, map, summary, found.axes.size());
   found.volume = summary.volume;
   found.volume_unit = volume_unit(info, picture);

@@ -49,7 +49,7 @@ struct WorkspaceField {
 struct WorkspaceFields {
   std::string mechanism;
   std::vector<WorkspaceAxis> axes;      ///< one to three, in the order of Sweep::swept; the last axis varies fastest
-  std::vector<WorkspaceAxis> held;      ///< the fixed coordinates: lower = upper is the value, no cells
+  std::vector<WorkspaceAxis> fixed;     ///< the fixed coordinates: lower = upper is the value, no cells
   std::vector<std::string> fixed_note;  ///< origin of these values: "default value of the design"
   std::vector<WorkspaceField> fields;
   double volume = 0;  ///< of the feasible cells

@@ -59,9 +59,9 @@ Json workspace_json(const std::string& name, const WorkspaceFields& found, const
     json["axes"].push_back(axis_json(axis));
     json["axes"].back().update({{"lower", axis.lower}, {"upper", axis.upper}, {"cells", axis.cells}});
   }
-  for (std::size_t i = 0; i < found.held.size(); ++i) {
-    json["fixed"].push_back(axis_json(found.held[i]));
-    json["fixed"].back().update({{"value", found.held[i].lower}, {"note", found.fixed_note[i]}});
+  for (std::size_t i = 0; i < found.fixed.size(); ++i) {
+    json["fixed"].push_back(axis_json(found.fixed[i]));
+    json["fixed"].back().update({{"value", found.fixed[i].lower}, {"note", found.fixed_note[i]}});
   }
   json["volume"] = found.volume;
   json["volume_unit"] = found.volume_unit;

@@ -19,11 +19,11 @@ DesignRecord evaluate_design(const DesignProblem& problem, std::span<const doubl
           .reports = r.reports,
           .status = r.status,
           .reason = r.reason,
-          .volume = r.survey.volume,
-          .cells = r.survey.cells,
-          .feasible_cells = r.survey.feasible_cells,
-          .cell_volume = r.survey.cell_volume,
-          .touches_box = box_matters && r.survey.touches_box};
+          .volume = r.workspace.volume,
+          .cells = r.workspace.cells,
+          .feasible_cells = r.workspace.feasible_cells,
+          .cell_volume = r.workspace.cell_volume,
+          .touches_box = box_matters && r.workspace.touches_box};
 }
 
 void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord& record) {

@@ -6,7 +6,7 @@
 
 #include "engine/core/unit.hpp"
 #include "engine/runner/design_record.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 
@@ -14,7 +14,7 @@ ExactValues::ExactValues(const ProblemParts& parts) : parts_(parts) {
   if (!parts.plan.voxels() || !parts.mechanism->columns()) return;
   ColumnOptions columns;
   columns.tolerance = 1e-10;
-  if (parts.mechanism->columns()->take_box()) columns.box = parts.plan.box();
+  if (parts.mechanism->columns()->supports_box()) columns.box = parts.plan.box();
   ProblemParts exact = parts;
   exact.plan.method = columns;
   try {
@@ -67,7 +67,7 @@ void ExactValues::discard_voxel_values(const std::vector<NamedQuantity>& quantit
                                        std::vector<double>& values) const {
   for (std::size_t i = 0; i < quantities.size(); ++i)
     if (const NamedQuantity& q = quantities[i];
-        q.uses_workspace && q.survey > 0 && parts_.regions[q.survey - 1].plan.voxels())
+        q.uses_workspace && q.analysis > 0 && parts_.regions[q.analysis - 1].plan.voxels())
       values[i] = std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -10,8 +10,8 @@
 #include "engine/runner/design_record.hpp"
 #include "engine/runner/exact_values.hpp"
 #include "engine/runner/progress.hpp"
-#include "engine/workspace/picture_plan.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
+#include "engine/workspace/visualisation_plan.hpp"
 
 namespace pkm {
 namespace {
@@ -29,7 +29,7 @@ constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
 MapRecord map_record(const ProblemParts& parts, std::span<const double> parameters) {
   const MechanismInfo& info = parts.mechanism->info();
   MapRecord map;
-  map.voxels = voxel_map(*parts.mechanism, parameters, picture_plan(info, parts.plan, kMapCells));
+  map.voxels = voxel_map(*parts.mechanism, parameters, visualisation_plan(info, parts.plan, kMapCells));
   for (const int swept : sweep_of(info, parts.plan).swept) {
     const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(swept)];
     map.axes.push_back(axis.name);
@@ -66,24 +66,25 @@ std::vector<std::string> active_sentences(const DesignProblem& problem, const De
 /// other results are added to the notes.
 void certify_motions(const ProblemParts& parts, const std::string& name, DesignRecord& design,
                      std::vector<std::string>& notes) {
-  using Kind = PosesFinding::Kind;
+  using Kind = PropertyResult::Kind;
   for (const FollowedMotion& along : parts.followed) {
     if (design.status != Status::feasible) return;
     const std::string begin = kAlong + along.name + " the " + name + " ";
     try {
-      const PosesCertificate found =
+      const PoseCertificate found =
           parts.mechanism->bounds()->motion(design.parameters, parts.plan.limits, along.mode, *along.motion,
-                                            {.most_boxes = kMaxMotionBoxes, .stop = [] { return stop_requested(); }});
+                                            {.max_boxes = kMaxMotionBoxes, .stop = [] { return stop_requested(); }});
       check_stop();
-      const PosesFinding& verdict = found.feasible;
+      const PropertyResult& verdict = found.feasible;
       const std::string when = verdict.time ? "t = " + with_unit(*verdict.time, "s") : "";
       if (verdict.kind == Kind::holds)
         notes.push_back(begin + "satisfies every limit of a pose at every instant (certified)");
       else if (verdict.kind == Kind::undecided)
-        notes.push_back(begin + "may violate " + verdict.what + " near " + when + ": undecided");
+        notes.push_back(begin + "may violate " + verdict.detail + " near " + when + ": undecided");
       else {
         design.status = Status::failed;
-        design.reason = kAlong + along.name + ", " + verdict.what + " is violated at " + when + ", between its samples";
+        design.reason =
+            kAlong + along.name + ", " + verdict.detail + " is violated at " + when + ", between its samples";
       }
     } catch (const std::invalid_argument& reason) {
       notes.push_back(begin + "cannot be certified: " + reason.what());

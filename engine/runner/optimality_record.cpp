@@ -29,7 +29,7 @@ std::vector<SensitivityRecord> sensitivities(const DesignProblem& problem, std::
   const std::size_t count = parts.parameters.size(), width = 1 + count;
   std::vector<std::size_t> all(count);
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const std::vector<double> derivatives = problem.slopes(problem.parameters(design), all);
+  const std::vector<double> derivatives = problem.derivatives(problem.parameters(design), all);
   const double sign = problem.objectives()[0].direction == Direction::maximise ? 1 : -1;
   const auto& parameters = parts.mechanism->info().parameters;
   std::vector<SensitivityRecord> records;

@@ -5,7 +5,7 @@
 #include "engine/core/stop.hpp"
 #include "engine/optimisers/sampling.hpp"
 #include "engine/problem/evaluator.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 namespace {
@@ -14,28 +14,27 @@ constexpr std::size_t kMaxDesigns = 64, kMinDesigns = 4;
 constexpr double kBudget = 50e-3, kMaxCost = 0.5;  // estimated time of all designs, and of one [s]
 
 // Approximate costs of a workspace analysis [s].
-constexpr double kCell = 0.1e-9;       // per voxel, counted in batches
-constexpr double kSample = 0.1e-6;     // per pose at which pose quantities are evaluated
-constexpr double kPlain = 2e-6;        // per pose with the full inverse kinematics, or with distances between links
-constexpr double kQuantity = 20e-6;    // per quantity that does not depend on a workspace analysis
-constexpr double kColumnNodes = 5000;  // typical number of quadrature nodes of the exact method
+constexpr double kVoxelCost = 0.1e-9;      // per voxel, counted in batches
+constexpr double kSampleCost = 0.1e-6;     // per pose at which pose quantities are evaluated
+constexpr double kKinematicsCost = 2e-6;   // per pose with the full inverse kinematics, or with distances between links
+constexpr double kDesignTestCost = 20e-6;  // per design-level constraint
+constexpr double kColumnNodes = 5000;      // typical number of quadrature nodes of the exact method
 
 /// Estimated time of one workspace analysis [s].
-double cost(const Mechanism& mechanism, const WorkspacePlan& plan, const Demand& demand) {
+double cost(const Mechanism& mechanism, const WorkspacePlan& plan, const FieldRequest& request) {
   double poses = kColumnNodes;
   if (const VoxelOptions* const voxels = plan.voxels()) {
     poses = 1;
     for (const std::int64_t cells : voxels->cells) poses *= static_cast<double>(cells);
   }
-  for (const FixedCoordinate& held : plan.held)
+  for (const FixedCoordinate& fixed : plan.fixed)
     poses *=
-        static_cast<double>(std::max({std::int64_t{1}, held.cells, static_cast<std::int64_t>(held.values.size())}));
-  const auto& limits = mechanism.info().limits;
-  bool clearance = false;
-  for (std::size_t i = 0; i < limits.size(); ++i)
-    clearance = clearance || (limits[i].group == "clearance" && asks_clearance(plan, i));
-  const bool plain = plan.voxels() && (!mechanism.voxels() || of_cells_only(demand));
-  return poses * (plain || clearance ? kPlain : demand.needs_samples() ? kSample : kCell);
+        static_cast<double>(std::max({std::int64_t{1}, fixed.cells, static_cast<std::int64_t>(fixed.values.size())}));
+  const bool is_cellwise = plan.voxels() && (!mechanism.voxels() || first_cellwise_field(request));
+  const double each = is_cellwise || requires_clearance(mechanism.info(), plan) ? kKinematicsCost
+                      : request.needs_samples()                                 ? kSampleCost
+                                                                                : kVoxelCost;
+  return poses * each;
 }
 
 }  // namespace
@@ -46,9 +45,9 @@ std::size_t Probe::feasible() const {
 
 std::size_t probe_size(const DesignProblem& problem) {
   const ProblemParts& parts = problem.parts();
-  double one = cost(*parts.mechanism, parts.plan, parts.demand);
-  for (const Region& region : parts.regions) one += cost(*parts.mechanism, region.plan, region.demand);
-  one += kQuantity * static_cast<double>(parts.design_margins.size());
+  double one = cost(*parts.mechanism, parts.plan, parts.request);
+  for (const Region& region : parts.regions) one += cost(*parts.mechanism, region.plan, region.request);
+  one += kDesignTestCost * static_cast<double>(parts.design_margins.size());
   if (one > kMaxCost) return 0;
   return std::clamp(static_cast<std::size_t>(kBudget / one), kMinDesigns, kMaxDesigns);
 }
@@ -65,7 +64,7 @@ Probe probe(const Study& study) {
     for (std::size_t v = 0; v < space.dimension(); ++v)
       probe.table.design(row)[v] = space.from_unit(v, points[row * space.dimension() + v]);
   {
-    const StopScope limit(Probe::kLongest);
+    const StopScope limit(Probe::kTimeLimit);
     try {
       ParallelEvaluator().evaluate(problem, probe.table, 0);
     } catch (const Stopped&) {  // the table contains the designs evaluated so far
@@ -74,7 +73,7 @@ Probe probe(const Study& study) {
     }
   }
   if (probe.table.size() == 0) return probe;
-  probe.verdict = diagnose({&probe.table}, problem.objectives(), problem.margins(), &problem);
+  probe.diagnosis = diagnose({&probe.table}, problem.objectives(), problem.margins(), &problem);
   return probe;
 }
 

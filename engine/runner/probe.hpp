@@ -10,12 +10,11 @@
 namespace pkm {
 
 struct Probe {
-  static constexpr double kLongest = 10;  ///< time limit for all designs together [s]
+  static constexpr double kTimeLimit = 10;  ///< time limit for all designs together [s]
 
-  EvaluationTable table;             ///< the evaluated designs; empty if one evaluation is too expensive
-  std::optional<Diagnosis> verdict;  ///< diagnosis, if no design is feasible or no objective value is meaningful
-
-  bool is_cut_off = false;  ///< the time limit ended the probe before all designs were evaluated
+  EvaluationTable table;               ///< the evaluated designs; empty if one evaluation is too expensive
+  std::optional<Diagnosis> diagnosis;  ///< if no design is feasible or no objective value is meaningful
+  bool is_cut_off = false;             ///< the time limit ended the probe before all designs were evaluated
 
   std::size_t feasible() const;
 };

@@ -33,7 +33,7 @@ double evaluation_seconds(const Study& study, Detail detail) {
   EvaluationTable table = sample_designs(study, detail);
   Scratch scratch;
   double longest = 0;
-  const StopScope limit(RunCost::kLongest);
+  const StopScope limit(RunCost::kTimeLimit);
   try {
     for (std::size_t row = 0; row < table.size(); ++row) {
       double seconds = 1e30;
@@ -46,7 +46,7 @@ double evaluation_seconds(const Study& study, Detail detail) {
     }
   } catch (const Stopped&) {
     if (limit.is_requested_by_outer_scope()) throw;
-    return RunCost::kLongest;
+    return RunCost::kTimeLimit;
   }
   return longest;
 }

@@ -18,7 +18,7 @@ struct RunCost {
   /// Time limit of the exact values of the final designs if they were too slow to be measured; 0 otherwise.
   double exact_limit = 0;
 
-  static constexpr double kLongest = 2;  ///< an evaluation is measured for at most this time [s]
+  static constexpr double kTimeLimit = 2;  ///< an evaluation is measured for at most this time [s]
 };
 
 /// Measures the costs of a study: evaluates the centre of the design space and the baseline, of which the slower one

@@ -107,9 +107,9 @@ PreviousFront previous_front(const Study& study, const StudyContents& contents) 
     scores = scores_of(objectives, contents.best_stage().table, std::array{contents.best.row});
   }
   const Ranges extent = ranges_of(scores);
-  for (std::size_t k = 0; k < extent.least.size(); ++k) {
+  for (std::size_t k = 0; k < extent.minimum.size(); ++k) {
     // An objective without a range is scaled by its magnitude.
-    const double size = extent.range(k) > 0 ? extent.range(k) : std::fabs(extent.least[k]);
+    const double size = extent.range(k) > 0 ? extent.range(k) : std::fabs(extent.minimum[k]);
     if (std::isfinite(size) && size > 0) known.extents[k] = size;
   }
   return known;

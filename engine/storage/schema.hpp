@@ -111,7 +111,7 @@ void describe_evaluations(Archive& archive, const std::string& group, const Prob
   matrix(archive, group + "/report", "Outputs; NaN: not computed", problem.reports, table.reports, rows);
   if (detail == Detail::derivatives)
     matrix(archive, group + "/slope", "Per objective, then per margin: smooth value, derivatives by the variables",
-           slope_columns(problem), table.slopes, rows);
+           slope_columns(problem), table.derivatives, rows);
   archive.array(Leaf{group + "/seconds", "Evaluation time", {"s"}}, table.seconds, rows);
 }
 

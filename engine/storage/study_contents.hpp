@@ -13,7 +13,7 @@
 #include "engine/core/parameter.hpp"
 #include "engine/core/source_text.hpp"
 #include "engine/mechanism/abilities/bounds.hpp"
-#include "engine/mechanism/survey.hpp"
+#include "engine/mechanism/workspace_result.hpp"
 #include "engine/problem/front.hpp"
 #include "engine/problem/start_outcome.hpp"
 

@@ -1,4 +1,4 @@
-// Feasible cells of a grid as runs of neighbours along one axis, or as rows of bits.
+// Runs of feasible cells: neighbours along one axis of a grid, or consecutive set bits of a bit row.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// The cells from `first` on that have numbers below `end` along an axis.
+/// The cells from `first` up to, but excluding, index `end` along `axis`.
 struct CellRun {
   Cell first;
   std::size_t axis;
@@ -18,18 +18,11 @@ struct CellRun {
   std::int64_t count() const { return end - first[axis]; }
 };
 
-/// Whether one of them lies on the outer layer of the box.
-inline bool touches_box(const VoxelGrid& grid, const CellRun& run) {
-  bool touches = run.end == grid.cells[run.axis];
-  for (std::size_t axis = 0; axis < 3; ++axis) touches = touches || grid.at_end(axis, run.first[axis]);
-  return touches;
-}
-
-/// Adds the cells of a run to those that a survey has found.
-/// @param images  of the run, itself among them: mirrored ones have the same cells
-inline void count_cells(const VoxelGrid& grid, const CellRun& run, Survey<double>& to, int images = 1) {
+/// Adds the cells of a run to a result.
+/// @param images  number of symmetric images of the run, including itself
+inline void count_cells(const VoxelGrid& grid, const CellRun& run, WorkspaceResult<double>& to, int images = 1) {
   to.feasible_cells += run.count() * images;
-  to.touches_box = to.touches_box || touches_box(grid, run);
+  to.touches_box = to.touches_box || run.end == grid.cells[run.axis] || grid.is_outermost(run.first);
 }
 
 /// Calls visit(cell) for every cell of a run.
@@ -38,9 +31,9 @@ void for_each_cell(const CellRun& run, const Visit& visit) {
   for (Cell cell = run.first; cell[run.axis] < run.end; ++cell[run.axis]) visit(cell);
 }
 
-/// Calls visit(run) for the runs of those cells that pass a test.
-template <class Test, class Visit>
-void keep_cells(const CellRun& run, const Test& passes, const Visit& visit) {
+/// Calls visit(run) for the maximal runs of those cells of a run that satisfy a predicate.
+template <class Predicate, class Visit>
+void filter_run(const CellRun& run, const Predicate& passes, const Visit& visit) {
   CellRun kept = run;
   std::int64_t& start = kept.first[run.axis];
   for_each_cell(run, [&](const Cell& cell) {
@@ -53,7 +46,7 @@ void keep_cells(const CellRun& run, const Test& passes, const Visit& visit) {
   if (start < kept.end) visit(kept);
 }
 
-/// Calls visit(number) for every bit of a row, from the first on.
+/// Calls visit(index) for every set bit of a row, in ascending order.
 template <class Visit>
 void for_each_bit(std::span<const std::uint64_t> row, const Visit& visit) {
   for (std::size_t w = 0; w < row.size(); ++w)
@@ -61,10 +54,10 @@ void for_each_bit(std::span<const std::uint64_t> row, const Visit& visit) {
       visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-/// Calls visit(first, end) for every run of neighbouring bits.
+/// Calls visit(first, end) for every maximal run of consecutive set bits.
 template <class Visit>
 void for_each_run(std::span<const std::uint64_t> row, const Visit& visit) {
-  std::size_t first = 0, end = 0;  // of the run so far
+  std::size_t first = 0, end = 0;
   for_each_bit(row, [&](std::size_t bit) {
     if (bit != end) {
       if (first < end) visit(first, end);

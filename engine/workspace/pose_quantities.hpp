@@ -1,46 +1,59 @@
-// The quantities of poses that surveys can hold. One more is a file in quantities/, its name here and its place in the
-// list; surveys by voxels, an objective, its results in expressions, and columns of tables, images and pages follow.
+// List of all per-pose quantities, and their evaluation. To add a quantity, add a file to quantities/, declare its
+// constant here and append it to the list; voxels, objectives, expressions, tables, plots and the report then offer it.
 #pragma once
 
 #include <cmath>
 #include <span>
 #include <vector>
 
-#include "engine/mechanism/survey.hpp"
+#include "engine/mechanism/workspace_result.hpp"
 
 namespace pkm {
 
 extern const PoseQuantity kConditioning, kCouplingIndex, kInertiaCondition;
 
-/// In the order in which they are shown: those of reports before those of inertia.
+/// In the order of tables: quantities of pose reports before quantities of inertia.
 const std::vector<const PoseQuantity*>& pose_quantities();
 
-/// Calls take(components of the field, values) for every field of a survey that inertia gives, with its values at a
-/// pose. Where M_q is infinite or has no value, on the edge of the workspace without margins, and where a value is not
-/// finite, it is PoseQuantity::without_value.
-/// @param except  a field that is known already, or null
-template <class S, SmallMatrix M, class Take>
-void evaluate_inertia(const M& M_q, Survey<S>& survey, const PoseQuantity* except, const Take& take) {
-  bool has_value = true;
-  for (std::size_t i = 0; i < M_q.rows(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) has_value = has_value && std::isfinite(value_of(M_q(i, j)));
-    has_value = has_value && value_of(M_q(i, i)) > 0;
-  }
-  for (auto& [quantity, field] : survey.fields) {
-    if (!quantity->needs_inertia() || quantity == except) continue;
-    std::array<S, kMaxJoints> room;
-    const std::span<S> values(room.data(), quantity->per_joint ? M_q.rows() : 1);
-    if (has_value) quantity->of_inertia(M_q, room.data());
-    for (S& value : values)
-      if (!has_value || !std::isfinite(value_of(value))) value = S(quantity->without_value);
-    take(field, values);
+/// Appends the values of all requested quantities that are computed from a PoseReport.
+/// @param joints  number of actuated joints of the mechanism
+inline void add_report(const PoseReport& report, std::size_t joints, WorkspaceResult<double>& to) {
+  for (auto& [quantity, field] : to.fields) {
+    if (quantity->needs_inertia()) continue;
+    std::array<double, kMaxJoints> values;
+    quantity->from_report(report, values.data());
+    const std::size_t count = quantity->per_joint ? joints : 1;
+    for (std::size_t i = 0; i < count; ++i)
+      field[i].push_back(std::isfinite(values[i]) ? values[i] : quantity->value_if_undefined);
   }
 }
 
-/// Adds them.
+/// Computes all requested quantities of a joint-space inertia M_q, and calls visit(field, values) for each. A value is
+/// PoseQuantity::value_if_undefined if it is not finite, or if M_q is infinite or has a diagonal element <= 0 (at the
+/// workspace boundary, if no limit keeps a distance from singularities).
+/// @param except  a quantity to skip because it has been computed elsewhere; or null
+template <class S, SmallMatrix M, class Visit>
+void evaluate_inertia(const M& M_q, WorkspaceResult<S>& result, const PoseQuantity* except, const Visit& visit) {
+  bool is_valid = true;
+  for (std::size_t i = 0; i < M_q.rows(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) is_valid = is_valid && std::isfinite(value_of(M_q(i, j)));
+    is_valid = is_valid && value_of(M_q(i, i)) > 0;
+  }
+  for (auto& [quantity, field] : result.fields) {
+    if (!quantity->needs_inertia() || quantity == except) continue;
+    std::array<S, kMaxJoints> buffer;
+    const std::span<S> values(buffer.data(), quantity->per_joint ? M_q.rows() : 1);
+    if (is_valid) quantity->from_inertia(M_q, buffer.data());
+    for (S& value : values)
+      if (!is_valid || !std::isfinite(value_of(value))) value = S(quantity->value_if_undefined);
+    visit(field, values);
+  }
+}
+
+/// Appends the values of all requested quantities of a joint-space inertia M_q.
 template <class S, SmallMatrix M>
-void add_inertia(const M& M_q, Survey<S>& survey, const PoseQuantity* except = nullptr) {
-  evaluate_inertia(M_q, survey, except, [](auto& field, std::span<const S> values) {
+void add_inertia(const M& M_q, WorkspaceResult<S>& result, const PoseQuantity* except = nullptr) {
+  evaluate_inertia(M_q, result, except, [](auto& field, std::span<const S> values) {
     for (std::size_t i = 0; i < values.size(); ++i) field[i].push_back(values[i]);
   });
 }

@@ -1,16 +1,16 @@
-// A box of voxels over the swept coordinates, an axis without one having a single cell [0, 1]: cell k of axis i has its
-// centre at lower + (k + 1/2) step.
+// Regular voxel grid over the swept coordinates. Cell k of axis i has its centre at lower + (k + 1/2) step; an axis
+// without a coordinate has the single cell [0, 1].
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "engine/mechanism/plan.hpp"
-#include "engine/mechanism/survey.hpp"
+#include "engine/mechanism/workspace_result.hpp"
 
 namespace pkm {
 
-using Cell = std::array<std::int64_t, 3>;  ///< its numbers along the axes
+using Cell = std::array<std::int64_t, 3>;  ///< indices of a cell along the axes
 
 struct VoxelGrid {
   std::array<std::int64_t, 3> cells{};
@@ -26,15 +26,22 @@ struct VoxelGrid {
   double centre(std::size_t axis, std::int64_t k) const {
     return lower[axis] + (static_cast<double>(k) + 0.5) * step[axis];
   }
-  /// Of a cell in a map.
+  /// Index of a cell in VoxelMap::feasible.
   std::size_t index(const Cell& cell) const {
     return static_cast<std::size_t>((cell[0] * cells[1] + cell[1]) * cells[2] + cell[2]);
   }
+  /// @return true for the first and the last cell of an axis
   bool at_end(std::size_t axis, std::int64_t k) const { return k == 0 || k == cells[axis] - 1; }
+  /// @return true if a cell is at an end of any of the first `axes` axes
+  bool is_outermost(const Cell& cell, std::size_t axes = 3) const {
+    for (std::size_t axis = 0; axis < axes; ++axis)
+      if (at_end(axis, cell[axis])) return true;
+    return false;
+  }
   std::int64_t count() const { return cells[0] * cells[1] * cells[2]; }
   double cell_volume() const { return step[0] * step[1] * step[2]; }
 
-  /// A map of this grid with no feasible cell.
+  /// A map of this grid without feasible cells.
   VoxelMap map() const {
     VoxelMap m;
     m.feasible.assign(static_cast<std::size_t>(count()), 0);
@@ -47,22 +54,22 @@ struct VoxelGrid {
   }
 };
 
-/// Volume, counts and box contact of a map.
-/// @param swept  number of coordinates: the axes behind them touch nothing
-inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>& survey, std::size_t swept = 3) {
-  survey.clear();
-  survey.cells = grid.count();
-  survey.cell_volume = grid.cell_volume();
-  std::size_t cell = 0;
-  const auto outer = [&](std::size_t axis, std::int64_t k) { return axis < swept && grid.at_end(axis, k); };
-  for (std::int64_t i = 0; i < grid.cells[0]; ++i)
-    for (std::int64_t j = 0; j < grid.cells[1]; ++j)
-      for (std::int64_t k = 0; k < grid.cells[2]; ++k) {
-        if (!map.feasible[cell++]) continue;
-        ++survey.feasible_cells;
-        survey.touches_box = survey.touches_box || outer(0, i) || outer(1, j) || outer(2, k);
+/// Computes volume, counts and box contact of a map.
+/// @param swept  number of swept coordinates; the other axes do not touch the box
+inline void summarise(const VoxelGrid& grid, const VoxelMap& map, WorkspaceResult<double>& result,
+                      std::size_t swept = 3) {
+  result.clear();
+  result.cells = grid.count();
+  result.cell_volume = grid.cell_volume();
+  Cell cell;
+  for (cell[0] = 0; cell[0] < grid.cells[0]; ++cell[0])
+    for (cell[1] = 0; cell[1] < grid.cells[1]; ++cell[1])
+      for (cell[2] = 0; cell[2] < grid.cells[2]; ++cell[2]) {
+        if (!map.feasible[grid.index(cell)]) continue;
+        ++result.feasible_cells;
+        result.touches_box = result.touches_box || grid.is_outermost(cell, swept);
       }
-  survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+  result.volume = static_cast<double>(result.feasible_cells) * result.cell_volume;
 }
 
 }  // namespace pkm

@@ -71,7 +71,7 @@ Json expression_names_json(const Mechanism& mechanism) {
     return {
         {"name", known.name},
         {"unit", known.unit},
-        {"known", known.origin == Origin::survey ? "after the workspace analysis" : "before the workspace analysis"},
+        {"known", known.origin == Origin::workspace ? "after the workspace analysis" : "before the workspace analysis"},
         {"meaning", known.meaning}};
   });
 }
@@ -111,7 +111,7 @@ Json other_parameters_json(const Mechanism& mechanism) {
 Json sweep_json(const MechanismInfo& info, const Sweep& sweep, bool has_columns) {
   return {{"swept", coordinate_names(info, sweep.swept)},
           {"columns_along", has_columns ? Json(coordinate_names(info, {sweep.column})[0]) : Json()},
-          {"held", coordinate_names(info, sweep.held)},
+          {"held", coordinate_names(info, sweep.fixed)},
           {"volume_unit", unit_of_product(info, sweep.swept)}};
 }
 
@@ -201,7 +201,7 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
     json["other_sweeps"].push_back(other);
   }
   std::vector<int> integrated = default_sweep.swept;
-  integrated.insert(integrated.end(), default_sweep.held.begin(), default_sweep.held.end());
+  integrated.insert(integrated.end(), default_sweep.fixed.begin(), default_sweep.fixed.end());
   json["integrated_unit"] = default_sweep.integrates ? Json(unit_of_product(info, integrated)) : Json();
   json["size"] = optional_json(mechanism.size(), [](const Size& size) { return size.meaning(); });
   json["size_unit"] = optional_json(mechanism.size(), [](const Size& size) { return size.unit(); });

@@ -60,7 +60,7 @@ std::vector<std::array<double, 2>> ranges_of(const Target& target, const Workspa
   const auto given = parse_ranges(box, "--box", swept);
   std::vector<std::array<double, 2>> ranges(info.coordinates.size());
   for (std::size_t i = 0; i < swept.size(); ++i) ranges[static_cast<std::size_t>(sweep.swept[i])] = given[i];
-  for (const int coordinate : sweep.held)
+  for (const int coordinate : sweep.fixed)
     ranges[static_cast<std::size_t>(coordinate)].fill(
         fixed_value(*target.mechanism, target.parameters, plan, coordinate));
   return ranges;
@@ -76,38 +76,38 @@ struct PosesClaim {
 /// Adds the result of one proof to the output.
 /// @param region  "box" or "motion"
 /// @return the error message; "" if the property is proven
-std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, const PosesFinding& verdict,
+std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, const PropertyResult& verdict,
                          const std::string& region, Printout& out) {
-  using Kind = PosesFinding::Kind;
+  using Kind = PropertyResult::Kind;
   static const std::map<Kind, std::string> kinds = {
       {Kind::holds, "yes"}, {Kind::fails, "no"}, {Kind::undecided, "undecided"}, {Kind::not_examined, "not examined"}};
   out.json[claim.key] = {{"verdict", kinds.at(verdict.kind)},
-                         {"what", text_or_null(verdict.what)},
-                         {"pose", axes_json(info.coordinates, verdict.where)}};
+                         {"what", text_or_null(verdict.detail)},
+                         {"pose", axes_json(info.coordinates, verdict.pose)}};
   if (region == "motion") out.json[claim.key]["time"] = json_or_null(verdict.time);
-  const std::string where = !verdict.where ? ""
-                                           : (verdict.time ? "t = " + number(*verdict.time, "s") + ", " : "") +
-                                                 axes_text(info.coordinates, *verdict.where);
+  const std::string where = !verdict.pose ? ""
+                                          : (verdict.time ? "t = " + number(*verdict.time, "s") + ", " : "") +
+                                                axes_text(info.coordinates, *verdict.pose);
   const bool singular = claim.key == "regular";
   switch (verdict.kind) {
     case Kind::holds:
       out.head.push_back({claim.key, claim.if_holds});
       return "";
     case Kind::fails:
-      out.head.push_back({claim.key, singular ? "no, singular at " + where + ": " + verdict.what
-                                              : "not everywhere: " + verdict.what + " is violated at " + where});
+      out.head.push_back({claim.key, singular ? "no, singular at " + where + ": " + verdict.detail
+                                              : "not everywhere: " + verdict.detail + " is violated at " + where});
       return "the " + region + " is not " + claim.property + " everywhere";
     case Kind::undecided:
-      out.head.push_back({claim.key, "undecided: " + verdict.what + ", near " + where});
+      out.head.push_back({claim.key, "undecided: " + verdict.detail + ", near " + where});
       return "the " + region + " has poses that could not be decided";
     default:
-      out.head.push_back({claim.key, "not examined, because " + verdict.what});
+      out.head.push_back({claim.key, "not examined, because " + verdict.detail});
       return "singularities were not examined";
   }
 }
 
 /// Adds both results, on feasibility and on singularities, to the output. @return as of report_claim
-std::string report_poses(const MechanismInfo& info, const PosesCertificate& found, const std::string& region,
+std::string report_poses(const MechanismInfo& info, const PoseCertificate& found, const std::string& region,
                          Printout& out) {
   const std::string in = (region == "box" ? "in the " : "along the ") + region;
   const std::string infeasible =
@@ -141,7 +141,7 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   const StopRequest stop;
   std::string proof;
   const BoundsOptions options{.gap = gap,
-                              .most_boxes = static_cast<std::size_t>(arguments.boxes),
+                              .max_boxes = static_cast<std::size_t>(arguments.boxes),
                               .proof = arguments.proof.empty() ? nullptr : &proof,
                               .stop = [] { return StopRequest::signal() != 0; }};
   std::string error;

@@ -42,8 +42,8 @@ Json workspace_json(const MechanismInfo& info, const WorkspacePlan& plan) {
   Json json = {{"method", plan.voxels() ? "voxels" : "columns"}, {"sweep", swept}};
   if (const VoxelOptions* voxels = plan.voxels()) {
     for (std::size_t k = 0; k < swept.size(); ++k) json["cells"][swept[k]] = voxels->cells[k];
-    for (const FixedCoordinate& held : plan.held)
-      if (held.cells > 0) json["cells"][coordinate_names(info, {held.coordinate})[0]] = held.cells;
+    for (const FixedCoordinate& fixed : plan.fixed)
+      if (fixed.cells > 0) json["cells"][coordinate_names(info, {fixed.coordinate})[0]] = fixed.cells;
     json["box"] = nullptr;  // computed for each design
   }
   for (std::size_t k = 0; plan.box() && k < swept.size(); ++k) json["box"][swept[k]] = (*plan.box())[k];
@@ -56,13 +56,13 @@ Json workspace_json(const MechanismInfo& info, const WorkspacePlan& plan) {
     for (std::size_t k = 0; k < swept.size(); ++k)
       if (fixed && sweep.swept[k] != sweep.column) json["nodes"][swept[k]] = columns->nodes[node++];
   }
-  for (const int i : sweep.held) {
+  for (const int i : sweep.fixed) {
     using Kind = FixedCoordinate::Kind;
-    const FixedCoordinate held = how_fixed(plan, i);
-    json[coordinate_names(info, {i})[0]] = held.kind == Kind::middle       ? Json("middle")
-                                           : held.kind == Kind::integrated ? Json("integrated")
-                                           : held.kind == Kind::listed     ? Json(held.values)
-                                                                           : Json(held.value);
+    const FixedCoordinate fixed = how_fixed(plan, i);
+    json[coordinate_names(info, {i})[0]] = fixed.kind == Kind::default_value ? Json("middle")
+                                           : fixed.kind == Kind::integrated  ? Json("integrated")
+                                           : fixed.kind == Kind::listed      ? Json(fixed.values)
+                                                                             : Json(fixed.value);
   }
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const auto& given = plan.limits.given[i];
@@ -128,16 +128,17 @@ Json study_json(const Study& study) {
 }
 
 Json probe_json(const Probe& probe) {
-  return {{"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"verdict", diagnosis_json(probe.verdict)}};
+  return {
+      {"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"verdict", diagnosis_json(probe.diagnosis)}};
 }
 
 /// Contradictions are omitted: they are printed before.
 std::string probe_text(const Probe& probe) {
   std::string text = "\nprobe: " + words(probe) + '\n';
-  if (!probe.verdict) return text;
-  std::vector<Reason> reasons = probe.verdict->reasons;
+  if (!probe.diagnosis) return text;
+  std::vector<Reason> reasons = probe.diagnosis->reasons;
   std::erase_if(reasons, [](const Reason& reason) { return reason.kind == "contradiction"; });
-  return text + "note: " + probe.verdict->sentence + "; a run may still find feasible designs\n" +
+  return text + "note: " + probe.diagnosis->sentence + "; a run may still find feasible designs\n" +
          reasons_text(reasons);
 }
 

@@ -23,7 +23,7 @@ void print_estimate(const Study& study, const RunCost& cost, int seeds, int thre
   std::vector<std::string> parts;
   bool is_lower_bound = false;
   const auto add = [&](std::int64_t limit, const char* what, double seconds) {
-    const bool is_longer = seconds >= RunCost::kLongest;
+    const bool is_longer = seconds >= RunCost::kTimeLimit;
     is_lower_bound = is_lower_bound || is_longer;
     parts.push_back(std::to_string(limit) + what + (is_longer ? " of more than " : " of about ") +
                     duration_text(seconds));

@@ -9,7 +9,7 @@
 #include "engine/problem/pose_statistic.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/storage/safe_file.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/target.hpp"
@@ -30,26 +30,26 @@ struct CouplingArguments : DesignArguments, GridArguments, TableOutput {
 WorkspacePlan plan_of(const Target& target, const CouplingArguments& arguments) {
   const MechanismInfo& info = target.info();
   WorkspacePlan plan = target.plan();
-  for (FixedCoordinate& held : plan.held)
-    if (held.kind == Kind::listed) held = {held.coordinate, Kind::value, held.values.front()};
+  for (FixedCoordinate& fixed : plan.fixed)
+    if (fixed.kind == Kind::listed) fixed = {fixed.coordinate, Kind::value, fixed.values.front()};
   set_grid(plan, target, arguments, kDefaultCouplingCells, kMaxCouplingCells);
   if (arguments.phi.empty()) return plan;
-  const std::vector<std::string> held = coordinate_names(info, sweep_of(info, plan).held);
-  if (std::ranges::find(held, "phi") == held.end())
+  const std::vector<std::string> fixed = coordinate_names(info, sweep_of(info, plan).fixed);
+  if (std::ranges::find(fixed, "phi") == fixed.end())
     throw ConfigError({"", 0, "--phi"},
-                      "phi is not a fixed coordinate; fixed: " + (held.empty() ? "none" : join(held)));
+                      "phi is not a fixed coordinate; fixed: " + (fixed.empty() ? "none" : join(fixed)));
   const AxisInfo& phi = *find_named(info.coordinates, "phi");
   const int coordinate = static_cast<int>(&phi - info.coordinates.data());
-  std::erase_if(plan.held, [&](const FixedCoordinate& each) { return each.coordinate == coordinate; });
-  plan.held.push_back({.coordinate = coordinate,
-                       .kind = Kind::listed,
-                       .values = parse_values(arguments.phi, "--phi", {phi.name, phi.unit})});
+  std::erase_if(plan.fixed, [&](const FixedCoordinate& each) { return each.coordinate == coordinate; });
+  plan.fixed.push_back({.coordinate = coordinate,
+                        .kind = Kind::listed,
+                        .values = parse_values(arguments.phi, "--phi", {phi.name, phi.unit})});
   return plan;
 }
 
 /// Statistics of the coupling indices over the sampled poses, as JSON and as table rows: of each joint, of the largest
 /// and of the mean index of a pose.
-std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const Survey<double>& survey) {
+std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const WorkspaceResult<double>& survey) {
   Json json = {{"samples", survey.weight.size()}, {"cells", survey.cells}, {"volume", survey.volume}};
   for (const char* name : {"max", "mean", "std", "p95"}) json[name] = Json::object();
   if (survey.weight.empty()) return {json, {{"no feasible pose"}}};
@@ -72,7 +72,7 @@ std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const Su
 }
 
 /// The coupling indices of every feasible cell, one row each.
-CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
+CsvTable table_of(const MechanismInfo& info, const WorkspaceResult<double>& survey) {
   std::vector<std::string> columns = names_of(info.coordinates);
   for (std::size_t i = 1; i <= info.joints.size(); ++i) columns.push_back("dci_" + std::to_string(i));
   columns.emplace_back("dci_worst");
@@ -82,7 +82,7 @@ CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
   for (std::size_t k = 0; k < survey.weight.size(); ++k) {
     table.begin_row();
     table.add(survey.pose[k]);
-    for (std::size_t i = 0; i < info.joints.size(); ++i) table.add(survey.of(kCouplingIndex, i)[k]);
+    for (std::size_t i = 0; i < info.joints.size(); ++i) table.add(survey.field(kCouplingIndex, i)[k]);
     table.add(worst[k]);
   }
   return table;
@@ -90,9 +90,10 @@ CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
 
 std::string coupling(const Target& target, const CouplingArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
-  if (const Unsupported reason = no_joint_forces(*target.mechanism))
+  if (const Unsupported reason = why_no_joint_forces(*target.mechanism))
     throw ConfigError({"", 0, "coupling"}, *reason + ", so it has no coupling indices");
-  const Demand demand{.fields = {&kCouplingIndex}, .poses = true, .mode = parse_mode(info, {arguments.mode, ""})};
+  const FieldRequest request{
+      .fields = {&kCouplingIndex}, .poses = true, .mode = parse_mode(info, {arguments.mode, ""})};
   const WorkspacePlan plan = plan_of(target, arguments);
   // Runs an action and converts std::invalid_argument into ConfigError.
   const auto with_config_errors = [&info](const auto& action) {
@@ -104,19 +105,19 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
   };
   const auto survey = [&](const WorkspacePlan& cells) {
     return with_config_errors([&] {
-      Survey<double> found;
-      evaluate_once<double>(*prepare_workspace(*target.mechanism, cells, demand), target.parameters, found);
+      WorkspaceResult<double> found;
+      evaluate_once<double>(*prepare_workspace(*target.mechanism, cells, request), target.parameters, found);
       return found;
     });
   };
-  with_config_errors([&] { return prepare_workspace(*target.mechanism, plan, demand); });
+  with_config_errors([&] { return prepare_workspace(*target.mechanism, plan, request); });
   check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
-  const auto title = [](const std::string& of, const Survey<double>& found) {
+  const auto title = [](const std::string& of, const WorkspaceResult<double>& found) {
     return of + ": " + std::to_string(found.feasible_cells) + " of " + std::to_string(found.cells) + " cells feasible";
   };
 
   out.add("mechanism", info.name);
-  out.add("mode", demand.mode);
+  out.add("mode", request.mode);
   out.add("masses", target.mechanism->dynamics()->mass_model());
   out.json["box"] = nullptr;
   const std::vector<std::string> swept = coordinate_names(info, sweep_of(info, plan).swept);
@@ -124,14 +125,14 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
     out.json["cells"][swept[k]] = plan.voxels()->cells[k];
     if (plan.box()) out.json["box"][swept[k]] = (*plan.box())[k];
   }
-  const Survey<double> all = survey(plan);
+  const WorkspaceResult<double> all = survey(plan);
   const auto [json, rows] = statistics(info, all);
   out.json["statistics"] = json;
   Json& each = out.json["each"] = Json::array();
   WorkspacePlan one = plan;
-  for (const double phi : arguments.phi.empty() ? std::vector<double>() : plan.held.back().values) {
-    one.held.back() = {plan.held.back().coordinate, Kind::value, phi};
-    const Survey<double> found = survey(one);
+  for (const double phi : arguments.phi.empty() ? std::vector<double>() : plan.fixed.back().values) {
+    one.fixed.back() = {plan.fixed.back().coordinate, Kind::value, phi};
+    const WorkspaceResult<double> found = survey(one);
     const auto [json_of_one, rows_of_one] = statistics(info, found);
     each.push_back(json_of_one);
     each.back()["phi"] = phi;

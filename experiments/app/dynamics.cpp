@@ -63,7 +63,7 @@ std::string dynamics(const Target& target, const DynamicsArguments& arguments, P
   const MechanismInfo& info = target.info();
   const Mechanism& mechanism = *target.mechanism;
   const Dynamics* const equations = mechanism.dynamics();
-  if (const Unsupported reason = no_joint_forces(mechanism))
+  if (const Unsupported reason = why_no_joint_forces(mechanism))
     throw ConfigError({"", 0, "dynamics"}, *reason + ", so its dynamics are undefined");
   expect_reactions(mechanism, arguments);
   const std::string mode = parse_mode(info, arguments);

@@ -4,7 +4,7 @@
 #include "engine/core/team.hpp"
 #include "engine/problem/volume_check.hpp"
 #include "engine/runner/stop_request.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/grid.hpp"
@@ -39,10 +39,10 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
     if (needs_options(entry.options) || entry.refusal(*target.mechanism)) continue;
     const Options options = default_options(entry.options);
     const EntryContext context{*target.mechanism, parts.plan, options};
-    Demand demand = parts.demand;
-    entry.demand(context, demand);
-    if (parts.plan.columns() && of_cells_only(demand)) continue;
-    parts.demand = demand;
+    FieldRequest request = parts.request;
+    entry.request(context, request);
+    if (parts.plan.columns() && first_cellwise_field(request)) continue;
+    parts.request = request;
     parts.objectives.push_back({.name = entry.name,
                                 .unit = entry.unit(context),
                                 .meaning = entry.meaning,
@@ -58,7 +58,7 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
 }
 
 /// Adds the measure of the workspace to the output.
-void report_workspace(const DesignProblem& problem, const Survey<double>& survey, Printout& out) {
+void report_workspace(const DesignProblem& problem, const WorkspaceResult<double>& survey, Printout& out) {
   const WorkspacePlan& plan = problem.parts().plan;
   const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
   const std::string method = plan.voxels() ? "voxels" : "columns";
@@ -155,7 +155,7 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   out.head.push_back({"feasible", feasibility_text(*problem, report)});
   report_values("parameters", "parameters", target.info().parameters, report.parameters, no_remark);
   out.json["workspace"] = nullptr;
-  if (surveyed) report_workspace(*problem, report.survey, out);
+  if (surveyed) report_workspace(*problem, report.workspace, out);
   if (bounds) report_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
   report_values(
       "objectives", "objectives", problem->objectives(), report.objectives,

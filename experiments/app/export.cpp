@@ -59,7 +59,7 @@ void export_study(const Session& session, const ExportArguments& arguments) {
   for (const NamedTable& table : tables) write_file(path_of(arguments.csv, table), table.table.text(), existing);
   if (target)
     with_team(arguments.threads, [&] {
-      const std::string& mode = target->study->problem->parts().demand.mode;  // the working mode of its objectives
+      const std::string& mode = target->study->problem->parts().request.mode;  // the working mode of its objectives
       write_workspace(arguments, *target, compute_fields(*target, target->plan(), mode));
     });
   if (contents.state != StudyState::finished)

@@ -6,7 +6,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 

@@ -14,7 +14,7 @@ Json components_json(const std::array<std::optional<double>, 3>& components) {
 }
 
 /// Adds the magnitude of a force or couple along a motion: three cells to the joint's row, four keys to its JSON.
-void add_load(const std::string& key, const CarriedLoad& load, const Trajectory& trajectory, Row& row, Json& json) {
+void add_load(const std::string& key, const LoadSummary& load, const Trajectory& trajectory, Row& row, Json& json) {
   std::vector<std::string> undetermined;  // components
   for (std::size_t k = 0; k < 3; ++k)
     if (!load.determined[k]) undetermined.emplace_back(1, "xyz"[k]);
@@ -96,7 +96,7 @@ void report_reactions(const Trajectory& trajectory, Printout& out) {
       return;
     }
   std::vector<Row> rows = {{"", "on", "peak force", "at", "RMS force", "peak couple", "at", "RMS couple"}};
-  for (const CarryingJoint& joint : carried_along(trajectory)) {
+  for (const ReactionLoads& joint : reaction_loads(trajectory)) {
     Row& row = rows.emplace_back(Row{joint.name, joint.on});
     Json& loads = json[joint.name] = {{"on", joint.on}};
     add_load("force", joint.force, trajectory, row, loads);

@@ -7,7 +7,7 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/core/catalogue.hpp"
-#include "engine/problem/no_conditioning.hpp"
+#include "engine/problem/availability.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 
@@ -140,7 +140,7 @@ void expect_length_axes(const Axes& swept, const CubeArguments& arguments) {
 
 void expect_known_fields(const WorkspaceFields& workspace, const MechanismInfo& info, const CubeArguments& arguments) {
   const auto least = minimum_values(workspace, arguments);
-  const Unsupported undefined = no_conditioning(info);
+  const Unsupported undefined = why_no_conditioning(info);
   for (std::size_t i = 0; i < least.size(); ++i)
     if (least[i] && undefined && workspace.fields[i].name == kConditioning.name)
       throw ConfigError({"", 0, "--least"}, *undefined);

@@ -38,7 +38,7 @@ CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajecto
   for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.coordinates, suffix);
   for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.joints, suffix);
   for (const char* name : {"conditioning", "feasible", "reason"}) columns.emplace_back(name);
-  if (!no_joint_forces(mechanism)) {
+  if (!why_no_joint_forces(mechanism)) {
     for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
     columns.emplace_back("power");
   }
@@ -65,7 +65,7 @@ CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajecto
     p.conditioning ? table.add(*p.conditioning) : table.add_empty(1);
     table.add(p.feasible ? 1.0 : 0.0);
     table.add(p.reason);
-    if (!no_joint_forces(mechanism)) {
+    if (!why_no_joint_forces(mechanism)) {
       add(p.forces);
       add(p.power);
       p.power ? table.add(std::accumulate(p.power->begin() + 1, p.power->end(), (*p.power)[0])) : table.add_empty(1);
@@ -101,7 +101,7 @@ Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
                {"conditioning", json_or_null(p.conditioning)},
                {"feasible", p.feasible},
                {"reason", text_or_null(p.reason)}};
-  if (!no_joint_forces(mechanism)) {
+  if (!why_no_joint_forces(mechanism)) {
     json["forces"] = axes_json(info.joints, p.forces);
     json["power"] = axes_json(info.joints, p.power);
   }

@@ -6,7 +6,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/math/satisfied.hpp"
-#include "engine/problem/no_conditioning.hpp"
+#include "engine/problem/availability.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/link_files.hpp"
 #include "experiments/app/motion_inputs.hpp"
@@ -129,7 +129,7 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
   add_index("det_G", report.det_G);
   for (const auto& [name, value] : report.indices) add_index(name, value);
   add_index("conditioning", report.conditioning);
-  std::string undefined = no_conditioning(info).value_or("");
+  std::string undefined = why_no_conditioning(info).value_or("");
   if (undefined.empty() && report.J && !report.conditioning)
     undefined = "the Jacobian is infinite, or a characteristic length of this design is not positive";
   if (!undefined.empty()) indices.push_back({"conditioning", "none: " + undefined});

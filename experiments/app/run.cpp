@@ -23,16 +23,16 @@ void warn_if_box_cuts(const Study& study, const Session& session) {
   const std::string name = study.baseline ? "baseline" : "nominal design";
   const std::string& program = session.program;
   const SlowStepNotice slow = announce_slow_step(session, "evaluating the " + name);
-  const StopScope limit(RunCost::kLongest);
+  const StopScope limit(RunCost::kTimeLimit);
   try {
     const auto report = study.problem->report(study.baseline ? *study.baseline : parts.parameters);
-    if (report.survey.touches_box)
+    if (report.workspace.touches_box)
       std::cerr << program << ": warning: feasible cells of the " << name
                 << " touch the box of [workspace]; the workspace may extend beyond it\n";
   } catch (const Stopped&) {
     std::cerr << program << ": warning: whether the workspace of the " << name
               << " touches the box of [workspace] is unknown: its evaluation takes more than "
-              << duration_text(RunCost::kLongest) << '\n';
+              << duration_text(RunCost::kTimeLimit) << '\n';
   }
 }
 

@@ -119,13 +119,13 @@ void add_sensitivity_options(CLI::App& command, SensitivityArguments& arguments)
 void report_sensitivities(const DesignProblem& problem, const DesignReport& report,
                           const SensitivityArguments& arguments, Printout& out) {
   if (!arguments.sensitivity && arguments.tolerance.empty()) return;
-  if (const Unsupported reason = problem.no_derivatives())
+  if (const Unsupported reason = problem.why_no_derivatives())
     throw ConfigError({"", 0, arguments.sensitivity ? "--sensitivity" : "--tolerance"},
                       "needs derivatives, but " + *reason);
   const MechanismInfo& info = problem.parts().mechanism->info();
   std::vector<std::size_t> all(report.parameters.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const std::vector<double> values = problem.slopes(report.parameters, all);
+  const std::vector<double> values = problem.derivatives(report.parameters, all);
   const std::vector<Gradient> gradients = gradients_of(problem, report, values);
   if (gradients.empty()) return;
   if (arguments.sensitivity) report_gradients(info.parameters, gradients, out);

@@ -17,9 +17,9 @@ Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, con
   std::vector<int> known;
   bool several = false;
   for (const Sweep& sweep : info.sweeps) {
-    several = several || sweep.held.size() > 1;
-    for (const int held : sweep.held)
-      if (std::ranges::find(known, held) == known.end()) known.push_back(held);
+    several = several || sweep.fixed.size() > 1;
+    for (const int fixed : sweep.fixed)
+      if (std::ranges::find(known, fixed) == known.end()) known.push_back(fixed);
   }
   std::vector<FixedCoordinate> given;
   Slices slices;
@@ -32,21 +32,22 @@ Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, con
       given.push_back({i, FixedCoordinate::Kind::value, *value});
   }
   const auto can_fix = [&given](const Sweep& sweep) {
-    return std::ranges::all_of(
-        given, [&](const auto& held) { return std::ranges::find(sweep.held, held.coordinate) != sweep.held.end(); });
+    return std::ranges::all_of(given, [&](const auto& fixed) {
+      return std::ranges::find(sweep.fixed, fixed.coordinate) != sweep.fixed.end();
+    });
   };
   if (std::ranges::none_of(info.sweeps, can_fix))
     throw ConfigError(
         place, join(lists),
         several ? "coordinates that can be fixed together, with their values" : "one coordinate with its value");
   if (!can_fix(sweep_of(info, plan))) {
-    plan.held.clear();
+    plan.fixed.clear();
     plan.swept.clear();
     plan.method = ColumnOptions();
   }
-  for (const FixedCoordinate& held : plan.held)
-    if (std::ranges::find(given, held.coordinate, &FixedCoordinate::coordinate) == given.end()) given.push_back(held);
-  plan.held = given;
+  for (const FixedCoordinate& fixed : plan.fixed)
+    if (std::ranges::find(given, fixed.coordinate, &FixedCoordinate::coordinate) == given.end()) given.push_back(fixed);
+  plan.fixed = given;
   return slices;
 }
 
@@ -95,7 +96,7 @@ void remove_sliced_axes(WorkspaceFields& workspace, const MechanismInfo& info, c
     }
     axis->lower = axis->upper = slice->second;
     axis->cells = 0;
-    workspace.held.push_back(*axis);
+    workspace.fixed.push_back(*axis);
     workspace.fixed_note.push_back("as given (slice)");
     workspace.volume /= 2 * kHalfThickness;
     axis = workspace.axes.erase(axis);

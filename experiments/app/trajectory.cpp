@@ -33,7 +33,7 @@ std::string missing_peaks(const Mechanism& mechanism, const Trajectory& trajecto
   if (!mechanism.dynamics())
     return name + "dynamics: no forces, no power\n" +
            (mechanism.velocities() ? "" : name.substr(1) + "influence coefficients: no speeds\n");
-  if (const Unsupported reason = no_joint_forces(mechanism)) return '\n' + *reason + ": no forces, no power\n";
+  if (const Unsupported reason = why_no_joint_forces(mechanism)) return '\n' + *reason + ": no forces, no power\n";
   if (trajectory.summary.has_forces) return "";
   const auto first = std::ranges::find_if(trajectory.points, [](const auto& p) { return !p.forces; });
   return "\npeak forces and energies are unknown: there are no forces" + sample_location(trajectory, *first) + ": " +
@@ -60,7 +60,7 @@ void report_summary(const Mechanism& mechanism, const Trajectory& trajectory, Pr
   const std::string forces = units_of(assignable_forces(info));
   const std::string per = trajectory.periodic ? "per cycle" : "over the motion";
   add("peak_speed", "peak speed [" + units_of(info.joints, "/s") + "]", s.peak_speed);
-  if (const Unsupported reason = no_joint_forces(mechanism)) {
+  if (const Unsupported reason = why_no_joint_forces(mechanism)) {
     json["no_forces"] = *reason;
   } else {
     add("peak_force", "peak force [" + forces + "]", if_known(s.peak_force));
@@ -72,7 +72,7 @@ void report_summary(const Mechanism& mechanism, const Trajectory& trajectory, Pr
       add("peak_motor_speed", "motor, peak speed [rad/s]", if_known(s.peak_motor_speed));
     }
     add_total("peak_total_power", "peak power", s.peak_total_power, "W");
-    add_total("least_total_power", "minimum power", s.least_total_power, "W");
+    add_total("least_total_power", "minimum power", s.min_total_power, "W");
     // Energy that is drawn and then returned leaves a rounding error.
     add_total("energy", "energy " + per, zero_if_rounding_error(s.energy, s.energy_drawn), "J",
               "with regeneration while braking");
@@ -91,12 +91,12 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   const MechanismInfo& info = target.info();
   const std::string mode = parse_mode(info, arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
-  const Unsupported no_forces = no_joint_forces(mechanism);
+  const Unsupported no_forces = why_no_joint_forces(mechanism);
   if (!arguments.wrench.empty() && no_forces)
     throw ConfigError({"", 0, "--wrench"}, *no_forces + ", so a wrench has no effect");
   if (!arguments.motors.empty() && !mechanism.drive_trains())
     throw ConfigError({"", 0, "--motors"}, "no drive trains", "a study with [[drive_train]]");
-  if (const Unsupported reason = no_joint_forces(mechanism); reason && !arguments.motors.empty())
+  if (const Unsupported reason = why_no_joint_forces(mechanism); reason && !arguments.motors.empty())
     throw ConfigError({"", 0, "--motors"}, *reason + ", so motor torques cannot be computed");
   expect_reactions(mechanism, arguments);
   if (arguments.any() && no_forces)
@@ -106,7 +106,8 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   std::vector<Motor> motors;
   if (!arguments.motors.empty()) motors = load_motors_toml(arguments.motors);
   check_outputs({arguments.csv}, inputs, if_forced(arguments.force));
-  Trajectory found = follow(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench);
+  Trajectory found =
+      compute_trajectory(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench);
   if (arguments.any()) {
     add_reactions(mechanism, target.parameters, mode, wrench, found);
     for (TrajectoryPoint& point : found.points) select_joints(arguments, *point.reactions);

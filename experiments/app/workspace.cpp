@@ -6,7 +6,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/rounding.hpp"
-#include "engine/problem/no_conditioning.hpp"
+#include "engine/problem/availability.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/report/workspace_export.hpp"
 #include "engine/storage/safe_file.hpp"
@@ -25,7 +25,7 @@ namespace pkm {
 namespace {
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, CubeArguments {
-  std::vector<std::string> held, cut;
+  std::vector<std::string> fixed, cut;
   std::string csv, html, svg, png;
   int threads = 0;
 
@@ -63,7 +63,7 @@ Picture slice_picture(const Target& target, const WorkspaceFields& workspace, Pr
   const std::string& unit = workspace.volume_unit;
   out.add("area", outline.area, number(outline.area, unit) + ", within the outline drawn");
   std::vector<std::string> fixed;
-  for (const WorkspaceAxis& axis : workspace.held)
+  for (const WorkspaceAxis& axis : workspace.fixed)
     fixed.push_back(axis.name + " = " +
                     (axis.unit == "rad" ? formatted("%.6g deg", axis.lower * 180 / std::numbers::pi)
                                         : formatted("%.6g mm", 1e3 * axis.lower)));
@@ -101,8 +101,8 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
   out.add("design", target.words);
   json["parameters"] = values_by_name(target.info().parameters, target.parameters);
   json["held"] = Json::array();
-  for (std::size_t i = 0; i < workspace.held.size(); ++i) {
-    const auto& [coordinate, name, unit, value, upper, cells] = workspace.held[i];
+  for (std::size_t i = 0; i < workspace.fixed.size(); ++i) {
+    const auto& [coordinate, name, unit, value, upper, cells] = workspace.fixed[i];
     const std::string& why = workspace.fixed_note[i];
     json["held"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
     out.head.push_back({name, position(value, unit), why});
@@ -147,7 +147,7 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
     out.head.push_back({"warning", "the feasible set touches the box; it may extend beyond it"});
 
   rows.clear();
-  const Unsupported undefined = no_conditioning(target.info());
+  const Unsupported undefined = why_no_conditioning(target.info());
   for (const WorkspaceField& field : workspace.fields) {
     const auto range = range_of(field);
     json["fields"][field.name] = {{"unit", field.unit},
@@ -174,7 +174,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
   with_team(arguments.threads, [&] {
     WorkspacePlan plan = target.plan();
     Slices slices;
-    if (!arguments.held.empty()) slices = set_fixed_coordinates(plan, target.info(), arguments.held);
+    if (!arguments.fixed.empty()) slices = set_fixed_coordinates(plan, target.info(), arguments.fixed);
     add_cuts(slices, plan, target.info(), arguments.cut);
     if (!slices.empty() && !arguments.html.empty())
       throw ConfigError({"", 0, "--html"}, "a slice of a workspace", "a full workspace; --svg and --png draw slices");
@@ -217,7 +217,7 @@ void add_workspace(CLI::App& app, Session& session) {
       "Example: pkmopt workspace 4ppa-2par --cut theta=20deg -o slice.svg",
       workspace);
   add_grid_options(command, arguments, kPictureCells);
-  add_list_option(command, "--held", arguments.held,
+  add_list_option(command, "--held", arguments.fixed,
                   "Coordinates to fix at a value; default: those of the study, else at the design's default");
   add_list_option(command, "--cut", arguments.cut, "Swept coordinates to slice at a value");
   add_option(command, "--mode MODE", arguments.mode, "Working mode of the coupling indices; default: the first");

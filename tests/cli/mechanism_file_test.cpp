@@ -126,8 +126,7 @@ TEST_F(MechanismFile, ForwardReportsWhetherItsListIsComplete) {
     command.insert(command.end(), more.begin(), more.end());
     return run(command);
   };
-  EXPECT_THAT(of_file({}).out,
-              HasSubstr("\n  complete   no, found by Newton's method from poses in the search box"));
+  EXPECT_THAT(of_file({}).out, HasSubstr("\n  complete   no, found by Newton's method from poses in the search box"));
   EXPECT_EQ(of_file({"--json"}).json()["complete"], false);
   EXPECT_THAT(of_file({"--near", "x=0,y=0,z=-0.4"}).out,
               HasSubstr("complete   no, found by Newton's method from the pose"));

@@ -154,7 +154,7 @@ TEST_F(Obstacle, InvalidDefinitionsAreRefused) {
               HasSubstr("has no links with a radius that could meet anything"));
   EXPECT_THAT(refusal(changed(study(kDeltaFile, kBall + kClearance),
                               "method = \"voxels\"\ncells = { x = 12, y = 12, z = 12 }", "method = \"columns\"")),
-              HasSubstr("rotary-delta has no column surveys"));
+              HasSubstr("rotary-delta has no columns"));
 }
 
 }  // namespace

@@ -84,10 +84,10 @@ TEST_F(CliSlice, PictureHasAxesUnitsAndArea) {
 }
 
 TEST_F(CliSlice, FixingACoordinateMoreIsASlice) {
-  const json held = workspace({"4ppa-2par", "--held", "y=1.25,theta=20deg", "--cells", "20", "--csv", "held.csv"});
+  const json fixed = workspace({"4ppa-2par", "--held", "y=1.25,theta=20deg", "--cells", "20", "--csv", "held.csv"});
   const json cut = workspace({"4ppa-2par", "--cut", "theta=20deg", "--cells", "20", "--csv", "cut.csv"});
-  EXPECT_EQ(held["volume"], cut["volume"]);
-  EXPECT_EQ(held["held"][1]["name"], "theta");
+  EXPECT_EQ(fixed["volume"], cut["volume"]);
+  EXPECT_EQ(fixed["held"][1]["name"], "theta");
   EXPECT_EQ(workspace({"4ppa-2par", "--held", "theta=20deg", "--cells", "8"})["unit"], "m^3") << "y is swept, too";
   EXPECT_EQ(workspace({"4ppa-2par", "--cells", "8"})["held"].size(), 1u);
   EXPECT_EQ(workspace({PKM_EXPERIMENTS "/mechanisms/five-bar.toml", "--cells", "8"})["held"], json::array());

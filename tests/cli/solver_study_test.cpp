@@ -205,9 +205,8 @@ TEST_F(SolverProgram, CheckReportsIncompatibleSettings) {
   EXPECT_THAT(message(nlopt + "algorithm = \"bobyqa\"\n"),
               HasSubstr("the optimiser nlopt with the algorithm bobyqa handles no constraints, but the study has "
                         "workspace-shape, rail-length, linear"));
-  EXPECT_THAT(
-      message(nlopt, "\"columns\"\ntolerance = 1e-10", "\"voxels\"\ncells = { x = 8, z = 8, theta = 8 }"),
-      HasSubstr("the optimiser nlopt with the algorithm slsqp needs derivatives, but the study surveys voxels"));
+  EXPECT_THAT(message(nlopt, "\"columns\"\ntolerance = 1e-10", "\"voxels\"\ncells = { x = 8, z = 8, theta = 8 }"),
+              HasSubstr("the optimiser nlopt with the algorithm slsqp needs derivatives, but voxel counts"));
   EXPECT_THAT(message(ipopt, "l_d = { min = 0.25, max = 1.5 }", "l_d = { min = 0.25, max = 1.5, step = 0.01 }"),
               HasSubstr("the optimiser ipopt handles continuous variables only, but the variable l_d has a step"));
   EXPECT_THAT(message(ipopt + "options = { tolx = 1e-9 }\n"), HasSubstr("Ipopt has no option 'tolx'"));

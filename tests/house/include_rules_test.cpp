@@ -79,9 +79,10 @@ TEST(IncludeRules, IncludesBetweenSubfoldersAreFound) {
   EXPECT_THAT(violations("engine/optimisers/solvers/a.hpp",
                          "#include \"engine/optimisers/solvers/b.hpp\"\n#include \"engine/optimisers/c.hpp\"\n"),
               IsEmpty());
-  EXPECT_THAT(violations("engine/optimisers/all.cpp",
-                         "#include \"engine/optimisers/solvers/b.hpp\"\n#include \"engine/mechanism/survey.hpp\"\n"),
-              IsEmpty());
+  EXPECT_THAT(
+      violations("engine/optimisers/all.cpp",
+                 "#include \"engine/optimisers/solvers/b.hpp\"\n#include \"engine/mechanism/workspace_result.hpp\"\n"),
+      IsEmpty());
 }
 
 TEST(IncludeRules, UnusedRulesAreFound) {

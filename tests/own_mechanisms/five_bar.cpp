@@ -68,7 +68,7 @@ class FiveBar final : public FromInverse<FiveBar, 2>, ForwardKinematics, Links {
     const double reach = p[kCrank] + p[kRod];
     return {{{-reach, reach}, {0, reach}}};
   }
-  std::optional<double> middle(Parameters p, int coordinate) const override {
+  std::optional<double> default_value(Parameters p, int coordinate) const override {
     return coordinate == 0 ? 0 : (p[kCrank] + p[kRod]) / 2;
   }
 

@@ -79,7 +79,7 @@ class Gough final : public FromInverse<Gough, 6>, Links {
     const double l = p[kMaxLength], r = p[kMaxRotation];  // the centres are at most one leg length apart
     return {{{-l, l}, {-l, l}, {0, l}, {-r, r}, {-r, r}, {-r, r}}};
   }
-  std::optional<double> middle(Parameters p, int coordinate) const override {
+  std::optional<double> default_value(Parameters p, int coordinate) const override {
     if (coordinate != 2) return 0;
     const double half = (p[kMinLength] + p[kMaxLength]) / 2, horizontal = joints(p, Vector<double, 6>(), "")[0];
     return half > horizontal ? std::sqrt(half * half - horizontal * horizontal) : 0;

@@ -69,7 +69,9 @@ class RotaryDelta final : public FromInverse<RotaryDelta, 3>, Links {
     const double lateral = p[kRod] / std::sqrt(0.75);
     return {{{-lateral, lateral}, {-lateral, lateral}, {-p[kCrank] - p[kRod], 0}}};
   }
-  std::optional<double> middle(Parameters p, int coordinate) const override { return coordinate == 2 ? -p[kRod] : 0; }
+  std::optional<double> default_value(Parameters p, int coordinate) const override {
+    return coordinate == 2 ? -p[kRod] : 0;
+  }
 
  private:
   std::vector<PlacedLink> place(Parameters p, const Pose<double>& pose, const std::string& mode) const override {

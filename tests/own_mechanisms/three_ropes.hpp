@@ -2,12 +2,11 @@
 // that the drive forces are not determined by the motion.
 #pragma once
 
-#include "engine/mechanism/both_scalars.hpp"
-#include "engine/mechanism/with_abilities.hpp"
+#include "engine/mechanism/scalar_dispatch.hpp"
 
 namespace pkm::test {
 
-class ThreeRopes final : public MechanismWith<DynamicsOf<ThreeRopes>> {
+class ThreeRopes final : public Mechanism, DynamicsDispatch<ThreeRopes> {
  public:
   ThreeRopes() {
     info_.name = "three-ropes";
@@ -19,6 +18,7 @@ class ThreeRopes final : public MechanismWith<DynamicsOf<ThreeRopes>> {
     info_.sweeps = all_sweeps(info_.coordinates, {0, 1});
   }
   const MechanismInfo& info() const override { return info_; }
+  const Dynamics* dynamics() const override { return this; }
   PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
                      const LimitSpec&) const override {
     const MotionState<double> state{pose, {0, 0}};
@@ -34,7 +34,7 @@ class ThreeRopes final : public MechanismWith<DynamicsOf<ThreeRopes>> {
   }
 
  private:
-  friend DynamicsOf<ThreeRopes>;
+  friend DynamicsDispatch<ThreeRopes>;
 
   const std::vector<std::string>& mass_models() const override { return models_; }
   const std::string& mass_model() const override { return models_.front(); }

@@ -11,8 +11,8 @@ int fixed_coordinate(const WorkspacePlan& plan) {
   for (int coordinate = 0; coordinate < 4; ++coordinate) {
     std::vector<int> swept = {0, 1, 2, 3};
     std::erase(swept, coordinate);
-    const bool is_named = !plan.swept.empty() || !plan.held.empty();
-    const bool fixes = plan.held.empty() || plan.held.front().coordinate == coordinate;
+    const bool is_named = !plan.swept.empty() || !plan.fixed.empty();
+    const bool fixes = plan.fixed.empty() || plan.fixed.front().coordinate == coordinate;
     if ((is_named || coordinate == 3) && fixes && sweeps(plan, swept)) return coordinate;
   }
   return -1;
@@ -31,28 +31,32 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
   Analyses(Platform platform, MassModel mass_model) : platform_(platform), mass_model_(mass_model) {}
 
  private:
-  bool serves(const WorkspacePlan& plan, const ColumnOptions&, const Demand&) const override { return serves(plan); }
-  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const Demand&) const override { return serves(plan); }
+  bool serves(const WorkspacePlan& plan, const ColumnOptions&, const FieldRequest&) const override {
+    return serves(plan);
+  }
+  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest&) const override {
+    return serves(plan);
+  }
   static bool serves(const WorkspacePlan& plan) {
     const int fixed = fixed_coordinate(plan);
-    return plan.held.size() <= 1 && fixed >= 0 && how_fixed(plan, fixed).kind != FixedCoordinate::Kind::integrated &&
-           !asks_clearance(plan, kClearanceMin);
+    return plan.fixed.size() <= 1 && fixed >= 0 && how_fixed(plan, fixed).kind != FixedCoordinate::Kind::integrated &&
+           !requires_clearance(plan, kClearanceMin);
   }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                    const Demand& demand) const override {
-    return make_evaluator(settings(plan, demand), columns);
+                                                    const FieldRequest& request) const override {
+    return make_evaluator(settings(plan, request), columns);
   }
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                const Demand& demand) const override {
-    return make_evaluator(settings(plan, demand), voxels);
+                                                const FieldRequest& request) const override {
+    return make_evaluator(settings(plan, request), voxels);
   }
-  AnalysisSettings settings(const WorkspacePlan& plan, const Demand& demand) const {
+  AnalysisSettings settings(const WorkspacePlan& plan, const FieldRequest& request) const {
     return {.platform = platform_,
             .mass_model = mass_model_,
-            .mode = working_mode(demand.mode),
+            .mode = working_mode(request.mode),
             .fixed = how_fixed(plan, fixed_coordinate(plan)),
             .limits = limits(plan.limits),
-            .demand = demand};
+            .request = request};
   }
 
   Platform platform_;

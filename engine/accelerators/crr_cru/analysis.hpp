@@ -5,7 +5,7 @@
 
 #include "engine/accelerators/crr_cru/masses.hpp"
 #include "engine/accelerators/crr_cru/yaw.hpp"
-#include "engine/mechanism/surveyor.hpp"
+#include "engine/mechanism/workspace_evaluator.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm::crr_cru {
@@ -16,25 +16,25 @@ struct AnalysisSettings {
   WorkingMode mode;  ///< for the inertia; feasibility does not depend on it
   FixedCoordinate fixed;
   Limits limits;
-  Demand demand;
-  bool with_conditioning = demand.has(kConditioning);
+  FieldRequest request;
+  bool with_conditioning = request.has(kConditioning);
 
   template <class S>
   Masses<S> masses(std::span<const S> parameters) const {
     Masses<S> all = crr_cru::masses(mass_model, parameters);
-    std::ranges::copy(demand.rotors, all.rotors.begin());
+    std::ranges::copy(request.rotors, all.rotors.begin());
     return all;
   }
   /// Conditioning of all positions at one phi.
   template <class S>
   S conditioning_at(const Geometry<S>& g, const S& phi) const {
     const auto [s, c] = sincos(phi);
-    const S length = demand.characteristic_length ? S(*demand.characteristic_length) : characteristic_length(g);
+    const S length = request.characteristic_length ? S(*request.characteristic_length) : characteristic_length(g);
     return conditioning(arms(g, s, c), length);
   }
   /// Adds one sample that represents all positions at one phi.
   template <class S>
-  void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, Survey<S>& survey) const {
+  void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, WorkspaceResult<S>& survey) const {
     if (!(value_of(weight) > 0)) return;
     survey.weight.push_back(weight);
     survey.find(kConditioning)->push_back(conditioning_at(g, phi));

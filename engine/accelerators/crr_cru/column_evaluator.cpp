@@ -1,7 +1,7 @@
 #include "engine/accelerators/crr_cru/analysis.hpp"
 #include "engine/accelerators/crr_cru/columns.hpp"
 #include "engine/accelerators/crr_cru/coupling.hpp"
-#include "engine/workspace/with_slopes.hpp"
+#include "engine/workspace/with_gradients.hpp"
 
 namespace pkm::crr_cru {
 namespace {
@@ -24,7 +24,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
         has_fixed_rules_(columns.nodes[0] > 0) {
     // Numbers of nodes are given in the order of the swept coordinates, of which phi is the last.
     const std::size_t outer = slice_axes(settings_.fixed).outer_is_phi ? 1 : 0;
-    const int usual = settings_.demand.needs_inertia() ? kInertiaNodes : kSampleNodes;
+    const int usual = settings_.request.needs_inertia() ? kInertiaNodes : kSampleNodes;
     outer_rule_ = gauss_legendre(has_fixed_rules_ ? columns.nodes[outer] : usual);
     inner_rule_ = gauss_legendre(has_fixed_rules_ ? columns.nodes[1 - outer] : kInertiaNodes);
   }
@@ -35,17 +35,17 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   static constexpr int kInertiaNodes = 8;  // per subinterval and coordinate
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& memory, Survey<S>& survey) const {
-    survey.clear(settings_.demand.fields);
+  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& survey) const {
+    survey.clear(settings_.request.fields);
     ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const SlicedDesign<S> s = sliced(parameters);
     find_outer_intervals(s, sliced_constant<double>(parameters), sliced_constant<Dual<1>>(parameters), scratch);
     if (!has_fixed_rules_) {
       const auto area = [&](const S& outer) { return area_at(s, outer, scratch); };
-      take_volume(integrate<S>(area, scratch.intervals, tolerance_, roundoff(s, scratch.intervals), scratch.integrals),
-                  survey);
+      set_volume(integrate<S>(area, scratch.intervals, tolerance_, roundoff(s, scratch.intervals), scratch.integrals),
+                 survey);
     }
-    if (settings_.demand.needs_inertia()) {
+    if (settings_.request.needs_inertia()) {
       sample_inertia(s, parameters, scratch, survey);
       if (has_fixed_rules_) {
         for (const S& weight : survey.weight) survey.volume += weight;
@@ -69,7 +69,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   /// Adds samples at the nodes of a product rule over all three coordinates.
   template <class S>
   void sample_inertia(const SlicedDesign<S>& s, std::span<const S> parameters, ColumnScratch<S>& scratch,
-                      Survey<S>& survey) const {
+                      WorkspaceResult<S>& survey) const {
     const Geometry<S>& g = s.design.g;
     const Masses<S> b = settings_.masses(parameters);
     std::vector<S>* const conditioning = survey.find(kConditioning);
@@ -88,7 +88,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
         const S measure = outer_weight * weight;
         if (!(value_of(measure) > 0)) return;
         survey.weight.push_back(measure);
-        if (settings_.demand.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
+        if (settings_.request.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
         if (conditioning) conditioning->push_back(index);
         add_inertia(joint_inertia(g, b, inertia, at, settings_.mode), survey);
       });

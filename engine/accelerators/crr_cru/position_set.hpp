@@ -111,7 +111,7 @@ PositionSet<S> position_set(const Design<S>& d, const S& phi) {
 /// without the offset by the circle, are at half stroke.
 template <class S>
 S fixed_value(const Geometry<S>& g, const FixedCoordinate& fixed) {
-  if (fixed.kind != FixedCoordinate::Kind::middle) return S(fixed.value);
+  if (fixed.kind != FixedCoordinate::Kind::default_value) return S(fixed.value);
   if (fixed.coordinate == 3) return S(0.0);
   const S half = (g.rho_min + g.rho_max) * 0.5;
   return fixed.coordinate == 2 ? S(half + g.h) : half;

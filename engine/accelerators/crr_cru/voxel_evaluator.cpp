@@ -3,12 +3,12 @@
 #include "engine/accelerators/crr_cru/analysis.hpp"
 #include "engine/accelerators/crr_cru/inertia_tables.hpp"
 #include "engine/accelerators/crr_cru/voxels.hpp"
-#include "engine/workspace/grid_surveyor.hpp"
+#include "engine/workspace/grid_evaluator.hpp"
 
 namespace pkm::crr_cru {
 namespace {
 
-/// The feasible cells at one phi, with their inertia if it is demanded.
+/// The feasible cells at one phi, with their inertia if it is requested.
 struct CellsAtPhi {
   SliceCells cells;
   InertiaTables tables;
@@ -23,7 +23,7 @@ struct VoxelWorker {
 };
 
 /// A design on its grid, divided into slices, one for each outer cell.
-struct GriddedSlices : Gridded {
+struct GriddedSlices : GriddedDesign {
   Design<double> d;
   Masses<double> masses;
   GridAxes axes;
@@ -36,46 +36,46 @@ struct GriddedSlices : Gridded {
 class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
  public:
   ClosedFormVoxels(const AnalysisSettings& settings, const VoxelOptions& voxels)
-      : GridEvaluator(settings.demand),
+      : GridEvaluator(settings.request),
         settings_(settings),
         voxels_(voxels),
-        beyond_coupling_(std::ranges::any_of(settings.demand.fields, [](const PoseQuantity* quantity) {
+        beyond_coupling_(std::ranges::any_of(settings.request.fields, [](const PoseQuantity* quantity) {
           return quantity->needs_inertia() && quantity != &kCouplingIndex;
         })) {}
 
  private:
   friend GridEvaluator;
-  using Rooms = GridRooms<CellsAtPhi, VoxelWorker>;
+  using Buffers = GridBuffers<CellsAtPhi, VoxelWorker>;
 
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    GridEvaluator::survey(parameters, scratch, survey);
+  void evaluate(std::span<const double> parameters, Scratch& scratch, WorkspaceResult<double>& survey) const override {
+    GridEvaluator::evaluate(parameters, scratch, survey);
     if (!settings_.with_conditioning || !survey.weight.empty()) return;
     const Geometry<double> g = geometry(settings_.platform, parameters);  // phi is fixed: one sample
     settings_.add_conditioning(g, fixed_value(g, settings_.fixed), survey.volume, survey);
   }
 
-  GriddedSlices start(std::span<const double> parameters, Rooms& rooms) const {
+  GriddedSlices start(std::span<const double> parameters, Buffers& buffers) const {
     const FixedCoordinate& fixed = settings_.fixed;
     const Design<double> d = design(geometry(settings_.platform, parameters), settings_.limits);
     const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, fixed));
     GriddedSlices s{{grid, 0},
                     d,
-                    settings_.demand.needs_inertia() ? settings_.masses(parameters) : Masses<double>{},
+                    settings_.request.needs_inertia() ? settings_.masses(parameters) : Masses<double>{},
                     grid_axes(fixed),
                     slice_axes(fixed).outer_is_phi,
                     {},
                     fixed_value(d.g, fixed),
-                    rooms.common};
+                    buffers.shared};
     for (std::size_t k = 0, axis = 0; k < 4; ++k)
       if (static_cast<int>(k) != fixed.coordinate) s.swept[axis++] = k;
-    if (s.over_phi || fill(s, s.fixed, rooms.common)) s.pieces = static_cast<std::size_t>(grid.cells[s.axes.outer]);
+    if (s.over_phi || fill(s, s.fixed, buffers.shared)) s.pieces = static_cast<std::size_t>(grid.cells[s.axes.outer]);
     return s;
   }
 
   /// @return false if no cell is feasible
   bool fill(const GriddedSlices& s, double phi, CellsAtPhi& to) const {
     if (!to.cells.fill(s.d, settings_.fixed, s.grid, phi)) return false;
-    if (!settings_.demand.needs_inertia()) return true;
+    if (!settings_.request.needs_inertia()) return true;
     to.tables.fill(s.d.g, s.masses, settings_.mode, phi, s.grid, s.swept, s.axes.v, s.fixed);
     if (settings_.with_conditioning) to.conditioning = settings_.conditioning_at(s.d.g, phi);
     return true;
@@ -86,11 +86,12 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     return fill(s, s.grid.centre(s.axes.outer, static_cast<std::int64_t>(piece)), worker.own) ? &worker.own : nullptr;
   }
 
-  void find(const GriddedSlices& s, std::size_t, std::size_t piece, VoxelWorker& worker, Survey<double>& to) const {
+  void find(const GriddedSlices& s, std::size_t, std::size_t piece, VoxelWorker& worker,
+            WorkspaceResult<double>& to) const {
     const CellsAtPhi* const at = cells_of(s, piece, worker);
     if (!at) return;
     const auto k = static_cast<std::int64_t>(piece);
-    if (settings_.demand.needs_inertia()) {
+    if (settings_.request.needs_inertia()) {
       visit_runs(s, *at, k, worker.row, [&](const CellRun& run) { sample(s, *at, run, worker.dci, to); });
       return;
     }
@@ -104,7 +105,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 
   /// Adds the cells of a run as samples with their inertia.
   void sample(const GriddedSlices& s, const CellsAtPhi& at, const CellRun& run, std::array<std::vector<double>, 4>& dci,
-              Survey<double>& to) const {
+              WorkspaceResult<double>& to) const {
     count_cells(s.grid, run, to);
     auto *const conditioning = to.find(kConditioning), *const indices = to.find(kCouplingIndex);
     const std::size_t v = s.axes.v;
@@ -115,7 +116,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     }
     for_each_cell(run, [&](const Cell& cell) {
       to.weight.push_back(s.cell_volume);
-      if (settings_.demand.poses) {
+      if (settings_.request.poses) {
         auto& pose = to.pose.emplace_back(4);
         pose[static_cast<std::size_t>(settings_.fixed.coordinate)] = s.fixed;
         for (std::size_t k = 0; k < 3; ++k) pose[s.swept[k]] = s.grid.centre(k, cell[k]);
@@ -127,8 +128,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   }
 
   template <class Visit>
-  void visit_cells(const GriddedSlices& s, Rooms& rooms, const Visit& visit) const {
-    VoxelWorker& worker = rooms.of[0];
+  void visit_cells(const GriddedSlices& s, Buffers& buffers, const Visit& visit) const {
+    VoxelWorker& worker = buffers.per_worker[0];
     for (std::size_t piece = 0; piece < s.pieces; ++piece)
       if (const CellsAtPhi* const at = cells_of(s, piece, worker))
         visit_runs(s, *at, static_cast<std::int64_t>(piece), worker.row,
@@ -154,7 +155,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 
   AnalysisSettings settings_;
   VoxelOptions voxels_;
-  bool beyond_coupling_;  ///< other fields of the inertia than coupling indices are demanded
+  bool beyond_coupling_;  ///< other fields of the inertia than coupling indices are requested
 };
 
 }  // namespace

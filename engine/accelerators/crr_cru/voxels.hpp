@@ -9,7 +9,7 @@
 
 #include "engine/accelerators/crr_cru/bit_rows.hpp"
 #include "engine/accelerators/crr_cru/position_set.hpp"
-#include "engine/mechanism/survey.hpp"
+#include "engine/mechanism/workspace_result.hpp"
 #include "engine/workspace/cell_runs.hpp"
 
 namespace pkm::crr_cru {

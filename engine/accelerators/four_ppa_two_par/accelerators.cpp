@@ -4,8 +4,8 @@
 
 #include "engine/accelerators/four_ppa_two_par/clear_volume.hpp"
 #include "engine/accelerators/four_ppa_two_par/voxels.hpp"
-#include "engine/workspace/grid_surveyor.hpp"
-#include "engine/workspace/with_slopes.hpp"
+#include "engine/workspace/grid_evaluator.hpp"
+#include "engine/workspace/with_gradients.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {
@@ -21,32 +21,32 @@ S plane(const Geometry<S>& g, const FixedCoordinate& y) {
 bool integrates_y(const WorkspacePlan& plan) { return how_fixed(plan, kY).kind == FixedCoordinate::Kind::integrated; }
 
 template <class S>
-SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
-  const auto& length = demand.characteristic_length;  // default: a/2
-  SampleContents<S> c{.conditioning = demand.has(kConditioning),
-                      .poses = demand.poses,
-                      .inertia = demand.needs_inertia(),
+SampleContents<S> contents(std::span<const S> parameters, const FieldRequest& request) {
+  const auto& length = request.characteristic_length;  // default: a/2
+  SampleContents<S> c{.conditioning = request.has(kConditioning),
+                      .poses = request.poses,
+                      .inertia = request.needs_inertia(),
                       .gamma = length ? S(geometry(parameters).a / (2 * *length)) : S(1.0),
                       .masses = {}};
   if (c.inertia) {
     c.masses = masses(parameters);
-    std::ranges::copy(demand.rotors, c.masses.rotors.begin());
+    std::ranges::copy(request.rotors, c.masses.rotors.begin());
   }
   return c;
 }
 
 class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
  public:
-  ClosedFormColumns(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand)
+  ClosedFormColumns(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest& request)
       : limits_(plan.limits),
         y_(how_fixed(plan, kY)),
         columns_(columns),
-        demand_(demand),
+        request_(request),
         inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
         theta_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {}
 
-  const GradientEvaluator* slopes() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
-  std::string why_no_gradients() const override {
+  const GradientEvaluator* gradients() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
+  std::string why_no_derivatives() const override {
     return "the study limits the clearance of links (clearance_min), so that ends of columns have no closed form and "
            "the "
            "analysis has no derivatives; use an optimiser without gradients, or keep the sliders apart by h_min";
@@ -57,8 +57,8 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& memory, Survey<S>& survey) const {
-    survey.clear(demand_.fields);
+  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& survey) const {
+    survey.clear(request_.fields);
     ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const Geometry<S> g = geometry(parameters);
     Limits<S> l = limits(g, limits_);
@@ -68,9 +68,9 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     const S y = plane(g, y_);
     const SlicedDesign<S> d = sliced_design(g, l, y);
     const bool over_y = y_.kind == FixedCoordinate::Kind::integrated;
-    take_volume(volume_of(d, test, over_y, scratch), survey);
-    if (!demand_.needs_samples()) return;
-    const SampleContents<S> wanted = contents(parameters, demand_);
+    set_volume(volume_of(d, test, over_y, scratch), survey);
+    if (!request_.needs_samples()) return;
+    const SampleContents<S> wanted = contents(parameters, request_);
     if (!over_y) {
       sample(d, wanted, value_of(y) > value_of(S(g.L0 - y)) ? Planes::far : Planes::near, S(1.0), theta_rule_,
              inner_rule_, test, scratch, survey);
@@ -116,26 +116,26 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   LimitSpec limits_;
   FixedCoordinate y_;
   ColumnOptions columns_;
-  Demand demand_;
+  FieldRequest request_;
   GaussRule inner_rule_, theta_rule_;
 };
 
 class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
  public:
-  ClosedFormVoxels(const WorkspacePlan& plan, const VoxelOptions& voxels, const Demand& demand)
-      : GridEvaluator(demand),
+  ClosedFormVoxels(const WorkspacePlan& plan, const VoxelOptions& voxels, const FieldRequest& request)
+      : GridEvaluator(request),
         limits_(plan.limits),
         y_(how_fixed(plan, kY)),
         voxels_(voxels),
-        demand_(demand),
+        request_(request),
         counter_(voxels.cells, voxels.box ? (*voxels.box)[2] : kTheta) {}
 
  private:
   friend GridEvaluator;
   static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
-  using Rooms = GridRooms<std::vector<FixedCells>, VoxelWorker>;
+  using Buffers = GridBuffers<std::vector<FixedCells>, VoxelWorker>;
 
-  struct GriddedPlanes : Gridded {
+  struct GriddedPlanes : GriddedDesign {
     Geometry<double> g;
     Limits<double> l;
     std::optional<ClearanceTest> test;
@@ -152,34 +152,34 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     }
   };
 
-  GriddedPlanes start(std::span<const double> parameters, Rooms& rooms) const {
+  GriddedPlanes start(std::span<const double> parameters, Buffers& buffers) const {
     const Geometry<double> g = geometry(parameters);
     Limits<double> l = limits(g, limits_);
     auto test = reduce_clearance(g, l);
     const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
-    rooms.common.clear();
+    buffers.shared.clear();
     if (y_.kind == FixedCoordinate::Kind::integrated)
-      rooms.common.push_back({kY, 0, g.L0 / static_cast<double>(y_.cells), y_.cells});
-    GriddedPlanes planes{{grid, 0, rooms.common},
+      buffers.shared.push_back({kY, 0, g.L0 / static_cast<double>(y_.cells), y_.cells});
+    GriddedPlanes planes{{grid, 0, buffers.shared},
                          g,
                          l,
                          std::move(test),
-                         rooms.common,
+                         buffers.shared,
                          plane(g, y_),
-                         demand_.needs_samples() ? contents(parameters, demand_) : SampleContents<double>{}};
+                         request_.needs_samples() ? contents(parameters, request_) : SampleContents<double>{}};
     const GridPart largest = planes.grids == 1 ? representative_part(planes, planes[0]) : counter_.whole();
-    planes.pieces = counts(planes) ? counter_.pieces(largest) : counter_.blocks(largest);
+    planes.blocks = counts(planes) ? counter_.pieces(largest) : counter_.blocks(largest);
     return planes;
   }
   /// Whether only the number of cells is needed.
-  bool counts(const GriddedPlanes& planes) const { return !planes.test && !demand_.needs_samples(); }
+  bool counts(const GriddedPlanes& planes) const { return !planes.test && !request_.needs_samples(); }
   /// The part of a plane to search. Conditioning is the same at mirrored poses, so that one can represent all of them.
   GridPart representative_part(const GriddedPlanes& planes, const VoxelPlane& at) const {
     return planes.test || planes.wanted.distinguishes_images() ? counter_.whole() : counter_.representative_part(at);
   }
 
   void find(const GriddedPlanes& planes, std::size_t number, std::size_t piece, VoxelWorker& own,
-            Survey<double>& to) const {
+            WorkspaceResult<double>& to) const {
     const VoxelPlane at = planes[number];
     const GridPart part = representative_part(planes, at);
     if (counts(planes)) return counter_.count(at, part, piece, to);
@@ -187,13 +187,13 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     counter_.visit_block(at, piece, part, own.columns, [&](const CellRun& run) {
       const int images = part.images(run.first[0], run.first[2]);
       count_cells(at.grid, run, to, images);
-      if (demand_.needs_samples()) sample(at, planes.wanted, run, planes.cell_volume * images, own, samples);
+      if (request_.needs_samples()) sample(at, planes.wanted, run, planes.cell_volume * images, own, samples);
     });
   }
   template <class Visit>
-  void visit_cells(const GriddedPlanes& planes, Rooms& rooms, const Visit& visit) const {
+  void visit_cells(const GriddedPlanes& planes, Buffers& buffers, const Visit& visit) const {
     for (std::size_t block = 0; block < counter_.blocks(counter_.whole()); ++block)
-      counter_.visit_block(planes[0], block, counter_.whole(), rooms.of[0].columns,
+      counter_.visit_block(planes[0], block, counter_.whole(), buffers.per_worker[0].columns,
                            [&](const CellRun& run) { for_each_cell(run, visit); });
   }
 
@@ -226,37 +226,37 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   LimitSpec limits_;
   FixedCoordinate y_;
   VoxelOptions voxels_;
-  Demand demand_;
+  FieldRequest request_;
   VoxelCounter counter_;
 };
 
 class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
  public:
-  bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand& demand) const override {
-    return serves(plan, demand) && !columns.box && !(integrates_y(plan) && columns.nodes[0] > 0);
+  bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest& request) const override {
+    return serves(plan, request) && !columns.box && !(integrates_y(plan) && columns.nodes[0] > 0);
   }
-  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const Demand& demand) const override {
-    return serves(plan, demand);
+  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest& request) const override {
+    return serves(plan, request);
   }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                    const Demand& demand) const override {
-    return std::make_unique<ClosedFormColumns>(plan, columns, demand);
+                                                    const FieldRequest& request) const override {
+    return std::make_unique<ClosedFormColumns>(plan, columns, request);
   }
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                const Demand& demand) const override {
+                                                const FieldRequest& request) const override {
     if (integrates_y(plan) && how_fixed(plan, kY).cells < 1)
       throw std::invalid_argument("voxels integrated over y need a number of cells for y");
-    return std::make_unique<ClosedFormVoxels>(plan, voxels, demand);
+    return std::make_unique<ClosedFormVoxels>(plan, voxels, request);
   }
 
  private:
-  static bool serves(const WorkspacePlan& plan, const Demand& demand) {
+  static bool serves(const WorkspacePlan& plan, const FieldRequest& request) {
     // Samples represent mirror images, in which the two sliders of a rail are exchanged.
-    const std::vector<double>& rotors = demand.rotors;
+    const std::vector<double>& rotors = request.rotors;
     const bool unequal = !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]);
-    return sweeps(plan, {0, 2, 3}) && (demand.mode.empty() || demand.mode == "lower,lower") &&
-           !(demand.needs_inertia() && unequal) &&
-           !(asks_clearance(plan, kClearanceMin) && !plan.limits.obstacles.empty());
+    return sweeps(plan, {0, 2, 3}) && (request.mode.empty() || request.mode == "lower,lower") &&
+           !(request.needs_inertia() && unequal) &&
+           !(requires_clearance(plan, kClearanceMin) && !plan.limits.obstacles.empty());
   }
 };
 

@@ -8,7 +8,7 @@
 #include "engine/accelerators/four_ppa_two_par/conditioning.hpp"
 #include "engine/accelerators/four_ppa_two_par/coupling.hpp"
 #include "engine/accelerators/four_ppa_two_par/theta_intervals.hpp"
-#include "engine/mechanism/survey.hpp"
+#include "engine/mechanism/workspace_result.hpp"
 
 namespace pkm::four_ppa_two_par {
 
@@ -175,7 +175,7 @@ template <class S>
 struct SampleContents {
   bool conditioning = false, poses = false, inertia = false;
   S gamma{};           ///< a / (2 L_c)
-  Masses<S> masses{};  ///< if inertia is demanded
+  Masses<S> masses{};  ///< if inertia is requested
 
   /// Whether mirrored poses need separate samples.
   bool distinguishes_images() const { return inertia || poses; }
@@ -184,9 +184,9 @@ struct SampleContents {
 /// A survey to which samples are added.
 template <class S>
 struct SampleTarget {
-  explicit SampleTarget(Survey<S>& to) : survey(to), conditioning(to.find(kConditioning)) {}
-  Survey<S>& survey;
-  std::vector<S>* conditioning;  ///< null if it is not demanded
+  explicit SampleTarget(WorkspaceResult<S>& to) : survey(to), conditioning(to.find(kConditioning)) {}
+  WorkspaceResult<S>& survey;
+  std::vector<S>* conditioning;  ///< null if it is not requested
 };
 
 /// Adds one sample.
@@ -215,7 +215,7 @@ enum class Planes { near, far, both };
 template <class S>
 void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes planes, const S& weight,
             const GaussRule& theta_rule, const GaussRule& inner_rule, const ClearanceTest* test,
-            ColumnScratch<S>& scratch, Survey<S>& survey) {
+            ColumnScratch<S>& scratch, WorkspaceResult<S>& survey) {
   const Geometry<S>& g = d.g;
   const SampleTarget<S> to(survey);
   std::vector<S>&inertia = scratch.inertia[0], &inertia_across = scratch.inertia[1];

@@ -61,7 +61,7 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S&
 
 /// Computes the values of all inertia fields of a survey at a pose, in their order.
 template <class S>
-void inertia_values(const Matrix<S, 4, 4>& M_q, Survey<S>& survey, std::vector<S>& values) {
+void inertia_values(const Matrix<S, 4, 4>& M_q, WorkspaceResult<S>& survey, std::vector<S>& values) {
   values.clear();
   evaluate_inertia(M_q, survey, nullptr,
                    [&](auto&, std::span<const S> of) { values.insert(values.end(), of.begin(), of.end()); });
@@ -70,7 +70,7 @@ void inertia_values(const Matrix<S, 4, 4>& M_q, Survey<S>& survey, std::vector<S
 /// Adds the values of inertia_values() to the fields.
 /// @param mirrored  the pose is the mirror image (theta -> -theta), with the two sliders of each rail exchanged
 template <class S>
-void add_inertia(const std::vector<S>& values, bool mirrored, Survey<S>& survey) {
+void add_inertia(const std::vector<S>& values, bool mirrored, WorkspaceResult<S>& survey) {
   auto value = values.begin();
   for (auto& [quantity, field] : survey.fields) {
     if (!quantity->needs_inertia()) continue;

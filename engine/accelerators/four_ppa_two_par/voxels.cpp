@@ -65,7 +65,8 @@ void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, con
   with_instruction_set([&]<InstructionSet set>() { fill<set>(at, block); });
 }
 
-void VoxelCounter::count(const VoxelPlane& plane, const GridPart& part, std::size_t piece, Survey<double>& to) const {
+void VoxelCounter::count(const VoxelPlane& plane, const GridPart& part, std::size_t piece,
+                         WorkspaceResult<double>& to) const {
   const auto n = static_cast<std::int64_t>(piece);
   const std::int64_t k_block = n / parts() * kLanes, from = n % parts() * kColumns;
   if (k_block >= part.thetas || from >= part.xs) return;

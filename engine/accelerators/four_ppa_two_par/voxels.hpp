@@ -63,7 +63,7 @@ class VoxelCounter {
   std::size_t pieces(const GridPart& part) const { return blocks(part) * static_cast<std::size_t>(parts()); }
 
   /// Adds the feasible cells that a piece represents, without the clearance test.
-  void count(const VoxelPlane& plane, const GridPart& part, std::size_t piece, Survey<double>& to) const;
+  void count(const VoxelPlane& plane, const GridPart& part, std::size_t piece, WorkspaceResult<double>& to) const;
 
   /// Calls visit(run) for every run of feasible cells along z in one block, in the order of theta and x. A column has
   /// at most one run, unless the clearance test divides it.
@@ -85,7 +85,7 @@ class VoxelCounter {
             {i, static_cast<std::int64_t>(columns.first[at]), k}, 1, static_cast<std::int64_t>(columns.end[at])};
         if (run.count() <= 0) continue;
         if (plane.test)
-          keep_cells(run, is_clear, visit);
+          filter_run(run, is_clear, visit);
         else
           visit(run);
       }

@@ -4,9 +4,9 @@
 #include "engine/accelerators/hybrid/conditioning.hpp"
 #include "engine/accelerators/hybrid/forward.hpp"
 #include "engine/accelerators/hybrid/voxels.hpp"
-#include "engine/workspace/grid_surveyor.hpp"
+#include "engine/workspace/grid_evaluator.hpp"
 #include "engine/workspace/pose_quantities.hpp"
-#include "engine/workspace/with_slopes.hpp"
+#include "engine/workspace/with_gradients.hpp"
 
 namespace pkm::hybrid {
 namespace {
@@ -17,7 +17,7 @@ struct AnalysisSettings {
   WorkingMode signs;
   int branch;  ///< required sign of N2, +1 or -1
   WorkspacePlan plan;
-  Demand demand;
+  FieldRequest request;
 };
 
 /// Factor by which y multiplies a volume of (x, z, beta): the stroke of the carriage [m] if y is integrated over,
@@ -26,7 +26,7 @@ template <class S>
 S stroke_factor(const Limits<S>& l, const WorkspacePlan& plan) {
   const FixedCoordinate y = how_fixed(plan, kY);
   if (y.kind == FixedCoordinate::Kind::integrated) return l.s_max[1] - l.s_min[1];
-  if (y.kind == FixedCoordinate::Kind::middle) return S(1.0);
+  if (y.kind == FixedCoordinate::Kind::default_value) return S(1.0);
   return S(y.value >= value_of(l.s_min[1]) && y.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
 }
 
@@ -36,14 +36,14 @@ template <class S>
 class ColumnSamples {
  public:
   /// @param poses  scratch memory
-  ColumnSamples(const SlicedDesign<S>& d, const Demand& demand, PoseList& poses, Survey<S>& survey)
+  ColumnSamples(const SlicedDesign<S>& d, const FieldRequest& request, PoseList& poses, WorkspaceResult<S>& survey)
       : design_{.L1 = d.g.L1,
                 .L2 = d.g.L2,
                 .L3 = d.g.L3,
                 .d = d.g.d,
                 .e = d.g.e,
                 .signs = {1.0 * d.signs[0], 1.0 * d.signs[1], 1.0 * d.signs[2]},
-                .length = demand.characteristic_length ? S(*demand.characteristic_length) : d.g.e},
+                .length = request.characteristic_length ? S(*request.characteristic_length) : d.g.e},
         poses_(poses),
         survey_(survey),
         index_(survey.find(kConditioning)) {
@@ -83,8 +83,8 @@ class ColumnSamples {
  private:
   ConditioningDesign<S> design_;
   PoseList& poses_;
-  Survey<S>& survey_;
-  std::vector<S>* index_;  ///< null if it is not demanded
+  WorkspaceResult<S>& survey_;
+  std::vector<S>* index_;  ///< null if it is not requested
   double beta_ = 0;        ///< of the previous column
   SinCosOf<double> sincos_{0, 1};
 };
@@ -104,19 +104,19 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   static constexpr int kSampleNodes = 8;  // per strip of z and interval of beta
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& memory, Survey<S>& survey) const {
-    survey.clear(settings_.demand.fields);
+  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& survey) const {
+    survey.clear(settings_.request.fields);
     ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const SlicedDesign<S> d = sliced(settings_, parameters);
     const S stroke = stroke_factor(d.l, settings_.plan);
     if (!(value_of(stroke) > 0)) return;
     find_outer_intervals(d, sliced_constant<double>(parameters), sliced_constant<Dual<1>>(parameters), scratch);
     if (!has_fixed_rules_) {
-      take_volume(volume(d, columns_.tolerance, scratch), survey);
+      set_volume(volume(d, columns_.tolerance, scratch), survey);
       survey.volume *= stroke;
-      if (!settings_.demand.has(kConditioning)) return;
+      if (!settings_.request.has(kConditioning)) return;
     }
-    ColumnSamples<S> samples(d, settings_.demand, scratch.poses, survey);
+    ColumnSamples<S> samples(d, settings_.request, scratch.poses, survey);
     visit_nodes(scratch.intervals, beta_rule_, [&](const S& beta, const S& jacobian, double rule_weight) {
       const S outer = jacobian * rule_weight * stroke;
       visit_columns(d, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
@@ -146,7 +146,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
 class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
  public:
   ClosedFormVoxels(const AnalysisSettings& settings, const VoxelOptions& voxels)
-      : GridEvaluator(settings.demand), settings_(settings), voxels_(voxels) {}
+      : GridEvaluator(settings.request), settings_(settings), voxels_(voxels) {}
 
  private:
   friend GridEvaluator;
@@ -156,7 +156,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     PoseList poses;
     CellRuns runs;  ///< at one beta
   };
-  using Rooms = GridRooms<VoxelHeights, Worker>;
+  using Buffers = GridBuffers<VoxelHeights, Worker>;
 
   /// Calls visit(k) for the numbers of the beta of a piece.
   template <class Visit>
@@ -165,22 +165,23 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     for (std::int64_t k = first; k < std::min(first + kBetas, columns.grid.cells[2]); ++k) visit(k);
   }
 
-  VoxelColumns start(std::span<const double> parameters, Rooms& rooms) const {
+  VoxelColumns start(std::span<const double> parameters, Buffers& buffers) const {
     const SlicedDesign<double> design = sliced(settings_, parameters);
     const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(design));
     const double stroke = stroke_factor(design.l, settings_.plan);
-    VoxelColumns columns{{grid, 0}, design, rooms.common};
+    VoxelColumns columns{{grid, 0}, design, buffers.shared};
     if (!(stroke > 0)) return columns;
-    rooms.common.fill(design, grid);
-    columns.pieces = static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas);
+    buffers.shared.fill(design, grid);
+    columns.blocks = static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas);
     columns.cell_volume *= stroke;
     return columns;
   }
 
-  void find(const VoxelColumns& columns, std::size_t, std::size_t piece, Worker& worker, Survey<double>& to) const {
-    const bool only_counts = !settings_.demand.has(kConditioning);
+  void find(const VoxelColumns& columns, std::size_t, std::size_t piece, Worker& worker,
+            WorkspaceResult<double>& to) const {
+    const bool only_counts = !settings_.request.has(kConditioning);
     const VoxelGrid& grid = columns.grid;
-    ColumnSamples<double> samples(columns.design, settings_.demand, worker.poses, to);
+    ColumnSamples<double> samples(columns.design, settings_.request, worker.poses, to);
     for_each_beta(columns, piece, [&](std::int64_t k) {
       if (only_counts) {
         to.feasible_cells += columns.count(k, worker.runs, to.touches_box);
@@ -195,10 +196,10 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     samples.finish();
   }
   template <class Visit>
-  void visit_cells(const VoxelColumns& columns, Rooms& rooms, const Visit& visit) const {
-    for (std::size_t piece = 0; piece < columns.pieces; ++piece)
+  void visit_cells(const VoxelColumns& columns, Buffers& buffers, const Visit& visit) const {
+    for (std::size_t piece = 0; piece < columns.blocks; ++piece)
       for_each_beta(columns, piece, [&](std::int64_t k) {
-        columns.visit(k, rooms.of[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
+        columns.visit(k, buffers.per_worker[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
       });
   }
 
@@ -207,26 +208,28 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 };
 
 class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
-  bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const Demand&) const override {
+  bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest&) const override {
     return serves(plan) && !columns.box;
   }
-  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const Demand&) const override { return serves(plan); }
+  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest&) const override {
+    return serves(plan);
+  }
   static bool serves(const WorkspacePlan& plan) {
-    return sweeps(plan, {0, 2, 3}) && !asks_clearance(plan, kClearanceMin);
+    return sweeps(plan, {0, 2, 3}) && !requires_clearance(plan, kClearanceMin);
   }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                    const Demand& demand) const override {
-    return std::make_unique<ClosedFormColumns>(settings(plan, demand), columns);
+                                                    const FieldRequest& request) const override {
+    return std::make_unique<ClosedFormColumns>(settings(plan, request), columns);
   }
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                const Demand& demand) const override {
-    return std::make_unique<ClosedFormVoxels>(settings(plan, demand), voxels);
+                                                const FieldRequest& request) const override {
+    return std::make_unique<ClosedFormVoxels>(settings(plan, request), voxels);
   }
   /// The mode contains the signs of n1, n2, n3, and "/-" after them if N2 < 0 is required. Default: "+,-,-".
-  static AnalysisSettings settings(const WorkspacePlan& plan, const Demand& demand) {
-    const std::string mode = demand.mode.empty() ? "+,-,-" : demand.mode;
+  static AnalysisSettings settings(const WorkspacePlan& plan, const FieldRequest& request) {
+    const std::string mode = request.mode.empty() ? "+,-,-" : request.mode;
     const auto sign = [&](std::size_t i) { return mode[i] == '+' ? 1 : -1; };
-    return {{sign(0), sign(2), sign(4)}, mode.ends_with("/-") ? -1 : 1, plan, demand};
+    return {{sign(0), sign(2), sign(4)}, mode.ends_with("/-") ? -1 : 1, plan, request};
   }
 };
 

@@ -8,7 +8,7 @@
 #include "engine/accelerators/hybrid/cells.hpp"
 #include "engine/accelerators/hybrid/slice.hpp"
 #include "engine/workspace/cell_runs.hpp"
-#include "engine/workspace/grid_surveyor.hpp"
+#include "engine/workspace/grid_evaluator.hpp"
 
 namespace pkm::hybrid {
 
@@ -23,7 +23,7 @@ struct VoxelHeights {
 };
 
 /// A design on its grid, column by column along x.
-struct VoxelColumns : Gridded {
+struct VoxelColumns : GriddedDesign {
   SlicedDesign<double> design;
   const VoxelHeights& heights;  ///< of this design and grid
 

@@ -9,7 +9,7 @@
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/inertia_batch.hpp"
 #include "engine/workspace/pose_quantities.hpp"
-#include "engine/workspace/with_slopes.hpp"
+#include "engine/workspace/with_gradients.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -20,7 +20,7 @@ using Kind = FixedCoordinate::Kind;
 /// z, with the others as outer coordinates (in a single order for lines); integrated ones are outermost.
 std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
   std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
-  for (const int coordinate : sweep.held)
+  for (const int coordinate : sweep.fixed)
     if (how_fixed(plan, coordinate).kind == Kind::integrated)
       integrated.push_back(static_cast<std::size_t>(coordinate));
   std::ranges::sort(swept);
@@ -73,30 +73,30 @@ Plans plans_of(const Evaluation& evaluation, std::size_t mode, const Sweep& swee
 class GenericColumns final : public WithGradients<GenericColumns> {
  public:
   GenericColumns(const Mechanism& mechanism, const Evaluation& evaluation, const WorkspacePlan& plan,
-                 const ColumnOptions& columns, const Demand& demand)
+                 const ColumnOptions& columns, const FieldRequest& request)
       : mechanism_(mechanism),
         e_(evaluation),
         plan_(plan),
-        demand_(demand),
+        request_(request),
         sweep_(sweep_of(mechanism.info(), plan)),
-        mode_(number_of_mode(mechanism.info(), demand.mode)),
+        mode_(mode_index(mechanism.info(), request.mode)),
         inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
         outer_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {
-    if (demand.characteristic_length)
+    if (request.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
     const Ranges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
     auto [plans, why_not] = plans_of(evaluation, mode_, sweep_, plan, box);
     if (plans.empty())
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
-                                  "; take workspace.method = \"voxels\"");
+                                  "; set workspace.method = \"voxels\"");
     SlicePlan best = fastest(std::move(plans));
     // Derivatives lose digits at a kink of the measure that no change of the type indicates; with conics two more
     // digits are cheap.
     const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
     integral_.emplace(std::move(best), tolerance);
-    if (demand.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
-    if (demand.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, demand.rotors);
+    if (request.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
+    if (request.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, request.rotors);
   }
 
  private:
@@ -169,28 +169,23 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     const Inputs& at = e_.model.inputs;
     inputs.resize(at.count());
     e_.fill_inputs<S>(parameters, plan_.limits, mode_, inputs);
-    for (const int coordinate : sweep_.held) {
+    for (const int coordinate : sweep_.fixed) {
       const auto i = static_cast<std::size_t>(coordinate);
-      const FixedCoordinate held = how_fixed(plan_, coordinate);
-      if (held.kind == Kind::integrated) continue;
+      const FixedCoordinate fixed = how_fixed(plan_, coordinate);
+      if (fixed.kind == Kind::integrated) continue;
       S& input = inputs[at.coordinate(i)];
-      const auto middle = held.kind == Kind::middle ? e_.of_design<S>(e_.default_values[i], parameters) : std::nullopt;
-      if (held.kind == Kind::middle && !middle) refuse_middle(coordinate);
-      input = middle ? *middle : S(held.kind == Kind::listed ? held.values.front() : held.value);
+      const auto middle =
+          fixed.kind == Kind::default_value ? e_.of_design<S>(e_.default_values[i], parameters) : std::nullopt;
+      if (fixed.kind == Kind::default_value && !middle) throw_no_default_value(mechanism_.info(), coordinate);
+      input = middle ? *middle : S(fixed.kind == Kind::listed ? fixed.values.front() : fixed.value);
     }
   }
 
-  [[noreturn]] void refuse_middle(int coordinate) const {
-    const MechanismInfo& info = mechanism_.info();
-    throw std::invalid_argument("mechanism " + info.name + " does not say where the middle of " +
-                                info.coordinates[static_cast<std::size_t>(coordinate)].name + " is; give a value");
-  }
-
   template <class S>
-  void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
+  void run(std::span<const S> parameters, Scratch& scratch, WorkspaceResult<S>& survey) const {
     Room& memory = scratch.get<Room>();
     SampleRoom<S>& samples = scratch.get<SampleRoom<S>>();
-    survey.clear(demand_.fields);
+    survey.clear(request_.fields);
     fill_inputs<S>(parameters, samples.inputs);
     memory.inputs.resize(samples.inputs.size());
     std::ranges::transform(samples.inputs, memory.inputs.begin(), [](const S& x) { return value_of(x); });
@@ -201,13 +196,13 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     } else {
       found = with_slopes(samples.inputs, memory);
     }
-    take_volume(found, survey);
+    set_volume(found, survey);
     if (found.value == 0 && found.error > 0) survey.error = 1;
     if constexpr (!std::is_same_v<S, double>) {
       for (std::size_t i = 0; i < samples.inputs.size(); ++i)
         survey.volume.v = survey.volume.v + samples.inputs[i].v * memory.known.by_input[i];
     }
-    if (demand_.needs_samples()) add_samples(parameters, samples, memory, survey);
+    if (request_.needs_samples()) add_samples(parameters, samples, memory, survey);
   }
 
   /// The volume and its derivatives with respect to all inputs. Parameters come in blocks of four (forward mode), of
@@ -227,7 +222,8 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   }
 
   template <class S>
-  void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& memory, Survey<S>& survey) const {
+  void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& memory,
+                   WorkspaceResult<S>& survey) const {
     const std::vector<S>& inputs = samples.inputs;
     const CoordinateOrder& order = integral_->plan().order;
     if (inertia_) {
@@ -244,7 +240,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
                                   if (order.v) pose[*order.v] = v;
                                   pose[order.z] = z;
                                   survey.weight.push_back(weight);
-                                  if (demand_.poses) survey.pose.push_back(pose);
+                                  if (request_.poses) survey.pose.push_back(pose);
                                   if (conditioning)
                                     conditioning->push_back(conditioning_->at(pose, samples.conditioning));
                                   if (inertia_) inertia_->add(pose, memory.inertia, survey);
@@ -255,19 +251,19 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   const Mechanism& mechanism_;
   const Evaluation& e_;
   WorkspacePlan plan_;
-  Demand demand_;
+  FieldRequest request_;
   const Sweep& sweep_;
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
   std::optional<NestedIntegral> integral_;
-  std::optional<SampleConditioning> conditioning_;  ///< if they are demanded
+  std::optional<SampleConditioning> conditioning_;  ///< if they are requested
   std::optional<InertiaBatch> inertia_;
 };
 
 }  // namespace
 
 std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluation) {
-  const WorkspacePlan usual{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
+  const WorkspacePlan usual{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(mechanism.info())};
   const Sweep& sweep = mechanism.info().sweeps.front();
   const std::size_t coordinates = evaluation.model.inputs.coordinates;
   const Plans plans = plans_of(evaluation, 0, sweep, usual, box_of(sweep, coordinates, {}), 1);
@@ -276,11 +272,11 @@ std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluat
 
 std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
                                                           const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                          const Demand& demand) {
+                                                          const FieldRequest& request) {
   refuse_clearance(evaluation.model, plan.limits,
-                   "has no column surveys under a clearance (clearance_min), because links that meet end columns where "
-                   "no formula says; take workspace.method = \"voxels\"");
-  return std::make_unique<GenericColumns>(mechanism, evaluation, plan, columns, demand);
+                   "has no columns under a clearance (clearance_min), because links that meet end columns where "
+                   "no formula says; set workspace.method = \"voxels\"");
+  return std::make_unique<GenericColumns>(mechanism, evaluation, plan, columns, request);
 }
 
 }  // namespace pkm::generic

@@ -111,7 +111,7 @@ class NestedIntegral {
   const SlicePlan& plan() const {
     return std::visit([](const auto& each) -> const SlicePlan& { return each.plan(); }, innermost_);
   }
-  /// @param inputs  of the graph, with held coordinates
+  /// @param inputs  of the graph, with fixed coordinates
   /// @param most    slices, after which what is not known counts as error; 0: more than are usually of use
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch, long max_evaluations = 0) const;
   /// The same with critical values accurate enough for derivatives, and with intermediate results for add_gradient().

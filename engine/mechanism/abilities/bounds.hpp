@@ -1,4 +1,4 @@
-// The ability to say what is certain of a workspace: bounds that rounding cannot make wrong.
+// Rigorous bounds of workspace volume and feasibility, by interval arithmetic with outward rounding.
 #pragma once
 
 #include <array>
@@ -14,55 +14,55 @@
 namespace pkm {
 
 struct BoundsOptions {
-  double gap = 1e-2;                 ///< wanted: greatest less least volume, relative to their mean
-  std::size_t most_boxes = 4000000;  ///< where bounds end in any case
-  std::string* proof = nullptr;      ///< what the text of a proof is given to; null: there is none
-  std::function<bool()> stop = {};   ///< called often, by any thread of the team: whether to stop
+  double gap = 1e-2;                ///< target: upper minus lower bound, relative to their mean
+  std::size_t max_boxes = 4000000;  ///< stop at this number of boxes
+  std::string* proof = nullptr;     ///< receives the text of a proof; null: no proof
+  std::function<bool()> stop = {};  ///< called often, by any thread of the team; returns true to stop
 };
 
 struct VolumeBounds {
   double lower = 0, upper = 0;
-  int innermost = 0;         ///< the coordinate along which columns are
-  std::size_t boxes = 0;     ///< that the bounds are made of
-  std::size_t examined = 0;  ///< on the way to them
+  int innermost = 0;         ///< column coordinate, by index of MechanismInfo::coordinates
+  std::size_t boxes = 0;     ///< boxes whose bounds are added up
+  std::size_t examined = 0;  ///< these boxes, and those that have been bisected
   bool stopped = false;
 
   double gap() const { return upper > 0 ? 2 * (upper - lower) / (upper + lower) : 0; }
 };
 
-/// Whether something holds at every pose of a box or of a motion.
-struct PosesFinding {
+/// Result of the attempt to prove that a property holds at every pose of a box, or of a motion.
+struct PropertyResult {
   enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
-  std::string what = {};                   ///< does not hold, or is undecided, or why it was not examined
-  std::optional<Pose<double>> where = {};  ///< a pose where it fails, or near which it is undecided
-  std::optional<double> time = {};         ///< of a motion: when it is there [s]
+  std::string detail = {};                ///< the constraint or matrix that fails or is undecided; why not examined
+  std::optional<Pose<double>> pose = {};  ///< a pose where it fails, or near which it is undecided
+  std::optional<double> time = {};        ///< of a motion: the time of that pose [s]
 };
 
-struct PosesCertificate {
-  PosesFinding feasible;
-  PosesFinding regular;   ///< no singularity, parallel or serial; not examined where a pose is not feasible
-  std::size_t boxes = 0;  ///< looked at
+struct PoseCertificate {
+  PropertyResult feasible;
+  PropertyResult regular;  ///< no parallel or serial singularity; not examined if a pose is infeasible
+  std::size_t boxes = 0;   ///< number of boxes examined
   bool stopped = false;
 };
 
 class RigorousBounds {
  public:
   virtual ~RigorousBounds() = default;
-  /// Throws std::invalid_argument with a sentence where there are no bounds of a plan's workspace.
-  virtual void refuse_bounds(const WorkspacePlan& plan) const = 0;
-  /// Of the workspace within the plan's box, else within the ranges that hold it, as the numbers stand. Throws
-  /// std::invalid_argument with a sentence when the mechanism cannot serve the plan.
+  /// Throws std::invalid_argument with one sentence if the workspace of a plan cannot be bounded.
+  virtual void require_bounds(const WorkspacePlan& plan) const = 0;
+  /// Bounds of the workspace volume within the plan's box, otherwise within ranges that contain the workspace.
+  /// Parameters count as exact. Throws std::invalid_argument with one sentence if the plan is not supported.
   virtual VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               const BoundsOptions& options) const = 0;
-  /// Of a box of poses, under the plan's limits.
-  /// @param ranges  by coordinate; one of no width holds it
-  virtual PosesCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
-                               std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
-  /// Of a motion, at every instant of it. Where it is infeasible, at the first instant that is, to 1e-6 of the
-  /// duration.
-  virtual PosesCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
-                                  const Motion& motion, const BoundsOptions& options) const = 0;
+  /// Feasibility and regularity of all poses of a box, under the plan's limits.
+  /// @param ranges  by coordinate; lower = upper fixes the coordinate
+  virtual PoseCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                              std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
+  /// Feasibility and regularity at every instant of a motion. If it is infeasible, PropertyResult::time is the first
+  /// infeasible instant, to 1e-6 of the duration.
+  virtual PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
+                                 const Motion& motion, const BoundsOptions& options) const = 0;
 };
 
 }  // namespace pkm

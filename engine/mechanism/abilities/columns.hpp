@@ -1,35 +1,35 @@
-// The ability to survey in columns with exact ends, and to survey voxels faster than cell by cell.
+// Workspace analysis by columns (cylindrical decomposition), and by voxels faster than cell by cell.
 #pragma once
 
 #include <memory>
 
 #include "engine/mechanism/plan.hpp"
-#include "engine/mechanism/surveyor.hpp"
+#include "engine/mechanism/workspace_evaluator.hpp"
 
 namespace pkm {
 
 class Columns {
  public:
   virtual ~Columns() = default;
-  /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
+  /// Throws std::invalid_argument with one sentence if the plan is not supported.
   virtual std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                            const Demand& demand) const = 0;
-  /// Whether ColumnOptions::box can cut them.
-  virtual bool take_box() const { return false; }
-  /// Whether they count Demand::rotors.
-  virtual bool take_rotors() const { return false; }
+                                                            const FieldRequest& request) const = 0;
+  /// @return true if ColumnOptions::box is supported
+  virtual bool supports_box() const { return false; }
+  /// @return true if FieldRequest::rotors is supported
+  virtual bool supports_rotors() const { return false; }
 };
 
 class Voxels {
  public:
   virtual ~Voxels() = default;
-  /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
+  /// Throws std::invalid_argument with one sentence if the plan is not supported.
   virtual std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                        const Demand& demand) const = 0;
-  /// Whether they count Demand::rotors.
-  virtual bool take_rotors() const { return false; }
-  /// Whether they know obstacles under a clearance.
-  virtual bool take_obstacles() const { return false; }
+                                                        const FieldRequest& request) const = 0;
+  /// @return true if FieldRequest::rotors is supported
+  virtual bool supports_rotors() const { return false; }
+  /// @return true if a clearance limit may refer to obstacles, too
+  virtual bool supports_obstacles() const { return false; }
 };
 
 }  // namespace pkm

@@ -1,5 +1,4 @@
-// Abilities that look at the design alone, or at margins of poses in one unit: for numbers, and with derivatives by
-// parameters (both_scalars.hpp: written once for the two).
+// Abilities that depend on the design alone, and margins of poses; for doubles and with derivatives by the parameters.
 #pragma once
 
 #include <span>
@@ -13,7 +12,7 @@
 
 namespace pkm {
 
-/// The mechanism's size, to which workspace-ratio refers.
+/// Size of the mechanism, by which workspace-ratio divides the workspace volume.
 class Size {
  public:
   virtual ~Size() = default;
@@ -23,11 +22,11 @@ class Size {
   virtual Dual4 of(std::span<const Dual4> parameters) const = 0;
 };
 
-inline constexpr std::size_t kMostDesignTests = 16;
+inline constexpr std::size_t kMaxDesignTests = 16;
 
-/// A test of the design alone.
+/// A constraint that depends on the design alone.
 struct DesignMarginInfo {
-  std::string name;  ///< the constraint's name: "rail-length"
+  std::string name;  ///< of the constraint: "rail-length"
   std::string unit;
   std::string meaning;
 };
@@ -36,18 +35,20 @@ class DesignTests {
  public:
   virtual ~DesignTests() = default;
   virtual const std::vector<DesignMarginInfo>& list() const = 0;
-  /// Margins in the order of list(). Limits enter some of them.
+  /// Computes the margins, in the order of list().
+  /// @param limits  thresholds that some of the tests use
   virtual void test(std::span<const double> parameters, const LimitSpec& limits, std::span<double> margins) const = 0;
   virtual void test(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> margins) const = 0;
 };
 
-/// Margins of poses: a pose is feasible where all of its margins are >= 0.
+/// Margins of poses: a pose is feasible if all of its margins are >= 0.
 class PoseMargins {
  public:
   virtual ~PoseMargins() = default;
-  /// The unit that they share; "": each has its own, m, rad or 1.
+  /// Unit of all margins; "" if each has its own (m, rad or 1).
   virtual std::string margin_unit() const = 0;
-  /// Appends the margins of poses, finite numbers. A pose that does not assemble has some, too, one of them negative.
+  /// Appends the margins of poses, which are finite. A pose that cannot be assembled has margins, too, one of them
+  /// negative.
   /// @param mode     one of MechanismInfo::modes, or "": the first
   /// @param scratch  of the calling thread
   virtual void append(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,

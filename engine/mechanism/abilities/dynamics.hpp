@@ -1,4 +1,4 @@
-// Abilities that need masses.
+// Abilities that need masses: equations of motion and joint reactions.
 #pragma once
 
 #include <memory>
@@ -17,13 +17,13 @@ class Mechanism;
 class Dynamics {
  public:
   virtual ~Dynamics() = default;
-  virtual const std::vector<std::string>& mass_models() const = 0;  ///< where masses can come from; the first: default
-  virtual const std::string& mass_model() const = 0;                ///< the one in force
-  /// The same mechanism with masses from another of them; null: it knows no such model.
+  virtual const std::vector<std::string>& mass_models() const = 0;  ///< names of all mass models, the default first
+  virtual const std::string& mass_model() const = 0;                ///< the selected one
+  /// The same mechanism with another mass model; null if there is no such model.
   virtual std::shared_ptr<const Mechanism> with_masses(const std::string& model) const = 0;
 
-  /// Equations of motion at states of one design, with its masses. Where a state does not assemble,
-  /// PoseDynamics::assembles is false. Throws DesignError where a mass is not positive.
+  /// Equations of motion of one design at several states. PoseDynamics::assembles is false for a pose that cannot be
+  /// assembled. Throws DesignError if a mass is not positive.
   /// @param mode  one of MechanismInfo::modes
   virtual void equations(std::span<const double> parameters, const std::string& mode,
                          std::span<const MotionState<double>> states, std::span<PoseDynamics<double>> found) const = 0;
@@ -31,10 +31,12 @@ class Dynamics {
                          std::span<const MotionState<Dual4>> states, std::span<PoseDynamics<Dual4>> found) const = 0;
 };
 
-/// Forces and couples in every joint, for an acceleration under a wrench on the platform (Newton and Euler).
+/// Reaction forces and couples in every joint, by the Newton-Euler equations.
 class JointReactions {
  public:
   virtual ~JointReactions() = default;
+  /// @param acceleration  of the platform coordinates
+  /// @param wrench        external load on the platform [N, N m]
   virtual Reactions find(std::span<const double> parameters, const std::string& mode, const MotionState<double>& state,
                          const AxisVector<double>& acceleration, const Wrench<double>& wrench) const = 0;
 };

@@ -1,4 +1,4 @@
-// Abilities of a mechanism at a pose beside its inverse kinematics.
+// Kinematic abilities beyond inverse kinematics: influence coefficients, forward kinematics, links.
 #pragma once
 
 #include <optional>
@@ -13,38 +13,38 @@
 
 namespace pkm {
 
-/// First- and second-order influence coefficients: what speeds and accelerations of the joints a motion takes.
+/// First- and second-order influence coefficients, which give joint velocities and accelerations of a motion.
 class Velocities {
  public:
   virtual ~Velocities() = default;
-  /// Absent where the pose does not assemble or they are infinite.
+  /// @return std::nullopt if the pose cannot be assembled or a coefficient is infinite
   /// @param mode  one of MechanismInfo::modes
   virtual std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                                      const std::string& mode) const = 0;
 };
 
-/// What a list of assemblies guarantees.
+/// Guarantee of a list of assembly modes.
 struct ForwardGuarantee {
-  bool is_complete = true;  ///< it has every isolated pose
+  bool is_complete = true;  ///< the list contains every isolated solution
   std::string method = "closed form: every isolated pose";
 };
 
 class ForwardKinematics {
  public:
   virtual ~ForwardKinematics() = default;
-  /// Assembly modes for joint values [m, rad], as `guarantee` has it every one; empty when the joints cannot be
-  /// reached, or reached in infinitely many ways.
+  /// Assembly modes for joint values [m, rad]: all of them, if guarantee().is_complete. Empty if there is no solution
+  /// or a continuum of solutions.
   virtual std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
                                                const AxisVector<double>& joints) const = 0;
-  /// Those that are looked for about a pose: here, too, every one.
+  /// Assembly modes found by a search that starts near the pose `from`. By default the same as assemblies().
   virtual std::vector<AssemblyMode> assemblies_near(std::span<const double> parameters,
                                                     const AxisVector<double>& joints,
                                                     const Pose<double>& /*from*/) const {
     return assemblies(parameters, joints);
   }
-  /// Of assemblies(): overridden by mechanisms that search.
+  /// Guarantee of assemblies(). Overridden by mechanisms whose forward kinematics is a numerical search.
   virtual ForwardGuarantee guarantee() const { return {}; }
-  /// What an answer of theirs means.
+  /// Interpretation of the result of assemblies().
   virtual ForwardStatus status(std::span<const double> /*parameters*/, const AxisVector<double>& /*joints*/,
                                const std::vector<AssemblyMode>& found) const {
     if (found.empty()) return {"NO_POSE", "no pose assembles with these joint values"};
@@ -52,21 +52,21 @@ class ForwardKinematics {
   }
 };
 
-/// A link, and those that it need not keep clear of.
+/// A link, and the links from which no clearance is required.
 struct JoinedLinks {
   std::string link;
   std::vector<std::string> others;
 };
 
-/// The mechanism as it is drawn: rails, platform and slides included.
+/// All links of the mechanism for drawings, including rails, platform and sliders.
 class Links {
  public:
   virtual ~Links() = default;
-  /// The same links in the same order at every pose; empty where the pose does not assemble.
+  /// The links in the same order at every pose; empty if the pose cannot be assembled.
   /// @param mode  one of MechanismInfo::modes
   virtual std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
                                         const std::string& mode) const = 0;
-  /// What the clearance of links does not count, for people; empty: it does not say.
+  /// Pairs of links that the clearance ignores because they are joined, for people; empty if unspecified.
   virtual std::vector<JoinedLinks> joined() const { return {}; }
 };
 

@@ -8,24 +8,26 @@
 
 namespace pkm::bounds {
 
-std::int64_t Heights::below(double height, std::int64_t from, std::int64_t to) const {
-  const double place = std::floor((height - lower) / (upper - lower) * static_cast<double>(kSteps));
-  std::int64_t step = static_cast<std::int64_t>(std::clamp(place, static_cast<double>(from), static_cast<double>(to)));
-  while (step > from && at(step) > height) --step;
+std::int64_t ColumnGrid::step_below(double z, std::int64_t from, std::int64_t to) const {
+  const double estimate = std::floor((z - lower) / (upper - lower) * static_cast<double>(kSteps));
+  std::int64_t step =
+      static_cast<std::int64_t>(std::clamp(estimate, static_cast<double>(from), static_cast<double>(to)));
+  while (step > from && at(step) > z) --step;
   return step;
 }
-std::int64_t Heights::above(double height, std::int64_t from, std::int64_t to) const {
-  const double place = std::ceil((height - lower) / (upper - lower) * static_cast<double>(kSteps));
-  std::int64_t step = static_cast<std::int64_t>(std::clamp(place, static_cast<double>(from), static_cast<double>(to)));
-  while (step < to && at(step) < height) ++step;
+std::int64_t ColumnGrid::step_above(double z, std::int64_t from, std::int64_t to) const {
+  const double estimate = std::ceil((z - lower) / (upper - lower) * static_cast<double>(kSteps));
+  std::int64_t step =
+      static_cast<std::int64_t>(std::clamp(estimate, static_cast<double>(from), static_cast<double>(to)));
+  while (step < to && at(step) < z) ++step;
   return step;
 }
 
 namespace {
 
-constexpr std::int64_t kLeastSplit = 64;  ///< steps
+constexpr std::int64_t kMinSplitSize = 64;  // steps of the grid: shorter segments are not split around a root
 
-/// Neighbours with the same open conditions as one.
+/// Merges adjacent segments with the same open constraints.
 void merge(std::vector<Segment>& segments) {
   std::size_t last = 0;
   for (std::size_t i = 1; i < segments.size(); ++i) {
@@ -39,181 +41,186 @@ void merge(std::vector<Segment>& segments) {
 
 }  // namespace
 
-ColumnExamination::Root ColumnExamination::root_of(std::size_t condition, const Segment& segment, const Place& place,
-                                                   const Place& centre, Room& room) const {
-  const std::size_t z = conditions_.axes() - 1;
-  const Slope slope = conditions_.slope(condition, place[z], room.over);
-  if (!slope.value.is_continuous()) return {};
+ColumnPruner::Root ColumnPruner::enclose_root(std::size_t constraint, const Segment& segment, const IntervalBox& sides,
+                                              const IntervalBox& centre, Scratch& scratch) const {
+  const std::size_t z = constraints_.axes() - 1;
+  const Derivatives over_box = constraints_.derivatives(constraint, sides[z], scratch.box);
+  if (!over_box.value.is_continuous()) return {};
   Root root{.is_continuous = true};
-  const Interval steep = slope.by[z];
-  root.is_known = slope.is_known_along && !steep.holds(0);
-  root.rises = steep.lower > 0;
-  // near the root over the centre, or the end that is nearest to it
-  const auto at = [&](double height) { return conditions_.value(condition, Interval(height), room.centre).middle(); };
-  const double from = place[z].lower, to = place[z].upper;
-  double guess = place[z].middle();
-  if (root.is_known) {
-    for (int step = 0; step < 2; ++step) guess = std::clamp(guess - at(guess) / steep.middle(), from, to);
+  const Interval by_z = over_box.by_axis[z];
+  root.is_enclosed = over_box.is_known_by_last && !by_z.holds(0);
+  root.is_increasing = by_z.lower > 0;
+  // Choose z_c: near the root over the centre, or the end of the segment that is nearer to it.
+  const auto value_at = [&](double height) {
+    return constraints_.value(constraint, Interval(height), scratch.centre).middle();
+  };
+  const double from = sides[z].lower, to = sides[z].upper;
+  double estimate = sides[z].middle();
+  if (root.is_enclosed) {
+    for (int step = 0; step < 2; ++step) estimate = std::clamp(estimate - value_at(estimate) / by_z.middle(), from, to);
   } else {
-    const double at_from = at(from), at_to = at(to);
-    guess = (at_from < 0) != (at_to < 0) ? bracketed_root(at, from, at_from, to, at_to, 1e-3 * (to - from))
-                                         : (std::fabs(at_from) < std::fabs(at_to) ? from : to);
+    const double at_from = value_at(from), at_to = value_at(to);
+    estimate = (at_from < 0) != (at_to < 0) ? bracketed_root(value_at, from, at_from, to, at_to, 1e-3 * (to - from))
+                                            : (std::fabs(at_from) < std::fabs(at_to) ? from : to);
   }
-  root.guess = heights_.below(guess, segment.from, segment.to);
-  if (!root.is_known) return root;
-  const Interval near(heights_.at(root.guess));
-  if (!slope.is_known) {  // over every place of the box by itself
-    root.zone = root.mean = near - conditions_.value(condition, near, room.over) / steep;
-    root.is_known = !root.zone.is_empty();
+  root.expansion = grid_.step_below(estimate, segment.from, segment.to);
+  if (!root.is_enclosed) return root;
+  const Interval z_c(grid_.at(root.expansion));
+  if (!over_box.is_known) {  // no derivatives by x: enclose the root over every x directly
+    root.range = root.mean = z_c - constraints_.value(constraint, z_c, scratch.box) / by_z;
+    root.is_enclosed = !root.range.is_empty();
     return root;
   }
-  const Interval over_centre = near - conditions_.value(condition, near, room.centre) / steep;
-  Interval away(0.0), spread(0.0);
+  const Interval over_centre = z_c - constraints_.value(constraint, z_c, scratch.centre) / by_z;
+  Interval displacement(0.0), spread(0.0);
   for (std::size_t axis = 0; axis < z; ++axis) {
-    const Interval gradient = slope.by[axis] / steep;
-    const Interval from_centre = place[axis] - centre[axis];
-    const Interval width = Interval(place[axis].upper) - Interval(place[axis].lower);
-    // the middle, as a number, is not quite the middle
-    const Interval off = (Interval(place[axis].lower) + Interval(place[axis].upper)) * Interval(0.5) - centre[axis];
-    const Interval half = (Interval(gradient.upper) - Interval(gradient.lower)) * Interval(0.5);
-    away = away + gradient * from_centre;
-    spread = spread + half * width * Interval(0.25) + magnitude(gradient) * magnitude(off);
+    const Interval gradient = over_box.by_axis[axis] / by_z;
+    const Interval from_centre = sides[axis] - centre[axis];
+    const Interval width = Interval(sides[axis].upper) - Interval(sides[axis].lower);
+    // The centre is rounded: enclose the offset of the exact midpoint from it.
+    const Interval offset = (Interval(sides[axis].lower) + Interval(sides[axis].upper)) * Interval(0.5) - centre[axis];
+    const Interval half_width = (Interval(gradient.upper) - Interval(gradient.lower)) * Interval(0.5);
+    displacement = displacement + gradient * from_centre;
+    spread = spread + half_width * width * Interval(0.25) + magnitude(gradient) * magnitude(offset);
   }
-  root.zone = over_centre - away;
+  root.range = over_centre - displacement;
   root.mean = over_centre + Interval(-spread.upper, spread.upper);
-  root.is_known = !root.zone.is_empty() && !root.mean.is_empty();
+  root.is_enclosed = !root.range.is_empty() && !root.mean.is_empty();
   return root;
 }
 
-/// Whether a condition has another sign at the other end of a segment, over the box's centre.
-bool ColumnExamination::changes_at_centre(std::size_t condition, const Interval& along, Room& room) const {
-  const auto fails_at = [&](double height) {
-    return conditions_.value(condition, Interval(height), room.centre).middle() < 0;
+/// @return true if the constraint has different signs at the ends of a segment, over the centre of the box
+bool ColumnPruner::changes_sign_at_centre(std::size_t constraint, const Interval& segment, Scratch& scratch) const {
+  const auto is_negative_at = [&](double height) {
+    return constraints_.value(constraint, Interval(height), scratch.centre).middle() < 0;
   };
-  return fails_at(along.lower) != fails_at(along.upper);
+  return is_negative_at(segment.lower) != is_negative_at(segment.upper);
 }
 
-/// About how far the root over the centre moves over the box, and half of that; infinity: nobody knows.
-double ColumnExamination::margin_of(std::size_t condition, std::int64_t guess, const Place& place, Room& room) const {
-  const std::size_t z = conditions_.axes() - 1;
-  const Slope there = conditions_.slope(condition, Interval(heights_.at(guess)), room.centre);
-  double moves = 0;
-  for (std::size_t axis = 0; axis < z; ++axis) moves += std::fabs(there.by[axis].middle()) * place[axis].width();
-  const double margin = 0.75 * moves / std::fabs(there.by[z].middle());
-  return std::isfinite(margin) ? margin : std::numeric_limits<double>::infinity();
+/// 1.5 times the first-order displacement of the root over the box from its position over the centre,
+/// sum_i |G_i| width(X_i) / (2 |G_z|); infinity if G_z vanishes.
+double ColumnPruner::root_displacement(std::size_t constraint, std::int64_t expansion, const IntervalBox& sides,
+                                       Scratch& scratch) const {
+  const std::size_t z = constraints_.axes() - 1;
+  const Derivatives at_root = constraints_.derivatives(constraint, Interval(grid_.at(expansion)), scratch.centre);
+  double change = 0;
+  for (std::size_t axis = 0; axis < z; ++axis)
+    change += std::fabs(at_root.by_axis[axis].middle()) * sides[axis].width();
+  const double displacement = 0.75 * change / std::fabs(at_root.by_axis[z].middle());
+  return std::isfinite(displacement) ? displacement : std::numeric_limits<double>::infinity();
 }
 
-void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* steps, bool skipped) const {
-  const std::size_t z = conditions_.axes() - 1;
-  const auto note = [&](Step step) {
+void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* steps, bool skipped) const {
+  const std::size_t z = constraints_.axes() - 1;
+  const auto record = [&](Step step) {
     if (steps) steps->push_back(step);
   };
-  Place place, centre;
+  IntervalBox sides, centre;
   Interval area(1.0);
-  double widest = 0;  // of the box's sides, as a share of the whole
+  double widest = 0;  // side of the box, relative to the whole
   for (std::size_t axis = 0; axis < z; ++axis) {
     const auto [from, to] = box.side[axis];
-    place[axis] = {from, to};
-    centre[axis] = Interval(place[axis].middle());
+    sides[axis] = {from, to};
+    centre[axis] = Interval(sides[axis].middle());
     area = area * (Interval(to) - Interval(from));
     widest = std::max(widest, (to - from) / (whole_[axis][1] - whole_[axis][0]));
   }
-  conditions_.enter(place, room.over);
-  conditions_.enter(centre, room.centre);
-  const auto shortest = static_cast<std::int64_t>(0.5 * widest * static_cast<double>(Heights::kSteps));
+  constraints_.set_box(sides, scratch.box);
+  constraints_.set_box(centre, scratch.centre);
+  const auto min_bisected_size = static_cast<std::int64_t>(0.5 * widest * static_cast<double>(ColumnGrid::kSteps));
 
-  std::vector<Segment>& left = room.left;
-  left.swap(box.open);
-  merge(left);
-  std::ranges::reverse(left);
+  std::vector<Segment>& pending = scratch.pending;  // stack: the lowest segment last
+  pending.swap(box.open);
+  merge(pending);
+  std::ranges::reverse(pending);
   box.open.clear();
-  Interval length(0.0);  // feasible, of the open segments
-  while (!left.empty()) {
-    Segment segment = left.back();
-    left.pop_back();
+  Interval length(0.0);  // feasible length of the open segments
+  while (!pending.empty()) {
+    Segment segment = pending.back();
+    pending.pop_back();
     if (skipped) {
-      note({Step::Kind::stays});
-      length += Interval(0, heights_.length(segment.from, segment.to).upper);
+      record({Step::Kind::open});
+      length += Interval(0, grid_.length(segment.from, segment.to).upper);
       box.open.push_back(segment);
       continue;
     }
-    place[z] = heights_.between(segment.from, segment.to);
+    sides[z] = grid_.between(segment.from, segment.to);
 
-    bool fails = false;
-    for (std::size_t k = 0; k < conditions_.size() && !fails; ++k) {
+    bool violated = false;
+    for (std::size_t k = 0; k < constraints_.size() && !violated; ++k) {
       if (!segment.open[k]) continue;
-      const Interval value = conditions_.value(k, place[z], room.over);
-      fails = value.is_certified_violated();
-      if (fails) note({Step::Kind::fails, k});
+      const Interval value = constraints_.value(k, sides[z], scratch.box);
+      violated = value.is_certified_violated();
+      if (violated) record({Step::Kind::violated, k});
       if (!value.is_certified_satisfied()) continue;
       segment.open.reset(k);
-      note({Step::Kind::holds, k});
+      record({Step::Kind::satisfied, k});
     }
-    if (fails) continue;
+    if (violated) continue;
     if (segment.open.none()) {
-      box.inside += heights_.length(segment.from, segment.to);
+      box.feasible_length += grid_.length(segment.from, segment.to);
       continue;
     }
 
-    bool divided = false, may_halve = false;
+    bool divided = false, may_bisect = false;
     Root root;
-    const auto push = [&](std::int64_t from, std::int64_t to, const Open& open) {
-      if (from < to) left.push_back({from, to, open});
+    const auto push = [&](std::int64_t from, std::int64_t to, const OpenConstraints& open) {
+      if (from < to) pending.push_back({from, to, open});
       divided = true;
     };
-    /// Three parts, the lowest to be looked at first.
     const auto split = [&](std::int64_t low, std::int64_t high) {
-      note({Step::Kind::splits, 0, low, high});
+      record({Step::Kind::split, 0, low, high});
       push(high, segment.to, segment.open);
       push(low, high, segment.open);
       push(segment.from, low, segment.open);
     };
     const std::int64_t size = segment.to - segment.from;
-    for (std::size_t k = 0; k < conditions_.size() && !divided; ++k) {
-      if (!segment.open[k] || !conditions_.depends(k, z)) continue;
-      root = root_of(k, segment, place, centre, room);
-      may_halve = may_halve || !root.is_known;
-      if (root.is_known) {
-        // a step further than it has to be, for those who round otherwise
-        const std::int64_t low = std::max(heights_.below(root.zone.lower, segment.from, segment.to) - 1, segment.from);
-        const std::int64_t high = std::min(heights_.above(root.zone.upper, low, segment.to) + 1, segment.to);
+    for (std::size_t k = 0; k < constraints_.size() && !divided; ++k) {
+      if (!segment.open[k] || !constraints_.depends(k, z)) continue;
+      root = enclose_root(k, segment, sides, centre, scratch);
+      may_bisect = may_bisect || !root.is_enclosed;
+      if (root.is_enclosed) {
+        // One step wider than necessary, because a proof checker may round differently.
+        const std::int64_t low =
+            std::max(grid_.step_below(root.range.lower, segment.from, segment.to) - 1, segment.from);
+        const std::int64_t high = std::min(grid_.step_above(root.range.upper, low, segment.to) + 1, segment.to);
         if (4 * (high - low) <= 3 * size) {
-          note({Step::Kind::trims, k, low, high, root.guess});
-          Open others = segment.open;
+          record({Step::Kind::contracted, k, low, high, root.expansion});
+          OpenConstraints others = segment.open;
           others.reset(k);
-          if (root.rises) push(high, segment.to, others);
+          if (root.is_increasing) push(high, segment.to, others);
           push(low, high, segment.open);
-          if (!root.rises) push(segment.from, low, others);
+          if (!root.is_increasing) push(segment.from, low, others);
           continue;
         }
       }
-      if (!root.is_continuous || size <= kLeastSplit || !changes_at_centre(k, place[z], room)) continue;
-      // around the guess, but no slice that is next to nothing
-      const double guess = heights_.at(root.guess), whole = place[z].upper - place[z].lower;
-      const double margin = std::max(std::min(margin_of(k, root.guess, place, room), whole), whole / 16);
-      const std::int64_t low = heights_.below(guess - margin, segment.from, segment.to);
-      const std::int64_t high = heights_.above(guess + margin, low, segment.to);
+      if (!root.is_continuous || size <= kMinSplitSize || !changes_sign_at_centre(k, sides[z], scratch)) continue;
+      // Split around the root. The middle part extends at least 1/16 of the segment to either side of z_c.
+      const double at_root = grid_.at(root.expansion), whole = sides[z].upper - sides[z].lower;
+      const double margin = std::max(std::min(root_displacement(k, root.expansion, sides, scratch), whole), whole / 16);
+      const std::int64_t low = grid_.step_below(at_root - margin, segment.from, segment.to);
+      const std::int64_t high = grid_.step_above(at_root + margin, low, segment.to);
       if (4 * (high - low) <= 3 * size) split(low, high);
     }
     if (divided) continue;
 
-    const Interval all = heights_.length(segment.from, segment.to);
-    if (may_halve && size > std::max<std::int64_t>(shortest, 1)) {
+    const Interval all = grid_.length(segment.from, segment.to);
+    if (may_bisect && size > std::max<std::int64_t>(min_bisected_size, 1)) {
       split(segment.from + size / 2, segment.from + size / 2);
       continue;
     }
-    const bool one_root = segment.open.count() == 1 && root.is_known && root.zone.lower >= place[z].lower &&
-                          root.zone.upper <= place[z].upper;
-    note({one_root ? Step::Kind::has_root : Step::Kind::stays, 0, 0, 0, root.guess});
-    Interval share(0, all.upper);
+    const bool one_root = segment.open.count() == 1 && root.is_enclosed && root.range.lower >= sides[z].lower &&
+                          root.range.upper <= sides[z].upper;
+    record({one_root ? Step::Kind::one_root : Step::Kind::open, 0, 0, 0, root.expansion});
+    Interval feasible(0, all.upper);
     if (one_root) {
-      const Interval above = Interval(place[z].upper) - root.mean, below = root.mean - Interval(place[z].lower);
-      share = intersection(root.rises ? above : below, share);
+      const Interval above = Interval(sides[z].upper) - root.mean, below = root.mean - Interval(sides[z].lower);
+      feasible = intersection(root.is_increasing ? above : below, feasible);
     }
-    length += share;
+    length += feasible;
     box.open.push_back(segment);
   }
-  box.volume = area * (box.inside + length);
+  box.volume = area * (box.feasible_length + length);
   box.volume.lower = std::max(box.volume.lower, 0.0);
 }
 

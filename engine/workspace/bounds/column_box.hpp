@@ -1,31 +1,32 @@
-// A box of the outer coordinates, and what is known of the columns over it: along the innermost coordinate z, lengths
-// that are feasible for certain, and segments with conditions that are still open.
+// Interval branch and prune along the columns over one box of the outer coordinates x. The range of the column
+// coordinate z is divided into segments; constraints that hold everywhere, and segments where one is violated
+// everywhere, are removed.
 //
-// Where the only open condition f rises or falls along a segment for certain, it has one root z*(x) there. With c the
-// box's centre, z_c near the root over it, and slopes that hold over box and segment (the mean value theorem),
-//   z*(x) in z_c - (f(c, z_c) + f_x (x - c)) / f_z,
-// so that beyond this zone the sign of f is certain; and where the zone is inside of the segment, the root is there
-// over all of the box. Its mean over the box is that over the centre, but for half the width of its gradient's
-// enclosure: what is linear integrates to 0. So a root's error falls with the square of the box's width.
-//
-// Heights of segments are whole numbers of a grid over the range of z.
+// A constraint g that is continuous and strictly monotonic in z on a segment has at most one root z*(x) there. With the
+// centre c of the box, a point z_c near the root over c, and enclosures G_i and G_z of the partial derivatives over box
+// and segment, the mean value theorem gives
+//   z*(x) in R = z_c - g(c, z_c) / G_z - sum_i (G_i / G_z) (x_i - c_i).
+// Outside of R the sign of g is known (contraction). If R lies inside the segment, there is exactly one root over every
+// x. The mean of z* over the box is that over the centre, up to half the width of the gradient's enclosure, because the
+// linear part of z*(x) - z*(c) has the mean 0: the error is of second order in the width of the box. README.md has an
+// example.
 #pragma once
 
 #include <bitset>
 #include <cstdint>
 #include <vector>
 
-#include "engine/workspace/bounds/conditions.hpp"
+#include "engine/workspace/bounds/constraints.hpp"
 
 namespace pkm::bounds {
 
-inline constexpr std::size_t kMostConditions = 128;
-inline constexpr std::size_t kMostOuter = 2;
+inline constexpr std::size_t kMaxConstraints = 128;
+inline constexpr std::size_t kMaxOuterAxes = 2;
 
-using Open = std::bitset<kMostConditions>;
+using OpenConstraints = std::bitset<kMaxConstraints>;
 
-/// The range of z as 2^30 steps.
-struct Heights {
+/// Grid of 2^30 steps over the range of z. Ends of segments are integers, so that they are exact in a proof.
+struct ColumnGrid {
   static constexpr std::int64_t kSteps = std::int64_t{1} << 30;
 
   double lower, upper;
@@ -35,71 +36,81 @@ struct Heights {
     return lower + (upper - lower) * (static_cast<double>(step) / static_cast<double>(kSteps));
   }
   Interval between(std::int64_t from, std::int64_t to) const { return {at(from), at(to)}; }
+  /// Enclosure of the length of a segment.
   Interval length(std::int64_t from, std::int64_t to) const { return Interval(at(to)) - Interval(at(from)); }
-  /// The last step below a height and the first above it, of those in [from, to], as well as there are such.
-  std::int64_t below(double height, std::int64_t from, std::int64_t to) const;
-  std::int64_t above(double height, std::int64_t from, std::int64_t to) const;
+  /// A step in [from, to] with at(step) <= z, the last one up to rounding; `from` if there is none.
+  std::int64_t step_below(double z, std::int64_t from, std::int64_t to) const;
+  /// A step in [from, to] with at(step) >= z, the first one up to rounding; `to` if there is none.
+  std::int64_t step_above(double z, std::int64_t from, std::int64_t to) const;
 };
 
 struct Segment {
   std::int64_t from, to;
-  Open open;
+  OpenConstraints open;  ///< constraints that are undecided; all others are satisfied
 };
 
-/// What was found of the next segment, for the proof: it is outside because a condition fails; the condition holds; it
-/// has a root only in [from, to], as the mean value theorem says with z_c = guess; the segment is split there into up
-/// to three; it has one root over all of the box; it stays open.
+/// One step of the proof for the next segment of a box.
 struct Step {
-  enum class Kind : char { fails = 'x', holds = 'h', trims = 't', splits = 's', has_root = 'r', stays = 'n' };
+  enum class Kind : char {
+    violated = 'x',    ///< `constraint` is violated on the segment, which is infeasible
+    satisfied = 'h',   ///< `constraint` is satisfied on the segment
+    contracted = 't',  ///< all roots of `constraint` lie in [from, to], by the mean value theorem about `expansion`
+    split = 's',       ///< divided at `from` and `to` into up to three segments
+    one_root = 'r',    ///< the only open constraint has exactly one root over every x, by expansion about `expansion`
+    open = 'n',        ///< undecided
+  };
   Kind kind;
-  std::size_t condition = 0;
-  std::int64_t from = 0, to = 0, guess = 0;
+  std::size_t constraint = 0;
+  std::int64_t from = 0, to = 0, expansion = 0;  ///< steps of the ColumnGrid
 };
 
 struct ColumnBox {
-  std::array<std::array<double, 2>, kMostOuter> side{};
-  Interval inside{0.0};  ///< length that is feasible all over the box
-  std::vector<Segment> open;
-  Interval volume{0.0};  ///< of the feasible set over the box
+  std::array<std::array<double, 2>, kMaxOuterAxes> side{};
+  Interval feasible_length{0.0};  ///< length of z that is feasible over the whole box
+  std::vector<Segment> open;      ///< undecided segments
+  Interval volume{0.0};           ///< enclosure of the volume over the box
 };
 
-/// Looks at the open segments again, over sides that may have been narrowed since.
-class ColumnExamination {
+class ColumnPruner {
  public:
-  ColumnExamination(const Conditions& conditions, const Heights& heights,
-                    const std::array<std::array<double, 2>, kMostOuter>& whole)
-      : conditions_(conditions), heights_(heights), whole_(whole) {}
+  ColumnPruner(const Constraints& constraints, const ColumnGrid& grid,
+               const std::array<std::array<double, 2>, kMaxOuterAxes>& whole)
+      : constraints_(constraints), grid_(grid), whole_(whole) {}
 
-  /// For one worker.
-  struct Room {
-    Conditions::Room over, centre;  ///< of the box, of its centre
-    std::vector<Segment> left;
+  /// Scratch memory of one worker.
+  struct Scratch {
+    Constraints::Scratch box, centre;
+    std::vector<Segment> pending;
   };
-  Room room() const { return {conditions_.room(), conditions_.room(), {}}; }
+  Scratch make_scratch() const { return {constraints_.make_scratch(), constraints_.make_scratch(), {}}; }
 
-  /// @param steps    what was found is appended; null: nobody asks
-  /// @param skipped  the search has been stopped: all open segments stay open
-  void examine(ColumnBox& box, Room& room, std::vector<Step>* steps, bool skipped) const;
+  /// Examines the open segments of a box, whose sides may have been bisected since the last call.
+  /// @param steps    receives the steps of the proof; null: not requested
+  /// @param skipped  true if the search has been stopped: all segments stay open
+  void prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* steps, bool skipped) const;
 
  private:
+  /// The root of a constraint along z over a box.
   struct Root {
-    bool is_continuous = false;  ///< the condition, over box and segment
-    bool is_known = false;       ///< it rises or falls all over them
-    bool rises = false;
-    Interval zone, mean;
-    std::int64_t guess = 0;  ///< where the root over the centre is, about
+    bool is_continuous = false;  ///< the constraint is continuous on box and segment
+    bool is_enclosed = false;    ///< it is strictly monotonic in z there; `range` and `mean` are valid
+    bool is_increasing = false;  ///< it increases with z
+    Interval range;              ///< R: contains z*(x) for all x of the box
+    Interval mean;               ///< contains the mean of z* over the box
+    std::int64_t expansion = 0;  ///< z_c, a step of the grid: approximately the root over the centre
   };
 
-  /// @param place  box and segment
-  /// @param centre  of the box
-  Root root_of(std::size_t condition, const Segment& segment, const Place& place, const Place& centre,
-               Room& room) const;
-  bool changes_at_centre(std::size_t condition, const Interval& along, Room& room) const;
-  double margin_of(std::size_t condition, std::int64_t guess, const Place& place, Room& room) const;
+  /// @param sides   sides of the box, and of the segment as the last one
+  /// @param centre  centre of the box
+  Root enclose_root(std::size_t constraint, const Segment& segment, const IntervalBox& sides, const IntervalBox& centre,
+                    Scratch& scratch) const;
+  bool changes_sign_at_centre(std::size_t constraint, const Interval& segment, Scratch& scratch) const;
+  double root_displacement(std::size_t constraint, std::int64_t expansion, const IntervalBox& sides,
+                           Scratch& scratch) const;
 
-  const Conditions& conditions_;
-  const Heights heights_;
-  const std::array<std::array<double, 2>, kMostOuter> whole_;
+  const Constraints& constraints_;
+  const ColumnGrid grid_;
+  const std::array<std::array<double, 2>, kMaxOuterAxes> whole_;
 };
 
 }  // namespace pkm::bounds

@@ -18,44 +18,47 @@ Matrices::Matrices(const expression::Graph& graph, const std::vector<NamedMatrix
   for (const NamedMatrix& matrix : matrices_)
     entries.insert(entries.end(), matrix.entries.begin(), matrix.entries.end());
   program_ = Program(graph, entries);
-  start_ = inputs;
-  start_.resize(inputs.size() + program_.registers());
+  initial_ = inputs;
+  initial_.resize(inputs.size() + program_.registers());
 }
 
-void Matrices::enter(const Place& place, Room& room) const {
-  const std::size_t inputs = room.size() - program_.registers();
-  for (std::size_t axis = 0; axis < axes_.size(); ++axis) room[axes_[axis]] = place[axis];
-  program_.run_all<Interval>(std::span(room).first(inputs), std::span(room).subspan(inputs));
+void Matrices::evaluate(const IntervalBox& box, Scratch& scratch) const {
+  const std::size_t inputs = scratch.size() - program_.registers();
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis) scratch[axes_[axis]] = box[axis];
+  program_.run_all<Interval>(std::span(scratch).first(inputs), std::span(scratch).subspan(inputs));
 }
 
-std::vector<Interval> Matrices::entries(std::size_t k, const Room& room) const {
-  const std::size_t inputs = room.size() - program_.registers();
+std::vector<Interval> Matrices::entries(std::size_t k, const Scratch& scratch) const {
+  const std::size_t inputs = scratch.size() - program_.registers();
   std::size_t output = 0;
-  for (std::size_t before = 0; before < k; ++before) output += matrices_[before].entries.size();
+  for (std::size_t i = 0; i < k; ++i) output += matrices_[i].entries.size();
   std::vector<Interval> entries;
-  while (entries.size() < matrices_[k].entries.size()) entries.push_back(room[inputs + program_.outputs()[output++]]);
+  while (entries.size() < matrices_[k].entries.size())
+    entries.push_back(scratch[inputs + program_.outputs()[output++]]);
   return entries;
 }
 
 namespace {
 
-/// None where an entry is not defined or not bounded.
-std::optional<AxisMatrix<double>> middle_of(std::span<const Interval> entries, std::size_t rows, std::size_t columns) {
-  AxisMatrix<double> middle(rows, columns);
+/// Midpoints of the entries; std::nullopt if one is undefined or unbounded.
+std::optional<AxisMatrix<double>> midpoint_matrix(std::span<const Interval> entries, std::size_t rows,
+                                                  std::size_t columns) {
+  AxisMatrix<double> midpoint(rows, columns);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     if (!entries[k].is_defined() || !std::isfinite(entries[k].width())) return {};
-    middle[k] = entries[k].middle();
+    midpoint[k] = entries[k].middle();
   }
-  return middle;
+  return midpoint;
 }
 
+/// @return true if all matrices with these entries are proved to have full column rank
 bool has_full_rank(std::span<const Interval> entries, std::size_t rows, std::size_t columns) {
-  const auto middle = middle_of(entries, rows, columns);
-  if (!middle || is_rank_deficient(*middle)) return false;
-  // any left inverse will do: what is shown of the product is shown of the matrix
-  const AxisMatrix<double> inverse = rows == columns ? solve(*middle, AxisMatrix<double>::identity(rows))
-                                                     : solve(transpose(*middle) * *middle, transpose(*middle));
-  // least |diagonal| and greatest |others| of the product
+  const auto midpoint = midpoint_matrix(entries, rows, columns);
+  if (!midpoint || is_rank_deficient(*midpoint)) return false;
+  // An approximate left inverse is sufficient: if its product with A has full rank, then A has full column rank.
+  const AxisMatrix<double> inverse = rows == columns ? solve(*midpoint, AxisMatrix<double>::identity(rows))
+                                                     : solve(transpose(*midpoint) * *midpoint, transpose(*midpoint));
+  // Comparison matrix of the product: minimum of the diagonal elements, minus the maximum magnitude of the others.
   AxisMatrix<double> comparison(columns, columns);
   for (std::size_t i = 0; i < columns; ++i)
     for (std::size_t j = 0; j < columns; ++j) {
@@ -76,19 +79,20 @@ bool has_full_rank(std::span<const Interval> entries, std::size_t rows, std::siz
   return true;
 }
 
-/// By Gaussian elimination over intervals; 0 where a pivot may be 0. @param a  n x n
-int sign_of_determinant(std::vector<Interval> a, std::size_t n) {
+/// Sign of the determinant by interval Gaussian elimination with partial pivoting; 0 if a pivot may be 0.
+/// @param a  n x n, row by row
+int determinant_sign_of(std::vector<Interval> a, std::size_t n) {
   int sign = 1;
   for (std::size_t k = 0; k < n; ++k) {
-    std::size_t lead = k;
+    std::size_t pivot_row = k;
     for (std::size_t i = k + 1; i < n; ++i)
-      if (std::fabs(a[i * n + k].middle()) > std::fabs(a[lead * n + k].middle())) lead = i;
-    const Interval pivot = a[lead * n + k];
+      if (std::fabs(a[i * n + k].middle()) > std::fabs(a[pivot_row * n + k].middle())) pivot_row = i;
+    const Interval pivot = a[pivot_row * n + k];
     if (!pivot.is_defined() || !(pivot.lower > 0 || pivot.upper < 0)) return 0;
     if (pivot.upper < 0) sign = -sign;
-    if (lead != k) {
+    if (pivot_row != k) {
       sign = -sign;
-      for (std::size_t j = 0; j < n; ++j) std::swap(a[k * n + j], a[lead * n + j]);
+      for (std::size_t j = 0; j < n; ++j) std::swap(a[k * n + j], a[pivot_row * n + j]);
     }
     for (std::size_t i = k + 1; i < n; ++i) {
       const Interval factor = a[i * n + k] / pivot;
@@ -100,36 +104,36 @@ int sign_of_determinant(std::vector<Interval> a, std::size_t n) {
 
 }  // namespace
 
-std::optional<std::size_t> Matrices::singular(const Place& place, Room& room) const {
-  enter(place, room);
+std::optional<std::size_t> Matrices::first_undecided(const IntervalBox& box, Scratch& scratch) const {
+  evaluate(box, scratch);
   for (std::size_t k = 0; k < size(); ++k)
-    if (!has_full_rank(entries(k, room), matrices_[k].rows, matrices_[k].columns)) return k;
+    if (!has_full_rank(entries(k, scratch), matrices_[k].rows, matrices_[k].columns)) return k;
   return {};
 }
 
-int Matrices::sign(std::size_t k, const Place& pose, Room& room) const {
+int Matrices::determinant_sign(std::size_t k, const IntervalBox& pose, Scratch& scratch) const {
   if (matrices_[k].rows != matrices_[k].columns) return 0;
-  enter(pose, room);
-  return sign_of_determinant(entries(k, room), matrices_[k].rows);
+  evaluate(pose, scratch);
+  return determinant_sign_of(entries(k, scratch), matrices_[k].rows);
 }
 
-bool Matrices::is_singular_at(std::size_t k, const Place& pose, Room& room) const {
-  enter(pose, room);
+bool Matrices::is_singular_at(std::size_t k, const IntervalBox& pose, Scratch& scratch) const {
+  evaluate(pose, scratch);
   const std::size_t rows = matrices_[k].rows, columns = matrices_[k].columns;
-  const std::vector<Interval> A = entries(k, room);
-  const auto middle = middle_of(A, rows, columns);
-  if (!middle) return false;
-  Eigen::MatrixXd as_it_is(rows, columns);
-  double norm = 0;
+  const std::vector<Interval> A = entries(k, scratch);
+  const auto midpoint = midpoint_matrix(A, rows, columns);
+  if (!midpoint) return false;
+  Eigen::MatrixXd matrix(rows, columns);
+  double norm = 0;  // maximum row sum
   for (std::size_t i = 0; i < rows; ++i) {
     double sum = 0;
     for (std::size_t j = 0; j < columns; ++j) {
-      as_it_is(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = (*middle)(i, j);
-      sum += std::fabs((*middle)(i, j));
+      matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = (*midpoint)(i, j);
+      sum += std::fabs((*midpoint)(i, j));
     }
     norm = std::fmax(norm, sum);
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(as_it_is, Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(matrix, Eigen::ComputeFullV);
   const Eigen::VectorXd v = decomposition.matrixV().rightCols(1);
   for (std::size_t i = 0; i < rows; ++i) {
     Interval product(0.0);
@@ -139,245 +143,251 @@ bool Matrices::is_singular_at(std::size_t k, const Place& pose, Room& room) cons
   return true;
 }
 
-bool Matrices::is_continuous(std::size_t k, const Place& place, Room& room) const {
-  enter(place, room);
-  return std::ranges::all_of(entries(k, room),
+bool Matrices::is_continuous(std::size_t k, const IntervalBox& box, Scratch& scratch) const {
+  evaluate(box, scratch);
+  return std::ranges::all_of(entries(k, scratch),
                              [](const Interval& x) { return x.is_continuous() && std::isfinite(x.width()); });
 }
 
 namespace {
 
 struct Box {
-  Place side;
-  std::vector<std::size_t> open;  ///< conditions
-  bool regular = false;           ///< for certain
-  // what was found:
-  std::optional<std::size_t> fails;
-  std::optional<std::size_t> singular;  ///< the matrix that may lack rank in it
-  int sign = 0;                         ///< of that matrix's determinant in the middle; 0: unknown
-  bool is_singular_at_middle = false;   ///< that matrix, to working precision
-  std::size_t axis = 0;                 ///< along which it is halved
+  IntervalBox sides;
+  std::vector<std::size_t> open;  ///< undecided constraints
+  bool is_regular = false;        ///< true if all matrices are proved to have full rank
+  // Results of examine():
+  std::optional<std::size_t> violated;   ///< a constraint that is violated at the midpoint or on the whole box
+  std::optional<std::size_t> undecided;  ///< the first matrix without a proof of full rank
+  int determinant_sign = 0;              ///< of that matrix at the midpoint; 0: unknown
+  bool is_singular_at_midpoint = false;  ///< that matrix is singular there to working precision
+  std::size_t axis = 0;                  ///< axis of the next bisection
 };
 
-/// A matrix that lacks rank, and where.
+/// A rank-deficient matrix, and its pose.
 struct Singularity {
-  std::string what;
-  Place pose;
+  std::string detail;
+  IntervalBox pose;
 };
 
-class BoxSearch {
+class PoseBranchAndBound {
  public:
-  BoxSearch(const Conditions& conditions, const Matrices* matrices, std::span<const std::array<double, 2>> ranges,
-            const BoundsOptions& options)
-      : conditions_(conditions), matrices_(matrices), ranges_(ranges), options_(options) {
+  PoseBranchAndBound(const Constraints& constraints, const Matrices* matrices,
+                     std::span<const std::array<double, 2>> ranges, const BoundsOptions& options)
+      : constraints_(constraints), matrices_(matrices), ranges_(ranges), options_(options) {
     for (std::size_t i = 0; i < workers(); ++i)
-      rooms_.push_back(
-          {conditions.room(), conditions.room(), conditions.room(), matrices ? matrices->room() : Matrices::Room()});
-    if (matrices) signs_.resize(matrices->size());
+      scratch_.push_back({constraints.make_scratch(), constraints.make_scratch(), constraints.make_scratch(),
+                          matrices ? matrices->initial_scratch() : Matrices::Scratch()});
+    if (matrices) brackets_.resize(matrices->size());
   }
 
-  PosesCertificate run() {
+  PoseCertificate run() {
     Box all;
-    for (std::size_t axis = 0; axis < ranges_.size(); ++axis) all.side[axis] = {ranges_[axis][0], ranges_[axis][1]};
-    for (std::size_t k = 0; k < conditions_.size(); ++k) all.open.push_back(k);
-    all.regular = !matrices_;
-    PosesCertificate found;
-    if (!matrices_) found.regular.kind = PosesFinding::Kind::not_examined;
+    for (std::size_t axis = 0; axis < ranges_.size(); ++axis) all.sides[axis] = {ranges_[axis][0], ranges_[axis][1]};
+    for (std::size_t k = 0; k < constraints_.size(); ++k) all.open.push_back(k);
+    all.is_regular = !matrices_;
+    PoseCertificate found;
+    if (!matrices_) found.regular.kind = PropertyResult::Kind::not_examined;
     std::vector<Box> boxes = {all};
     while (!boxes.empty()) {
       parallel_for(boxes.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
-        for (std::size_t i = begin; i < end && !stopped(); ++i)  // a round may take long
-          examine(boxes[i], rooms_[worker]);
+        for (std::size_t i = begin; i < end && !stopped(); ++i)  // tested here, too, because a round may take long
+          examine(boxes[i], scratch_[worker]);
       });
       found.boxes += boxes.size();
       found.stopped = stopped();
-      const bool last = found.stopped || found.boxes >= options_.most_boxes;
+      const bool last = found.stopped || found.boxes >= options_.max_boxes;
       std::vector<Box> next;
       for (const Box& box : boxes) {
-        if (box.fails && found.feasible.kind != PosesFinding::Kind::fails)
-          found.feasible = {PosesFinding::Kind::fails, conditions_.name(*box.fails), pose(box.side)};
-        if (box.fails) continue;
-        if (!singularity_ && !box.regular) singularity_ = singularity_of(box);
-        if (box.open.empty() && (box.regular || singularity_)) continue;
-        const bool halved = !last && halve(box, next);
-        if (halved) continue;
-        if (!box.open.empty() && found.feasible.kind == PosesFinding::Kind::holds)
-          found.feasible = {PosesFinding::Kind::undecided, conditions_.name(box.open.front()), pose(box.side)};
-        if (box.singular && !singularity_ && found.regular.kind == PosesFinding::Kind::holds)
-          found.regular = {PosesFinding::Kind::undecided, matrices_->name(*box.singular), pose(box.side)};
+        if (box.violated && found.feasible.kind != PropertyResult::Kind::fails)
+          found.feasible = {PropertyResult::Kind::fails, constraints_.name(*box.violated), pose(box.sides)};
+        if (box.violated) continue;
+        if (!singularity_ && !box.is_regular) singularity_ = find_singularity(box);
+        if (box.open.empty() && (box.is_regular || singularity_)) continue;
+        if (!last && bisect(box, next)) continue;
+        if (!box.open.empty() && found.feasible.kind == PropertyResult::Kind::holds)
+          found.feasible = {PropertyResult::Kind::undecided, constraints_.name(box.open.front()), pose(box.sides)};
+        if (box.undecided && !singularity_ && found.regular.kind == PropertyResult::Kind::holds)
+          found.regular = {PropertyResult::Kind::undecided, matrices_->name(*box.undecided), pose(box.sides)};
       }
       boxes = std::move(next);
-      // where a pose breaks a condition, what is left is not asked for
-      if (found.feasible.kind == PosesFinding::Kind::fails) {
-        found.regular = {PosesFinding::Kind::not_examined, "not every pose is feasible"};
+      if (found.feasible.kind == PropertyResult::Kind::fails) {
+        found.regular = {PropertyResult::Kind::not_examined, "not every pose is feasible"};
         return found;
       }
     }
-    if (singularity_) found.regular = {PosesFinding::Kind::fails, singularity_->what, pose(singularity_->pose)};
+    if (singularity_) found.regular = {PropertyResult::Kind::fails, singularity_->detail, pose(singularity_->pose)};
     return found;
   }
 
  private:
-  struct Room {
-    Conditions::Room over, middle, corner;
-    Matrices::Room matrices;
+  struct Scratch {
+    Constraints::Scratch box, midpoint, vertex;
+    Matrices::Scratch matrices;
   };
 
   bool stopped() const { return options_.stop && options_.stop(); }
 
-  Pose<double> pose(const Place& place) const {
+  Pose<double> pose(const IntervalBox& box) const {
     Pose<double> pose(ranges_.size());
-    for (std::size_t axis = 0; axis < ranges_.size(); ++axis) pose[axis] = place[axis].middle();
+    for (std::size_t axis = 0; axis < ranges_.size(); ++axis) pose[axis] = box[axis].middle();
     return pose;
   }
-  static Place middle_of(Place place) {
-    for (Interval& side : place) side = Interval(side.middle());
-    return place;
+  static IntervalBox midpoint_of(IntervalBox box) {
+    for (Interval& side : box) side = Interval(side.middle());
+    return box;
   }
 
-  /// What a box shows, alone or with one before it.
-  std::optional<Singularity> singularity_of(const Box& box) {
-    const std::string& name = matrices_->name(*box.singular);
-    if (box.is_singular_at_middle) return Singularity{name + ", to working precision", box.side};
-    if (box.sign == 0) return {};
-    Signs& seen = signs_[*box.singular];
-    (box.sign > 0 ? seen.positive : seen.negative) = middle_of(box.side);
-    if (!seen.positive || !seen.negative || seen.brackets == kMostBrackets) return {};
-    ++seen.brackets;
-    const auto between = root_between(*box.singular, *seen.negative, *seen.positive);
-    if (between) return Singularity{name + ", where the determinant changes its sign", *between};
-    seen.negative.reset();
-    seen.positive.reset();
+  /// A singularity at the midpoint of a box, or between it and the midpoint of an earlier box.
+  std::optional<Singularity> find_singularity(const Box& box) {
+    const std::string& name = matrices_->name(*box.undecided);
+    if (box.is_singular_at_midpoint) return Singularity{name + ", to working precision", box.sides};
+    if (box.determinant_sign == 0) return {};
+    Bracket& bracket = brackets_[*box.undecided];
+    (box.determinant_sign > 0 ? bracket.positive : bracket.negative) = midpoint_of(box.sides);
+    if (!bracket.positive || !bracket.negative || bracket.searches == kMaxSearches) return {};
+    ++bracket.searches;
+    const auto root = bracket_root(*box.undecided, *bracket.negative, *bracket.positive);
+    if (root) return Singularity{name + ", where the determinant changes its sign", *root};
+    bracket.negative.reset();
+    bracket.positive.reset();
     return {};
   }
 
-  /// A small box between two poses that has a root of the determinant; none: the entries are not continuous there.
-  std::optional<Place> root_between(std::size_t matrix, Place negative, Place positive) {
-    Room& room = rooms_.front();
+  /// A small box between two poses that contains a root of the determinant (bisection); std::nullopt if the entries are
+  /// not continuous there.
+  std::optional<IntervalBox> bracket_root(std::size_t matrix, IntervalBox negative, IntervalBox positive) {
+    Scratch& scratch = scratch_.front();
     const auto hull = [&] {
-      Place place = negative;
+      IntervalBox box = negative;
       for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
-        place[axis] = {std::min(negative[axis].lower, positive[axis].lower),
-                       std::max(negative[axis].upper, positive[axis].upper)};
-      return place;
+        box[axis] = {std::min(negative[axis].lower, positive[axis].lower),
+                     std::max(negative[axis].upper, positive[axis].upper)};
+      return box;
     };
     for (int bisection = 0; bisection < 60; ++bisection) {
-      const Place middle = middle_of(hull());
-      const int sign = matrices_->sign(matrix, middle, room.matrices);
+      const IntervalBox midpoint = midpoint_of(hull());
+      const int sign = matrices_->determinant_sign(matrix, midpoint, scratch.matrices);
       if (sign == 0) break;
-      (sign > 0 ? positive : negative) = middle;
+      (sign > 0 ? positive : negative) = midpoint;
     }
-    const Place place = hull();
-    if (!matrices_->is_continuous(matrix, place, room.matrices)) return {};
-    return place;
+    const IntervalBox box = hull();
+    if (!matrices_->is_continuous(matrix, box, scratch.matrices)) return {};
+    return box;
   }
 
-  /// Looks at a box, and at its middle for a pose that breaks a condition.
-  void examine(Box& box, Room& room) const {
-    std::array<double, kMostAxes> steep{};
+  /// Decides constraints and matrices on a box, and looks for a counterexample at its midpoint.
+  void examine(Box& box, Scratch& scratch) const {
+    std::array<double, kMaxAxes> variation{};  // by axis: bound of the open constraints' change, summed
     std::vector<std::size_t> open;
-    const Place middle = middle_of(box.side);
+    const IntervalBox midpoint = midpoint_of(box.sides);
     const std::size_t last = ranges_.size() - 1;
-    conditions_.enter(box.side, room.over);
-    conditions_.enter(middle, room.middle);
+    constraints_.set_box(box.sides, scratch.box);
+    constraints_.set_box(midpoint, scratch.midpoint);
     for (const std::size_t k : box.open) {
-      const Interval value = conditions_.value(k, box.side[last], room.over);
+      const Interval value = constraints_.value(k, box.sides[last], scratch.box);
       if (value.is_certified_satisfied()) continue;
-      const Interval at_middle = conditions_.value(k, middle[last], room.middle);
-      if (value.is_certified_violated() || at_middle.is_certified_violated()) {
-        box.fails = k;
+      const Interval at_midpoint = constraints_.value(k, midpoint[last], scratch.midpoint);
+      if (value.is_certified_violated() || at_midpoint.is_certified_violated()) {
+        box.violated = k;
         return;
       }
-      const Slope slope = conditions_.slope(k, box.side[last], room.over);
-      if (slope.is_known && (around(at_middle, middle, box.side, slope).is_certified_satisfied() ||
-                             least(k, box.side, slope, room).is_certified_satisfied()))
+      const Derivatives derivatives = constraints_.derivatives(k, box.sides[last], scratch.box);
+      if (derivatives.is_known &&
+          (mean_value_form(at_midpoint, midpoint, box.sides, derivatives).is_certified_satisfied() ||
+           minimum_by_monotonicity(k, box.sides, derivatives, scratch).is_certified_satisfied()))
         continue;
       open.push_back(k);
       for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
-        steep[axis] += slope.is_known ? magnitude(slope.by[axis]).upper * box.side[axis].width() : 0;
+        variation[axis] +=
+            derivatives.is_known ? magnitude(derivatives.by_axis[axis]).upper * box.sides[axis].width() : 0;
     }
     box.open = open;
-    if (!box.regular && !singularity_) {
-      box.singular = matrices_->singular(box.side, room.matrices);
-      box.regular = !box.singular;
+    if (!box.is_regular && !singularity_) {
+      box.undecided = matrices_->first_undecided(box.sides, scratch.matrices);
+      box.is_regular = !box.undecided;
     }
-    if (box.singular) {
-      box.sign = matrices_->sign(*box.singular, middle, room.matrices);
-      box.is_singular_at_middle = box.sign == 0 && matrices_->is_singular_at(*box.singular, middle, room.matrices);
+    if (box.undecided) {
+      box.determinant_sign = matrices_->determinant_sign(*box.undecided, midpoint, scratch.matrices);
+      box.is_singular_at_midpoint =
+          box.determinant_sign == 0 && matrices_->is_singular_at(*box.undecided, midpoint, scratch.matrices);
     }
-    box.axis = axis_of(box, steep);
+    box.axis = bisection_axis(box, variation);
   }
 
-  /// The condition as far from its value in the middle as its slopes lead (the mean value theorem).
-  Interval around(Interval value, const Place& middle, const Place& side, const Slope& slope) const {
-    for (std::size_t axis = 0; axis < ranges_.size(); ++axis) value += slope.by[axis] * (side[axis] - middle[axis]);
+  Interval mean_value_form(Interval value, const IntervalBox& midpoint, const IntervalBox& sides,
+                           const Derivatives& derivatives) const {
+    for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
+      value += derivatives.by_axis[axis] * (sides[axis] - midpoint[axis]);
     return value;
   }
 
-  /// The condition at the corner where it is least, as far as its slopes say.
-  Interval least(std::size_t k, const Place& side, const Slope& slope, Room& room) const {
-    Place corner = side;
+  /// Encloses the minimum of a constraint: each axis along which it is monotonic is restricted to the end at which the
+  /// constraint is smaller.
+  Interval minimum_by_monotonicity(std::size_t k, const IntervalBox& sides, const Derivatives& derivatives,
+                                   Scratch& scratch) const {
+    IntervalBox vertex = sides;
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) {
-      if (slope.by[axis].lower >= 0) corner[axis] = Interval(side[axis].lower);
-      if (slope.by[axis].upper <= 0) corner[axis] = Interval(side[axis].upper);
+      if (derivatives.by_axis[axis].lower >= 0) vertex[axis] = Interval(sides[axis].lower);
+      if (derivatives.by_axis[axis].upper <= 0) vertex[axis] = Interval(sides[axis].upper);
     }
-    conditions_.enter(corner, room.corner);
-    return conditions_.value(k, corner[ranges_.size() - 1], room.corner);
+    constraints_.set_box(vertex, scratch.vertex);
+    return constraints_.value(k, vertex[ranges_.size() - 1], scratch.vertex);
   }
 
-  /// Where the open conditions change most, as far as that is known; else the side that is most of the whole.
-  std::size_t axis_of(const Box& box, const std::array<double, kMostAxes>& steep) const {
+  /// The axis along which the open constraints vary most, otherwise that of the longest side relative to the whole.
+  std::size_t bisection_axis(const Box& box, const std::array<double, kMaxAxes>& variation) const {
     const auto share = [&](std::size_t axis) {
       const double whole = ranges_[axis][1] - ranges_[axis][0];
-      return whole > 0 ? box.side[axis].width() / whole : 0;
+      return whole > 0 ? box.sides[axis].width() / whole : 0;
     };
-    double most = 0, longest = 0;
+    double maximum = 0, longest = 0;
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) longest = std::max(longest, share(axis));
     std::size_t best = 0;
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) {
-      if (8 * share(axis) < longest) continue;
-      const double here =
-          std::isfinite(steep[axis]) && !box.open.empty() ? steep[axis] + 1e-300 * share(axis) : share(axis);
-      if (here <= most) continue;
-      most = here;
+      if (8 * share(axis) < longest) continue;  // bounds the aspect ratio of boxes
+      const double priority =
+          std::isfinite(variation[axis]) && !box.open.empty() ? variation[axis] + 1e-300 * share(axis) : share(axis);
+      if (priority <= maximum) continue;
+      maximum = priority;
       best = axis;
     }
     return best;
   }
 
-  static bool halve(const Box& box, std::vector<Box>& to) {
-    const Interval& side = box.side[box.axis];
+  /// Appends the halves of a box. @return false if its side has no midpoint in double precision
+  static bool bisect(const Box& box, std::vector<Box>& to) {
+    const Interval& side = box.sides[box.axis];
     const double middle = side.middle();
     if (!(side.lower < middle && middle < side.upper)) return false;
     for (const Interval& half : {Interval(side.lower, middle), Interval(middle, side.upper)}) {
       to.push_back(box);
-      to.back().side[box.axis] = half;
-      to.back().singular.reset();
+      to.back().sides[box.axis] = half;
+      to.back().undecided.reset();
     }
     return true;
   }
 
-  const Conditions& conditions_;
+  const Constraints& constraints_;
   const Matrices* matrices_;
   std::span<const std::array<double, 2>> ranges_;
   const BoundsOptions& options_;
-  std::vector<Room> rooms_;
+  std::vector<Scratch> scratch_;  ///< by worker
 
-  /// Poses at which a determinant has either sign.
-  struct Signs {
-    std::optional<Place> negative, positive;
-    int brackets = 0;  ///< that were bisected
+  /// Poses at which a determinant has different signs.
+  struct Bracket {
+    std::optional<IntervalBox> negative, positive;
+    int searches = 0;  ///< number of bracket_root() calls
   };
-  static constexpr int kMostBrackets = 100;  // poles change signs, too
-  std::vector<Signs> signs_;                 ///< by matrix
+  static constexpr int kMaxSearches = 100;  // limited, because a determinant also changes its sign at poles
+  std::vector<Bracket> brackets_;           ///< by matrix
   std::optional<Singularity> singularity_;
 };
 
 }  // namespace
 
-PosesCertificate certify(const Conditions& conditions, const Matrices* matrices,
-                         std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) {
-  return BoxSearch(conditions, matrices, ranges, options).run();
+PoseCertificate certify(const Constraints& constraints, const Matrices* matrices,
+                        std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) {
+  return PoseBranchAndBound(constraints, matrices, ranges, options).run();
 }
 
 }  // namespace pkm::bounds

@@ -1,19 +1,23 @@
-// Whether conditions hold at every pose of a box, and whether matrices are regular there: boxes are halved until each
-// is decided.
+// Interval branch and bound over a box of poses: proves that all constraints are satisfied and that given matrices have
+// full rank at every pose, or finds a counterexample.
 //
-// A condition that only rises or only falls along each axis, or stays, is least and greatest at corners; any other is
-// no further from its value in the middle than its slopes lead. A matrix is regular over a box if, multiplied with an
-// inverse from its middle, it is an H-matrix: with weights u > 0 of the columns, its diagonal outweighs the rest of
-// each row (generalised diagonal dominance). One with more rows than columns has the full rank if the same holds with a
-// left inverse (A^T A)^-1 A^T. A pose is singular to working precision if |A v| <= kSingularRcond |A| |v| for some v,
-// in intervals. A square matrix is singular between two poses where its determinant has two signs, if its entries are
-// continuous there.
+// Constraints. One that is monotonic along each axis has its minimum at a vertex of the box; any other is bounded by
+// the mean value form about the midpoint.
+//
+// Matrices. A matrix has full rank on a box if its product with an approximate inverse of its midpoint is an H-matrix:
+// with weights u > 0 of the columns, each diagonal element outweighs the rest of its row (generalised diagonal
+// dominance). A matrix with more rows than columns is multiplied by the left inverse (A^T A)^-1 A^T instead. A pose is
+// singular to working precision if |A v| <= kSingularRcond |A| |v| for some v, in interval arithmetic. A square matrix
+// with continuous entries is singular at some pose between two poses at which its determinant has different signs.
+//
+// Reference: A. Neumaier, "Interval Methods for Systems of Equations", Cambridge University Press, 1990, chapter 3
+// (H-matrices).
 #pragma once
 
 #include <span>
 
 #include "engine/mechanism/abilities/bounds.hpp"
-#include "engine/workspace/bounds/conditions.hpp"
+#include "engine/workspace/bounds/constraints.hpp"
 
 namespace pkm::bounds {
 
@@ -24,39 +28,43 @@ struct NamedMatrix {
   std::vector<expression::Node> entries;  ///< row by row
 };
 
-/// Immutable, shared by threads.
+/// Immutable and thread-safe.
 class Matrices {
  public:
-  using Room = std::vector<Interval>;
+  /// Inputs of the graph, and registers of the program.
+  using Scratch = std::vector<Interval>;
 
+  /// @param axes    indices of the graph's inputs that are the axes
+  /// @param inputs  all inputs of the graph; those that are no axes keep these values
   Matrices(const expression::Graph& graph, const std::vector<NamedMatrix>& matrices, std::vector<std::size_t> axes,
            const std::vector<Interval>& inputs);
 
-  const Room& room() const { return start_; }
+  const Scratch& initial_scratch() const { return initial_; }
   std::size_t size() const { return matrices_.size(); }
   const std::string& name(std::size_t k) const { return matrices_[k].name; }
-  /// The first of them that may lack rank somewhere in a box; none: all have the full rank everywhere.
-  std::optional<std::size_t> singular(const Place& place, Room& room) const;
-  /// Sign of the determinant of a square one at a pose; 0: unknown.
-  int sign(std::size_t k, const Place& pose, Room& room) const;
-  /// Whether it lacks rank at a pose to working precision (engine/geometry/singular.hpp).
-  bool is_singular_at(std::size_t k, const Place& pose, Room& room) const;
-  /// Whether its entries are continuous over a box.
-  bool is_continuous(std::size_t k, const Place& place, Room& room) const;
+  /// The first matrix without a proof of full rank on a box; std::nullopt if all have full rank.
+  std::optional<std::size_t> first_undecided(const IntervalBox& box, Scratch& scratch) const;
+  /// Sign of the determinant of a square matrix at a pose; 0: unknown.
+  int determinant_sign(std::size_t k, const IntervalBox& pose, Scratch& scratch) const;
+  /// @return true if a matrix is rank-deficient at a pose to working precision (engine/geometry/singular.hpp)
+  bool is_singular_at(std::size_t k, const IntervalBox& pose, Scratch& scratch) const;
+  /// @return true if all entries of a matrix are continuous and bounded on a box
+  bool is_continuous(std::size_t k, const IntervalBox& box, Scratch& scratch) const;
 
  private:
-  void enter(const Place& place, Room& room) const;
-  std::vector<Interval> entries(std::size_t k, const Room& room) const;  ///< over the box that was entered
+  void evaluate(const IntervalBox& box, Scratch& scratch) const;
+  std::vector<Interval> entries(std::size_t k, const Scratch& scratch) const;  ///< row by row, after evaluate()
 
   std::vector<NamedMatrix> matrices_;
   std::vector<std::size_t> axes_;
   expression::Program program_;
-  Room start_;
+  Scratch initial_;
 };
 
+/// Examines a box of poses.
 /// @param ranges    by axis
-/// @param matrices  null: not requested
-PosesCertificate certify(const Conditions& conditions, const Matrices* matrices,
-                         std::span<const std::array<double, 2>> ranges, const BoundsOptions& options);
+/// @param matrices  null: regularity is not examined
+PoseCertificate certify(const Constraints& constraints, const Matrices* matrices,
+                        std::span<const std::array<double, 2>> ranges, const BoundsOptions& options);
 
 }  // namespace pkm::bounds

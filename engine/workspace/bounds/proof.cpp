@@ -12,23 +12,23 @@ namespace {
 
 using expression::Entry, expression::Node;
 
-constexpr std::size_t kMostBytes = 100'000'000;
+constexpr std::size_t kMaxBytes = 100'000'000;
 
-/// The shortest text of a number that is read as the same. Throws std::runtime_error where it is not finite.
+/// The shortest decimal text that is read back as the same double. Throws std::runtime_error if it is not finite.
 std::string text_of(double number) {
   if (!std::isfinite(number))
     throw std::runtime_error(
-        "there is no proof: a number in it would not be finite, and pkmopt-check-proof refuses such");
+        "there is no proof: a number in it would not be finite, and pkmopt-check-proof rejects such numbers");
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
-/// Formulas, each of names that were written before.
+/// Writes the expression graph as a list of definitions, each of which uses earlier names only.
 class Formulas {
  public:
   Formulas(const Statement& statement, std::ostream& to) : statement_(statement), to_(to) {
     std::vector<Node> roots;
-    for (std::size_t k = 0; k < statement.conditions.size(); ++k) roots.push_back(statement.conditions.node(k));
+    for (std::size_t k = 0; k < statement.constraints.size(); ++k) roots.push_back(statement.constraints.node(k));
     const std::vector<Node> used = statement.graph.reachable(roots);
     for (const Node node : used) {
       const Entry& entry = statement.graph[node];
@@ -46,7 +46,7 @@ class Formulas {
     const Entry& entry = statement_.graph[node];
     if (entry.is_number()) {
       names_[node] = entry.number < 0 ? "(" + text_of(entry.number) + ")" : text_of(entry.number);
-      if (named_.contains(node)) give(node, names_[node]);
+      if (named_.contains(node)) write_definition(node, names_[node]);
     } else if (entry.input >= 0) {
       write_input(node, static_cast<std::size_t>(entry.input));
     } else if (entry.operation == &expression::angle_wrapping()) {
@@ -54,17 +54,17 @@ class Formulas {
       to_ << "turn " << name << ' ' << names_.at(entry.arguments[0]) << '\n';
       names_[node] = name;
     } else {
-      // what is used once stands where it is used, as long as that can be read
-      constexpr std::size_t kLongest = 120;
+      // For readability, a short formula that is used once is inserted where it is used.
+      constexpr std::size_t kMaxInserted = 120;  // characters
       const std::string text = formula(entry);
-      if (uses_[node] == 1 && text.size() <= kLongest && !named_.contains(node))
+      if (uses_[node] == 1 && text.size() <= kMaxInserted && !named_.contains(node))
         names_[node] = text;
       else
-        give(node, text);
+        write_definition(node, text);
     }
   }
   std::string next_name() { return "n" + std::to_string(++count_); }
-  void give(Node node, const std::string& text) {
+  void write_definition(Node node, const std::string& text) {
     names_[node] = next_name();
     to_ << "let " << names_[node] << " = " << text << '\n';
   }
@@ -92,19 +92,19 @@ class Formulas {
 
   const Statement& statement_;
   std::ostream& to_;
-  std::unordered_map<Node, std::string> names_;
+  std::unordered_map<Node, std::string> names_;  ///< name or text by which a node is referred to
   std::unordered_map<Node, int> uses_;
-  std::unordered_set<Node> named_;  ///< conditions and what is turned: lines of a proof call them by name
+  std::unordered_set<Node> named_;  ///< constraints and arguments of turn: other lines need a name for them
   std::size_t count_ = 0;
 };
 
 }  // namespace
 
 std::string proof_text(const Statement& statement, const VolumeBounds& bounds, const ProofTree& tree) {
-  if (tree.bytes() > kMostBytes)
+  if (tree.bytes() > kMaxBytes)
     throw std::runtime_error("the proof has " + std::to_string(tree.bytes() / 1'000'000) +
-                             " MB, more than 100: ask for a greater gap");
-  // Those who check it may round once more at the last digit.
+                             " MB; at most 100 MB are supported: increase the gap");
+  // Allow for the rounding errors of a checker that adds up the boxes in another order.
   const double slack = (1e-12 + 1e-15 * static_cast<double>(bounds.boxes)) * bounds.upper;
   std::ostringstream to;
   to << "pkmopt proof 1\n# " << statement.title << "\nvolume " << text_of(std::max(0.0, bounds.lower - slack)) << ' '
@@ -113,8 +113,8 @@ std::string proof_text(const Statement& statement, const VolumeBounds& bounds, c
     to << "axis " << statement.axes[axis] << ' ' << text_of(statement.ranges[axis][0]) << ' '
        << text_of(statement.ranges[axis][1]) << '\n';
   const Formulas formulas(statement, to);
-  for (std::size_t k = 0; k < statement.conditions.size(); ++k)
-    to << "condition " << formulas.name(statement.conditions.node(k)) << ' ' << statement.conditions.name(k) << '\n';
+  for (std::size_t k = 0; k < statement.constraints.size(); ++k)
+    to << "condition " << formulas.name(statement.constraints.node(k)) << ' ' << statement.constraints.name(k) << '\n';
   to << "boxes\n";
   std::string text = std::move(to).str();
   text.reserve(text.size() + tree.bytes() + 4);

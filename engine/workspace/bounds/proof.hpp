@@ -1,5 +1,5 @@
-// The proof of a volume's bounds as text, which another program checks (experiments/checker): what is given, the
-// conditions as formulas, the bounds, and what was found of each box. experiments/checker/README.md has the format.
+// Proof of volume bounds as text, for the independent proof checker (experiments/checker): the bounds, the given
+// numbers, the constraints as formulas, and the steps of each box. README.md explains the format with an example.
 #pragma once
 
 #include <string>
@@ -9,19 +9,19 @@
 
 namespace pkm::bounds {
 
-/// What a proof is of.
+/// The statement to be proved.
 struct Statement {
   const expression::Graph& graph;
-  const Conditions& conditions;        ///< of the graph
-  std::vector<std::string> axes;       ///< names, the innermost last
-  std::vector<std::size_t> positions;  ///< of the graph's inputs that they are
-  Ranges ranges;
-  std::vector<Interval> inputs;          ///< of the graph
-  std::vector<std::string> input_names;  ///< for people; "" where there is none
+  const Constraints& constraints;        ///< of the graph
+  std::vector<std::string> axes;         ///< names, the column coordinate last
+  std::vector<std::size_t> positions;    ///< by axis: index among the graph's inputs
+  Ranges ranges;                         ///< by axis
+  std::vector<Interval> inputs;          ///< all inputs of the graph
+  std::vector<std::string> input_names;  ///< by input, for people; may be ""
   std::string title;
 };
 
-/// Throws std::runtime_error where the text would be longer than 100 MB.
+/// Throws std::runtime_error if the text would be longer than 100 MB, or if a number in it is not finite.
 std::string proof_text(const Statement& statement, const VolumeBounds& bounds, const ProofTree& tree);
 
 }  // namespace pkm::bounds

@@ -2,24 +2,24 @@
 
 namespace pkm::bounds {
 
-void ProofTree::split(std::size_t node, std::size_t axis, std::size_t first_child) {
+void ProofTree::bisect(std::size_t node, std::size_t axis, std::size_t first_child) {
   nodes_[node].axis = axis;
   nodes_[node].first_child = first_child;
 }
 
-void ProofTree::note(std::size_t node, const std::vector<Step>& steps) {
+void ProofTree::record(std::size_t node, const std::vector<Step>& steps) {
   std::string& text = nodes_[node].text;
   for (const Step& step : steps) {
     using Kind = Step::Kind;
     text += static_cast<char>(step.kind);
     const auto add = [&](std::int64_t number) { text += std::to_string(number) + ' '; };
-    if (step.kind == Kind::fails || step.kind == Kind::holds || step.kind == Kind::trims)
-      add(static_cast<std::int64_t>(step.condition));
-    if (step.kind == Kind::trims || step.kind == Kind::splits) {
+    if (step.kind == Kind::violated || step.kind == Kind::satisfied || step.kind == Kind::contracted)
+      add(static_cast<std::int64_t>(step.constraint));
+    if (step.kind == Kind::contracted || step.kind == Kind::split) {
       add(step.from);
       add(step.to);
     }
-    if (step.kind == Kind::trims || step.kind == Kind::has_root) add(step.guess);
+    if (step.kind == Kind::contracted || step.kind == Kind::one_root) add(step.expansion);
   }
   text.shrink_to_fit();
 }
@@ -31,17 +31,17 @@ std::size_t ProofTree::bytes() const {
 }
 
 void ProofTree::append_to(std::string& text) const {
-  std::vector<std::size_t> left = {0};
-  while (!left.empty()) {
-    const Node& node = nodes_[left.back()];
-    left.pop_back();
+  std::vector<std::size_t> stack = {0};
+  while (!stack.empty()) {
+    const Node& node = nodes_[stack.back()];
+    stack.pop_back();
     text += node.text;
     if (node.first_child == 0) {
       text += ".\n";
     } else {
       text += '/' + std::to_string(node.axis) + '\n';
-      left.push_back(node.first_child + 1);
-      left.push_back(node.first_child);
+      stack.push_back(node.first_child + 1);
+      stack.push_back(node.first_child);
     }
   }
 }

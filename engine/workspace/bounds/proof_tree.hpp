@@ -1,4 +1,4 @@
-// What was found of each box, in the order of their halving: the greater part of a proof.
+// Tree of the bisected boxes with the proof steps of each: the main part of a proof.
 #pragma once
 
 #include <string>
@@ -8,21 +8,24 @@
 
 namespace pkm::bounds {
 
-/// The boxes and what was found of each, as the proof has them.
+/// A node is a box, stored with its steps as text; node 0 is the whole.
 class ProofTree {
  public:
-  /// Nodes below one, whose sides along `axis` are halves of its.
-  void split(std::size_t node, std::size_t axis, std::size_t first_child);
   void resize(std::size_t nodes) { nodes_.resize(nodes); }
   std::size_t size() const { return nodes_.size(); }
-  void note(std::size_t node, const std::vector<Step>& steps);
+  /// Appends steps to a node.
+  void record(std::size_t node, const std::vector<Step>& steps);
+  /// Bisects a node along `axis`. Its lower half is node `first_child`, its upper half the node after that.
+  void bisect(std::size_t node, std::size_t axis, std::size_t first_child);
+  /// Upper bound of the length that append_to() appends.
   std::size_t bytes() const;
+  /// Appends one line per node, in depth-first order.
   void append_to(std::string& text) const;
 
  private:
   struct Node {
     std::string text;
-    std::size_t axis = 0, first_child = 0;  ///< 0: none
+    std::size_t axis = 0, first_child = 0;  ///< first_child = 0: a leaf
   };
   std::vector<Node> nodes_;
 };

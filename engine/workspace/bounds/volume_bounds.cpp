@@ -7,139 +7,136 @@
 namespace pkm::bounds {
 namespace {
 
-class Search {
+class BranchAndBound {
  public:
-  Search(const Conditions& conditions, const Ranges& ranges, const BoundsOptions& options, ProofTree* tree)
+  BranchAndBound(const Constraints& constraints, const Ranges& ranges, const BoundsOptions& options, ProofTree* tree)
       : tree_(tree),
-        conditions_(conditions),
+        constraints_(constraints),
         options_(options),
-        outer_(conditions.axes() - 1),
+        outer_axes_(constraints.axes() - 1),
         whole_{ranges[0], ranges[1]},
-        heights_{ranges[outer_][0], ranges[outer_][1]},
-        examination_(conditions_, heights_, whole_),
-        rooms_(workers(), examination_.room()) {}
+        grid_{ranges[outer_axes_][0], ranges[outer_axes_][1]},
+        pruner_(constraints_, grid_, whole_),
+        scratch_(workers(), pruner_.make_scratch()) {}
 
   VolumeBounds run() {
-    ColumnBox all{.side = whole_};
-    Open open;
-    for (std::size_t k = 0; k < conditions_.size(); ++k) open.set(k);
-    all.open.push_back({0, Heights::kSteps, open});
+    ColumnBox root{.side = whole_};
+    OpenConstraints open;
+    for (std::size_t k = 0; k < constraints_.size(); ++k) open.set(k);
+    root.open.push_back({0, ColumnGrid::kSteps, open});
     if (tree_) tree_->resize(1);
-    boxes_.push_back({.box = std::move(all)});
-    found_.resize(1);
-    examine(0, rooms_[0]);
-    VolumeBounds found{.boxes = 1, .examined = 1};
+    leaves_.push_back({.box = std::move(root)});
+    enclosures_.resize(1);
+    prune(0, scratch_[0]);
+    VolumeBounds bounds{.boxes = 1, .examined = 1};
     while (true) {
       Interval sum(0.0);
-      for (const Found& found_there : found_) sum += found_there.volume;
-      found.lower = sum.lower;
-      found.upper = sum.upper;
-      found.boxes = boxes_.size();
-      found.stopped = options_.stop && options_.stop();
-      if (found.gap() <= options_.gap || found.stopped || boxes_.size() >= options_.most_boxes || outer_ == 0)
-        return found;
-      const std::vector<std::size_t> split = worst(found);
-      if (split.empty()) return found;
-      const std::size_t first = boxes_.size();
-      boxes_.resize(first + split.size());
-      found_.resize(boxes_.size());
+      for (const Enclosure& enclosure : enclosures_) sum += enclosure.volume;
+      bounds.lower = sum.lower;
+      bounds.upper = sum.upper;
+      bounds.boxes = leaves_.size();
+      bounds.stopped = options_.stop && options_.stop();
+      if (bounds.gap() <= options_.gap || bounds.stopped || leaves_.size() >= options_.max_boxes || outer_axes_ == 0)
+        return bounds;
+      const std::vector<std::size_t> selected = select_leaves(bounds);
+      if (selected.empty()) return bounds;
+      const std::size_t first = leaves_.size();
+      leaves_.resize(first + selected.size());
+      enclosures_.resize(leaves_.size());
       const std::size_t node = tree_ ? tree_->size() : 0;
-      if (tree_) tree_->resize(node + 2 * split.size());
-      for (std::size_t i = 0; i < split.size(); ++i) {
-        Leaf &one = boxes_[split[i]], &other = boxes_[first + i];
-        const std::size_t axis = longest(one.box);
-        if (tree_) tree_->split(one.node, axis, node + 2 * i);
-        other = one;
-        one.box.side[axis][1] = other.box.side[axis][0] = 0.5 * (one.box.side[axis][0] + one.box.side[axis][1]);
-        one.node = node + 2 * i;
-        other.node = one.node + 1;
+      if (tree_) tree_->resize(node + 2 * selected.size());
+      for (std::size_t i = 0; i < selected.size(); ++i) {
+        Leaf &lower = leaves_[selected[i]], &upper = leaves_[first + i];
+        const std::size_t axis = longest_axis(lower.box);
+        if (tree_) tree_->bisect(lower.node, axis, node + 2 * i);
+        upper = lower;
+        lower.box.side[axis][1] = upper.box.side[axis][0] = 0.5 * (lower.box.side[axis][0] + lower.box.side[axis][1]);
+        lower.node = node + 2 * i;
+        upper.node = lower.node + 1;
       }
-      parallel_for(split.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
+      parallel_for(selected.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
         for (std::size_t i = begin; i < end; ++i) {
-          examine(split[i], rooms_[worker]);
-          examine(first + i, rooms_[worker]);
+          prune(selected[i], scratch_[worker]);
+          prune(first + i, scratch_[worker]);
         }
       });
-      found.examined += 2 * split.size();
+      bounds.examined += 2 * selected.size();
     }
   }
 
  private:
   struct Leaf {
     ColumnBox box;
-    std::size_t node = 0;  ///< of the tree
+    std::size_t node = 0;  ///< index in the tree
   };
 
-  /// Of a box, beside it: all of them are looked at after each round.
-  struct Found {
+  /// Enclosure of a leaf, in an array of its own because all of them are read after each round.
+  struct Enclosure {
     Interval volume{0.0};
-    double width = 0;  ///< of the volume, where halving may narrow it
+    double width = 0;  ///< of `volume`; 0 if bisection cannot reduce it
   };
 
-  /// The boxes with most of what is unknown: so many that halving them could be enough, at most 3/4 of it.
-  std::vector<std::size_t> worst(const VolumeBounds& bounds) {
+  /// The leaves with the widest enclosures: as many as could be sufficient, at most those with 3/4 of the total width.
+  std::vector<std::size_t> select_leaves(const VolumeBounds& bounds) {
     order_.clear();
-    for (std::size_t i = 0; i < found_.size(); ++i)
-      if (found_[i].width > 0) order_.emplace_back(-found_[i].width, i);
-    const double unknown = bounds.upper - bounds.lower;
-    const double wanted = unknown - options_.gap * (bounds.upper + bounds.lower) / 2;
-    const double enough = std::min(0.75 * unknown, 1.5 * wanted);
+    for (std::size_t i = 0; i < enclosures_.size(); ++i)
+      if (enclosures_[i].width > 0) order_.emplace_back(-enclosures_[i].width, i);
+    const double total = bounds.upper - bounds.lower;
+    const double excess = total - options_.gap * (bounds.upper + bounds.lower) / 2;
+    const double sufficient = std::min(0.75 * total, 1.5 * excess);
     std::ranges::sort(order_);
-    std::vector<std::size_t> split;
+    std::vector<std::size_t> selected;
     double sum = 0;
-    for (const auto& [width, i] : order_) {
-      if (!(sum < enough)) break;
-      sum -= width;
-      split.push_back(i);
+    for (const auto& [negative_width, i] : order_) {
+      if (!(sum < sufficient)) break;
+      sum -= negative_width;
+      selected.push_back(i);
     }
-    return split;
+    return selected;
   }
 
-  /// The side that is the greatest share of the whole.
-  std::size_t longest(const ColumnBox& box) const {
+  /// The axis of the longest side, relative to the whole.
+  std::size_t longest_axis(const ColumnBox& box) const {
     const auto share = [&](std::size_t axis) {
       return (box.side[axis][1] - box.side[axis][0]) / (whole_[axis][1] - whole_[axis][0]);
     };
-    return outer_ == 2 && share(1) > share(0) ? 1 : 0;
+    return outer_axes_ == 2 && share(1) > share(0) ? 1 : 0;
   }
-  bool may_halve(const ColumnBox& box) const {
-    const auto& [from, to] = box.side[longest(box)];
+  /// @return true if the longest side has a midpoint in double precision
+  bool can_bisect(const ColumnBox& box) const {
+    const auto& [from, to] = box.side[longest_axis(box)];
     const double middle = 0.5 * (from + to);
     return from < middle && middle < to;
   }
 
-  void examine(std::size_t i, ColumnExamination::Room& room) {
-    Leaf& leaf = boxes_[i];
-    const bool skipped = options_.stop && options_.stop();  // a round may take long
-    if (tree_) {
-      std::vector<Step> steps;
-      examination_.examine(leaf.box, room, &steps, skipped);
-      tree_->note(leaf.node, steps);
-    } else {
-      examination_.examine(leaf.box, room, nullptr, skipped);
-    }
-    const bool is_open = !leaf.box.open.empty() && may_halve(leaf.box);
-    found_[i] = {leaf.box.volume, is_open ? leaf.box.volume.width() : 0};
+  void prune(std::size_t i, ColumnPruner::Scratch& scratch) {
+    Leaf& leaf = leaves_[i];
+    const bool skipped = options_.stop && options_.stop();  // tested here, too, because a round may take long
+    std::vector<Step> steps;
+    pruner_.prune(leaf.box, scratch, tree_ ? &steps : nullptr, skipped);
+    if (tree_) tree_->record(leaf.node, steps);
+    const bool is_open = !leaf.box.open.empty() && can_bisect(leaf.box);
+    enclosures_[i] = {leaf.box.volume, is_open ? leaf.box.volume.width() : 0};
   }
 
   ProofTree* tree_;
-  const Conditions& conditions_;
+  const Constraints& constraints_;
   const BoundsOptions& options_;
-  std::size_t outer_;
-  std::array<std::array<double, 2>, kMostOuter> whole_;
-  Heights heights_;
-  ColumnExamination examination_;
-  std::vector<ColumnExamination::Room> rooms_;
-  std::vector<Leaf> boxes_;
-  std::vector<Found> found_;
-  std::vector<std::pair<double, std::size_t>> order_;
+  std::size_t outer_axes_;
+  std::array<std::array<double, 2>, kMaxOuterAxes> whole_;
+  ColumnGrid grid_;
+  ColumnPruner pruner_;
+  std::vector<ColumnPruner::Scratch> scratch_;  ///< by worker
+  std::vector<Leaf> leaves_;
+  std::vector<Enclosure> enclosures_;                  ///< by leaf
+  std::vector<std::pair<double, std::size_t>> order_;  ///< (-width, leaf)
 };
 
 }  // namespace
 
-VolumeBounds volume_bounds(const Conditions& conditions, const Ranges& ranges, const BoundsOptions& options,
+VolumeBounds volume_bounds(const Constraints& constraints, const Ranges& ranges, const BoundsOptions& options,
                            ProofTree* tree) {
-  return Search(conditions, ranges, options, tree).run();
+  return BranchAndBound(constraints, ranges, options, tree).run();
 }
 
 }  // namespace pkm::bounds

@@ -1,4 +1,5 @@
-// Bounds of the volume where conditions hold: boxes of the outer coordinates are split where most is unknown.
+// Interval branch and bound for the volume of the feasible set: boxes of the outer coordinates whose enclosures are the
+// widest are bisected until the relative gap of the bounds is small enough.
 #pragma once
 
 #include "engine/mechanism/abilities/bounds.hpp"
@@ -6,12 +7,12 @@
 
 namespace pkm::bounds {
 
-using Ranges = std::array<std::array<double, 2>, kMostOuter + 1>;
+using Ranges = std::array<std::array<double, 2>, kMaxOuterAxes + 1>;
 
-/// The same bits for any number of threads.
-/// @param ranges  by axis of the conditions, the innermost last
-/// @param tree  of the proof; null: nobody asks
-VolumeBounds volume_bounds(const Conditions& conditions, const Ranges& ranges, const BoundsOptions& options,
+/// Bounds of the volume in which all constraints are satisfied. Bit-identical for any number of threads.
+/// @param ranges  by axis of the constraints, the column coordinate last
+/// @param tree    receives the proof; null: not requested
+VolumeBounds volume_bounds(const Constraints& constraints, const Ranges& ranges, const BoundsOptions& options,
                            ProofTree* tree = nullptr);
 
 }  // namespace pkm::bounds

@@ -4,7 +4,7 @@
 
 #include "engine/config/mechanism_file.hpp"
 #include "engine/core/error.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"
 
 namespace pkm::fuzz {
@@ -16,9 +16,9 @@ void count_cells(const Mechanism& mechanism) {
   std::fill_n(voxels.cells.begin(), info.sweeps.front().swept.size(), 3);
   std::vector<double> nominal;
   for (const Parameter& parameter : info.parameters) nominal.push_back(parameter.nominal);
-  Survey<double> survey;
+  WorkspaceResult<double> survey;
   try {
-    const WorkspacePlan plan{.method = voxels, .held = {}, .limits = no_limits(info)};
+    const WorkspacePlan plan{.method = voxels, .fixed = {}, .limits = no_limits(info)};
     evaluate_once<double>(*prepare_workspace(mechanism, plan, {}), nominal, survey);
   } catch (const std::invalid_argument&) {  // the file defines no box
     return;

@@ -23,7 +23,7 @@ class Scara final : public pkm::Mechanism {
     info_.joints = {{"q1", "rad"}, {"q2", "rad"}, {"q3", "m"}, {"q4", "rad"}};
     info_.modes = {"elbow right"};
     // The workspace is a set of (x, y, z) at a fixed phi, whose value does not matter: the wrist has no limits.
-    info_.sweeps = {{.swept = {0, 1, 2}, .held = {3}, .column = 2}};
+    info_.sweeps = {{.swept = {0, 1, 2}, .fixed = {3}, .column = 2}};
   }
   const pkm::MechanismInfo& info() const override { return info_; }
 
@@ -48,7 +48,7 @@ class Scara final : public pkm::Mechanism {
     const double r = p[kL1] + p[kL2];
     return {{{-r, r}, {-r, r}, {0, p[kStroke]}, {-pkm::kPi, pkm::kPi}}};
   }
-  std::optional<double> middle(Parameters, int) const override { return 0; }  // default value of phi
+  std::optional<double> default_value(Parameters, int) const override { return 0; }  // default value of phi
 
  private:
   pkm::MechanismInfo info_;

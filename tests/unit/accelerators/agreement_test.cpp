@@ -33,9 +33,9 @@ class ClosedForms : public test::PaperPair {
         if (kind == Kind::integrated && any_coordinate) continue;  // no accelerator
         for (std::size_t i = 0; i < designs; ++i) {
           Case one{test::random_design(accelerated().info(), random), test::columns(accelerated().info(), sweep)};
-          const int coordinate = sweep.held.front();
+          const int coordinate = sweep.fixed.front();
           const auto [lower, upper] = (*generic().ranges(one.design))[static_cast<std::size_t>(coordinate)];
-          one.plan.held = {{coordinate, kind, lower + (0.4 + 0.2 * random.u01()) * (upper - lower)}};
+          one.plan.fixed = {{coordinate, kind, lower + (0.4 + 0.2 * random.u01()) * (upper - lower)}};
           const LimitSpec limits = test::random_limits(accelerated().info(), random);
           if (i % 2 == 1) one.plan.limits = limits;
           all.push_back(one);
@@ -55,11 +55,11 @@ TEST_P(ClosedForms, HaveTheSameVolumesAndSlopes) {
   const std::size_t usual = accelerated().dynamics() && GetParam() != "4ppa-2par" ? 2 : 40,
                     designs = asked ? static_cast<std::size_t>(std::atoi(asked)) : usual;
   Stream random(23, 0, 0, Stream::Use::start);
-  Survey<Dual4> mine, theirs;
+  WorkspaceResult<Dual4> mine, theirs;
   int compared = 0, rough = 0;
   for (const Case& one : cases(designs, 21)) {
     SCOPED_TRACE(words(one));
-    if (one.plan.held.front().kind == Kind::integrated) continue;  // files take seconds; cells are compared below
+    if (one.plan.fixed.front().kind == Kind::integrated) continue;  // files take seconds; cells are compared below
     std::vector<Dual4> moving;
     for (const double p : one.design) {
       moving.emplace_back(p);
@@ -101,22 +101,22 @@ TEST_P(ClosedForms, HaveTheSameCells) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       (*voxels.box)[axis] = ranges[static_cast<std::size_t>(sweep.swept[axis])];
     one.plan.method = voxels;
-    one.plan.held.front().cells = 5;
-    Demand demand;
-    demand.fields = {&kConditioning};
-    if (accelerated().dynamics()) demand.fields.push_back(&kCouplingIndex);
-    const Survey<double> mine = test::survey(generic(), one.design, one.plan, demand),
-                         theirs = test::survey(accelerated(), one.design, one.plan, demand);
+    one.plan.fixed.front().cells = 5;
+    FieldRequest request;
+    request.fields = {&kConditioning};
+    if (accelerated().dynamics()) request.fields.push_back(&kCouplingIndex);
+    const WorkspaceResult<double> mine = test::survey(generic(), one.design, one.plan, request),
+                                  theirs = test::survey(accelerated(), one.design, one.plan, request);
     EXPECT_NEAR(mine.volume, theirs.volume, 1e-12 * theirs.volume);
     EXPECT_EQ(mine.touches_box, theirs.touches_box);
-    for (const PoseQuantity* const quantity : demand.fields)
+    for (const PoseQuantity* const quantity : request.fields)
       for (std::size_t i = 0; i < (quantity->per_joint ? 4 : 1); ++i) {
-        const auto &here = mine.of(*quantity, i), &there = theirs.of(*quantity, i);
+        const auto &here = mine.field(*quantity, i), &there = theirs.field(*quantity, i);
         EXPECT_NEAR(weighted_mean(mine.weight, here), weighted_mean(theirs.weight, there), 1e-9) << quantity->name;
         EXPECT_NEAR(weighted_standard_deviation(mine.weight, here), weighted_standard_deviation(theirs.weight, there),
                     1e-7);
       }
-    if (one.plan.held.front().kind == Kind::integrated) continue;  // the hybrid's carriage has its stroke in any case
+    if (one.plan.fixed.front().kind == Kind::integrated) continue;  // the hybrid's carriage has its stroke in any case
     EXPECT_TRUE(voxel_map(generic(), one.design, one.plan).feasible ==
                 voxel_map(accelerated(), one.design, one.plan).feasible);
     EXPECT_EQ(mine.feasible_cells, theirs.feasible_cells);
@@ -129,16 +129,16 @@ TEST_P(ClosedForms, HaveTheSameCells) {
 TEST_P(ClosedForms, HaveTheSameSamples) {
   int compared = 0;
   for (Case& one : cases(1, 24)) {
-    if (one.plan.held.front().kind == Kind::integrated) continue;  // seconds
+    if (one.plan.fixed.front().kind == Kind::integrated) continue;  // seconds
     SCOPED_TRACE(words(one));
     one.plan.method = ColumnOptions{.nodes = {12, 12}};
     for (const PoseQuantity* const quantity : {&kConditioning, &kCouplingIndex}) {
       if (quantity->needs_inertia() && !accelerated().dynamics()) continue;
-      const Survey<double> mine = test::survey(generic(), one.design, one.plan, {.fields = {quantity}}),
-                           theirs = test::survey(accelerated(), one.design, one.plan, {.fields = {quantity}});
+      const WorkspaceResult<double> mine = test::survey(generic(), one.design, one.plan, {.fields = {quantity}}),
+                                    theirs = test::survey(accelerated(), one.design, one.plan, {.fields = {quantity}});
       ASSERT_GT(theirs.volume, 0);
       for (std::size_t i = 0; i < (quantity->per_joint ? 4 : 1); ++i, ++compared) {
-        const auto &here = mine.of(*quantity, i), &there = theirs.of(*quantity, i);
+        const auto &here = mine.field(*quantity, i), &there = theirs.field(*quantity, i);
         EXPECT_NEAR(weighted_mean(mine.weight, here), weighted_mean(theirs.weight, there), 4e-3) << quantity->name;
         EXPECT_NEAR(weighted_standard_deviation(mine.weight, here), weighted_standard_deviation(theirs.weight, there),
                     5e-3);

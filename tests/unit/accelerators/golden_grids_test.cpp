@@ -6,7 +6,7 @@
 #include <map>
 
 #include "engine/math/statistics.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/accelerators/crr_cru/golden.hpp"
 #include "tests/unit/accelerators/four_ppa_two_par/golden.hpp"
 #include "tests/unit/accelerators/hybrid/golden.hpp"
@@ -22,7 +22,7 @@ struct GoldenGrid {
   std::vector<double> design;
   LimitSpec limits;
   VoxelOptions voxels;
-  std::vector<FixedCoordinate> held;
+  std::vector<FixedCoordinate> fixed;
   std::int64_t feasible;  ///< -1: the golden number counts clearances, too
 };
 
@@ -70,7 +70,7 @@ class GoldenGrids : public test::PaperPair {
   }
 
   WorkspacePlan plan_of(const GoldenGrid& grid) const {
-    return {.method = grid.voxels, .held = grid.held, .limits = grid.limits};
+    return {.method = grid.voxels, .fixed = grid.fixed, .limits = grid.limits};
   }
 };
 
@@ -87,7 +87,7 @@ TEST_P(GoldenGrids, HaveTheSameCells) {
     same_box.method = voxels;
     EXPECT_TRUE(voxel_map(generic(), grid.design, same_box).feasible == map.feasible);
     EXPECT_GT(std::ranges::count(map.feasible, 1), 0);
-    const Survey<double> survey = test::survey(accelerated(), grid.design, plan);
+    const WorkspaceResult<double> survey = test::survey(accelerated(), grid.design, plan);
     EXPECT_EQ(survey.feasible_cells, std::ranges::count(map.feasible, 1));
     if (grid.feasible >= 0) {
       EXPECT_EQ(survey.feasible_cells, grid.feasible);
@@ -119,20 +119,20 @@ TEST_P(GoldenGrids, HaveTheSameCellsUnderAClearance) {
 TEST_P(GoldenGrids, HaveTheSameCoupling) {
   if (!accelerated().dynamics()) GTEST_SKIP() << "no masses";
   for (const GoldenGrid& grid : golden_grids()) {
-    const Demand demand{.fields = {&kCouplingIndex, &kInertiaCondition}};
-    const Survey<double> here = test::survey(generic(), grid.design, plan_of(grid), demand),
-                         there = test::survey(accelerated(), grid.design, plan_of(grid), demand);
+    const FieldRequest request{.fields = {&kCouplingIndex, &kInertiaCondition}};
+    const WorkspaceResult<double> here = test::survey(generic(), grid.design, plan_of(grid), request),
+                                  there = test::survey(accelerated(), grid.design, plan_of(grid), request);
     ASSERT_EQ(here.weight.size(), there.weight.size());
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(weighted_mean(here.weight, here.of(kCouplingIndex, i)),
-                  weighted_mean(there.weight, there.of(kCouplingIndex, i)), 1e-10);
-      EXPECT_NEAR(weighted_standard_deviation(here.weight, here.of(kCouplingIndex, i)),
-                  weighted_standard_deviation(there.weight, there.of(kCouplingIndex, i)), 1e-8);
-      EXPECT_NEAR(weighted_quantile(here.weight, here.of(kCouplingIndex, i), 0.95),
-                  weighted_quantile(there.weight, there.of(kCouplingIndex, i), 0.95), 1e-8);
+      EXPECT_NEAR(weighted_mean(here.weight, here.field(kCouplingIndex, i)),
+                  weighted_mean(there.weight, there.field(kCouplingIndex, i)), 1e-10);
+      EXPECT_NEAR(weighted_standard_deviation(here.weight, here.field(kCouplingIndex, i)),
+                  weighted_standard_deviation(there.weight, there.field(kCouplingIndex, i)), 1e-8);
+      EXPECT_NEAR(weighted_quantile(here.weight, here.field(kCouplingIndex, i), 0.95),
+                  weighted_quantile(there.weight, there.field(kCouplingIndex, i), 0.95), 1e-8);
     }
-    EXPECT_NEAR(weighted_mean(here.weight, here.of(kInertiaCondition)),
-                weighted_mean(there.weight, there.of(kInertiaCondition)), 1e-10);
+    EXPECT_NEAR(weighted_mean(here.weight, here.field(kInertiaCondition)),
+                weighted_mean(there.weight, there.field(kInertiaCondition)), 1e-10);
   }
 }
 
@@ -142,15 +142,15 @@ TEST_P(GoldenGrids, HaveTheSameExactVolumesForRandomDesigns) {
   Stream random(13, 0, 0, Stream::Use::start);
   WorkspacePlan plan = test::columns(info);
   Scratch scratch;
-  Survey<double> mine, theirs;
+  WorkspaceResult<double> mine, theirs;
   int compared = 0, exact = 0;
   for (int i = 0; i < 100; ++i) {
     const std::vector<double> design = i == 0 ? test::nominal(info) : test::random_design(info, random);
     plan.limits = i % 2 == 0 ? no_limits(info) : test::random_limits(info, random);
     for (std::size_t k = 0; k < info.limits.size(); ++k)
       if (info.limits[k].group == "clearance") plan.limits.given[k].reset();
-    prepare_workspace(generic(), plan, {})->survey(design, scratch, mine);
-    prepare_workspace(accelerated(), plan, {})->survey(design, scratch, theirs);
+    prepare_workspace(generic(), plan, {})->evaluate(design, scratch, mine);
+    prepare_workspace(accelerated(), plan, {})->evaluate(design, scratch, theirs);
     SCOPED_TRACE("design " + std::to_string(i));
     EXPECT_NEAR(mine.volume, theirs.volume, (1e-7 + mine.error + theirs.error) * theirs.volume + 1e-12);
     compared += theirs.volume > 0;
@@ -176,13 +176,13 @@ TEST_P(GoldenGrids, HaveTheSameDerivativesOfSamples) {
     moving.emplace_back(p * (1 + 0.02 * random.u01()));
     for (int k = 0; k < 4; ++k) moving.back().v[k] = (2 * random.u01() - 1) * p;
   }
-  const Demand demand{.fields = {&test::kOwnInertia}};
-  Survey<Dual4> mine, theirs;
-  evaluate_once<Dual4>(*prepare_workspace(generic(), plan, demand), moving, mine);
-  evaluate_once<Dual4>(*prepare_workspace(accelerated(), plan, demand), moving, theirs);
+  const FieldRequest request{.fields = {&test::kOwnInertia}};
+  WorkspaceResult<Dual4> mine, theirs;
+  evaluate_once<Dual4>(*prepare_workspace(generic(), plan, request), moving, mine);
+  evaluate_once<Dual4>(*prepare_workspace(accelerated(), plan, request), moving, theirs);
   for (std::size_t joint = 0; joint < info.joints.size(); ++joint) {
-    const Dual4 here = weighted_mean(mine.weight, mine.of(test::kOwnInertia, joint)),
-                there = weighted_mean(theirs.weight, theirs.of(test::kOwnInertia, joint));
+    const Dual4 here = weighted_mean(mine.weight, mine.field(test::kOwnInertia, joint)),
+                there = weighted_mean(theirs.weight, theirs.field(test::kOwnInertia, joint));
     EXPECT_GT(there.a, 0);
     EXPECT_NEAR(here.a / there.a, 1, 1e-6);
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(here.v[k] / there.a, there.v[k] / there.a, 1e-6) << k;

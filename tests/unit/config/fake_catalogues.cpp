@@ -7,12 +7,12 @@
 namespace pkm::testing {
 namespace {
 
-int surveyors = 0;
+int evaluators = 0;
 
 class IdleSurveyor final : public VoxelEvaluator {
  public:
   explicit IdleSurveyor(double plane) : plane_(plane) {}
-  void survey(std::span<const double>, Scratch&, Survey<double>& survey) const override {
+  void evaluate(std::span<const double>, Scratch&, WorkspaceResult<double>& survey) const override {
     survey.clear();
     // The made-up rail ends at y = 2 m.
     survey.volume = plane_ <= 2 ? 1 : 0;
@@ -35,7 +35,7 @@ class Slider final : public Mechanism, Voxels, Columns {
     info_.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"theta", "rad"}};
     info_.joints = {{"q1", "m"}, {"q2", "m"}, {"q3", "m"}, {"q4", "m"}};
     info_.modes = {"lower"};
-    info_.sweeps = {{.swept = {0, 2, 3}, .held = {1}, .column = 2, .integrates = true}};
+    info_.sweeps = {{.swept = {0, 2, 3}, .fixed = {1}, .column = 2, .integrates = true}};
     info_.limits = {{"gap_min", "m", 0, 0, 1, "gap", "2 a", "least gap"},
                     {"angle_max", "rad", 1.5, 0, 1.5, "gap", "", "greatest angle"}};
   }
@@ -53,19 +53,19 @@ class Slider final : public Mechanism, Voxels, Columns {
 
  private:
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions&,
-                                                const Demand&) const override {
+                                                const FieldRequest&) const override {
     return prepare(plan);
   }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions&,
-                                                    const Demand&) const override {
+                                                    const FieldRequest&) const override {
     return prepare(plan);
   }
   static std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan) {
-    const FixedCoordinate held = how_fixed(plan, 1);
-    if (held.kind == FixedCoordinate::Kind::integrated && plan.box())
+    const FixedCoordinate fixed = how_fixed(plan, 1);
+    if (fixed.kind == FixedCoordinate::Kind::integrated && plan.box())
       throw std::invalid_argument("the slider cannot integrate inside a given box");
-    ++surveyors;
-    return std::make_unique<IdleSurveyor>(held.value);
+    ++evaluators;
+    return std::make_unique<IdleSurveyor>(fixed.value);
   }
 
   MechanismInfo info_;
@@ -73,9 +73,9 @@ class Slider final : public Mechanism, Voxels, Columns {
 
 std::string volume_unit(const EntryContext&) { return "m^2 rad"; }
 std::string metre(const EntryContext&) { return "m"; }
-void needs_conditioning(const EntryContext& context, Demand& demand) {
-  demand.add(kConditioning);
-  if (context.options.has("length")) demand.characteristic_length = context.options.number("length");
+void needs_conditioning(const EntryContext& context, FieldRequest& request) {
+  request.add(kConditioning);
+  if (context.options.has("length")) request.characteristic_length = context.options.number("length");
 }
 std::unique_ptr<const Quantity> make_zero(const EntryContext&) {
   return make_quantity([](const auto&) { return 0.0; });
@@ -98,11 +98,11 @@ std::vector<ObjectiveEntry> make_objectives() {
            {},
            volume_unit,
            supports_every_mechanism,
-           no_demand,
+           no_request,
            make_zero},
           {"shape", "how well it is shaped", Direction::maximise, options, unit_one, supports_every_mechanism,
            needs_conditioning, make_zero},
-          {"force", "peak force", Direction::minimise, {}, unit_one, lacks_force, no_demand, make_zero}};
+          {"force", "peak force", Direction::minimise, {}, unit_one, lacks_force, no_request, make_zero}};
 }
 
 std::vector<OptionSpec> gap_options(const MechanismInfo&) {
@@ -184,7 +184,7 @@ std::vector<OptimiserEntry> make_optimisers() {
 
 }  // namespace
 
-int prepared_surveyors() { return surveyors; }
+int prepared_evaluators() { return evaluators; }
 
 Catalogues fake_catalogues() {
   static const MechanismList mechanisms{std::make_shared<const Slider>()};

@@ -154,8 +154,8 @@ TEST(MotionConstraint, AgreesWithTheTrajectory) {
   for (double l_11 = 0.12; l_11 <= 0.4; l_11 += 0.04)
     for (double rho_max = 0.2; rho_max <= 0.5; rho_max += 0.1) {
       const std::vector<double> design = of.problem->parameters(std::vector<double>{l_11, rho_max});
-      const Trajectory along = follow(*parts.mechanism, design, parts.mechanism->info().modes.front(),
-                                      parts.plan.limits, *of.motions.front().motion, 201);
+      const Trajectory along = compute_trajectory(*parts.mechanism, design, parts.mechanism->info().modes.front(),
+                                                  parts.plan.limits, *of.motions.front().motion, 201);
       const double margin = of.problem->report(design).margins[0];
       ASSERT_TRUE(std::isfinite(margin));
       EXPECT_EQ(margin >= 0, along.summary.infeasible == 0) << l_11 << ' ' << rho_max << ' ' << margin;

@@ -50,8 +50,8 @@ TEST(MotionSpeeds, AreThoseOfTheTrajectoryWithMassesAndWithout) {
     return study.problem->report(study.problem->parts().parameters).reports;
   };
   const ProblemParts& parts = without.problem->parts();
-  const Trajectory along = follow(*parts.mechanism, parts.parameters, parts.mechanism->info().modes.front(),
-                                  parts.plan.limits, *without.motions[0].motion, 201);
+  const Trajectory along = compute_trajectory(*parts.mechanism, parts.parameters, parts.mechanism->info().modes.front(),
+                                              parts.plan.limits, *without.motions[0].motion, 201);
   const AxisVector<double>& peaks = along.summary.peak_speed.value();
   double acceleration = 0;
   for (const TrajectoryPoint& point : along.points)

@@ -225,8 +225,8 @@ TEST(ProblemErrors, Stages) {
            "has "
            "a step"},
           {(kVolume + "[workspace]\nmethod = \"voxels\"\n[[stage]]\noptimiser = \"newton\""),
-           "s.toml:10: stage[1].optimiser: the optimiser newton needs derivatives, but the study surveys voxels, whose "
-           "sums have none; take workspace.method = \"columns\""},
+           "s.toml:10: stage[1].optimiser: the optimiser newton needs derivatives, but voxel counts are piecewise "
+           "constant and have no derivatives; set workspace.method = \"columns\""},
       });
 }
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/portable.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/config/real_studies.hpp"
 
 namespace pkm::testing {
@@ -75,12 +75,12 @@ std::string quadrupteron_message(const std::string& workspace) { return real_com
 
 TEST(RealCatalogue, TheHeldCoordinateIsTheOneThatIsGiven) {
   const auto plan = [](const std::string& workspace) { return read_quadrupteron(workspace).problem->parts().plan; };
-  EXPECT_TRUE(plan("").held.empty());
-  EXPECT_EQ(plan("phi = \"30 deg\"").held.at(0).coordinate, 3);
-  EXPECT_EQ(plan("phi = \"30 deg\"").held.at(0).value, kPi / 6);
-  EXPECT_EQ(plan("x = \"200 mm\"").held.at(0).coordinate, 0);
-  EXPECT_EQ(plan("z = \"middle\"").held.at(0).coordinate, 2);
-  EXPECT_EQ(plan("z = \"middle\"").held.at(0).kind, FixedCoordinate::Kind::middle);
+  EXPECT_TRUE(plan("").fixed.empty());
+  EXPECT_EQ(plan("phi = \"30 deg\"").fixed.at(0).coordinate, 3);
+  EXPECT_EQ(plan("phi = \"30 deg\"").fixed.at(0).value, kPi / 6);
+  EXPECT_EQ(plan("x = \"200 mm\"").fixed.at(0).coordinate, 0);
+  EXPECT_EQ(plan("z = \"middle\"").fixed.at(0).coordinate, 2);
+  EXPECT_EQ(plan("z = \"middle\"").fixed.at(0).kind, FixedCoordinate::Kind::default_value);
   // cells, box and nodes are those of the coordinates that are left
   EXPECT_THAT(plan("method = \"voxels\"\ny = 0.2\ncells = { x = 4, z = 5, phi = 6 }").voxels()->cells,
               ElementsAre(4, 5, 6));
@@ -125,9 +125,9 @@ const std::string kClearance = "[[constraint]]\ntype = \"clearance\"\n";  // lin
 TEST(RealCatalogue, ClearanceCutsTheWorkspaceByBothMethods) {
   const auto volume = [](const std::string& more) {
     const Study study = read_more(more);
-    Survey<double> survey;
+    WorkspaceResult<double> survey;
     const ProblemParts& parts = study.problem->parts();
-    evaluate_once<double>(*prepare_workspace(*parts.mechanism, parts.plan, parts.demand), parts.parameters, survey);
+    evaluate_once<double>(*prepare_workspace(*parts.mechanism, parts.plan, parts.request), parts.parameters, survey);
     return survey.volume;
   };
   const std::string columns = "[workspace]\nmethod = \"columns\"\n", voxels = "[workspace]\nmethod = \"voxels\"\n";
@@ -163,10 +163,11 @@ TEST(RealCatalogue, ClearanceIsSpelledOut) {
 TEST(RealCatalogue, GradientsAreRefusedUnderAClearance) {
   const std::string gradient = "[[stage]]\noptimiser = \"ipopt\"\n";
   EXPECT_EQ(complaint_of(gradient), "accepted");
-  EXPECT_EQ(complaint_of(kClearance + gradient),
-            "s.toml:13: stage[2].optimiser: the optimiser ipopt needs derivatives, but the study limits the clearance "
-            "of links (clearance_min), so that ends of columns have no closed form and the analysis has no derivatives; "
-            "use an optimiser without gradients, or keep the sliders apart by h_min");
+  EXPECT_EQ(
+      complaint_of(kClearance + gradient),
+      "s.toml:13: stage[2].optimiser: the optimiser ipopt needs derivatives, but the study limits the clearance "
+      "of links (clearance_min), so that ends of columns have no closed form and the analysis has no derivatives; "
+      "use an optimiser without gradients, or keep the sliders apart by h_min");
   EXPECT_EQ(complaint_of(kClearance + "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"bobyqa\"\n"), "accepted");
 }
 

@@ -29,7 +29,7 @@ TEST(Regions, AreSurveysOfTheirOwn) {
   EXPECT_EQ(report.status, Status::feasible) << report.reason;
   EXPECT_NEAR(report.reports[0], 0.08 * 0.08 * 0.07, 1e-12) << "all of the box, at each of three angles";
   EXPECT_GT(report.reports[1], 10 * report.reports[0]);
-  EXPECT_EQ(report.survey.volume, report.reports[1]);
+  EXPECT_EQ(report.workspace.volume, report.reports[1]);
   // The margin falls one to one with what is asked for.
   const Study wider = read_task(
       "[[objective]]\ntype = \"dci\"\nregion = \"task\"\n[[constraint]]\ntype = \"task-workspace\"\n"

@@ -29,7 +29,7 @@ TEST(Study, SmallestStudyGetsDefaults) {
   EXPECT_THAT(parts.parameters, ElementsAre(0.2, 0.8, 0.5, 2));
   ASSERT_TRUE(parts.plan.columns());
   EXPECT_EQ(parts.plan.columns()->tolerance, 1e-8);
-  EXPECT_TRUE(parts.plan.held.empty()) << "the usual coordinate is in the middle";
+  EXPECT_TRUE(parts.plan.fixed.empty()) << "the usual coordinate is in the middle";
   EXPECT_THAT(parts.plan.limits.given, ElementsAre(std::nullopt, std::nullopt));
   EXPECT_EQ(study.problem->objectives()[0].direction, Direction::maximise);
   ASSERT_EQ(study.stages.size(), 1U);
@@ -41,9 +41,9 @@ TEST(Study, SmallestStudyGetsDefaults) {
 }
 
 TEST(Study, PreparesItsSurveyOnce) {
-  const int before = testing::prepared_surveyors();
+  const int before = testing::prepared_evaluators();
   read_right(kSmallest);
-  EXPECT_EQ(testing::prepared_surveyors(), before + 1);
+  EXPECT_EQ(testing::prepared_evaluators(), before + 1);
 }
 
 TEST(Study, ReadsParametersVariablesAndBaseline) {
@@ -126,10 +126,10 @@ TEST(Study, ReadsWorkspaceAndMergesLimits) {
   EXPECT_THAT(plan.voxels()->cells, ElementsAre(32, 34, 60));
   ASSERT_TRUE(plan.box());
   EXPECT_THAT(*plan.box(), ElementsAre(ElementsAre(0, 0.8), ElementsAre(-1, 1), ElementsAre(-kPi / 2, 1.5)));
-  ASSERT_EQ(plan.held.size(), 1u);
-  EXPECT_EQ(plan.held[0].coordinate, 1);
-  EXPECT_EQ(plan.held[0].kind, FixedCoordinate::Kind::value);
-  EXPECT_EQ(plan.held[0].value, 0.2);
+  ASSERT_EQ(plan.fixed.size(), 1u);
+  EXPECT_EQ(plan.fixed[0].coordinate, 1);
+  EXPECT_EQ(plan.fixed[0].kind, FixedCoordinate::Kind::value);
+  EXPECT_EQ(plan.fixed[0].value, 0.2);
   EXPECT_THAT(plan.limits.given, ElementsAre(std::nullopt, kPi / 4));
   EXPECT_THAT(plan.limits.derived, ElementsAre(true, false));
   EXPECT_THAT(study.limit_origins, ElementsAre("constraint[1] gap (line 23)", "workspace.limits (line 19)"));
@@ -141,11 +141,11 @@ TEST(Study, WorkspaceVariants) {
   };
   EXPECT_THAT(plan("method = \"voxels\"").voxels()->cells, ElementsAre(32, 34, 60)) << "the paper's grid";
   EXPECT_FALSE(plan("method = \"voxels\"").box());
-  EXPECT_EQ(plan("y = \"integrated\"").held.at(0).kind, FixedCoordinate::Kind::integrated);
-  EXPECT_EQ(plan("y = \"middle\"").held.at(0).kind, FixedCoordinate::Kind::middle);
-  EXPECT_EQ(plan("method = \"voxels\"\ny = \"integrated\"").held.at(0).cells, 32);
+  EXPECT_EQ(plan("y = \"integrated\"").fixed.at(0).kind, FixedCoordinate::Kind::integrated);
+  EXPECT_EQ(plan("y = \"middle\"").fixed.at(0).kind, FixedCoordinate::Kind::default_value);
+  EXPECT_EQ(plan("method = \"voxels\"\ny = \"integrated\"").fixed.at(0).cells, 32);
   EXPECT_EQ(
-      plan("method = \"voxels\"\ny = \"integrated\"\ncells = { x = 1, y = 9, z = 1, theta = 1 }").held.at(0).cells, 9);
+      plan("method = \"voxels\"\ny = \"integrated\"\ncells = { x = 1, y = 9, z = 1, theta = 1 }").fixed.at(0).cells, 9);
   EXPECT_THAT(plan("nodes = { theta = 9, x = 12 }").columns()->nodes, ElementsAre(12, 9));
   EXPECT_THAT(plan("method = \"voxels\"\ncells = { x = 512, z = 512, theta = 1024 }").voxels()->cells,
               ElementsAre(512, 512, 1024));
@@ -162,11 +162,11 @@ TEST(Study, ReadsObjectivesConstraintsReports) {
   EXPECT_EQ(parts.design_margins[0].name, "linear");
   ASSERT_EQ(parts.workspace_margins.size(), 1U);
   EXPECT_EQ(parts.workspace_margins[0].name, "big-enough");
-  EXPECT_EQ(parts.workspace_margins[0].least, 0.5);
-  EXPECT_FALSE(parts.workspace_margins[0].greatest);
+  EXPECT_EQ(parts.workspace_margins[0].lower_bound, 0.5);
+  EXPECT_FALSE(parts.workspace_margins[0].upper_bound);
   ASSERT_EQ(parts.reports.size(), 1U);
-  EXPECT_TRUE(parts.demand.has(kConditioning));
-  EXPECT_EQ(parts.demand.characteristic_length, 0.12);
+  EXPECT_TRUE(parts.request.has(kConditioning));
+  EXPECT_EQ(parts.request.characteristic_length, 0.12);
   const Options& options = study.reports[0].options;
   EXPECT_EQ(options.word("statistic"), "min");
   EXPECT_EQ(options.integer("count"), 5);
@@ -177,8 +177,8 @@ TEST(Study, ReadsObjectivesConstraintsReports) {
 TEST(Study, GreatestValueMakesAMarginToo) {
   const Study study = read_right(kSmallest + "[[constraint]]\ntype = \"volume\"\nmax = 2\n");
   const auto& margin = study.problem->parts().workspace_margins.at(0);
-  EXPECT_EQ(margin.greatest, 2);
-  EXPECT_FALSE(margin.least);
+  EXPECT_EQ(margin.upper_bound, 2);
+  EXPECT_FALSE(margin.lower_bound);
 }
 
 TEST(Study, ReadsStagesInOrder) {
@@ -195,7 +195,7 @@ TEST(Study, TwoEntriesWithTheSameLengthShareOneSurvey) {
   const Study study = read_right(kSmallest +
                                  "[[report]]\ntype = \"shape\"\nlength = 1\n[[report]]\ntype = \"shape\"\nname = "
                                  "\"worst\"\nlength = 1\nstatistic = \"min\"\n");
-  EXPECT_EQ(study.problem->parts().demand.characteristic_length, 1);
+  EXPECT_EQ(study.problem->parts().request.characteristic_length, 1);
 }
 
 TEST(Study, FileOnDiskReadsLikeItsText) {

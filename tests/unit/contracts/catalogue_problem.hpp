@@ -80,13 +80,13 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
     if (!entry.uses_workspace || entry.refusal(*mechanism)) continue;
     for (const Options& options : every_choice(entry.options, info, "volume * " + product)) {
       const EntryContext context{*mechanism, plan, options};
-      Demand demand = parts.demand;
-      entry.demand(context, demand);
-      if (of == Of::volume && demand.needs_jacobian()) continue;
-      if (of != Of::inertia && demand.needs_inertia()) continue;
+      FieldRequest request = parts.request;
+      entry.request(context, request);
+      if (of == Of::volume && request.needs_jacobian()) continue;
+      if (of != Of::inertia && request.needs_inertia()) continue;
       auto quantity = entry.make(context);
-      if (quantity->no_derivatives()) continue;
-      parts.demand = demand;
+      if (quantity->why_no_derivatives()) continue;
+      parts.request = request;
       parts.objectives.push_back(
           {entry.name, entry.unit(context), entry.meaning, entry.direction, std::move(quantity)});
     }
@@ -100,7 +100,7 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
     NamedQuantity margin;
     margin.name = entry.name;
     margin.quantity = entry.make(context);
-    if (margin.quantity->no_derivatives()) continue;
+    if (margin.quantity->why_no_derivatives()) continue;
     parts.design_margins.push_back(margin);
   }
   return DesignProblem(parts);
@@ -127,7 +127,7 @@ inline std::string told(const MechanismInfo& info, const std::vector<double>& de
   text << std::setprecision(17) << "parameters";
   for (std::size_t i = 0; i < design.size(); ++i) text << ' ' << info.parameters[i].name << '=' << design[i];
   text << "; fixed";
-  for (const FixedCoordinate& fixed : plan.held) {
+  for (const FixedCoordinate& fixed : plan.fixed) {
     text << ' ' << info.coordinates[static_cast<std::size_t>(fixed.coordinate)].name;
     if (fixed.kind == FixedCoordinate::Kind::value) text << '=' << fixed.value;
     if (fixed.kind == FixedCoordinate::Kind::integrated) text << " integrated";

@@ -56,7 +56,7 @@ class DerivativeComparison {
   /// @param direction  relative change of each parameter
   void compare(const DesignProblem& problem, const std::vector<double>& design, const std::vector<double>& direction) {
     const std::size_t n = design.size(), width = 1 + n;
-    const std::vector<double> derivatives = problem.slopes(design, problem.parts().varies);
+    const std::vector<double> derivatives = problem.derivatives(design, problem.parts().varies);
     const std::size_t quantities = derivatives.size() / width;
     std::vector<double> exact(quantities, 0.0), scale(quantities, 0.0);
     for (std::size_t q = 0; q < quantities; ++q)
@@ -72,7 +72,7 @@ class DerivativeComparison {
     const auto values = [&](double t) {
       std::vector<double> moved = design;
       for (std::size_t i = 0; i < n; ++i) moved[i] += t * design[i] * direction[i];
-      return problem.slopes(moved, {});
+      return problem.derivatives(moved, {});
     };
     const auto found = differences(values, scale);
     for (std::size_t q = 0; q < quantities; ++q) {

@@ -22,8 +22,8 @@ class DerivativeContract : public testing::TestWithParam<MechanismList::value_ty
  protected:
   void SetUp() override {
     if (!GetParam()->columns()) GTEST_SKIP() << "voxels have no derivatives";
-    const auto surveyor = prepare_workspace(*GetParam(), plan(), {});
-    if (!surveyor->slopes()) GTEST_SKIP() << surveyor->why_no_gradients();
+    const auto evaluator = prepare_workspace(*GetParam(), plan(), {});
+    if (!evaluator->gradients()) GTEST_SKIP() << evaluator->why_no_derivatives();
   }
   const MechanismInfo& info() const { return GetParam()->info(); }
   WorkspacePlan plan(const ColumnOptions& columns = {}) const { return test::columns(info(), columns); }
@@ -86,7 +86,7 @@ TEST_P(DerivativeContract, AreFiniteEverywhereAndZeroForAnEmptyWorkspace) {
     }
     const DesignProblem problem =
         test::everything(GetParam(), p, k % 50 == 0 ? test::Of::inertia : test::Of::kinematics);
-    const std::vector<double> derivatives = problem.slopes(design, problem.parts().varies);
+    const std::vector<double> derivatives = problem.derivatives(design, problem.parts().varies);
     for (std::size_t i = 0; i < derivatives.size(); ++i) {
       const std::size_t row = i / (1 + design.size()), objectives = problem.objectives().size();
       ASSERT_TRUE(std::isfinite(derivatives[i]))
@@ -111,20 +111,20 @@ TEST_P(DerivativeContract, WorkspaceAnalysesHaveTheSameBitsWithAndWithoutDerivat
     WorkspacePlan p = k % 4 == 3 ? plan({.nodes = {5, 7}}) : plan();
     p.limits = test::random_limits(info(), random);
     const std::vector<double> design = test::random_design(info(), random);
-    const auto surveyor = prepare_workspace(*GetParam(), p, test::demand_without_inertia(*GetParam()));
+    const auto evaluator = prepare_workspace(*GetParam(), p, test::request_without_inertia(*GetParam()));
     Scratch scratch;
-    Survey<double> plain, values;
-    surveyor->survey(design, scratch, plain);
+    WorkspaceResult<double> plain, values;
+    evaluator->evaluate(design, scratch, plain);
     std::vector<Dual4> duals(design.begin(), design.end());
     for (int i = 0; i < 4; ++i) duals[static_cast<std::size_t>(i)].v[i] = 1;
-    Survey<Dual4> survey;
-    surveyor->slopes()->survey(duals, scratch, survey);
+    WorkspaceResult<Dual4> survey;
+    evaluator->gradients()->evaluate(duals, scratch, survey);
     copy_values(survey, values);
     EXPECT_EQ(values.volume, plain.volume);
     EXPECT_EQ(values.columns, plain.columns);
     EXPECT_EQ(values.error, plain.error);
     EXPECT_EQ(values.weight, plain.weight);
-    EXPECT_EQ(values.of(kConditioning), plain.of(kConditioning));
+    EXPECT_EQ(values.field(kConditioning), plain.field(kConditioning));
   }
 }
 
@@ -145,14 +145,14 @@ TEST_P(DerivativeContract, EvaluationsHaveTheSameBitsWithAndWithoutDerivatives) 
     EXPECT_EQ(with_derivatives.status, plain.status);
     EXPECT_EQ(with_derivatives.objectives, plain.objectives);
     EXPECT_EQ(with_derivatives.margins, plain.margins);
-    EXPECT_EQ(with_derivatives.slopes, problem.slopes(design, problem.parts().varies));
+    EXPECT_EQ(with_derivatives.derivatives, problem.derivatives(design, problem.parts().varies));
     // One parameter at a time: each has another position in its block of four directions.
     const std::size_t width = 1 + design.size();
     for (std::size_t i = 0; i < design.size(); ++i) {
-      const std::vector<double> alone = problem.slopes(design, std::vector<std::size_t>{i});
+      const std::vector<double> alone = problem.derivatives(design, std::vector<std::size_t>{i});
       for (std::size_t q = 0; 2 * q < alone.size(); ++q) {
-        EXPECT_EQ(alone[2 * q], with_derivatives.slopes[q * width]);
-        EXPECT_EQ(alone[2 * q + 1], with_derivatives.slopes[q * width + 1 + i]);
+        EXPECT_EQ(alone[2 * q], with_derivatives.derivatives[q * width]);
+        EXPECT_EQ(alone[2 * q + 1], with_derivatives.derivatives[q * width + 1 + i]);
       }
     }
   }

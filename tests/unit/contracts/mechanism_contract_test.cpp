@@ -49,22 +49,23 @@ TEST_P(MechanismContract, SweepsAreSelectedByTheirSweptOrFixedCoordinates) {
     EXPECT_LE(sweep.swept.size(), 3u);
     std::multiset<int> coordinates(sweep.swept.begin(), sweep.swept.end());
     EXPECT_TRUE(coordinates.contains(sweep.column));
-    coordinates.insert(sweep.held.begin(), sweep.held.end());
+    coordinates.insert(sweep.fixed.begin(), sweep.fixed.end());
     EXPECT_EQ(coordinates, std::multiset<int>(all.begin(), all.end()));  // each coordinate is either swept or fixed
-    EXPECT_TRUE(std::ranges::is_sorted(sweep.held));
+    EXPECT_TRUE(std::ranges::is_sorted(sweep.fixed));
     WorkspacePlan plan = test::voxels(info(), sweep, 2);
     std::ranges::reverse(plan.swept);  // the order of the plan's coordinates is irrelevant
     EXPECT_EQ(&sweep_of(info(), plan), &sweep) << "another sweep has the same swept coordinates";
     plan.swept.clear();
-    EXPECT_TRUE(std::ranges::includes(sweep_of(info(), plan).held, sweep.held)) << "a fixed coordinate is missing";
+    EXPECT_TRUE(std::ranges::includes(sweep_of(info(), plan).fixed, sweep.fixed)) << "a fixed coordinate is missing";
     EXPECT_NE(volume_unit(info(), plan), "");
-    for (const int coordinate : sweep.held) EXPECT_TRUE(mechanism().middle(parameters(), coordinate)) << coordinate;
-    fixable.insert(sweep.held.begin(), sweep.held.end());
+    for (const int coordinate : sweep.fixed)
+      EXPECT_TRUE(mechanism().default_value(parameters(), coordinate)) << coordinate;
+    fixable.insert(sweep.fixed.begin(), sweep.fixed.end());
   }
   for (int coordinate = -1; coordinate <= std::ssize(info().coordinates); ++coordinate) {
     if (fixable.contains(coordinate)) continue;
     for (WorkspacePlan& plan : test::plans(mechanism(), info().sweeps.front(), 2)) {
-      plan.held = {{.coordinate = coordinate}};
+      plan.fixed = {{.coordinate = coordinate}};
       EXPECT_THROW(prepare_workspace(mechanism(), plan, {}), std::invalid_argument) << coordinate;
     }
   }
@@ -82,7 +83,7 @@ TEST_P(MechanismContract, AcceptsNominalParametersAndRejectsThoseOutOfRange) {
 
 TEST_P(MechanismContract, NoPoseIsFeasibleOutsideTheReach) {
   for (const Sweep& sweep : info().sweeps)
-    for (const int fixed : sweep.held) {
+    for (const int fixed : sweep.fixed) {
       const auto reach = mechanism().reach(parameters(), fixed);
       const bool full_rotation = reach && info().coordinates[static_cast<std::size_t>(fixed)].turns() &&
                                  (*reach)[1] - (*reach)[0] >= 2 * std::numbers::pi;
@@ -101,7 +102,7 @@ TEST_P(MechanismContract, ReachIsLargestAtVerticesOfTheParameterBounds) {
     const Parameter& p = info().parameters[i];
     return std::clamp(parameters()[i] + 0.1 * share * (std::fabs(parameters()[i]) + 0.01), p.lower, p.upper);
   };
-  const int coordinate = info().sweeps[0].held.empty() ? -1 : info().sweeps[0].held[0];
+  const int coordinate = info().sweeps[0].fixed.empty() ? -1 : info().sweeps[0].fixed[0];
   if (coordinate < 0 || !mechanism().reach(parameters(), coordinate))
     GTEST_SKIP() << "the mechanism does not provide the reach";
   for (std::size_t i = 0; i < info().parameters.size(); ++i) {

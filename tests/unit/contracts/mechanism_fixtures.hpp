@@ -15,7 +15,7 @@
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/motion/motion_factories.hpp"
 #include "engine/problem/pose_statistic.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 #include "tests/own_mechanisms/all.hpp"
 #include "tests/unit/generic/files.hpp"
@@ -80,8 +80,8 @@ inline std::vector<double> nominal(const MechanismInfo& info) {
 inline WorkspacePlan voxels(const MechanismInfo& info, const Sweep& sweep, std::int64_t cells) {
   VoxelOptions options;
   std::fill_n(options.cells.begin(), sweep.swept.size(), cells);
-  WorkspacePlan plan{.method = options, .swept = sweep.swept, .held = {}, .limits = no_limits(info)};
-  for (const int coordinate : sweep.held) plan.held.push_back({.coordinate = coordinate});
+  WorkspacePlan plan{.method = options, .swept = sweep.swept, .fixed = {}, .limits = no_limits(info)};
+  for (const int coordinate : sweep.fixed) plan.fixed.push_back({.coordinate = coordinate});
   return plan;
 }
 inline WorkspacePlan columns(const MechanismInfo& info, const Sweep& sweep, const ColumnOptions& options = {}) {
@@ -165,25 +165,30 @@ inline std::string words(const MechanismInfo& info, const Pose<double>& pose) {
   return text;
 }
 
-inline Survey<double> survey(const Mechanism& mechanism, const std::vector<double>& parameters,
-                             const WorkspacePlan& plan, const Demand& demand = {}) {
-  Survey<double> result;
-  evaluate_once<double>(*prepare_workspace(mechanism, plan, demand), parameters, result);
+inline WorkspaceResult<double> survey(const Mechanism& mechanism, const std::vector<double>& parameters,
+                                      const WorkspacePlan& plan, const FieldRequest& request = {}) {
+  WorkspaceResult<double> result;
+  evaluate_once<double>(*prepare_workspace(mechanism, plan, request), parameters, result);
   return result;
 }
 
-/// Demands all fields that the workspace analyses of the mechanism can compute.
-inline Demand demand_of_all_fields(const Mechanism& mechanism) {
-  Demand demand;
+/// Whether workspace analyses of the mechanism can compute a quantity.
+inline bool is_available(const Mechanism& mechanism, const PoseQuantity& quantity) {
+  return quantity.needs_inertia() ? mechanism.dynamics() != nullptr : !mechanism.info().characteristic_length.empty();
+}
+
+/// Requests all fields that the workspace analyses of the mechanism can compute.
+inline FieldRequest request_of_all_fields(const Mechanism& mechanism) {
+  FieldRequest request;
   for (const PoseQuantity* const quantity : pose_quantities())
-    if (gives(mechanism, *quantity)) demand.add(*quantity);
-  return demand;
+    if (is_available(mechanism, *quantity)) request.add(*quantity);
+  return request;
 }
 /// The same without the fields that need the joint-space inertia.
-inline Demand demand_without_inertia(const Mechanism& mechanism) {
-  Demand demand = demand_of_all_fields(mechanism);
-  std::erase_if(demand.fields, [](const PoseQuantity* quantity) { return quantity->needs_inertia(); });
-  return demand;
+inline FieldRequest request_without_inertia(const Mechanism& mechanism) {
+  FieldRequest request = request_of_all_fields(mechanism);
+  std::erase_if(request.fields, [](const PoseQuantity* quantity) { return quantity->needs_inertia(); });
+  return request;
 }
 
 /// The centres of the cells of a map, in the order of the cells.
@@ -214,9 +219,9 @@ inline Cells sample_cells(const Mechanism& mechanism, std::int64_t cells) {
   const MechanismInfo& info = mechanism.info();
   WorkspacePlan plan = voxels(info, cells);
   Pose<double> at(info.coordinates.size());
-  for (FixedCoordinate& fixed : plan.held) {
+  for (FixedCoordinate& fixed : plan.fixed) {
     fixed.kind = FixedCoordinate::Kind::value;
-    fixed.value = *mechanism.middle(nominal(info), fixed.coordinate) + 0.01;
+    fixed.value = *mechanism.default_value(nominal(info), fixed.coordinate) + 0.01;
     at[static_cast<std::size_t>(fixed.coordinate)] = fixed.value;
   }
   const VoxelMap map = voxel_map(mechanism, nominal(info), plan);
@@ -272,7 +277,7 @@ inline std::vector<NamedMotion> motions(const Mechanism& mechanism) {
 inline Region task(const MechanismInfo& info, const Pose<double>& centre) {
   const Sweep& sweep = info.sweeps.front();
   Region region{"task", voxels(info, sweep, 4), {}};
-  for (FixedCoordinate& fixed : region.plan.held) {
+  for (FixedCoordinate& fixed : region.plan.fixed) {
     fixed.kind = FixedCoordinate::Kind::value;
     fixed.value = centre[static_cast<std::size_t>(fixed.coordinate)];
   }

@@ -8,7 +8,7 @@
 #include "constraints/all.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanism/driven.hpp"
+#include "engine/mechanism/with_drive_trains.hpp"
 #include "objectives/all.hpp"
 #include "tests/own_mechanisms/three_ropes.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
@@ -87,10 +87,10 @@ double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const Work
   const Options options = some_options(entry, mechanism.info());
   const auto motions = test::motions(mechanism);
   const EntryContext context{mechanism, plan, options, {}, motions};
-  Demand demand;
-  entry.demand(context, demand);
+  FieldRequest request;
+  entry.request(context, request);
   const auto parameters = nominal(mechanism.info());
-  const auto survey = test::survey(mechanism, parameters, plan, demand);
+  const auto survey = test::survey(mechanism, parameters, plan, request);
   Scratch scratch;
   return entry.make(context)->value({mechanism, parameters, &survey, scratch});
 }

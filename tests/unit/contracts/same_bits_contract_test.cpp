@@ -28,12 +28,12 @@ class SameBitsContract : public testing::TestWithParam<std::string> {
   static void add(Bits& bits, const std::vector<double>& values) {
     for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
   }
-  static void add(Bits& bits, const Survey<double>& survey) {
+  static void add(Bits& bits, const WorkspaceResult<double>& survey) {
     bits.push_back(static_cast<std::uint64_t>(survey.feasible_cells) * 2 + survey.touches_box);
     add(bits, std::vector<double>{survey.volume, survey.error});
     add(bits, survey.weight);
     for (const PoseQuantity* const quantity : pose_quantities())
-      for (std::size_t i = 0; i < kMaxJoints; ++i) add(bits, survey.of(*quantity, i));
+      for (std::size_t i = 0; i < kMaxJoints; ++i) add(bits, survey.field(*quantity, i));
   }
 
   /// Results of the analyses of random designs with random limits, by voxels and by columns, for every sweep. Columns
@@ -51,9 +51,9 @@ class SameBitsContract : public testing::TestWithParam<std::string> {
             if (i > 0) continue;
             columns->tolerance = 1e-3;
           }
-          const Demand demand =
-              plan.columns() ? test::demand_without_inertia(mechanism()) : test::demand_of_all_fields(mechanism());
-          add(bits, test::survey(mechanism(), design, plan, demand));
+          const FieldRequest request =
+              plan.columns() ? test::request_without_inertia(mechanism()) : test::request_of_all_fields(mechanism());
+          add(bits, test::survey(mechanism(), design, plan, request));
           if (plan.columns()) continue;
           for (const std::uint8_t cell : voxel_map(mechanism(), design, plan).feasible) bits.push_back(cell);
         }
@@ -62,7 +62,7 @@ class SameBitsContract : public testing::TestWithParam<std::string> {
   }
 
   bool has_derivatives() const {
-    return mechanism().columns() && prepare_workspace(mechanism(), test::columns(info()), {})->slopes();
+    return mechanism().columns() && prepare_workspace(mechanism(), test::columns(info()), {})->gradients();
   }
   /// Derivatives of all quantities with respect to all parameters at random designs; empty if the analyses have none.
   Bits derivatives() const {
@@ -85,7 +85,7 @@ class SameBitsContract : public testing::TestWithParam<std::string> {
       // Files: the volume only, since their samples do not use kernels (see sample_slopes_test.cpp).
       const test::Of of = test::is_from_file(info()) ? test::Of::volume : test::Of::kinematics;
       const DesignProblem problem = test::everything(test::test_mechanism(GetParam()), plan, of, centre);
-      add(bits, problem.slopes(design, problem.parts().varies));
+      add(bits, problem.derivatives(design, problem.parts().varies));
     }
     return bits;
   }

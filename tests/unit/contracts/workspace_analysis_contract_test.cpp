@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "engine/problem/expression.hpp"
-#include "engine/workspace/plain_voxels.hpp"
+#include "engine/workspace/cellwise_voxels.hpp"
 #include "tests/unit/contracts/mechanism_contract.hpp"
 
 namespace pkm {
@@ -25,22 +25,22 @@ TEST_P(MechanismContract, VoxelAnalysisEqualsTestingEveryCell) {
     VoxelOptions voxels = *plan.voxels();
     voxels.box.emplace();
     for (std::size_t i = 0; i < 3; ++i) (*voxels.box)[i] = {map.lower[i], map.upper[i]};
-    EXPECT_EQ(prepare_plain_voxels(mechanism(), plan, voxels, {})->map(parameters()).feasible, map.feasible);
-    const Demand demand = test::demand_of_all_fields(mechanism());
-    const Survey<double> fast = survey(mechanism(), parameters(), plan, demand);
-    Survey<double> plain;
-    evaluate_once<double>(*prepare_plain_voxels(mechanism(), plan, voxels, demand), parameters(), plain);
+    EXPECT_EQ(prepare_cellwise_voxels(mechanism(), plan, voxels, {})->map(parameters()).feasible, map.feasible);
+    const FieldRequest request = test::request_of_all_fields(mechanism());
+    const WorkspaceResult<double> fast = survey(mechanism(), parameters(), plan, request);
+    WorkspaceResult<double> plain;
+    evaluate_once<double>(*prepare_cellwise_voxels(mechanism(), plan, voxels, request), parameters(), plain);
     EXPECT_EQ(plain.cells, fast.cells);
     EXPECT_EQ(plain.feasible_cells, fast.feasible_cells);
     EXPECT_NEAR(plain.volume / fast.volume, 1, 1e-12);
     const auto expect_same_mean = [&](const std::vector<double>& a, const std::vector<double>& b) {
       EXPECT_NEAR(weighted_mean(plain.weight, a), weighted_mean(fast.weight, b), 1e-9);
     };
-    for (const PoseQuantity* const quantity : demand.fields)
+    for (const PoseQuantity* const quantity : request.fields)
       for (std::size_t i = 0; i < (quantity->per_joint ? info().joints.size() : 1); ++i) {
         SCOPED_TRACE(quantity->name);
-        EXPECT_GT(fast.of(*quantity, i).size(), 0u);
-        expect_same_mean(plain.of(*quantity, i), fast.of(*quantity, i));
+        EXPECT_GT(fast.field(*quantity, i).size(), 0u);
+        expect_same_mean(plain.field(*quantity, i), fast.field(*quantity, i));
       }
   }
 }
@@ -74,7 +74,7 @@ TEST_P(MechanismContract, ColumnsAreClippedByABoxOrRejectIt) {
     WorkspacePlan columns = test::columns(info(), sweep);
     const double whole = survey(mechanism(), parameters(), columns).volume;
     columns.method = ColumnOptions{.tolerance = 1e-8, .nodes = {}, .box = box};
-    if (!mechanism().columns()->take_box()) {
+    if (!mechanism().columns()->supports_box()) {
       EXPECT_THROW(prepare_workspace(mechanism(), columns, {}), std::invalid_argument);
       continue;
     }
@@ -113,7 +113,7 @@ TEST_P(MechanismContract, InfeasibleLimitsGiveAnEmptyWorkspace) {
     for (WorkspacePlan& p : test::plans(mechanism(), sweep, 10)) {
       p.limits = test::infeasible_limits(mechanism(), p);
       if (p.limits.given == no_limits(info()).given) continue;  // columns do not support the only limit, a clearance
-      const auto empty = survey(mechanism(), parameters(), p, test::demand_without_inertia(mechanism()));
+      const auto empty = survey(mechanism(), parameters(), p, test::request_without_inertia(mechanism()));
       EXPECT_EQ(empty.volume, 0);
       EXPECT_EQ(empty.feasible_cells, 0);
       EXPECT_FALSE(empty.touches_box);
@@ -138,12 +138,12 @@ TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeByTheExponentOfItsUnit
   for (const Sweep& sweep : test::sweeps(mechanism())) {
     SCOPED_TRACE(test::words(info(), sweep));
     const WorkspacePlan p = test::best_plan(mechanism(), sweep);
-    const Demand demand = test::demand_without_inertia(mechanism());
-    const auto small = survey(mechanism(), parameters(), p, demand), large = survey(mechanism(), larger, p, demand);
+    const FieldRequest request = test::request_without_inertia(mechanism());
+    const auto small = survey(mechanism(), parameters(), p, request), large = survey(mechanism(), larger, p, request);
     EXPECT_NEAR(large.volume / small.volume, std::pow(kScale, length_exponent(volume_unit(info(), p))), 1e-7);
-    ASSERT_EQ(large.of(kConditioning).size(), small.of(kConditioning).size());
-    for (std::size_t i = 0; i < small.of(kConditioning).size(); ++i)
-      EXPECT_NEAR(large.of(kConditioning)[i], small.of(kConditioning)[i], 1e-7) << i;
+    ASSERT_EQ(large.field(kConditioning).size(), small.field(kConditioning).size());
+    for (std::size_t i = 0; i < small.field(kConditioning).size(); ++i)
+      EXPECT_NEAR(large.field(kConditioning)[i], small.field(kConditioning)[i], 1e-7) << i;
   }
 }
 
@@ -160,14 +160,14 @@ TEST_P(MechanismContract, ExpressionNamesAreDistinctAndHaveTheRightValues) {
     options.set("expression", known.name);
     const EntryContext context{mechanism(), p, options};
     const Expression expression(context);
-    Demand demand;
-    expression.add_demand(context, demand);
-    const auto found = survey(mechanism(), design, p, demand);
+    FieldRequest request;
+    expression.add_request(context, request);
+    const auto found = survey(mechanism(), design, p, request);
     Scratch scratch;
     std::vector<double> thresholds(info().limits.size());
     mechanism().thresholds(design, p.limits, thresholds);
     using Origin = ExpressionName::Origin;
-    EXPECT_EQ(expression.needs_workspace(), known.origin == Origin::survey);
+    EXPECT_EQ(expression.needs_workspace(), known.origin == Origin::workspace);
     const double expected = known.origin == Origin::parameter   ? design[known.index]
                             : known.origin == Origin::threshold ? thresholds[known.index]
                             : known.origin == Origin::size      ? mechanism().size()->of(design)

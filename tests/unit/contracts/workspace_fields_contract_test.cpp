@@ -69,25 +69,25 @@ TEST_P(WorkspaceFieldsContract, FeasibleCellsEqualTheVoxelMapAndTheSignsOfMargin
       cells += map.feasible[cell];
     }
     EXPECT_GT(100 * cells, std::ssize(feasible));
-    const Survey<double> survey = test::survey(mechanism(), parameters(), plan(sweep));
+    const WorkspaceResult<double> survey = test::survey(mechanism(), parameters(), plan(sweep));
     EXPECT_EQ(cells, survey.feasible_cells);
     EXPECT_NEAR(found.volume / survey.volume, 1, 1e-12);
     EXPECT_EQ(found.volume_unit, unit_of_product(info(), sweep.swept));
-    ASSERT_EQ(found.held.size(), sweep.held.size());
-    for (std::size_t i = 0; i < sweep.held.size(); ++i) EXPECT_EQ(found.held[i].coordinate, sweep.held[i]);
+    ASSERT_EQ(found.fixed.size(), sweep.fixed.size());
+    for (std::size_t i = 0; i < sweep.fixed.size(); ++i) EXPECT_EQ(found.fixed[i].coordinate, sweep.fixed[i]);
   }
 }
 
 TEST_P(WorkspaceFieldsContract, FixedCoordinatesHaveDefaultValuesUnlessThePlanGivesValues) {
   for (const Sweep& sweep : sweeps()) {
     SCOPED_TRACE(test::words(info(), sweep));
-    if (sweep.held.empty()) continue;
+    if (sweep.fixed.empty()) continue;
     const WorkspaceFields found = fields(plan(sweep));
     WorkspacePlan with_values = plan(sweep);
-    for (std::size_t i = 0; i < sweep.held.size(); ++i) {
-      const double value = *mechanism().middle(parameters(), sweep.held[i]);
-      EXPECT_EQ(found.held[i].lower, value);
-      with_values.held[i] = {sweep.held[i], FixedCoordinate::Kind::value, value};
+    for (std::size_t i = 0; i < sweep.fixed.size(); ++i) {
+      const double value = *mechanism().default_value(parameters(), sweep.fixed[i]);
+      EXPECT_EQ(found.fixed[i].lower, value);
+      with_values.fixed[i] = {sweep.fixed[i], FixedCoordinate::Kind::value, value};
     }
     EXPECT_EQ(fields(with_values).field("feasible").values, found.field("feasible").values);
     EXPECT_NE(fields(with_values).fixed_note, found.fixed_note);
@@ -101,9 +101,9 @@ TEST_P(WorkspaceFieldsContract, ColumnPlansAreSampledByVoxels) {
   EXPECT_GT(found.volume, 0);
   if (info().sweeps.front().integrates) {
     WorkspacePlan integrated = test::columns(info());
-    integrated.held[0].kind = FixedCoordinate::Kind::integrated;
+    integrated.fixed[0].kind = FixedCoordinate::Kind::integrated;
     const WorkspaceFields fixed = fields(integrated);
-    EXPECT_EQ(fixed.held[0].lower, found.held[0].lower);
+    EXPECT_EQ(fixed.fixed[0].lower, found.fixed[0].lower);
     EXPECT_NE(fixed.fixed_note, found.fixed_note);
     EXPECT_EQ(fixed.volume, found.volume);
   }
@@ -120,16 +120,17 @@ TEST_P(WorkspaceFieldsContract, ConditioningAndCouplingHaveTheMeansOfTheWorkspac
   };
   for (const Sweep& sweep : sweeps()) {
     SCOPED_TRACE(test::words(info(), sweep));
-    Demand demand;
-    demand.add(kConditioning);
+    FieldRequest request;
+    request.add(kConditioning);
     const WorkspaceFields found = fields(plan(sweep));
-    const Survey<double> survey = test::survey(mechanism(), parameters(), plan(sweep), demand);
-    EXPECT_NEAR(mean(found.field("conditioning").values), weighted_mean(survey.weight, survey.of(kConditioning)), 1e-9);
+    const WorkspaceResult<double> survey = test::survey(mechanism(), parameters(), plan(sweep), request);
+    EXPECT_NEAR(mean(found.field("conditioning").values), weighted_mean(survey.weight, survey.field(kConditioning)),
+                1e-9);
     EXPECT_EQ(found.find("dci_1") != nullptr, mechanism().dynamics() != nullptr);
     if (!mechanism().dynamics()) continue;
-    Demand inertia;
+    FieldRequest inertia;
     inertia.fields = {&kCouplingIndex, &kInertiaCondition};
-    const Survey<double> coupled = test::survey(mechanism(), parameters(), plan(sweep), inertia);
+    const WorkspaceResult<double> coupled = test::survey(mechanism(), parameters(), plan(sweep), inertia);
     Scratch scratch;
     std::vector<std::string> limbs = {"worst"};
     for (std::size_t i = 1; i <= info().joints.size(); ++i) limbs.push_back(std::to_string(i));
@@ -138,7 +139,7 @@ TEST_P(WorkspaceFieldsContract, ConditioningAndCouplingHaveTheMeansOfTheWorkspac
                   weighted_mean(coupled.weight, reduced_field(coupled, kCouplingIndex, limb, scratch)), 1e-9)
           << limb;
     EXPECT_NEAR(mean(found.field("inertia_condition").values),
-                weighted_mean(coupled.weight, coupled.of(kInertiaCondition)), 1e-9);
+                weighted_mean(coupled.weight, coupled.field(kInertiaCondition)), 1e-9);
   }
 }
 

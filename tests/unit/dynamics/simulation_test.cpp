@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/mechanism/drive_along.hpp"
+#include "engine/mechanism/inverse_dynamics.hpp"
 #include "engine/motion/motion_factories.hpp"
 #include "tests/unit/accelerators/crr_cru/golden.hpp"
 
@@ -103,9 +103,9 @@ TEST(Simulation, ReproducesTheMotionOfInverseDynamics) {
     setup.forces = [&](double time) {
       const MotionSample at = motion->at(time);
       X tau;
-      DriveScratch<double> scratch;
-      drive_along<double>(*m.dynamics(), p, m.info().modes[0], {&at, 1}, {}, scratch,
-                          [&](std::size_t, const Drive<double>& drive) { tau = drive.forces; });
+      InverseDynamicsScratch<double> scratch;
+      inverse_dynamics_along<double>(*m.dynamics(), p, m.info().modes[0], {&at, 1}, {}, scratch,
+                                     [&](std::size_t, const ActuatorState<double>& drive) { tau = drive.forces; });
       return tau;
     };
     const Simulation run = simulate(setup, cycle.start, kAtRest);
@@ -119,10 +119,12 @@ TEST(Simulation, ReproducesTheMotionOfInverseDynamics) {
 TEST(Simulation, RestsIfTheForcesBalanceGravity) {
   SimulationSetup setup = setup_of("3crr-r-cru", kNone, 0.05, 1e-2);
   const MotionSample at{0, kPose, kAtRest, kAtRest, {}};
-  DriveScratch<double> scratch;
-  drive_along<double>(
-      *mechanism("3crr-r-cru").dynamics(), nominal(), mechanism("3crr-r-cru").info().modes[0], {&at, 1}, {}, scratch,
-      [&](std::size_t, const Drive<double>& drive) { setup.forces = [tau = drive.forces](double) { return tau; }; });
+  InverseDynamicsScratch<double> scratch;
+  inverse_dynamics_along<double>(*mechanism("3crr-r-cru").dynamics(), nominal(),
+                                 mechanism("3crr-r-cru").info().modes[0], {&at, 1}, {}, scratch,
+                                 [&](std::size_t, const ActuatorState<double>& drive) {
+                                   setup.forces = [tau = drive.forces](double) { return tau; };
+                                 });
   const Simulation run = simulate(setup, kPose, kAtRest);
   ASSERT_EQ(run.stopped, "");
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.states.back().pose[i], kPose[i], 1e-12);

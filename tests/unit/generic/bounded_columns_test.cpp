@@ -1,5 +1,5 @@
 // Exact volumes of mechanisms from files against bounds that rounding cannot make wrong: random designs, sweeps, limits
-// and held values. PKM_BOUNDED_DESIGNS: how many designs of each mechanism, to a gap of 2e-2 or the bounds of 200 000
+// and fixed values. PKM_BOUNDED_DESIGNS: how many designs of each mechanism, to a gap of 2e-2 or the bounds of 200 000
 // boxes; PKM_BOUNDED_FIRST: the number of the first one, to see a finding again.
 #include <gtest/gtest.h>
 
@@ -35,11 +35,11 @@ class BoundedColumns : public ::testing::TestWithParam<std::string> {
     return design;
   }
 
-  /// Beside the middle of what is held.
+  /// Beside the middle of what is fixed.
   void hold(const std::vector<double>& design, WorkspacePlan& plan, Stream& random) const {
-    for (FixedCoordinate& held : plan.held)
-      held = {held.coordinate, FixedCoordinate::Kind::value,
-              *file().middle(design, held.coordinate) + 0.3 * (2 * random.u01() - 1)};
+    for (FixedCoordinate& fixed : plan.fixed)
+      fixed = {fixed.coordinate, FixedCoordinate::Kind::value,
+               *file().default_value(design, fixed.coordinate) + 0.3 * (2 * random.u01() - 1)};
   }
 };
 
@@ -63,12 +63,12 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
     if (k % 3 > 0) plan.limits = test::random_limits(info(), random);
     if (k % 3 > 1) hold(p, plan, random);
     if (file().refuse(p)) continue;
-    const Survey<double> exact = test::survey(file(), p, plan);
+    const WorkspaceResult<double> exact = test::survey(file(), p, plan);
     // those without a workspace are quick to bound, and say little
     if (!(exact.volume > 0) && k % 8 > 0) continue;
     SCOPED_TRACE("design " + std::to_string(k) + ": " + test::told(info(), p, plan));
     const VolumeBounds bounds =
-        file().bounds()->volume(p, plan, "", {.gap = 0.02, .most_boxes = asked ? 200'000U : 300U});
+        file().bounds()->volume(p, plan, "", {.gap = 0.02, .max_boxes = asked ? 200'000U : 300U});
     const double off = (exact.error + 1e-9) * exact.volume;
     const bool holds = bounds.lower <= exact.volume + off && bounds.upper >= exact.volume - off;
     EXPECT_TRUE(holds) << bounds.lower << ' ' << exact.volume << ' ' << bounds.upper << ", error " << exact.error;

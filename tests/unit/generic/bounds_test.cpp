@@ -9,14 +9,14 @@
 #include "engine/geometry/singular.hpp"
 #include "engine/math/random.hpp"
 #include "engine/motion/motion_factories.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/contracts/catalogue_problem.hpp"
 #include "tests/unit/generic/files.hpp"
 
 namespace pkm {
 namespace {
 
-using Kind = PosesFinding::Kind;
+using Kind = PropertyResult::Kind;
 
 WorkspacePlan plain_plan(const MechanismInfo& info) {
   WorkspacePlan plan;
@@ -70,7 +70,7 @@ TEST(RigorousBounds, LookAsFarAsGivenLimitsAllow) {
   WorkspacePlan plan = test::columns(info);
   plan.limits = test::limits_with(info, {{"tau_s", 1e-3}});
   const std::vector<double> design = test::design_with(info, {{"tau_s", 0.4}, {"psiA_max", 1.5}});
-  const Survey<double> exact = test::survey(hybrid, design, plan);
+  const WorkspaceResult<double> exact = test::survey(hybrid, design, plan);
   expect_holds(hybrid.bounds()->volume(design, plan, "", {.gap = 1e-2}), exact.volume, 1e-2);
   plan.method = VoxelOptions{.cells = {100, 100, 100}};
   EXPECT_NEAR(test::survey(hybrid, design, plan).volume / exact.volume, 1, 2e-2);
@@ -90,7 +90,7 @@ TEST(RigorousBounds, HoldReferenceVolumesOfFiles) {
   const Mechanism& gough = *test::described("gough");
   const auto at = [&](const nlohmann::json& design, double tilt, double yaw) {
     WorkspacePlan plan = plain_plan(gough.info());
-    plan.held = {{3, FixedCoordinate::Kind::value, tilt}, {5, FixedCoordinate::Kind::value, yaw}};
+    plan.fixed = {{3, FixedCoordinate::Kind::value, tilt}, {5, FixedCoordinate::Kind::value, yaw}};
     return gough.bounds()->volume(test::design_with(gough.info(), design), plan, "", {.gap = 5e-2});
   };
   expect_holds(at(nlohmann::json::object(), 0.15, 0.1), 0.272714271224695, 5e-2);
@@ -137,7 +137,7 @@ TEST(RigorousBounds, SayWhyThereAreNone) {
             "certified bounds support at most 128 constraints, but mechanism margins has 129");
   const Mechanism& gough = *test::described("gough");
   WorkspacePlan listed = plain_plan(gough.info());
-  listed.held = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {0, 0.1}}};
+  listed.fixed = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {0, 0.1}}};
   EXPECT_EQ(
       refusal(gough, listed),
       "certified bounds need a single value of alpha, but the workspace analysis has several; fix it at one value");
@@ -160,12 +160,12 @@ TEST_P(BoundsOfFile, HoldWhatVoxelsCountAlmost) {
   const Mechanism& mechanism = *test::described(GetParam());
   WorkspacePlan plan = plain_plan(mechanism.info());
   const VolumeBounds found =
-      mechanism.bounds()->volume(defaults(mechanism.info()), plan, "", {.gap = 0.3, .most_boxes = 3000});
+      mechanism.bounds()->volume(defaults(mechanism.info()), plan, "", {.gap = 0.3, .max_boxes = 3000});
   VoxelOptions voxels;
   const std::size_t swept = sweep_of(mechanism.info(), plan).swept.size();
   std::fill_n(voxels.cells.begin(), swept, 40);
   plan.method = voxels;
-  Survey<double> counted;
+  WorkspaceResult<double> counted;
   evaluate_once<double>(*prepare_workspace(mechanism, plan, {}), defaults(mechanism.info()), counted);
   EXPECT_GT(found.upper, 0);
   EXPECT_LE(found.lower, counted.volume * 1.05);
@@ -183,16 +183,16 @@ TEST(RigorousBounds, OfABoxOfPoses) {
   const MechanismInfo& info = orthoglide.info();
   const auto certified = [&](double from, double to) {
     return orthoglide.bounds()->box(defaults(info), plain_plan(info), "",
-                                    std::vector<std::array<double, 2>>(3, {from, to}), {.most_boxes = 20000});
+                                    std::vector<std::array<double, 2>>(3, {from, to}), {.max_boxes = 20000});
   };
-  const PosesCertificate inside = certified(-0.05, 0.03);
+  const PoseCertificate inside = certified(-0.05, 0.03);
   EXPECT_EQ(inside.feasible.kind, Kind::holds);
   EXPECT_EQ(inside.regular.kind, Kind::holds);
 
-  const PosesCertificate across = certified(-0.1, 0.12);
+  const PoseCertificate across = certified(-0.1, 0.12);
   ASSERT_EQ(across.feasible.kind, Kind::fails);
   const PoseReport report =
-      orthoglide.inspect(defaults(info), *across.feasible.where, info.modes.front(), no_limits(info));
+      orthoglide.inspect(defaults(info), *across.feasible.pose, info.modes.front(), no_limits(info));
   EXPECT_FALSE(report.feasible);
   EXPECT_EQ(across.regular.kind, Kind::not_examined);
 }
@@ -223,7 +223,7 @@ TEST(RigorousBounds, OfMotions) {
       Stream random(3, 0, k, Stream::Use::start);
       const double share = k % 4 < 2 ? 0.2 : 0.6;
       const auto motion = straight(within(share, random), within(share, random));
-      const PosesCertificate found = mechanism.bounds()->motion(p, no_limits(info), "", *motion, {.most_boxes = 20000});
+      const PoseCertificate found = mechanism.bounds()->motion(p, no_limits(info), "", *motion, {.max_boxes = 20000});
       ASSERT_NE(found.feasible.kind, Kind::undecided) << k;
       const double T = motion->duration();
       if (found.feasible.kind == Kind::holds) {
@@ -234,7 +234,7 @@ TEST(RigorousBounds, OfMotions) {
       ++fails;
       const double t = *found.feasible.time;
       EXPECT_FALSE(feasible(*motion, t)) << k;
-      EXPECT_EQ((*found.feasible.where)[0], motion->at(t).pose[0]);
+      EXPECT_EQ((*found.feasible.pose)[0], motion->at(t).pose[0]);
       for (int i = 0; i < 200; ++i) EXPECT_TRUE(feasible(*motion, (t - 1e-5 * T) * i / 200) || t < 1e-5 * T) << k;
     }
   }
@@ -246,15 +246,15 @@ TEST(RigorousBounds, OfMotionsThatEndWhereTheyMay) {
   const Mechanism& five_bar = *test::described("five-bar");
   const auto certified = [&](double y) {
     return five_bar.bounds()->motion(defaults(five_bar.info()), no_limits(five_bar.info()), "",
-                                     *straight({0.0, 0.3}, {0.0, y}), {.most_boxes = 20000});
+                                     *straight({0.0, 0.3}, {0.0, y}), {.max_boxes = 20000});
   };
   EXPECT_EQ(certified(1e-9).feasible.kind, Kind::holds);
-  const PosesCertificate touches = certified(0);
+  const PoseCertificate touches = certified(0);
   EXPECT_EQ(touches.feasible.kind, Kind::undecided) << "exactly 0 at the end";
   EXPECT_NEAR(*touches.feasible.time, 0.6, 1e-3);
-  const PosesCertificate leaves = certified(-1e-6);
+  const PoseCertificate leaves = certified(-1e-6);
   EXPECT_EQ(leaves.feasible.kind, Kind::fails);
-  EXPECT_EQ(leaves.feasible.what, "on its side of the pivots");
+  EXPECT_EQ(leaves.feasible.detail, "on its side of the pivots");
 }
 
 TEST(RigorousBounds, FindASingularityBetweenTwoSignsOfTheDeterminant) {
@@ -268,22 +268,22 @@ TEST(RigorousBounds, FindASingularityBetweenTwoSignsOfTheDeterminant) {
   const auto regular = [&](double from, double to) {
     const std::vector<std::array<double, 2>> ranges = {{0.2, 0.8}, {from, to}};
     return legs->bounds()
-        ->box(defaults(legs->info()), plain_plan(legs->info()), "", ranges, {.most_boxes = 2000})
+        ->box(defaults(legs->info()), plain_plan(legs->info()), "", ranges, {.max_boxes = 2000})
         .regular;
   };
   EXPECT_EQ(regular(0.1, 0.9).kind, Kind::holds);
-  const PosesFinding across = regular(-0.1, 0.9);
+  const PropertyResult across = regular(-0.1, 0.9);
   EXPECT_EQ(across.kind, Kind::fails);
   EXPECT_THAT(across.what, ::testing::HasSubstr("parallel"));
   EXPECT_NEAR((*across.where)[1], 0, 1e-12);
   const auto along = [&](double from, double to) {
     return legs->bounds()
         ->motion(defaults(legs->info()), no_limits(legs->info()), "", *straight({0.4, from}, {0.6, to}),
-                 {.most_boxes = 20000})
+                 {.max_boxes = 20000})
         .regular;
   };
   EXPECT_EQ(along(0.1, 0.9).kind, Kind::holds);
-  const PosesFinding through = along(0.5, -0.5);
+  const PropertyResult through = along(0.5, -0.5);
   EXPECT_EQ(through.kind, Kind::fails);
   EXPECT_NEAR(*through.time, 0.35, 1e-9);
 }
@@ -297,8 +297,8 @@ std::shared_ptr<const Mechanism> redundant(const std::string& name) {
 
 using PoseRanges = std::vector<std::array<double, 2>>;
 
-PosesCertificate over(const Mechanism& mechanism, const std::vector<double>& design, const PoseRanges& box) {
-  return mechanism.bounds()->box(design, plain_plan(mechanism.info()), "", box, {.most_boxes = 20000});
+PoseCertificate over(const Mechanism& mechanism, const std::vector<double>& design, const PoseRanges& box) {
+  return mechanism.bounds()->box(design, plain_plan(mechanism.info()), "", box, {.max_boxes = 20000});
 }
 
 TEST(RigorousBounds, OfRedundantDrives) {
@@ -306,10 +306,10 @@ TEST(RigorousBounds, OfRedundantDrives) {
   std::vector<double> design = defaults(cables->info());
   // the plate is the frame made smaller: no cable turns it at phi = 0
   for (const double x : {-0.3, 0.2}) {
-    const PosesCertificate found = over(*cables, design, PoseRanges{{x, x + 0.1}, {-0.2, 0.1}, {0, 0}});
+    const PoseCertificate found = over(*cables, design, PoseRanges{{x, x + 0.1}, {-0.2, 0.1}, {0, 0}});
     EXPECT_EQ(found.feasible.kind, Kind::holds);
     EXPECT_EQ(found.regular.kind, Kind::fails);
-    EXPECT_EQ(found.regular.what, "the parallel singularity (det(G^T G) = 0), to working precision");
+    EXPECT_EQ(found.regular.detail, "the parallel singularity (det(G^T G) = 0), to working precision");
     EXPECT_LT(found.boxes, 10u) << "any pose shows it";
   }
   EXPECT_EQ(over(*cables, design, PoseRanges{{-0.2, 0.2}, {-0.2, 0.2}, {0.1, 0.2}}).regular.kind, Kind::holds);
@@ -318,7 +318,7 @@ TEST(RigorousBounds, OfRedundantDrives) {
 
   const auto rrr = redundant("4-rrr.toml");
   const PoseRanges box = {{0.01, 0.03}, {0.01, 0.03}, {-0.02, 0.02}};
-  const PosesCertificate regular = over(*rrr, defaults(rrr->info()), box);
+  const PoseCertificate regular = over(*rrr, defaults(rrr->info()), box);
   EXPECT_EQ(regular.feasible.kind, Kind::holds);
   EXPECT_EQ(regular.regular.kind, Kind::holds);
 }
@@ -340,7 +340,7 @@ TEST(RigorousBounds, OfRedundantDrivesBesideSingularValues) {
       design[3] = design[2] * design[1] / design[0];
       box[2] = {-0.1, 0.1};
     }
-    const PosesCertificate found = over(*cables, design, box);
+    const PoseCertificate found = over(*cables, design, box);
     double least = 1;
     for (int i = 0; i <= 20; ++i) {
       Pose<double> pose(3);
@@ -360,7 +360,7 @@ TEST(RigorousBounds, OfRedundantDrivesBesideSingularValues) {
     }
     if (found.regular.kind == Kind::fails) {
       ++singular;
-      const auto J = *cables->inspect(design, *found.regular.where, "", no_limits(cables->info())).J;
+      const auto J = *cables->inspect(design, *found.regular.pose, "", no_limits(cables->info())).J;
       EXPECT_TRUE(is_rank_deficient(J)) << k;
     }
     if (k % 3 == 0) {
@@ -377,7 +377,7 @@ TEST(RigorousBounds, DoNotTakeAPoleForASingularity) {
       "[mechanism]\nname = \"poles\"\n[parameters]\nb = { default = 1, min = 0, max = 9 }\n[platform]\n"
       "coordinates = { x = \"along x\" }\n[survey]\nbox = { x = [-1, 1] }\n[[limb]]\nname = \"q\"\ndrive = "
       "\"formula\"\njoint = \"b/x^2\"\nunit = \"m\"\n");
-  const PosesCertificate found = over(*poles, defaults(poles->info()), PoseRanges{{-0.3, 0.4}});
+  const PoseCertificate found = over(*poles, defaults(poles->info()), PoseRanges{{-0.3, 0.4}});
   EXPECT_NE(found.regular.kind, Kind::fails);
   EXPECT_NE(found.regular.kind, Kind::holds);
 }
@@ -386,10 +386,10 @@ TEST(RigorousBounds, OfMotionsOfRedundantDrives) {
   const auto cables = redundant("four-cables.toml");
   const auto along = [&](const AxisVector<double>& from, const AxisVector<double>& to) {
     return cables->bounds()->motion(defaults(cables->info()), no_limits(cables->info()), "", *straight(from, to),
-                                    {.most_boxes = 20000});
+                                    {.max_boxes = 20000});
   };
   EXPECT_EQ(along({0.1, 0.1, 0.1}, {-0.2, 0.1, 0.2}).regular.kind, Kind::holds);
-  const PosesCertificate flat = along({0.1, 0.1, 0}, {-0.2, 0.1, 0});
+  const PoseCertificate flat = along({0.1, 0.1, 0}, {-0.2, 0.1, 0});
   EXPECT_EQ(flat.regular.kind, Kind::fails);
   EXPECT_TRUE(flat.regular.time);
 }

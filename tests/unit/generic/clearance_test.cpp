@@ -6,7 +6,7 @@
 #include <set>
 
 #include "engine/math/random.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/contracts/catalogue_problem.hpp"
 #include "tests/unit/generic/files.hpp"
 
@@ -162,7 +162,7 @@ TEST(DescribedClearance, VoxelsAreThePosesThatAreClear) {
     const MechanismInfo& info = mechanism.info();
     const std::vector<double> design = test::nominal(info);
     const std::array<std::int64_t, 3> cells = {17, 18, 70};
-    WorkspacePlan plan{.method = VoxelOptions{.cells = cells}, .held = {}, .limits = no_limits(info)};
+    WorkspacePlan plan{.method = VoxelOptions{.cells = cells}, .fixed = {}, .limits = no_limits(info)};
     const Sweep& sweep = sweep_of(info, plan);
     const VoxelMap all = voxel_map(mechanism, design, plan);
     // what some of the poses keep
@@ -173,8 +173,8 @@ TEST(DescribedClearance, VoxelsAreThePosesThatAreClear) {
       const auto at = static_cast<std::int64_t>(i);
       const std::array<std::int64_t, 3> cell = {at / (cells[1] * cells[2]), at / cells[2] % cells[1], at % cells[2]};
       Pose<double> pose(info.coordinates.size());
-      for (const int held : sweep.held)
-        pose[static_cast<std::size_t>(held)] = fixed_value(mechanism, design, plan, held);
+      for (const int fixed : sweep.fixed)
+        pose[static_cast<std::size_t>(fixed)] = fixed_value(mechanism, design, plan, fixed);
       for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
         pose[static_cast<std::size_t>(sweep.swept[axis])] = all.lower[axis] + (static_cast<double>(cell[axis]) + 0.5) *
                                                                                   (all.upper[axis] - all.lower[axis]) /
@@ -193,7 +193,7 @@ TEST(DescribedClearance, VoxelsAreThePosesThatAreClear) {
       ++(map.feasible[i] ? left : cut);
     }
     const auto count = std::ranges::count(map.feasible, 1);
-    const Survey<double> survey = test::survey(mechanism, design, plan, {.fields = {&kConditioning}});
+    const WorkspaceResult<double> survey = test::survey(mechanism, design, plan, {.fields = {&kConditioning}});
     EXPECT_EQ(survey.feasible_cells, count);
     EXPECT_EQ(static_cast<std::int64_t>(survey.weight.size()), count);
   }
@@ -204,7 +204,7 @@ TEST(DescribedClearance, VoxelsAreThePosesThatAreClear) {
 TEST(DescribedClearance, ColumnsAndBoundsAreRefused) {
   const Mechanism& mechanism = *test::described("linear-delta");
   const std::vector<double> design = test::nominal(mechanism.info());
-  WorkspacePlan plan{.method = ColumnOptions{}, .held = {}, .limits = clearance_limit(mechanism.info(), 0)};
+  WorkspacePlan plan{.method = ColumnOptions{}, .fixed = {}, .limits = clearance_limit(mechanism.info(), 0)};
   const auto message = [](const auto& work) {
     try {
       work();
@@ -214,10 +214,10 @@ TEST(DescribedClearance, ColumnsAndBoundsAreRefused) {
     return std::string("accepted");
   };
   const auto survey = [&] { prepare_workspace(mechanism, plan, {}); };
-  const auto bound = [&] { mechanism.bounds()->volume(design, plan, "", {.gap = 0.5, .most_boxes = 10}); };
+  const auto bound = [&] { mechanism.bounds()->volume(design, plan, "", {.gap = 0.5, .max_boxes = 10}); };
   EXPECT_EQ(message(survey),
-            "mechanism linear-delta has no column surveys under a clearance (clearance_min), because links that meet "
-            "end columns where no formula says; take workspace.method = \"voxels\"");
+            "mechanism linear-delta has no columns under a clearance (clearance_min), because links that meet "
+            "end columns where no formula says; set workspace.method = \"voxels\"");
   EXPECT_EQ(
       message(bound),
       "mechanism linear-delta has no certified bounds with a clearance limit (clearance_min), because the distance "

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 #include "tests/unit/generic/files.hpp"
 
@@ -46,10 +46,10 @@ struct Case {
     for (const auto& [key, value] : entry["parameters"].items()) parameters[parameter(key)] = value;
     design = test::design_with(info, parameters);
     plan = {.method = ColumnOptions{.tolerance = 1e-8},
-            .held = {},
+            .fixed = {},
             .limits = name == "4ppa-limits" ? test::limits_with(info, parameters) : no_limits(info)};
-    if (name == "3rpr-xy") plan.held = {{2, FixedCoordinate::Kind::value, parameters["phi"]}};
-    if (name == "3rpr-xyphi") plan.held = {{.coordinate = 2, .kind = FixedCoordinate::Kind::integrated}};
+    if (name == "3rpr-xy") plan.fixed = {{2, FixedCoordinate::Kind::value, parameters["phi"]}};
+    if (name == "3rpr-xyphi") plan.fixed = {{.coordinate = 2, .kind = FixedCoordinate::Kind::integrated}};
   }
   static std::string parameter(const std::string& key) { return key == "lu" ? "l_u" : key == "ld" ? "l_d" : key; }
 };
@@ -59,7 +59,7 @@ TEST(GenericColumns, AreTheGoldenVolumes) {
   for (const Json& entry : golden()["cases"]) {
     const Case known(entry);
     SCOPED_TRACE(entry["case"].get<std::string>() + " " + entry["parameters"].dump());
-    const Survey<double> found = test::survey(*known.mechanism, known.design, known.plan);
+    const WorkspaceResult<double> found = test::survey(*known.mechanism, known.design, known.plan);
     const double error = std::fabs(found.volume / entry["best_volume"].get<double>() - 1);
     const double accuracy = std::pow(10.0, -entry["digits"].get<double>());
     EXPECT_LT(error, std::max(1e-11, 10 * accuracy));
@@ -77,7 +77,7 @@ TEST(GenericColumns, HaveTheGoldenDerivatives) {
   for (const Json& entry : golden()["cases"]) {
     if (entry["gradient"].is_null() || entry["gradient_difference"].get<double>() > 1e-5) continue;
     const Case known(entry);
-    const auto surveyor = prepare_workspace(*known.mechanism, known.plan, {});
+    const auto evaluator = prepare_workspace(*known.mechanism, known.plan, {});
     const auto& parameters = known.mechanism->info().parameters;
     const double volume = test::survey(*known.mechanism, known.design, known.plan).volume;
     std::vector<double> slopes;
@@ -86,8 +86,8 @@ TEST(GenericColumns, HaveTheGoldenDerivatives) {
       std::vector<Dual4> design(known.design.begin(), known.design.end());
       for (std::size_t i = first; i < std::min(first + 4, design.size()); ++i)
         design[i] = Dual4::variable(design[i].a, static_cast<int>(i - first));
-      Survey<Dual4> found;
-      surveyor->slopes()->survey(design, scratch, found);
+      WorkspaceResult<Dual4> found;
+      evaluator->gradients()->evaluate(design, scratch, found);
       EXPECT_EQ(found.volume.a, volume);
       for (int i = 0; i < 4; ++i) slopes.push_back(found.volume.v[i]);
     }
@@ -113,10 +113,10 @@ TEST(GenericColumns, AreTheExactOnesOfTheReferences) {
     if (!std::filesystem::exists(path) || !test::described(name)->columns()) continue;
     const MechanismInfo& info = test::described(name)->info();
     for (const Json& exact : Json::parse(std::ifstream(path)).value("exact", Json::array())) {
-      WorkspacePlan plan{.method = ColumnOptions{.tolerance = 1e-10}, .held = {}, .limits = no_limits(info)};
+      WorkspacePlan plan{.method = ColumnOptions{.tolerance = 1e-10}, .fixed = {}, .limits = no_limits(info)};
       for (const auto& [coordinate, value] : exact["held"].items())
-        plan.held.push_back({static_cast<int>(find_named(info.coordinates, coordinate) - info.coordinates.data()),
-                             FixedCoordinate::Kind::value, value});
+        plan.fixed.push_back({static_cast<int>(find_named(info.coordinates, coordinate) - info.coordinates.data()),
+                              FixedCoordinate::Kind::value, value});
       const auto design = test::design_with(info, exact["parameters"]);
       const double volume = exact["value"];
       EXPECT_NEAR(test::survey(*test::described(name), design, plan).volume / volume, 1,
@@ -133,11 +133,11 @@ TEST(GenericColumns, AddUpOverAnIntegratedCoordinate) {
   const auto mechanism = mechanism_in(PKM_TEST_DATA "/generic/three-cylinders.toml");
   const std::vector<double> design = test::nominal(mechanism->info());
   const auto measure = [&](const WorkspacePlan& plan) { return test::survey(*mechanism, design, plan).volume; };
-  WorkspacePlan plan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism->info())};
+  WorkspacePlan plan{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(mechanism->info())};
   const double volume = measure(plan);
-  plan.held = {{.coordinate = 1, .kind = FixedCoordinate::Kind::integrated}};
+  plan.fixed = {{.coordinate = 1, .kind = FixedCoordinate::Kind::integrated}};
   EXPECT_NEAR(measure(plan) / volume, 1, 1e-9);
-  plan.held.push_back({.coordinate = 0, .kind = FixedCoordinate::Kind::integrated});
+  plan.fixed.push_back({.coordinate = 0, .kind = FixedCoordinate::Kind::integrated});
   EXPECT_NEAR(measure(plan) / volume, 1, 1e-8);
 }
 
@@ -146,11 +146,11 @@ TEST(GenericColumns, OfAnyFormulasAreThoseOfPolynomials) {
   const auto cylinders = mechanism_in(PKM_TEST_DATA "/generic/three-cylinders.toml");
   const auto others = mechanism_in(PKM_TEST_DATA "/generic/three-cylinders-by-exponentials.toml");
   const std::vector<double> design = test::nominal(cylinders->info());
-  WorkspacePlan plan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(cylinders->info())};
+  WorkspacePlan plan{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(cylinders->info())};
   const auto compare = [&](double tolerance) {
     std::vector<Dual4> duals(design.begin(), design.end());
     for (std::size_t i = 0; i < 4; ++i) duals[i] = Dual4::variable(design[i], static_cast<int>(i));
-    Survey<Dual4> known, found;
+    WorkspaceResult<Dual4> known, found;
     evaluate_once<Dual4>(*prepare_workspace(*cylinders, plan, {}), duals, known);
     evaluate_once<Dual4>(*prepare_workspace(*others, plan, {}), duals, found);
     EXPECT_NEAR(found.volume.a / known.volume.a, 1, tolerance);
@@ -159,7 +159,7 @@ TEST(GenericColumns, OfAnyFormulasAreThoseOfPolynomials) {
   };
   compare(1e-7);
   for (int coordinate : {0, 1, 2}) {
-    plan.held = {{coordinate, FixedCoordinate::Kind::value, 0.3}};
+    plan.fixed = {{coordinate, FixedCoordinate::Kind::value, 0.3}};
     compare(1e-9);
   }
 }
@@ -173,7 +173,7 @@ TEST(GenericColumns, OfALineThatCannotBeHalvedEnd) {
   const auto mechanism = read_mechanism_toml(file.str() + touching, "touching.toml");
   const std::array<double, 2> line = {0.3, std::nextafter(0.3, 1)};
   WorkspacePlan plan{
-      .method = ColumnOptions{.box = Box{line, line, line}}, .held = {}, .limits = no_limits(mechanism->info())};
+      .method = ColumnOptions{.box = Box{line, line, line}}, .fixed = {}, .limits = no_limits(mechanism->info())};
   const double volume = test::survey(*mechanism, test::nominal(mechanism->info()), plan).volume;
   EXPECT_GE(volume, 0);
   EXPECT_LE(volume, 1e-48);
@@ -194,17 +194,17 @@ TEST(GenericColumns, SayWhyThereAreNone) {
 /// the same with up to four times as many places that are looked at, and derivatives against differences.
 TEST(GenericColumns, OfCranksAreExactToo) {
   const Mechanism& delta = *test::described("rotary-delta");
-  const auto surveyor = prepare_workspace(delta, test::columns(delta.info()), {});
+  const auto evaluator = prepare_workspace(delta, test::columns(delta.info()), {});
   const auto survey = [&](const std::vector<double>& design) {
-    Survey<double> found;
-    evaluate_once<double>(*surveyor, design, found);
+    WorkspaceResult<double> found;
+    evaluate_once<double>(*evaluator, design, found);
     return found;
   };
   const std::pair<std::vector<double>, double> others[] = {{{0.16, 0.05, 0.17, 0.6, -0.9, 1.6}, 0.1108431442},
                                                            {{0.16, 0.046, 0.174, 0.534, -0.846, 1.463}, 0.0733202319},
                                                            {{0.233, 0.047, 0.219, 0.515, -0.583, 1.815}, 0.0937325498}};
   for (const auto& [design, known] : others) {
-    const Survey<double> found = survey(design);
+    const WorkspaceResult<double> found = survey(design);
     EXPECT_NEAR(found.volume / known, 1, 3e-9);
     EXPECT_LT(found.error, 1e-8);
   }
@@ -212,8 +212,8 @@ TEST(GenericColumns, OfCranksAreExactToo) {
   for (std::size_t first : {0, 2}) {
     std::vector<Dual4> design(nominal.begin(), nominal.end());
     for (std::size_t i = 0; i < 4; ++i) design[first + i] = Dual4::variable(nominal[first + i], static_cast<int>(i));
-    Survey<Dual4> slopes;
-    evaluate_once<Dual4>(*surveyor, design, slopes);
+    WorkspaceResult<Dual4> slopes;
+    evaluate_once<Dual4>(*evaluator, design, slopes);
     for (std::size_t i = 0; i < 4; ++i) {
       std::vector<double> low = nominal, high = nominal;
       low[first + i] -= 1e-4;
@@ -229,7 +229,7 @@ TEST(GenericColumns, AreExactWhereSurfacesTouchAllAlong) {
   const Mechanism& orthoglide = *test::described("orthoglide");
   const std::vector<double> design = test::design_with(
       orthoglide.info(), {{"L", 0.2616425143772651}, {"q_min", 0.1514192579692078}, {"q_max", 0.383}});
-  const Survey<double> found = test::survey(orthoglide, design, test::columns(orthoglide.info()));
+  const WorkspaceResult<double> found = test::survey(orthoglide, design, test::columns(orthoglide.info()));
   EXPECT_NEAR(found.volume, 0.0131476, 1e-7);
   EXPECT_LT(found.error, 1e-8);
   EXPECT_LT(found.columns, 5000);
@@ -240,15 +240,15 @@ TEST(GenericColumns, SampleInsideTheWorkspace) {
   for (const char* const name : {"orthoglide", "3-rrr", "4ppa-2par"}) {
     const Mechanism& mechanism = *test::described(name);
     const MechanismInfo& info = mechanism.info();
-    const auto surveyor =
+    const auto evaluator =
         prepare_workspace(mechanism, test::columns(info), {.fields = {&kConditioning}, .poses = true});
-    Survey<double> found;
-    evaluate_once<double>(*surveyor, test::nominal(info), found);
+    WorkspaceResult<double> found;
+    evaluate_once<double>(*evaluator, test::nominal(info), found);
     double sum = 0;
     for (std::size_t i = 0; i < found.pose.size(); ++i) {
       const PoseReport report = mechanism.inspect(test::nominal(info), found.pose[i], info.modes[0], no_limits(info));
       ASSERT_TRUE(report.feasible) << name << ": " << report.reason;
-      EXPECT_NEAR(found.of(kConditioning)[i], *report.conditioning, 1e-12);
+      EXPECT_NEAR(found.field(kConditioning)[i], *report.conditioning, 1e-12);
       sum += found.weight[i];
     }
     EXPECT_NEAR(sum / found.volume, 1, 2e-3) << name;

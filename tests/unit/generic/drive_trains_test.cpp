@@ -9,8 +9,8 @@
 #include "engine/dynamics/coupling.hpp"
 #include "engine/dynamics/motor.hpp"
 #include "engine/dynamics/simulation.hpp"
-#include "engine/mechanism/driven.hpp"
 #include "engine/mechanism/trajectory.hpp"
+#include "engine/mechanism/with_drive_trains.hpp"
 #include "objectives/all.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 
@@ -72,12 +72,12 @@ TEST(DrivenMechanism, SurveysTheInertiaThatItsEquationsHave) {
     std::vector<WorkspacePlan> plans;
     std::array<std::int64_t, 3> cells{1, 1, 1};
     for (std::size_t i = 0; i < info.sweeps.front().swept.size(); ++i) cells[i] = 7;
-    plans.push_back({.method = VoxelOptions{.cells = cells}, .held = {}, .limits = no_limits(info)});
+    plans.push_back({.method = VoxelOptions{.cells = cells}, .fixed = {}, .limits = no_limits(info)});
     if (bare->columns())
-      plans.push_back({.method = ColumnOptions{.nodes = {2, 2}}, .held = {}, .limits = no_limits(info)});
+      plans.push_back({.method = ColumnOptions{.nodes = {2, 2}}, .fixed = {}, .limits = no_limits(info)});
     for (const WorkspacePlan& plan : plans) {
-      const Demand demand{.fields = {&kCouplingIndex, &kInertiaCondition}, .poses = true};
-      const Survey<double> survey = test::survey(*driven, design, plan, demand);
+      const FieldRequest request{.fields = {&kCouplingIndex, &kInertiaCondition}, .poses = true};
+      const WorkspaceResult<double> survey = test::survey(*driven, design, plan, request);
       ASSERT_GT(survey.pose.size(), 3u);
       for (std::size_t k = 0; k < survey.pose.size(); ++k) {
         const MotionState<double> state{survey.pose[k], AxisVector<double>(info.coordinates.size())};
@@ -91,9 +91,9 @@ TEST(DrivenMechanism, SurveysTheInertiaThatItsEquationsHave) {
         const auto indices = coupling_indices(M_q);
         for (std::size_t i = 0; i < M_q.rows(); ++i) {
           EXPECT_NEAR(found(i, i), M_q(i, i), 1e-10 * M_q(i, i));
-          EXPECT_NEAR(survey.of(kCouplingIndex, i)[k], indices[i], 1e-9);
+          EXPECT_NEAR(survey.field(kCouplingIndex, i)[k], indices[i], 1e-9);
         }
-        EXPECT_NEAR(survey.of(kInertiaCondition)[k], inertia_condition(M_q), 1e-9);
+        EXPECT_NEAR(survey.field(kInertiaCondition)[k], inertia_condition(M_q), 1e-9);
       }
     }
   }
@@ -133,14 +133,15 @@ TEST(DrivenMechanism, MayHaveDifferentDrivesOnOneRail) {
   trains[1].rotor *= 5;
   const auto driven = with_drive_trains(*paper, trains),
              generic = with_drive_trains(test::described("4ppa-2par"), trains);
-  const WorkspacePlan plan{.method = VoxelOptions{.cells = {6, 6, 6}}, .held = {}, .limits = no_limits(driven->info())};
-  const Demand demand{.fields = {&kCouplingIndex}};
+  const WorkspacePlan plan{
+      .method = VoxelOptions{.cells = {6, 6, 6}}, .fixed = {}, .limits = no_limits(driven->info())};
+  const FieldRequest request{.fields = {&kCouplingIndex}};
   const std::vector<double> design = test::nominal(driven->info());
-  Survey<double> found, expected;
-  evaluate_once<double>(*prepare_workspace(*driven, plan, demand), design, found);
-  evaluate_once<double>(*prepare_workspace(*generic, plan, demand), design, expected);
+  WorkspaceResult<double> found, expected;
+  evaluate_once<double>(*prepare_workspace(*driven, plan, request), design, found);
+  evaluate_once<double>(*prepare_workspace(*generic, plan, request), design, expected);
   EXPECT_GT(found.feasible_cells, 10);
-  EXPECT_EQ(found.of(kCouplingIndex), expected.of(kCouplingIndex));
+  EXPECT_EQ(found.field(kCouplingIndex), expected.field(kCouplingIndex));
 }
 
 TEST(DrivenMechanism, FrictionTakesWhatASimulationLoses) {
@@ -214,8 +215,9 @@ TEST(DriveTrainStudy, ObjectivesAreThoseOfTheTrajectory) {
   const Study study = read_study(text);
   const DesignReport report = study.problem->report(study.problem->parts().parameters);
   const Mechanism& mechanism = *study.problem->parts().mechanism;
-  const Trajectory along = follow(mechanism, study.problem->parts().parameters, mechanism.info().modes.front(),
-                                  no_limits(mechanism.info()), *study.motions.front().motion, 201);
+  const Trajectory along =
+      compute_trajectory(mechanism, study.problem->parts().parameters, mechanism.info().modes.front(),
+                         no_limits(mechanism.info()), *study.motions.front().motion, 201);
   EXPECT_NEAR(report.reports[0], std::ranges::max(along.summary.peak_torque), 1e-12);
   EXPECT_NEAR(report.reports[1], std::ranges::max(along.summary.rms_torque), 1e-12);
   EXPECT_NEAR(report.reports[2], along.summary.peak_motor_speed[1], 1e-12);

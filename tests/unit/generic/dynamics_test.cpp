@@ -282,7 +282,7 @@ TEST(DescribedBodies, WhatIsNotPositiveIsRefusedByName) {
   } catch (const DesignError& error) {
     EXPECT_STREQ(error.what(), "the mass of the platform is not positive: -2 kg");
   }
-  EXPECT_TRUE(no_joint_forces(*read_mechanism_toml(gantry(""), "gantry.toml")));
+  EXPECT_TRUE(why_no_joint_forces(*read_mechanism_toml(gantry(""), "gantry.toml")));
 }
 
 TEST(DescribedBodies, ABodyTurnsWithALinkOrThePlatformOrNotAtAll) {

@@ -9,7 +9,7 @@ namespace {
 
 struct Gap {
   const char *name, *mechanism;
-  FixedCoordinate held;
+  FixedCoordinate fixed;
   nlohmann::json design, limits;
   double volume;
 };
@@ -114,9 +114,9 @@ class Gaps : public ::testing::TestWithParam<Gap> {};
 TEST_P(Gaps, AreFoundWithTheirSlopes) {
   const Gap& gap = GetParam();
   const auto survey = [&](const Mechanism& mechanism) {
-    const auto holds = [&](const Sweep& sweep) { return sweep.held.front() == gap.held.coordinate; };
+    const auto holds = [&](const Sweep& sweep) { return sweep.fixed.front() == gap.fixed.coordinate; };
     WorkspacePlan plan = test::columns(mechanism.info(), *std::ranges::find_if(mechanism.info().sweeps, holds));
-    plan.held = {gap.held};
+    plan.fixed = {gap.fixed};
     plan.limits = test::limits_with(mechanism.info(), gap.limits);
     std::vector<Dual4> moving;
     const std::vector<double> design = test::design_with(mechanism.info(), gap.design);
@@ -126,13 +126,13 @@ TEST_P(Gaps, AreFoundWithTheirSlopes) {
       for (int k = 0; k < 4; ++k)
         moving.back().v[k] = design[i] * std::sin(1.0 + k * (name.front() + 3.0 * name.back()));
     }
-    Survey<Dual4> found;
+    WorkspaceResult<Dual4> found;
     evaluate_once<Dual4>(*prepare_workspace(mechanism, plan, {}), moving, found);
     return found;
   };
-  const Survey<Dual4> file = survey(*test::described(gap.mechanism)),
-                      own = survey(**std::ranges::find_if(all_mechanisms(),
-                                                          [&](const auto&m) { return m.name() == gap.mechanism; }));
+  const WorkspaceResult<Dual4> file = survey(*test::described(gap.mechanism)),
+                               own = survey(**std::ranges::find_if(
+                                   all_mechanisms(), [&](const auto&m) { return m.name() == gap.mechanism; }));
   EXPECT_NEAR(file.volume.a / gap.volume, 1, 1e-9);
   EXPECT_NEAR(own.volume.a / gap.volume, 1, 1e-9);
   for (int k = 0; k < 4; ++k)

@@ -27,10 +27,10 @@ unsigned asked(const char* variable, unsigned otherwise) {
 /// The volume of one mechanism by one plan.
 class Volume {
  public:
-  Volume(const Mechanism& mechanism, const WorkspacePlan& plan) : surveyor_(prepare_workspace(mechanism, plan, {})) {}
+  Volume(const Mechanism& mechanism, const WorkspacePlan& plan) : evaluator_(prepare_workspace(mechanism, plan, {})) {}
 
   double operator()(const std::vector<double>& design) {
-    surveyor_->survey(design, scratch_, survey_);
+    evaluator_->evaluate(design, scratch_, survey_);
     return survey_.volume;
   }
   double error() const { return survey_.error; }            ///< of the last volume, relative
@@ -41,17 +41,17 @@ class Volume {
       const std::size_t count = std::min<std::size_t>(4, design.size() - first);
       std::vector<Dual4> moving(design.begin(), design.end());
       for (std::size_t i = 0; i < count; ++i) moving[first + i].v[static_cast<int>(i)] = 1;
-      surveyor_->slopes()->survey(moving, scratch_, sloped_);
+      evaluator_->gradients()->evaluate(moving, scratch_, sloped_);
       for (std::size_t i = 0; i < count; ++i) all.push_back(sloped_.volume.v[static_cast<int>(i)]);
     }
     return all;
   }
 
  private:
-  std::unique_ptr<const WorkspaceEvaluator> surveyor_;
+  std::unique_ptr<const WorkspaceEvaluator> evaluator_;
   Scratch scratch_;
-  Survey<double> survey_;
-  Survey<Dual4> sloped_;
+  WorkspaceResult<double> survey_;
+  WorkspaceResult<Dual4> sloped_;
 };
 
 /// Ends a computation with Stopped after a number of calls of check_stop(): unlike time, they are the same on every
@@ -117,15 +117,15 @@ TEST(RandomSlopes, EqualDifferencesForRandomMechanisms) {
     try {
       mechanism = read_mechanism_toml(text, "random.toml");
       WorkspacePlan plan = test::columns(mechanism->info(), {.tolerance = 1e-8});
-      for (FixedCoordinate& held : plan.held) {
+      for (FixedCoordinate& fixed : plan.fixed) {
         const double at = 0.1 * (random.u01() - 0.5);
-        const std::string& name = mechanism->info().coordinates[static_cast<std::size_t>(held.coordinate)].name;
+        const std::string& name = mechanism->info().coordinates[static_cast<std::size_t>(fixed.coordinate)].name;
         if (name == "z") continue;  // in its middle, which moves with the design
-        if (plan.held.size() == 1 && mechanism->info().coordinates.size() == 3 && random.chance(0.5))
-          held.kind = FixedCoordinate::Kind::integrated;
+        if (plan.fixed.size() == 1 && mechanism->info().coordinates.size() == 3 && random.chance(0.5))
+          fixed.kind = FixedCoordinate::Kind::integrated;
         else
-          held = {held.coordinate, FixedCoordinate::Kind::value, at};
-        held_at += ", " + name + (held.value == at ? " = " + std::to_string(at) : " integrated");
+          fixed = {fixed.coordinate, FixedCoordinate::Kind::value, at};
+        held_at += ", " + name + (fixed.value == at ? " = " + std::to_string(at) : " integrated");
       }
       design = test::nominal(mechanism->info());
       const CostLimit limit(most_checks);
@@ -272,7 +272,7 @@ TEST(RandomSlopes, BreaksOfLinesAreKnownWellEnough) {
 TEST(RandomSlopes, RootsThatBeginJustOutsideAPartCount) {
   const auto mechanism = read_mechanism_toml(kCranks, "cranks.toml");
   WorkspacePlan plan = test::columns(mechanism->info(), {.tolerance = 1e-8});
-  plan.held.at(0) = {plan.held.at(0).coordinate, FixedCoordinate::Kind::value, 0.05};
+  plan.fixed.at(0) = {plan.fixed.at(0).coordinate, FixedCoordinate::Kind::value, 0.05};
   Volume volume(*mechanism, plan);
   const std::vector<double> design = test::nominal(mechanism->info()), slopes = volume.slopes(design);
   for (std::size_t i = 0; i < design.size(); ++i)

@@ -15,8 +15,8 @@ Trajectory swing(const Mechanism& mechanism, std::size_t samples, const Motion* 
   const std::vector<double> design = test::nominal(mechanism.info());
   const std::string& mode = mechanism.info().modes.front();
   const auto own = test::motions(mechanism).front().motion;
-  Trajectory along =
-      follow(mechanism, design, mode, no_limits(mechanism.info()), motion ? *motion : *own, samples, kWrench);
+  Trajectory along = compute_trajectory(mechanism, design, mode, no_limits(mechanism.info()), motion ? *motion : *own,
+                                        samples, kWrench);
   add_reactions(mechanism, design, mode, kWrench, along);
   return along;
 }
@@ -42,7 +42,7 @@ TEST(ReactionsAlong, TheLargestIsThatOfSingleStates) {
   for (const std::string name : {"rotary-delta", "gough"}) {
     SCOPED_TRACE(name);
     const Mechanism& mechanism = *test::described(name);
-    const std::vector<CarryingJoint> carried = carried_along(swing(mechanism, kSamples));
+    const std::vector<ReactionLoads> carried = reaction_loads(swing(mechanism, kSamples));
     ASSERT_FALSE(carried.empty());
     for (std::size_t joint = 0; joint < carried.size(); ++joint) {
       const auto [force, at] = greatest(mechanism, kSamples, joint, &JointReaction::force);
@@ -80,7 +80,7 @@ TEST(ReactionsAlong, DrivesDoTheWorkThatTheMotionTakes) {
 
 TEST(ReactionsAlong, WhatIsNotDeterminedIsLeftOut) {
   const Trajectory along = swing(*test::described("3-rrr"), 9);
-  for (const CarryingJoint& joint : carried_along(along)) {
+  for (const ReactionLoads& joint : reaction_loads(along)) {
     EXPECT_EQ(joint.force.determined, (std::array{true, true, false})) << joint.name;
     EXPECT_EQ(joint.couple.determined, (std::array{false, false, true})) << joint.name;
     EXPECT_GT(joint.force.peak, 0);

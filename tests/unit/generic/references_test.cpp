@@ -1,12 +1,12 @@
 // Mechanisms from files against values that another program computed from the same files (tests/data/README.md), and
-// what is left beside the contracts of all mechanisms (tests/unit/contracts), which they are held to, too.
+// what is left beside the contracts of all mechanisms (tests/unit/contracts), which they pass, too.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/geometry/singular.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 #include "tests/unit/generic/files.hpp"
 
@@ -39,9 +39,9 @@ class DescribedReference : public ::testing::TestWithParam<std::string> {
   }
   /// @param cells  of each swept coordinate; null: as many as make a million
   WorkspacePlan plan(const Json& entry, const Json& cells) const {
-    WorkspacePlan plan{.method = VoxelOptions{}, .held = {}, .limits = test::limits_with(info(), entry["limits"])};
+    WorkspacePlan plan{.method = VoxelOptions{}, .fixed = {}, .limits = test::limits_with(info(), entry["limits"])};
     for (const auto& [name, value] : entry["held"].items())
-      plan.held.push_back({.coordinate = number_of(name), .kind = FixedCoordinate::Kind::value, .value = value});
+      plan.fixed.push_back({.coordinate = number_of(name), .kind = FixedCoordinate::Kind::value, .value = value});
     const Sweep& sweep = sweep_of(info(), plan);
     const auto usual = std::llround(std::pow(1e6, 1 / static_cast<double>(sweep.swept.size())));
     VoxelOptions& voxels = std::get<VoxelOptions>(plan.method);

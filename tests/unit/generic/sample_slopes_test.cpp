@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/contracts/catalogue_problem.hpp"
 #include "tests/unit/contracts/derivative_comparison.hpp"
 
@@ -14,23 +14,23 @@ namespace {
 /// What is asked of the samples of a file's columns.
 struct Samples {
   const Mechanism& mechanism;
-  std::unique_ptr<const WorkspaceEvaluator> surveyor;
+  std::unique_ptr<const WorkspaceEvaluator> evaluator;
   std::vector<PoseStatistic> statistics;
   Scratch scratch = {};
 
   Samples(const Mechanism& of, const WorkspacePlan& plan)
-      : mechanism(of), surveyor(prepare_workspace(of, plan, test::demand_of_all_fields(of))) {
-    if (has_conditioning(of))
+      : mechanism(of), evaluator(prepare_workspace(of, plan, test::request_of_all_fields(of))) {
+    if (test::is_available(of, kConditioning))
       for (const char* const statistic : {"mean", "min"}) statistics.push_back({kConditioning, statistic});
-    if (!has_dynamics(of)) return;
+    if (!of.dynamics()) return;
     for (const char* const statistic : {"mean", "std", "max"}) statistics.push_back({kCouplingIndex, statistic, "1"});
     statistics.push_back({kCouplingIndex, "mean", "mean"});
     statistics.push_back({kInertiaCondition, "mean"});
   }
 
   std::vector<Dual4> at(const std::vector<Dual4>& design) {
-    Survey<Dual4> found;
-    surveyor->slopes()->survey(design, scratch, found);
+    WorkspaceResult<Dual4> found;
+    evaluator->gradients()->evaluate(design, scratch, found);
     std::vector<Dual4> all;
     for (const PoseStatistic& statistic : statistics) all.push_back(statistic(found, scratch));
     return all;
@@ -92,19 +92,19 @@ TEST_P(SampleSlopes, EqualDifferencesOfTheSameSums) {
 TEST_P(SampleSlopes, HaveTheBitsOfSurveysWithoutThem) {
   Stream random(2, 0, 0, Stream::Use::start);
   const std::vector<double> design = test::random_design(info(), random);
-  Demand demand = test::demand_of_all_fields(mechanism());
-  demand.poses = true;
-  const auto surveyor = prepare_workspace(mechanism(), test::columns(info()), demand);
+  FieldRequest request = test::request_of_all_fields(mechanism());
+  request.poses = true;
+  const auto evaluator = prepare_workspace(mechanism(), test::columns(info()), request);
   Scratch scratch;
-  Survey<double> plain, values;
-  surveyor->survey(design, scratch, plain);
+  WorkspaceResult<double> plain, values;
+  evaluator->evaluate(design, scratch, plain);
   ASSERT_FALSE(plain.weight.empty());
   std::vector<double> first;
   for (const int component : {0, 3, 0}) {
     std::vector<Dual4> moving(design.begin(), design.end());
     moving[0].v[component] = moving[1].v[3 - component] = 1;
-    Survey<Dual4> found;
-    surveyor->slopes()->survey(moving, scratch, found);
+    WorkspaceResult<Dual4> found;
+    evaluator->gradients()->evaluate(moving, scratch, found);
     copy_values(found, values);
     EXPECT_EQ(values.volume, plain.volume);
     EXPECT_EQ(values.weight, plain.weight);
@@ -114,7 +114,7 @@ TEST_P(SampleSlopes, HaveTheBitsOfSurveysWithoutThem) {
     for (const Dual4& weight : found.weight) slopes.push_back(weight.v[component]);
     if (first.empty()) first = slopes;
     EXPECT_EQ(slopes, first);
-    if (component == 3) surveyor->survey(test::nominal(info()), scratch, values);
+    if (component == 3) evaluator->evaluate(test::nominal(info()), scratch, values);
   }
 }
 

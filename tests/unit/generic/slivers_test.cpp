@@ -24,7 +24,7 @@ TEST(Slivers, OfOneCoordinateAreFound) {
     const Box ranges = {{{b / 2 - 0.05, b / 2 + 0.05}, {0, 2.5}, {-1.3, -0.15}}};
     WorkspacePlan near = plan;
     near.method = ColumnOptions{.box = ranges};
-    const Survey<double> found = test::survey(file(), plate, plan), known = test::survey(file(), plate, near);
+    const WorkspaceResult<double> found = test::survey(file(), plate, plan), known = test::survey(file(), plate, near);
     EXPECT_GT(known.volume, 1e-3);
     EXPECT_NEAR(found.volume / known.volume, 1, 1e-9);
     EXPECT_LT(found.error, 1e-9);
@@ -33,11 +33,11 @@ TEST(Slivers, OfOneCoordinateAreFound) {
 
 TEST(Slivers, ThatAreNoneAreKnownToBeEmpty) {
   const WorkspacePlan plan = over_x_y_z();
-  const Survey<double> none = test::survey(file(), test::design_with(file().info(), {{"b", 1.31}}), plan);
+  const WorkspaceResult<double> none = test::survey(file(), test::design_with(file().info(), {{"b", 1.31}}), plan);
   EXPECT_EQ(none.volume, 0);
   EXPECT_EQ(none.error, 0);
   // rods that just meet: nothing is feasible, but for rounding, which is told
-  const Survey<double> touching = test::survey(file(), test::design_with(file().info(), {{"b", 1.3}}), plan);
+  const WorkspaceResult<double> touching = test::survey(file(), test::design_with(file().info(), {{"b", 1.3}}), plan);
   EXPECT_EQ(touching.volume, 0);
   EXPECT_EQ(touching.error, 1);
 }
@@ -53,10 +53,10 @@ TEST(Slivers, ComeInPairs) {
   const auto survey = [&](const Mechanism& mechanism) {
     WorkspacePlan plan = test::columns(mechanism.info());
     plan.limits = test::limits_with(mechanism.info(), limits);
-    plan.held = {{1, FixedCoordinate::Kind::value, 1.52}};
+    plan.fixed = {{1, FixedCoordinate::Kind::value, 1.52}};
     return test::survey(mechanism, test::design_with(mechanism.info(), given), plan);
   };
-  const Survey<double> mine = survey(file()), theirs = survey(own);
+  const WorkspaceResult<double> mine = survey(file()), theirs = survey(own);
   EXPECT_GT(theirs.volume, 1e-3);
   EXPECT_NEAR(mine.volume / theirs.volume, 1, 1e-9);
 }
@@ -69,14 +69,14 @@ TEST(Slivers, HaveOthersBesideThem) {
   WorkspacePlan plan;
   for (const Sweep& sweep : gough.info().sweeps)
     if (sweep.swept == std::vector{0, 3, 5}) plan = test::columns(gough.info(), sweep);
-  ASSERT_FALSE(plan.held.empty());
-  const Survey<double> whole = test::survey(gough, design, plan);
+  ASSERT_FALSE(plan.fixed.empty());
+  const WorkspaceResult<double> whole = test::survey(gough, design, plan);
   EXPECT_LT(whole.error, 1e-8);
   double sum = 0, off = 1e-8 * whole.volume;
   for (const auto& alpha : {std::array{-kPi / 2, -1.0}, {-1.0, 1.0}, {1.0, kPi / 2}}) {
     WorkspacePlan part = plan;
     part.method = ColumnOptions{.box = Box{{{-1.8, 1.8}, alpha, {-kPi, kPi}}}};
-    const Survey<double> found = test::survey(gough, design, part);
+    const WorkspaceResult<double> found = test::survey(gough, design, part);
     EXPECT_GT(found.volume, 3e-5);
     EXPECT_LT(found.error, 1e-2);
     sum += found.volume;

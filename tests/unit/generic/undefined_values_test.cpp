@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-using Kind = PosesFinding::Kind;
+using Kind = PropertyResult::Kind;
 
 /// A square of 1 m, cut by one margin; the coordinates are the joints.
 std::shared_ptr<const Mechanism> square(const std::string& formula, const std::string& sweep = "\"x\", \"y\"") {
@@ -61,10 +61,10 @@ TEST_P(UndefinedValues, ViolateAConstraintInPosesVoxelsColumnsAndBounds) {
   for (double x = 0.05; x < 1; x += 0.1)
     EXPECT_EQ(is_feasible(*mechanism_, x, 0.5), x > 0.3 && GetParam().area > 0) << "at x = " << x;
   EXPECT_NEAR(share_of_cells(*mechanism_), GetParam().area, 1e-12);
-  const Survey<double> columns = test::survey(*mechanism_, test::nominal(info()), test::columns(info()));
+  const WorkspaceResult<double> columns = test::survey(*mechanism_, test::nominal(info()), test::columns(info()));
   EXPECT_NEAR(columns.volume, GetParam().area, 1e-8);
   const VolumeBounds bounds =
-      mechanism_->bounds()->volume(test::nominal(info()), test::columns(info()), "", {.gap = 1e-2, .most_boxes = 2000});
+      mechanism_->bounds()->volume(test::nominal(info()), test::columns(info()), "", {.gap = 1e-2, .max_boxes = 2000});
   EXPECT_LE(bounds.lower, GetParam().area + 1e-12);
   EXPECT_GE(bounds.upper, GetParam().area - 1e-12);
   EXPECT_LE(bounds.lower, columns.volume + 1e-8);
@@ -73,9 +73,8 @@ TEST_P(UndefinedValues, ViolateAConstraintInPosesVoxelsColumnsAndBounds) {
 
 TEST_P(UndefinedValues, HoldNowhereForCertain) {
   const WorkspacePlan plan = test::columns(info());
-  const auto box =
-      mechanism_->bounds()->box(test::nominal(info()), plan, "",
-                                std::vector<std::array<double, 2>>{{0.1, 0.2}, {0.4, 0.6}}, {.most_boxes = 1000});
+  const auto box = mechanism_->bounds()->box(
+      test::nominal(info()), plan, "", std::vector<std::array<double, 2>>{{0.1, 0.2}, {0.4, 0.6}}, {.max_boxes = 1000});
   EXPECT_NE(box.feasible.kind, Kind::holds);
 }
 
@@ -99,7 +98,7 @@ TEST(UndefinedValues, AtAPoleViolateAConstraint) {
   const auto certificate = [&](double from, double to) {
     return mechanism->bounds()
         ->box(test::nominal(info), plan, "", std::vector<std::array<double, 2>>{{from, to}, {0.4, 0.6}},
-              {.most_boxes = 1000})
+              {.max_boxes = 1000})
         .feasible.kind;
   };
   EXPECT_NE(certificate(0.49, 0.51), Kind::holds);
@@ -107,7 +106,7 @@ TEST(UndefinedValues, AtAPoleViolateAConstraint) {
   const auto motion = [&](double centre) {
     const auto swing = oscillation(space_axes(info.coordinates), Pose<double>{centre, 0.5}, 0.01, 1, 1);
     return mechanism->bounds()
-        ->motion(test::nominal(info), no_limits(info), "", *swing, {.most_boxes = 1000})
+        ->motion(test::nominal(info), no_limits(info), "", *swing, {.max_boxes = 1000})
         .feasible.kind;
   };
   EXPECT_NE(motion(0.5), Kind::holds);

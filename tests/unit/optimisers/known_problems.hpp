@@ -56,11 +56,11 @@ class FunctionProblem final : public Problem {
     derivatives_(x, all.first(objectives_.size()), all.subspan(objectives_.size()));
     std::size_t at = 0;
     for (const Dual4& value : values) {
-      result.slopes[at++] = value.a;
-      for (std::size_t i = 0; i < design.size(); ++i) result.slopes[at++] = value.v[static_cast<int>(i)];
+      result.derivatives[at++] = value.a;
+      for (std::size_t i = 0; i < design.size(); ++i) result.derivatives[at++] = value.v[static_cast<int>(i)];
     }
   }
-  Unsupported no_derivatives() const override { return derivatives_ ? Unsupported() : "the function has none"; }
+  Unsupported why_no_derivatives() const override { return derivatives_ ? Unsupported() : "the function has none"; }
 
   /// The same problem with its only objective duplicated, without derivatives: the Pareto front is the optimum.
   FunctionProblem with_duplicate_objective() const {

@@ -106,7 +106,7 @@ inline bool same_bits(const EvaluationTable& a, const EvaluationTable& b) {
     return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
   };
   return a.shape() == b.shape() && same(a.designs, b.designs) && same(a.objectives, b.objectives) &&
-         same(a.margins, b.margins) && same(a.reports, b.reports) && same(a.slopes, b.slopes) &&
+         same(a.margins, b.margins) && same(a.reports, b.reports) && same(a.derivatives, b.derivatives) &&
          same(a.status, b.status);
 }
 

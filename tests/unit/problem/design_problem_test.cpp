@@ -19,7 +19,7 @@ DesignProblem with_derivative(double derivative) {
   parts.parameters = test::nominal(parts.mechanism->info());
   parts.space = DesignSpace({{p.name, p.unit, p.lower, p.upper}});
   parts.varies = {0};
-  parts.plan = WorkspacePlan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(parts.mechanism->info())};
+  parts.plan = WorkspacePlan{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(parts.mechanism->info())};
   parts.objectives.push_back({.name = "first",
                               .unit = p.unit,
                               .meaning = p.meaning,
@@ -41,7 +41,7 @@ TEST(DesignProblem, StoresExactValuesAndDerivativesOfTheSmoothApproximation) {
   problem.evaluate(std::vector{0.5}, scratch, table.slot(0));
   EXPECT_EQ(table.status[0], Status::feasible);
   EXPECT_EQ(table.objectives[0], 0.5);
-  EXPECT_EQ(table.slopes, (std::vector{1.0, 3.0}));
+  EXPECT_EQ(table.derivatives, (std::vector{1.0, 3.0}));
 }
 
 TEST(DesignProblem, NonFiniteDerivativeFailsAnEvaluationWithDerivatives) {

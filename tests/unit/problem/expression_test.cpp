@@ -1,4 +1,4 @@
-// Expressions compared with the equivalent built-in entries: values and derivatives; order of evaluation, demanded
+// Expressions compared with the equivalent built-in entries: values and derivatives; order of evaluation, requested
 // fields, bounds and units.
 #include "engine/problem/expression.hpp"
 
@@ -136,7 +136,7 @@ TEST(Expression, EqualsTheEquivalentBuiltInEntry) {
       const DesignReport report = problem.report(problem.parameters(some_design(problem, random)));
       auto values = report.objectives;
       values.insert(values.end(), report.margins.begin(), report.margins.end());
-      with_workspace += report.survey.volume > 0;
+      with_workspace += report.workspace.volume > 0;
       for (const auto& [built_in, expression] : kEqual) {
         const double expected = values[index(all, built_in)];
         EXPECT_NEAR(values[index(all, expression)], expected, 4e-16 * (1 + std::fabs(expected))) << expression;
@@ -156,7 +156,7 @@ TEST(Expression, DerivativesEqualThoseOfTheEquivalentBuiltInEntry) {
   Stream random(2, 0, 0, Stream::Use::start);
   int threshold_derivatives = 0;
   for (int i = 0; i < 20; ++i) {
-    const auto derivatives = problem.slopes(problem.parameters(some_design(problem, random)), by);
+    const auto derivatives = problem.derivatives(problem.parameters(some_design(problem, random)), by);
     for (const auto& [built_in, expression] : kEqual)
       for (std::size_t k = 0; k < width; ++k) {
         const double expected = derivatives[width * index(all, built_in) + k];
@@ -188,16 +188,16 @@ TEST(Expression, IsEvaluatedBeforeTheWorkspaceAnalysisIfPossible) {
 }
 
 TEST(Expression, DemandsTheFieldsThatItUses) {
-  const auto demand = [](const std::string& more) {
-    return read(kMechanism + "[[objective]]\ntype = \"workspace-volume\"\n" + kStage + more).problem->parts().demand;
+  const auto request = [](const std::string& more) {
+    return read(kMechanism + "[[objective]]\ntype = \"workspace-volume\"\n" + kStage + more).problem->parts().request;
   };
   const std::string report = "[[report]]\ntype = \"expression\"\n",
                     constraint = "[[constraint]]\ntype = \"expression\"\n";
-  EXPECT_FALSE(demand(report + "expression = \"volume\"\n").has(kConditioning));
-  EXPECT_TRUE(demand(report + "expression = \"conditioning_mean\"\n").has(kConditioning));
-  EXPECT_EQ(demand(report + "expression = \"conditioning_mean\"\n").characteristic_length, std::nullopt);
-  EXPECT_TRUE(demand(constraint + "expression = \"conditioning_min\"\n").has(kConditioning));
-  EXPECT_EQ(demand(constraint + "expression = \"conditioning_min\"\ncharacteristic_length = \"50 mm\"\n")
+  EXPECT_FALSE(request(report + "expression = \"volume\"\n").has(kConditioning));
+  EXPECT_TRUE(request(report + "expression = \"conditioning_mean\"\n").has(kConditioning));
+  EXPECT_EQ(request(report + "expression = \"conditioning_mean\"\n").characteristic_length, std::nullopt);
+  EXPECT_TRUE(request(constraint + "expression = \"conditioning_min\"\n").has(kConditioning));
+  EXPECT_EQ(request(constraint + "expression = \"conditioning_min\"\ncharacteristic_length = \"50 mm\"\n")
                 .characteristic_length,
             0.05);
 }

@@ -34,7 +34,7 @@ TEST(Front, AConcaveFrontHasACentralCompromiseAndNoKnees) {
     const Ranges extent = ranges_of(front);
     const std::size_t chosen = compromise(front);
     for (std::size_t k = 0; k < front.objectives; ++k)
-      EXPECT_LT((front[chosen][k] - extent.least[k]) / extent.range(k), 0.65) << known.name;
+      EXPECT_LT((front[chosen][k] - extent.minimum[k]) / extent.range(k), 0.65) << known.name;
     EXPECT_TRUE(knees(front).empty()) << known.name;
     const auto one = select_representatives(front, 1);
     EXPECT_THAT(one, ElementsAre(chosen));

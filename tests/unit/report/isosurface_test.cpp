@@ -20,7 +20,7 @@ WorkspaceFields synthetic(std::int64_t cells, const Margin& margin) {
   WorkspaceFields made;
   const char* const names[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) made.axes.push_back({i, names[i], "m", -1, 1, cells});
-  made.held = {{3, "phi", "rad", 0, 0, 0}};
+  made.fixed = {{3, "phi", "rad", 0, 0, 0}};
   made.fields = {{"feasible", "1", "", {}}, {"margin", "m", "", {}}};
   const VoxelGrid grid = made.grid();
   for (std::int64_t i = 0; i < cells; ++i)

@@ -223,8 +223,8 @@ TEST(PageData, MotionsIncludeQuantitiesOfTheMotion) {
   ASSERT_EQ(columns.size(), page["quantities"].size());
   EXPECT_EQ(page["quantities"][0], json({{"name", "gamma"}, {"unit", "rad"}}));
 
-  const Trajectory found =
-      follow(*mechanism, views.designs[0].parameters, views.mode, views.limits, *motion, page["motions"][0]["samples"]);
+  const Trajectory found = compute_trajectory(*mechanism, views.designs[0].parameters, views.mode, views.limits,
+                                              *motion, page["motions"][0]["samples"]);
   const auto gamma = std::ranges::find(info.quantities, "gamma", &QuantityInfo::name) - info.quantities.begin();
   std::vector<double> output;
   for (const TrajectoryPoint& point : found.points) output.push_back(point.quantities[static_cast<std::size_t>(gamma)]);

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 WorkspaceFields sample() {
   WorkspaceFields fields;
   fields.axes = {{0, "x", "m", -1, 1, 2}, {2, "z", "m", 0, 3, 3}, {3, "theta", "rad", -0.5, 1.5, 4}};
-  fields.held = {{1, "y", "m", 1.25, 1.25, 0}};
+  fields.fixed = {{1, "y", "m", 1.25, 1.25, 0}};
   fields.fixed_note = {"default value"};
   fields.fields = {{"feasible", "1", "1 or 0", {}}, {"margin", "m", "minimum margin", {}}};
   for (int cell = 0; cell < 24; ++cell) {

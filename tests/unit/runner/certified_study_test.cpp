@@ -18,7 +18,7 @@
 #include "engine/runner/records.hpp"
 #include "engine/runner/run_study.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "objectives/all.hpp"
 #include "tests/unit/storage/first_difference.hpp"
 
@@ -38,8 +38,8 @@ class Bounded final : public Mechanism, RigorousBounds {
                      const LimitSpec& limits) const override {
     return inner_->inspect(p, pose, mode, limits);
   }
-  std::optional<double> middle(std::span<const double> p, int coordinate) const override {
-    return inner_->middle(p, coordinate);
+  std::optional<double> default_value(std::span<const double> p, int coordinate) const override {
+    return inner_->default_value(p, coordinate);
   }
   void thresholds(std::span<const double> p, const LimitSpec& limits, std::span<double> values) const override {
     inner_->thresholds(p, limits, values);
@@ -58,16 +58,16 @@ class Bounded final : public Mechanism, RigorousBounds {
   mutable int calls = 0;              ///< number of bounds computed
 
  private:
-  void refuse_bounds(const WorkspacePlan& plan) const override {
+  void require_bounds(const WorkspacePlan& plan) const override {
     if (how_fixed(plan, 1).kind == FixedCoordinate::Kind::integrated)
       throw std::invalid_argument("bounds are of one value of y");
   }
   VolumeBounds volume(std::span<const double> p, const WorkspacePlan& plan, const std::string&,
                       const BoundsOptions& options) const override {
     ++calls;
-    const auto surveyor = prepare_workspace(*inner_, plan, {});
-    Survey<double> survey;
-    evaluate_once<double>(*surveyor, p, survey);
+    const auto evaluator = prepare_workspace(*inner_, plan, {});
+    WorkspaceResult<double> survey;
+    evaluate_once<double>(*evaluator, p, survey);
     if (interrupts) {  // and take longer than the grace period
       std::raise(SIGINT);
       while (!options.stop()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -75,12 +75,12 @@ class Bounded final : public Mechanism, RigorousBounds {
     const bool stopped = options.stop && options.stop();
     return {.lower = stopped ? 0 : lower * survey.volume, .upper = upper * survey.volume, .stopped = stopped};
   }
-  PosesCertificate box(std::span<const double>, const WorkspacePlan&, const std::string&,
-                       std::span<const std::array<double, 2>>, const BoundsOptions&) const override {
+  PoseCertificate box(std::span<const double>, const WorkspacePlan&, const std::string&,
+                      std::span<const std::array<double, 2>>, const BoundsOptions&) const override {
     return {};
   }
-  PosesCertificate motion(std::span<const double>, const LimitSpec&, const std::string&, const Motion&,
-                          const BoundsOptions&) const override {
+  PoseCertificate motion(std::span<const double>, const LimitSpec&, const std::string&, const Motion&,
+                         const BoundsOptions&) const override {
     return {};
   }
 

@@ -25,7 +25,7 @@ TEST(Probe, EvaluatesTheSameDesignsEveryTime) {
   EXPECT_EQ(one.table.designs, two.table.designs);
   EXPECT_EQ(one.table.size(), 64u);
   EXPECT_EQ(one.feasible(), 32u) << "half of the Sobol points lie in each half of a range";
-  EXPECT_FALSE(one.verdict);
+  EXPECT_FALSE(one.diagnosis);
   EXPECT_EQ(words(one), "32 of 64 designs spread over the bounds are feasible");
 }
 
@@ -44,8 +44,8 @@ TEST(Probe, EvaluatesFewerDesignsIfOneIsExpensive) {
 TEST(Probe, DiagnosesWhyNoDesignIsFeasible) {
   const Probe none = probe(study("", "[[constraint]]\ntype = \"conditioning\"\nmin = 0.9\n"));
   EXPECT_EQ(none.feasible(), 0u);
-  ASSERT_TRUE(none.verdict);
-  EXPECT_THAT(none.verdict->reasons.at(0).sentence, ::testing::StartsWith("no design satisfies conditioning"));
+  ASSERT_TRUE(none.diagnosis);
+  EXPECT_THAT(none.diagnosis->reasons.at(0).sentence, ::testing::StartsWith("no design satisfies conditioning"));
 }
 
 }  // namespace

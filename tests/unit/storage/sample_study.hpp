@@ -104,7 +104,7 @@ inline StudyContents sample_study() {
   StageRecord& solver = study.stages.back();
   solver.optimiser = "ipopt";
   double slope = 0.25;
-  for (double& x : solver.table.slopes) x = slope = 3.9 * slope * (1 - slope);
+  for (double& x : solver.table.derivatives) x = slope = 3.9 * slope * (1 - slope);
   solver.starts = {{"best of stage 1", 0, 2, 1, "converged", "optimal solution found", 3e-8},
                    {"Sobol point 1", 2, 3, 2, "time limit", "", odd_nan()}};
   solver.ahead = {{3, solver.table.slice(1, 4), {}},

@@ -64,14 +64,14 @@ TEST(StudyFile, StoresEverything) {
   EXPECT_EQ(read.stages[1].table.size(), 0u);
   EXPECT_EQ(read.evaluations(), 18);
   EXPECT_EQ(read.stages[2].table.shape(), written.problem.shape(Detail::derivatives));
-  EXPECT_TRUE(same_bits(written.stages[2].table.slopes, read.stages[2].table.slopes));
+  EXPECT_TRUE(same_bits(written.stages[2].table.derivatives, read.stages[2].table.derivatives));
   ASSERT_EQ(read.stages[2].starts.size(), 2u);
   EXPECT_EQ(read.stages[2].starts[1].origin, "Sobol point 1");
   EXPECT_EQ(read.stages[2].starts[1].stop, "time limit");
   ASSERT_EQ(read.stages[2].ahead.size(), 2u);
   EXPECT_EQ(read.stages[2].ahead[0].number, 3);
   EXPECT_FALSE(read.stages[2].ahead[0].outcome);
-  EXPECT_TRUE(same_bits(read.stages[2].ahead[0].table.slopes, written.stages[2].ahead[0].table.slopes));
+  EXPECT_TRUE(same_bits(read.stages[2].ahead[0].table.derivatives, written.stages[2].ahead[0].table.derivatives));
   EXPECT_EQ(read.stages[2].ahead[1].outcome->origin, "Sobol point 3");
   ASSERT_TRUE(read.stages[2].optimality);
   EXPECT_EQ(read.stages[2].optimality->active[0].multiplier, 0.2);

@@ -1,21 +1,21 @@
-// Obstacles in surveys and in margins of poses: voxels of each kind against reports of single poses, what they cut, and
-// margins with derivatives.
+// Obstacles in workspace analyses and in margins of poses: voxels of all evaluators compared with reports of single
+// poses, and derivatives of margins.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/math/dual.hpp"
-#include "engine/workspace/plain_voxels.hpp"
+#include "engine/workspace/cellwise_voxels.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 
 namespace pkm {
 namespace {
 
-/// A clearance, and what stands in the way of a pose: beside it a ball, a post and a table.
-LimitSpec limits_about(const MechanismInfo& info, const Pose<double>& pose, double least) {
+/// A clearance limit with three obstacles near a pose: a ball, a post and a table.
+LimitSpec limits_about(const MechanismInfo& info, const Pose<double>& pose, double min_clearance) {
   LimitSpec limits = no_limits(info);
   for (std::size_t i = 0; i < info.limits.size(); ++i)
-    if (info.limits[i].group == "clearance") limits.given[i] = least;
+    if (info.limits[i].group == "clearance") limits.given[i] = min_clearance;
   Point3<double> at{};
   for (std::size_t i = 0; i < info.coordinates.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -39,7 +39,7 @@ std::vector<std::shared_ptr<const Mechanism>> with_links() {
   return all;
 }
 
-TEST(Obstacles, CutWhatReportsOfPosesSay) {
+TEST(Obstacles, VoxelsAgreeWithPoseReports) {
   std::int64_t cut = 0, left = 0;
   ASSERT_GE(with_links().size(), 6u);
   for (const auto& mechanism : with_links()) {
@@ -47,13 +47,13 @@ TEST(Obstacles, CutWhatReportsOfPosesSay) {
     SCOPED_TRACE(info.name);
     const std::vector<double> design = test::nominal(info);
     WorkspacePlan plan = test::voxels(info, 9);
-    for (FixedCoordinate& held : plan.held) {
-      held.kind = FixedCoordinate::Kind::value;
-      held.value = *mechanism->middle(design, held.coordinate) + 0.01;
+    for (FixedCoordinate& fixed : plan.fixed) {
+      fixed.kind = FixedCoordinate::Kind::value;
+      fixed.value = *mechanism->default_value(design, fixed.coordinate) + 0.01;
     }
     plan.limits = limits_about(info, test::reference_pose(*mechanism), -0.01);
     const VoxelMap own = voxel_map(*mechanism, design, plan);
-    const VoxelMap plain = prepare_plain_voxels(*mechanism, plan, *plan.voxels(), {})->map(design);
+    const VoxelMap plain = prepare_cellwise_voxels(*mechanism, plan, *plan.voxels(), {})->map(design);
     EXPECT_EQ(own.feasible, plain.feasible);
     WorkspacePlan free = plan;
     free.limits.obstacles.clear();
@@ -63,14 +63,14 @@ TEST(Obstacles, CutWhatReportsOfPosesSay) {
       cut += without.feasible[i] - own.feasible[i];
       left += own.feasible[i];
     }
-    const Survey<double> survey = test::survey(*mechanism, design, plan, {.fields = {&kConditioning}});
+    const WorkspaceResult<double> survey = test::survey(*mechanism, design, plan, {.fields = {&kConditioning}});
     EXPECT_EQ(survey.feasible_cells, std::ranges::count(own.feasible, 1));
   }
   EXPECT_GT(cut, 100);
   EXPECT_GT(left, 100);
 }
 
-TEST(Obstacles, AreNamedByReportsOfPoses) {
+TEST(Obstacles, AreNamedInPoseReports) {
   for (const auto& mechanism : with_links()) {
     const MechanismInfo& info = mechanism->info();
     SCOPED_TRACE(info.name);
@@ -84,7 +84,7 @@ TEST(Obstacles, AreNamedByReportsOfPoses) {
   }
 }
 
-TEST(Obstacles, AreNothingWhereNobodyAsksForAClearance) {
+TEST(Obstacles, HaveNoEffectWithoutClearanceLimit) {
   for (const auto& mechanism : with_links()) {
     const MechanismInfo& info = mechanism->info();
     SCOPED_TRACE(info.name);
@@ -139,8 +139,7 @@ TEST(Obstacles, AreRefusedByColumns) {
       prepare_workspace(*mechanism, plan, {});
       ADD_FAILURE() << "accepted";
     } catch (const std::invalid_argument& refused) {
-      EXPECT_NE(std::string(refused.what()).find("has no column surveys under a clearance (clearance_min)"),
-                std::string::npos)
+      EXPECT_NE(std::string(refused.what()).find("has no columns under a clearance (clearance_min)"), std::string::npos)
           << refused.what();
     }
   }

@@ -1,4 +1,4 @@
-// A quantity of the joints' inertia that is smooth, unlike coupling indices and condition numbers.
+// A quantity of the joint-space inertia that is smooth, unlike coupling indices and condition numbers.
 #pragma once
 
 #include <cmath>
@@ -7,17 +7,17 @@
 
 namespace pkm::test {
 
-/// What each joint feels while the others are free to stay.
+/// Inertia of each joint while the others do not accelerate: the diagonal of M_q.
 inline constexpr PoseQuantity kOwnInertia = {
     .name = "own_inertia",
     .unit = "kg",
     .meaning = "inertia of a joint",
-    .least = -INFINITY,
-    .greatest = INFINITY,
-    .worst = PoseQuantity::Worst::greatest,
-    .without_value = 0,
+    .lower = -INFINITY,
+    .upper = INFINITY,
+    .worst = PoseQuantity::Worst::maximum,
+    .value_if_undefined = 0,
     .per_joint = true,
-    .of_inertia =
+    .from_inertia =
         [](const auto& M_q, auto* inertia) {
           for (std::size_t i = 0; i < M_q.rows(); ++i) inertia[i] = M_q(i, i);
         },

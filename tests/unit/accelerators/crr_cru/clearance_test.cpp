@@ -218,7 +218,7 @@ TEST(CrrCruClearance, VoxelsAreThePosesThatAreClear) {
       }
       const auto found = survey(name, p, limited, {.fields = {&kConditioning, &kCouplingIndex}});
       EXPECT_EQ(found.feasible_cells, count);
-      EXPECT_EQ(static_cast<std::int64_t>(found.of(kCouplingIndex, 0).size()), count);
+      EXPECT_EQ(static_cast<std::int64_t>(found.field(kCouplingIndex, 0).size()), count);
       EXPECT_NEAR(found.volume, static_cast<double>(count) * found.cell_volume, kRoundoff);
     }
   EXPECT_GT(cut, 200);
@@ -227,9 +227,9 @@ TEST(CrrCruClearance, VoxelsAreThePosesThatAreClear) {
 
 // The accelerators do not know clearances: voxels are those of the generic engine, columns are refused.
 TEST(CrrCruClearance, ColumnsAreRefused) {
-  const auto message = [](const WorkspacePlan& plan, const Demand& demand) {
+  const auto message = [](const WorkspacePlan& plan, const FieldRequest& request) {
     try {
-      prepare_workspace(mechanism("quadrupteron"), plan, demand);
+      prepare_workspace(mechanism("quadrupteron"), plan, request);
     } catch (const std::invalid_argument& error) {
       return std::string(error.what());
     }
@@ -238,8 +238,8 @@ TEST(CrrCruClearance, ColumnsAreRefused) {
   const auto under = [](const auto& method, double least) { return plan(method, 3, 0, limit_spec(0, 0, least)); };
   const ColumnOptions columns{.tolerance = 1e-10};
   EXPECT_EQ(message(under(columns, 0), {}),
-            "mechanism quadrupteron has no column surveys under a clearance (clearance_min), because links that meet "
-            "end columns where no formula says; take workspace.method = \"voxels\"");
+            "mechanism quadrupteron has no columns under a clearance (clearance_min), because links that meet "
+            "end columns where no formula says; set workspace.method = \"voxels\"");
   EXPECT_EQ(message(under(columns, -2), {}), "accepted") << "it cuts nothing";
   EXPECT_EQ(message(under(VoxelOptions{.cells = {4, 4, 4}}, 0), {.fields = {&kCouplingIndex}, .mode = "+,+,+,+"}),
             "accepted");

@@ -5,18 +5,18 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/problem/pose_statistic.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/accelerators/crr_cru/golden.hpp"
 
 namespace pkm::testing::crr {
 namespace {
 
-Demand coupling(const std::string& mode = "") {
-  Demand demand;
-  demand.fields = {&kCouplingIndex, &kInertiaCondition};
-  demand.poses = true;
-  demand.mode = mode;
-  return demand;
+FieldRequest coupling(const std::string& mode = "") {
+  FieldRequest request;
+  request.fields = {&kCouplingIndex, &kInertiaCondition};
+  request.poses = true;
+  request.mode = mode;
+  return request;
 }
 
 /// M_q from the equations of motion of the generic engine.
@@ -30,13 +30,13 @@ Matrix<double, 4, 4> reference(const Mechanism& m, const std::vector<double>& p,
 
 /// Compares every `step`-th sample.
 void expect_samples_of_reference(const Mechanism& m, const std::vector<double>& p, const std::string& mode,
-                                 const Survey<double>& s, std::size_t step) {
+                                 const WorkspaceResult<double>& s, std::size_t step) {
   ASSERT_GT(s.weight.size(), 10u);
   for (std::size_t k = 0; k < s.weight.size(); k += step) {
     const Matrix<double, 4, 4> M = reference(m, p, s.pose[k], mode);
     const Vector<double, 4> index = coupling_indices(M);
-    for (std::size_t i = 0; i < 4; ++i) ASSERT_NEAR(s.of(kCouplingIndex, i)[k], index[i], 1e-10);
-    ASSERT_NEAR(s.of(kInertiaCondition)[k], inertia_condition(M), 1e-10);
+    for (std::size_t i = 0; i < 4; ++i) ASSERT_NEAR(s.field(kCouplingIndex, i)[k], index[i], 1e-10);
+    ASSERT_NEAR(s.field(kInertiaCondition)[k], inertia_condition(M), 1e-10);
   }
 }
 
@@ -54,10 +54,11 @@ TEST(CrrCruCoupling, GoldenStatistics) {
     const auto s = survey(entry["mechanism"], nominal(), p, coupling(mode_name(mode_of(entry["sigma"]))));
     ASSERT_EQ(s.feasible_cells, entry["feasible"].get<std::int64_t>());
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(greatest(s.of(kCouplingIndex, i)), entry["max"][i].get<double>(), 1e-10);
-      EXPECT_NEAR(weighted_mean(s.weight, s.of(kCouplingIndex, i)), entry["mean"][i].get<double>(), 1e-10);
-      EXPECT_NEAR(weighted_standard_deviation(s.weight, s.of(kCouplingIndex, i)), entry["std"][i].get<double>(), 1e-8);
-      EXPECT_NEAR(weighted_quantile(s.weight, s.of(kCouplingIndex, i), 0.95), entry["p95"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(greatest(s.field(kCouplingIndex, i)), entry["max"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(weighted_mean(s.weight, s.field(kCouplingIndex, i)), entry["mean"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(weighted_standard_deviation(s.weight, s.field(kCouplingIndex, i)), entry["std"][i].get<double>(),
+                  1e-8);
+      EXPECT_NEAR(weighted_quantile(s.weight, s.field(kCouplingIndex, i), 0.95), entry["p95"][i].get<double>(), 1e-10);
     }
   }
 }
@@ -88,7 +89,7 @@ TEST(CrrCruCoupling, MassesMayFollowTheGeometry) {
     for (const bool by_columns : {false, true}) {
       WorkspacePlan sweep = voxels(3, 0.2, {5, 6, 7});
       if (by_columns) sweep.method = ColumnOptions{.tolerance = 1e-10, .nodes = {2, 2}};
-      Survey<double> s;
+      WorkspaceResult<double> s;
       evaluate_once<double>(*prepare_workspace(*m, sweep, coupling()), p, s);
       expect_samples_of_reference(*m, p, "-,-,+,-", s, 7);
     }
@@ -129,8 +130,8 @@ TEST(CrrCruCoupling, ColumnsAgreeWithFineVoxelsInABox) {
     for (const double weight : columns.weight) sum += weight;
     EXPECT_NEAR(sum / columns.volume, 1, 1e-3);  // a fixed rule
     for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_NEAR(weighted_mean(columns.weight, columns.of(kCouplingIndex, i)),
-                  weighted_mean(coarse.weight, coarse.of(kCouplingIndex, i)), 2e-3);
+      EXPECT_NEAR(weighted_mean(columns.weight, columns.field(kCouplingIndex, i)),
+                  weighted_mean(coarse.weight, coarse.field(kCouplingIndex, i)), 2e-3);
   }
 }
 
@@ -142,28 +143,28 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
       const auto p = random_design(uniform, 0.03);
       const WorkspacePlan region = {
           .method = ColumnOptions{.tolerance = 1e-10, .box = {{{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}}}},
-          .held = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {-0.6, 0.1, 0.5}}},
+          .fixed = {{.coordinate = 3, .kind = FixedCoordinate::Kind::listed, .values = {-0.6, 0.1, 0.5}}},
           .limits = limit_spec(0.2, 0.1)};
-      const auto surveyor = prepare_workspace(mechanism(name), region, coupling());
+      const auto evaluator = prepare_workspace(mechanism(name), region, coupling());
       const std::array<std::size_t, 4> by = {kL11, kL42, kL, kRodMass + 3};
       const auto statistics = [](const auto& s) {
         Scratch scratch;
         const auto worst = reduced_field(s, kCouplingIndex, "worst", scratch);
         return std::array{weighted_mean(s.weight, worst), weighted_standard_deviation(s.weight, worst),
-                          soft_max(s.weight, worst, 100), weighted_mean(s.weight, s.of(kInertiaCondition))};
+                          soft_max(s.weight, worst, 100), weighted_mean(s.weight, s.field(kInertiaCondition))};
       };
       std::vector<Dual4> dual(p.begin(), p.end());
       for (std::size_t k = 0; k < 4; ++k) dual[by[k]].v[static_cast<int>(k)] = 1;
-      Survey<Dual4> derived;
-      evaluate_once<Dual4>(*surveyor, dual, derived);
+      WorkspaceResult<Dual4> derived;
+      evaluate_once<Dual4>(*evaluator, dual, derived);
       const auto slopes = statistics(derived);
       for (std::size_t k = 0; k < 4; ++k) {
         const double step = 1e-5 * p[by[k]];
         const auto at = [&](double shift) {
           auto moved = p;
           moved[by[k]] += shift;
-          Survey<double> s;
-          evaluate_once<double>(*surveyor, moved, s);
+          WorkspaceResult<double> s;
+          evaluate_once<double>(*evaluator, moved, s);
           return statistics(s);
         };
         const auto up = at(step), down = at(-step), up2 = at(2 * step), down2 = at(-2 * step);
@@ -186,7 +187,7 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
 
 TEST(CrrCruCoupling, TheFourthIndexIsTheSameEverywhereAtPhiZero) {
   const auto s = survey("3crr-r-cru", nominal(), voxels(3, 0, {12, 12, 12}), coupling());
-  for (const double index : s.of(kCouplingIndex, 3)) ASSERT_NEAR(index, 0.029011448, 2e-9);
+  for (const double index : s.field(kCouplingIndex, 3)) ASSERT_NEAR(index, 0.029011448, 2e-9);
 }
 
 }  // namespace

@@ -38,16 +38,16 @@ std::vector<PlannedCase> random_plans(int count, int seed, double tolerance) {
 
 /// Value and slopes by all parameters of a function of a survey.
 template <class Function>
-std::vector<double> slopes_of(const PlannedCase& c, const Demand& demand, const Function& f) {
-  const auto surveyor = prepare_workspace(mechanism(c.name), c.plan, demand);
+std::vector<double> slopes_of(const PlannedCase& c, const FieldRequest& request, const Function& f) {
+  const auto evaluator = prepare_workspace(mechanism(c.name), c.plan, request);
   Scratch scratch;
   std::vector<double> slopes;
   for (std::size_t first = 0; first < kParameters; first += 4) {
     std::vector<Dual4> p(c.p.begin(), c.p.end());
     for (std::size_t k = first; k < std::min<std::size_t>(first + 4, kParameters); ++k)
       p[k].v[static_cast<int>(k - first)] = 1;
-    Survey<Dual4> survey;
-    surveyor->slopes()->survey(p, scratch, survey);
+    WorkspaceResult<Dual4> survey;
+    evaluator->gradients()->evaluate(p, scratch, survey);
     const Dual4 value = f(survey);
     for (std::size_t k = first; k < std::min<std::size_t>(first + 4, kParameters); ++k)
       slopes.push_back(value.v[static_cast<int>(k - first)]);
@@ -60,20 +60,21 @@ struct Agreement {
 };
 
 template <class Function>
-Agreement compare(const std::vector<PlannedCase>& cases, const Demand& demand, double tolerance, const Function& f) {
+Agreement compare(const std::vector<PlannedCase>& cases, const FieldRequest& request, double tolerance,
+                  const Function& f) {
   Agreement agreement;
   for (const PlannedCase& c : cases) {
-    const auto surveyor = prepare_workspace(mechanism(c.name), c.plan, demand);
+    const auto evaluator = prepare_workspace(mechanism(c.name), c.plan, request);
     Scratch scratch;
     const auto value = [&](std::vector<double> p, std::size_t k, double by) {
       p[k] += by;
-      Survey<double> survey;
-      surveyor->survey(p, scratch, survey);
+      WorkspaceResult<double> survey;
+      evaluator->evaluate(p, scratch, survey);
       return f(survey);
     };
     const double here = value(c.p, 0, 0);
     if (!(here > 1e-5)) continue;
-    const auto slopes = slopes_of(c, demand, f);
+    const auto slopes = slopes_of(c, request, f);
     for (std::size_t k = 0; k < kParameters; ++k) {
       const bool angle = k >= kBeta1 && k <= kBeta3;
       const double size = angle ? 1 : std::fabs(k == kRhoMin ? 0.1 : c.p[k]), h = 1e-5 * size;
@@ -86,7 +87,7 @@ Agreement compare(const std::vector<PlannedCase>& cases, const Demand& demand, d
       }
       ++agreement.compared;
       EXPECT_NEAR(slopes[k], near, tolerance * scale)
-          << c.name << ", held " << c.plan.held[0].coordinate << " at " << c.plan.held[0].value << ", "
+          << c.name << ", held " << c.plan.fixed[0].coordinate << " at " << c.plan.fixed[0].value << ", "
           << mechanism(c.name).info().parameters[k].name << ", far " << far << ", V " << here;
     }
   }
@@ -95,7 +96,7 @@ Agreement compare(const std::vector<PlannedCase>& cases, const Demand& demand, d
 
 const auto kVolume = [](const auto& survey) { return survey.volume; };
 const auto kMeanConditioning = [](const auto& survey) {
-  return weighted_mean(survey.weight, survey.of(kConditioning));
+  return weighted_mean(survey.weight, survey.field(kConditioning));
 };
 
 TEST(CrrCruDerivatives, OfTheVolumeEqualDifferences) {
@@ -105,9 +106,9 @@ TEST(CrrCruDerivatives, OfTheVolumeEqualDifferences) {
 }
 
 TEST(CrrCruDerivatives, OfTheMeanConditioningEqualDifferences) {
-  Demand demand;
-  demand.add(kConditioning);
-  const Agreement found = compare(random_plans(48, 2, 1e-12), demand, kTolerance, kMeanConditioning);
+  FieldRequest request;
+  request.add(kConditioning);
+  const Agreement found = compare(random_plans(48, 2, 1e-12), request, kTolerance, kMeanConditioning);
   EXPECT_GT(found.compared, 500);
   EXPECT_LT(found.excluded, found.compared / 20);
 }

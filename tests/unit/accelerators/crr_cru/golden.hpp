@@ -15,7 +15,7 @@
 #include "engine/accelerators/crr_cru/masses.hpp"
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/math/random.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/generic/files.hpp"
 
 namespace pkm::testing::crr {
@@ -148,15 +148,15 @@ inline LimitSpec limit_spec(double s_min, double c_min, std::optional<double> cl
 inline WorkspacePlan plan(const std::variant<ColumnOptions, VoxelOptions>& method, int held, double value,
                           const LimitSpec& limits) {
   return {.method = method,
-          .held = {{.coordinate = held, .kind = FixedCoordinate::Kind::value, .value = value}},
+          .fixed = {{.coordinate = held, .kind = FixedCoordinate::Kind::value, .value = value}},
           .limits = limits};
 }
 
 template <class S>
-Survey<S> survey(const std::string& name, const std::vector<S>& p, const WorkspacePlan& plan,
-                 const Demand& demand = {}) {
-  Survey<S> result;
-  evaluate_once<S>(*prepare_workspace(mechanism(name), plan, demand), p, result);
+WorkspaceResult<S> survey(const std::string& name, const std::vector<S>& p, const WorkspacePlan& plan,
+                          const FieldRequest& request = {}) {
+  WorkspaceResult<S> result;
+  evaluate_once<S>(*prepare_workspace(mechanism(name), plan, request), p, result);
   return result;
 }
 

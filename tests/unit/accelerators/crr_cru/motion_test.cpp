@@ -19,7 +19,7 @@ const std::vector<AxisInfo>& coordinates() { return mechanism("quadrupteron").in
 
 Trajectory along(const Json& entry, const Motion& motion) {
   const Mechanism& m = mechanism(entry["mechanism"]);
-  return follow(m, nominal(), mode_name(mode_of(entry["sigma"])), no_limits(m.info()), motion, entry["n"]);
+  return compute_trajectory(m, nominal(), mode_name(mode_of(entry["sigma"])), no_limits(m.info()), motion, entry["n"]);
 }
 
 void expect_close(const AxisVector<double>& found, const Json& expected, const char* what) {
@@ -78,7 +78,7 @@ TEST(CrrCruMotion, GoldenHandlingCycle) {
     expect_close(*s.peak_speed, entry["peak_speed"], "peak speed");
     const double power = entry["peak_total_power"];
     EXPECT_NEAR(s.peak_total_power, power, kGoldenAccuracy * power);
-    EXPECT_NEAR(s.least_total_power, entry["min_total_power"].get<double>(), kGoldenAccuracy * power);
+    EXPECT_NEAR(s.min_total_power, entry["min_total_power"].get<double>(), kGoldenAccuracy * power);
     // There and back from rest to rest, all work is given back; along half the way the rods' heights change.
     cycle.back = true;
     const Trajectory whole = along(entry, *pick_and_place(cycle));
@@ -95,7 +95,7 @@ TEST(CrrCruMotion, AccelerationsOfTheJointsAreDerivativesOfTheirSpeeds) {
     const auto formula = [](const char* text) { return Formula(text, time_name()); };
     const auto motion = motion_from_formulas(
         {formula("0.2 + 0.02*sin(3*t)"), formula("0.17"), formula("0.22 + 0.01*t"), formula("0.5*cos(2*t)")}, 1);
-    const auto fine = follow(m, nominal(), m.info().modes[0], no_limits(m.info()), *motion, 2001).points;
+    const auto fine = compute_trajectory(m, nominal(), m.info().modes[0], no_limits(m.info()), *motion, 2001).points;
     for (std::size_t k = 1; k + 1 < fine.size(); k += 100)
       for (std::size_t i = 0; i < 4; ++i) {
         const double h = fine[k + 1].motion.time - fine[k - 1].motion.time;
@@ -108,7 +108,7 @@ TEST(CrrCruMotion, AccelerationsOfTheJointsAreDerivativesOfTheirSpeeds) {
 TEST(CrrCruMotion, InfeasibleSamplesAreMarkedAndLeaveTheOthers) {
   const Mechanism& m = mechanism("3crr-r-cru");
   const auto motion = point_to_point({0.2, 0.17, 0.22, 0}, {{0, {0.2, 0.17, 0.6, 0}, 1}}, 0, TimeLaw::quintic);
-  const Trajectory found = follow(m, nominal(), m.info().modes[0], no_limits(m.info()), *motion, 101);
+  const Trajectory found = compute_trajectory(m, nominal(), m.info().modes[0], no_limits(m.info()), *motion, 101);
   EXPECT_GT(found.summary.infeasible, 0u);
   EXPECT_FALSE(found.summary.has_forces);
   EXPECT_TRUE(found.points.front().feasible && found.points.front().forces);
@@ -158,7 +158,8 @@ TEST(CrrCruMotion, ObjectivesAreThePeaksOfTheTrajectory) {
   for (const std::string& name : both()) {
     const Mechanism& m = mechanism(name);
     const TrajectorySummary s =
-        follow(m, nominal(), m.info().modes[0], no_limits(m.info()), *motion, 201, {{0, 0, -5, 0, 0, 0.1}}).summary;
+        compute_trajectory(m, nominal(), m.info().modes[0], no_limits(m.info()), *motion, 201, {{0, 0, -5, 0, 0, 0.1}})
+            .summary;
     const auto value = [&](const char* objective, const char* joint) {
       return problem_of(name, objective, joint, motion).report(nominal()).objectives[0];
     };
@@ -166,7 +167,7 @@ TEST(CrrCruMotion, ObjectivesAreThePeaksOfTheTrajectory) {
     EXPECT_EQ(value("peak-force", "worst"), *std::ranges::max_element(s.peak_force));
     EXPECT_EQ(value("peak-power", "1"), s.peak_power[0]);
     EXPECT_EQ(value("peak-power", "worst"), *std::ranges::max_element(s.peak_power));
-    EXPECT_EQ(value("peak-power", "total"), std::fmax(s.peak_total_power, -s.least_total_power));
+    EXPECT_EQ(value("peak-power", "total"), std::fmax(s.peak_total_power, -s.min_total_power));
   }
 }
 
@@ -181,7 +182,7 @@ TEST(CrrCruMotion, DerivativesOfTheSmoothPeakEqualDifferences) {
       p[kSlideMass] = 0.1;  // masses are differentiated away from 0, below which there are none
       p[kPayload] = 0.2;
       p[kPayloadOffset] = 0.02;
-      const std::vector<double> derivatives = problem.slopes(p, problem.parts().varies);
+      const std::vector<double> derivatives = problem.derivatives(p, problem.parts().varies);
       const double worst = problem.report(p).objectives[0];
       EXPECT_LE(derivatives[0], worst);
       EXPECT_GT(derivatives[0], 0.95 * worst);
@@ -193,7 +194,7 @@ TEST(CrrCruMotion, DerivativesOfTheSmoothPeakEqualDifferences) {
         const auto moved = [&](double steps) {
           std::vector<double> q = p;
           q[i] += steps * h;
-          return problem.slopes(q, {})[0];
+          return problem.derivatives(q, {})[0];
         };
         const double difference = (8 * (moved(1) - moved(-1)) - (moved(2) - moved(-2))) / (12 * h);
         const double size = p[i] == 0 ? 1 : std::fabs(p[i]);

@@ -52,7 +52,7 @@ inline const generic::Evaluation& evaluation_of(const std::string& name) {
 
 inline NewtonEuler newton_euler_of(const std::string& name, const State& s) {
   const generic::Evaluation& e = evaluation_of(name);
-  const std::size_t mode = number_of_mode(e.model.info, mode_name(s.mode));
+  const std::size_t mode = mode_index(e.model.info, mode_name(s.mode));
   return generic::newton_euler(e, s.parameters, mode, s.motion, s.acceleration, s.wrench);
 }
 

@@ -64,7 +64,7 @@ TEST(CrrCruVoxels, CountsFromRowsEqualTheGenericEngines) {
       const VoxelMap map = voxel_map(mechanism(c.name), c.p, p),
                      expected = voxel_map(generic_engine(c.name), c.p, voxels(c, cells, box));
       EXPECT_TRUE(map.feasible == expected.feasible);
-      Survey<double> sum;
+      WorkspaceResult<double> sum;
       summarise(VoxelGrid(cells, box), expected, sum);
       const auto found = survey(c.name, c.p, p);
       EXPECT_EQ(found.feasible_cells, sum.feasible_cells);
@@ -248,27 +248,27 @@ TEST(CrrCruColumns, FixedNodesConvergeToTheTolerance) {
 }
 
 TEST(CrrCruConditioning, IsOneNumberPerYawAndSamplesAddUp) {
-  Demand demand;
-  demand.add(kConditioning);
+  FieldRequest request;
+  request.add(kConditioning);
   for (const Case& c : random_cases(32, 9)) {
     SCOPED_TRACE(text(c));
-    const auto exact = survey(c.name, c.p, columns(c), demand),
-               cells = survey(c.name, c.p, voxels(c, {40, 40, 80}), demand);
+    const auto exact = survey(c.name, c.p, columns(c), request),
+               cells = survey(c.name, c.p, voxels(c, {40, 40, 80}), request);
     if (!(exact.volume > 1e-4)) continue;
     for (const auto* s : {&exact, &cells}) {
       double sum = 0;
       for (const double w : s->weight) sum += w;
       EXPECT_NEAR(sum, s->volume, 1e-5 * s->volume);
-      ASSERT_EQ(s->weight.size(), s->of(kConditioning).size());
+      ASSERT_EQ(s->weight.size(), s->field(kConditioning).size());
     }
-    const double mean = weighted_mean(exact.weight, exact.of(kConditioning));
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)), mean, 5e-3);
+    const double mean = weighted_mean(exact.weight, exact.field(kConditioning));
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.field(kConditioning)), mean, 5e-3);
     if (c.held != 3) continue;
     const PoseReport r = generic_engine(c.name).inspect(c.p, {0.2, 0.2, 0.2, c.value}, "-,-,+,-", c.limits);
     EXPECT_NEAR(mean, r.conditioning.value(), 1e-13);  // closed form and singular value decomposition
-    Demand longer = demand;
+    FieldRequest longer = request;
     longer.characteristic_length = 10;
-    EXPECT_LT(survey(c.name, c.p, columns(c), longer).of(kConditioning)[0], mean);
+    EXPECT_LT(survey(c.name, c.p, columns(c), longer).field(kConditioning)[0], mean);
   }
 }
 

@@ -13,10 +13,10 @@ namespace {
 
 using namespace four_ppa_two_par;
 
-bool serves(const WorkspacePlan& plan, const Demand& demand = {}) {
+bool serves(const WorkspacePlan& plan, const FieldRequest& request = {}) {
   static const Accelerators closed = accelerators();
-  return plan.columns() ? closed.columns->serves(plan, *plan.columns(), demand)
-                        : closed.voxels->serves(plan, *plan.voxels(), demand);
+  return plan.columns() ? closed.columns->serves(plan, *plan.columns(), request)
+                        : closed.voxels->serves(plan, *plan.voxels(), request);
 }
 
 const LimitSpec& none() {
@@ -40,7 +40,7 @@ TEST(FourPpaAccelerators, ServeTheUsualSweepInTheLowerMode) {
     EXPECT_FALSE(serves(plan));
     plan.limits.given[kClearanceMin].reset();
     EXPECT_TRUE(serves(plan)) << "obstacles count under a clearance alone";
-    plan.held.clear();
+    plan.fixed.clear();
     plan.swept = {3, 0, 2};
     EXPECT_TRUE(serves(plan));
     plan.swept = {0, 1, 2};
@@ -61,7 +61,7 @@ TEST(FourPpaAccelerators, ServeColumnsWithoutBoxAndNodesOnOnePlane) {
   WorkspacePlan nodes = columns(none());
   column_options(nodes).nodes = {12, 12};
   EXPECT_TRUE(serves(nodes));
-  nodes.held = {over_y()};
+  nodes.fixed = {over_y()};
   EXPECT_FALSE(serves(nodes));
   WorkspacePlan boxed = columns(none());
   column_options(boxed).box = Box{{{0.3, 0.5}, {-1, -0.5}, {-0.5, 0.5}}};
@@ -73,15 +73,15 @@ TEST(FourPpaAccelerators, ServeColumnsWithoutBoxAndNodesOnOnePlane) {
 
 // What the accelerators do not serve is the same with them and without.
 TEST(FourPpaAccelerators, LeaveTheRestToTheGenericEngine) {
-  const Demand upper{.mode = "upper,upper"};
+  const FieldRequest upper{.mode = "upper,upper"};
   WorkspacePlan boxed = columns(none());
   column_options(boxed).box = Box{{{0.3, 0.5}, {-1, -0.5}, {-0.5, 0.5}}};
   int compared = 0;
-  for (const auto& [plan, demand] : {std::pair{voxels(none(), {9, 10, 11}), upper}, {boxed, Demand{}}}) {
-    ASSERT_FALSE(serves(plan, demand));
-    Survey<double> generic;
-    evaluate_once<double>(*prepare_workspace(generic_four_ppa(), plan, demand), nominal(), generic);
-    EXPECT_EQ(survey(nominal(), plan, demand).volume, generic.volume);
+  for (const auto& [plan, request] : {std::pair{voxels(none(), {9, 10, 11}), upper}, {boxed, FieldRequest{}}}) {
+    ASSERT_FALSE(serves(plan, request));
+    WorkspaceResult<double> generic;
+    evaluate_once<double>(*prepare_workspace(generic_four_ppa(), plan, request), nominal(), generic);
+    EXPECT_EQ(survey(nominal(), plan, request).volume, generic.volume);
     compared += generic.volume > 0;
   }
   EXPECT_EQ(compared, 2);

@@ -33,19 +33,19 @@ TEST(FourPpaClearance, VoxelsEqualThePlainLoop) {
       const auto [s, co] = sincos(theta);
       return feasible(g, l, x, y, z, s, co);
     });
-    Survey<double> expected;
+    WorkspaceResult<double> expected;
     summarise(grid, plain, expected);
     const VoxelMap map = voxel_map(four_ppa(), c.p, plan);
-    Demand demand;
-    demand.add(kConditioning);
-    const auto found = survey(c.p, plan, demand);
+    FieldRequest request;
+    request.add(kConditioning);
+    const auto found = survey(c.p, plan, request);
     EXPECT_EQ(map.feasible, plain.feasible) << i;
     EXPECT_EQ(found.feasible_cells, expected.feasible_cells) << i;
     EXPECT_EQ(found.touches_box, expected.touches_box) << i;
     double counted = 0;  // a sample may stand for its mirror images too
     for (const double w : found.weight) counted += w / found.cell_volume;
     EXPECT_NEAR(counted, static_cast<double>(expected.feasible_cells), 1e-6) << i;
-    EXPECT_EQ(found.weight.size(), found.of(kConditioning).size()) << i;
+    EXPECT_EQ(found.weight.size(), found.field(kConditioning).size()) << i;
     auto without = plan;
     without.limits = no_limits_of_four_ppa();
     total += found.feasible_cells;
@@ -56,18 +56,18 @@ TEST(FourPpaClearance, VoxelsEqualThePlainLoop) {
 }
 
 TEST(FourPpaClearance, SlidersAloneAreABoundOfTheirSpacing) {
-  Demand demand;
-  demand.add(kConditioning);
+  FieldRequest request;
+  request.add(kConditioning);
   for (const double min_clearance : {0.0, 0.02}) {
     LimitSpec equal = no_limits_of_four_ppa();
     equal.given[kHMin] = 0.03 + 0.08 / 2 + min_clearance / 2;
     for (const FixedCoordinate& fixed_y : {in_the_middle(), at_y(0.4), over_y()}) {
-      const auto found = survey(nominal(), columns(clearance(min_clearance), fixed_y), demand);
-      const auto expected = survey(nominal(), columns(equal, fixed_y), demand);
+      const auto found = survey(nominal(), columns(clearance(min_clearance), fixed_y), request);
+      const auto expected = survey(nominal(), columns(equal, fixed_y), request);
       EXPECT_EQ(found.volume, expected.volume);
       EXPECT_EQ(found.error, expected.error);
       EXPECT_EQ(found.weight, expected.weight);
-      EXPECT_EQ(found.of(kConditioning), expected.of(kConditioning));
+      EXPECT_EQ(found.field(kConditioning), expected.field(kConditioning));
       EXPECT_LT(found.volume, survey(nominal(), columns(no_limits_of_four_ppa(), fixed_y)).volume);
     }
     EXPECT_EQ(survey(nominal(), voxels(clearance(min_clearance), {32, 34, 60})).feasible_cells,
@@ -164,28 +164,28 @@ TEST(FourPpaClearance, IntegratedOverYEqualsTheSumOverPlanes) {
 }
 
 TEST(FourPpaClearance, ConditioningIsThatOfTheClearPoses) {
-  Demand demand;
-  demand.add(kConditioning);
+  FieldRequest request;
+  request.add(kConditioning);
   for (const Exotic& e : {exotics()[0], exotics()[1]}) {
     const auto p = with(e.changes);
-    const auto exact = survey(p, columns(clearance(e.min_clearance), in_the_middle(), 1e-2), demand);
+    const auto exact = survey(p, columns(clearance(e.min_clearance), in_the_middle(), 1e-2), request);
     double sum = 0;
     for (const double w : exact.weight) sum += w;
     EXPECT_NEAR(sum, exact.volume, 0.04 * exact.volume);  // kinks that no node knows of
-    const auto cells = survey(p, voxels(clearance(e.min_clearance), {80, 80, 80}), demand);
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)),
-                weighted_mean(exact.weight, exact.of(kConditioning)), 5e-3);
+    const auto cells = survey(p, voxels(clearance(e.min_clearance), {80, 80, 80}), request);
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.field(kConditioning)),
+                weighted_mean(exact.weight, exact.field(kConditioning)), 5e-3);
   }
 }
 
 TEST(FourPpaClearance, NothingIsLeftWhereAPairIsTooNearAtEveryPose) {
-  Demand demand;
-  demand.add(kConditioning);
+  FieldRequest request;
+  request.add(kConditioning);
   for (const double min_clearance : {0.05, 0.19, 100.0})
     for (const FixedCoordinate& fixed_y : {in_the_middle(), over_y(10)}) {
       const WorkspacePlan cells = voxels(clearance(min_clearance), {10, 10, 10}, fixed_y);
       for (const WorkspacePlan& plan : {columns(clearance(min_clearance), fixed_y), cells}) {
-        const auto empty = survey(nominal(), plan, demand);
+        const auto empty = survey(nominal(), plan, request);
         EXPECT_EQ(empty.volume, 0);
         EXPECT_EQ(empty.feasible_cells, 0);
         EXPECT_EQ(empty.error, 0);
@@ -196,12 +196,12 @@ TEST(FourPpaClearance, NothingIsLeftWhereAPairIsTooNearAtEveryPose) {
 
 TEST(FourPpaClearance, HasNoDerivativesAndSaysWhy) {
   const auto limited = prepare_workspace(four_ppa(), columns(clearance(0.01)), {});
-  EXPECT_EQ(limited->slopes(), nullptr);
+  EXPECT_EQ(limited->gradients(), nullptr);
   EXPECT_EQ(
-      limited->why_no_gradients(),
+      limited->why_no_derivatives(),
       "the study limits the clearance of links (clearance_min), so that ends of columns have no closed form and the "
       "analysis has no derivatives; use an optimiser without gradients, or keep the sliders apart by h_min");
-  EXPECT_NE(prepare_workspace(four_ppa(), columns(no_limits_of_four_ppa()), {})->slopes(), nullptr);
+  EXPECT_NE(prepare_workspace(four_ppa(), columns(no_limits_of_four_ppa()), {})->gradients(), nullptr);
 }
 
 }  // namespace

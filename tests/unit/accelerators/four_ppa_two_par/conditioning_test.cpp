@@ -17,20 +17,20 @@ using namespace four_ppa_two_par;
 TEST(FourPpaConditioning, SamplesAddUpAndVoxelsConvergeToThem) {
   for (const Case& c : random_cases(12, 9)) {
     const FixedCoordinate fixed_y = at_y(c.y);
-    Demand demand;
-    demand.add(kConditioning);
-    const auto exact = survey(c.p, columns(c.limits, fixed_y), demand);
+    FieldRequest request;
+    request.add(kConditioning);
+    const auto exact = survey(c.p, columns(c.limits, fixed_y), request);
     double sum = 0;
     for (const double w : exact.weight) sum += w;
     EXPECT_NEAR(sum, exact.volume, 1e-5 * exact.volume);
     if (exact.volume < 0.05) continue;
-    const auto cells = survey(c.p, voxels(c.limits, {64, 68, 80}, fixed_y), demand);
+    const auto cells = survey(c.p, voxels(c.limits, {64, 68, 80}, fixed_y), request);
     double counted = 0;  // a sample stands for its mirror images too
     for (const double w : cells.weight) counted += w / cells.cell_volume;
     EXPECT_NEAR(counted, static_cast<double>(cells.feasible_cells), 1e-6);
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)),
-                weighted_mean(exact.weight, exact.of(kConditioning)), 3e-3);
-    for (const double value : exact.of(kConditioning)) ASSERT_TRUE(value >= 0 && value <= 1);
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.field(kConditioning)),
+                weighted_mean(exact.weight, exact.field(kConditioning)), 3e-3);
+    for (const double value : exact.field(kConditioning)) ASSERT_TRUE(value >= 0 && value <= 1);
   }
 }
 

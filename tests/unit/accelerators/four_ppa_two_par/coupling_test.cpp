@@ -34,15 +34,15 @@ TEST(FourPpaCoupling, KernelEqualsTheEquationsOfMotion) {
   EXPECT_EQ(compared, 200);
 }
 
-const Demand kAll{.fields = {&kConditioning, &kCouplingIndex, &kInertiaCondition}, .poses = true};
+const FieldRequest kAll{.fields = {&kConditioning, &kCouplingIndex, &kInertiaCondition}, .poses = true};
 
 TEST(FourPpaCoupling, WhereInertiaHasNoValueTheWorstIsTaken) {
   auto M = Matrix<double, 4, 4>::identity();
   const auto values = [&M] {
-    Survey<double> survey;
+    WorkspaceResult<double> survey;
     survey.clear(kAll.fields);
     add_inertia(M, survey);
-    return std::array{survey.of(kCouplingIndex)[0], survey.of(kInertiaCondition)[0]};
+    return std::array{survey.field(kCouplingIndex)[0], survey.field(kInertiaCondition)[0]};
   };
   EXPECT_EQ(values(), (std::array{0.0, 1.0}));
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
@@ -66,37 +66,37 @@ LimitSpec away() {
   return spec;
 }
 
-void expect_lengths(const Survey<double>& s) {
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.of(kCouplingIndex, i).size(), s.weight.size());
-  EXPECT_EQ(s.of(kInertiaCondition).size(), s.weight.size());
-  EXPECT_EQ(s.of(kConditioning).size(), s.weight.size());
+void expect_lengths(const WorkspaceResult<double>& s) {
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.field(kCouplingIndex, i).size(), s.weight.size());
+  EXPECT_EQ(s.field(kInertiaCondition).size(), s.weight.size());
+  EXPECT_EQ(s.field(kConditioning).size(), s.weight.size());
   EXPECT_EQ(s.pose.size(), s.weight.size());
 }
 
 /// Every sample of a column survey is what the equations of motion give at its pose, and feasible.
-void expect_poses(const std::vector<double>& p, const Survey<double>& s, const LimitSpec& limits) {
+void expect_poses(const std::vector<double>& p, const WorkspaceResult<double>& s, const LimitSpec& limits) {
   ASSERT_GT(s.pose.size(), 100u);
   for (std::size_t k = 0; k < s.pose.size(); k += 17) {
     const pkm::Pose<double>& at = s.pose[k];
     const auto M = joint_inertia(dynamics(p, fixed<4>(at), {}, 0));
     const AxisVector<double> index = coupling_indices(M);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(s.of(kCouplingIndex, i)[k], index[i], 1e-8);
-    EXPECT_NEAR(s.of(kInertiaCondition)[k], inertia_condition(M), 1e-8);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(s.field(kCouplingIndex, i)[k], index[i], 1e-8);
+    EXPECT_NEAR(s.field(kInertiaCondition)[k], inertia_condition(M), 1e-8);
     const PoseReport report = four_ppa().inspect(p, at, "lower,lower", limits);
     EXPECT_TRUE(report.feasible) << report.reason;
-    EXPECT_NEAR(s.of(kConditioning)[k], *report.conditioning, 1e-8);
+    EXPECT_NEAR(s.field(kConditioning)[k], *report.conditioning, 1e-8);
   }
 }
 
-void expect_alike(const Survey<double>& exact, const Survey<double>& cells, double accuracy) {
+void expect_alike(const WorkspaceResult<double>& exact, const WorkspaceResult<double>& cells, double accuracy) {
   expect_lengths(exact);
   expect_lengths(cells);
   for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kCouplingIndex, i)),
-                weighted_mean(exact.weight, exact.of(kCouplingIndex, i)), accuracy)
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.field(kCouplingIndex, i)),
+                weighted_mean(exact.weight, exact.field(kCouplingIndex, i)), accuracy)
         << i;
-  EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kInertiaCondition)),
-              weighted_mean(exact.weight, exact.of(kInertiaCondition)), accuracy);
+  EXPECT_NEAR(weighted_mean(cells.weight, cells.field(kInertiaCondition)),
+              weighted_mean(exact.weight, exact.field(kInertiaCondition)), accuracy);
 }
 
 TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
@@ -110,8 +110,8 @@ TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
     EXPECT_NEAR(sum, exact.volume, 1e-4 * exact.volume);
     expect_poses(p, exact, away());
     // the joints do differ, so the comparison tells them apart
-    EXPECT_GT(std::fabs(weighted_mean(exact.weight, exact.of(kCouplingIndex, 0)) -
-                        weighted_mean(exact.weight, exact.of(kCouplingIndex, 2))),
+    EXPECT_GT(std::fabs(weighted_mean(exact.weight, exact.field(kCouplingIndex, 0)) -
+                        weighted_mean(exact.weight, exact.field(kCouplingIndex, 2))),
               0.006);
   }
 }
@@ -144,8 +144,8 @@ TEST(FourPpaCoupling, ASampleIsWhatThePoseHas) {
         const AxisVector<double> index = coupling_indices(M);
         ASSERT_LT(sample, found.weight.size());
         for (std::size_t joint = 0; joint < 4; ++joint)
-          EXPECT_NEAR(found.of(kCouplingIndex, joint)[sample], index[joint], 1e-9);
-        EXPECT_NEAR(found.of(kInertiaCondition)[sample], inertia_condition(M), 1e-9);
+          EXPECT_NEAR(found.field(kCouplingIndex, joint)[sample], index[joint], 1e-9);
+        EXPECT_NEAR(found.field(kInertiaCondition)[sample], inertia_condition(M), 1e-9);
         EXPECT_NEAR(found.pose[sample][3], centre(2, k, 11), 1e-12);
         ++sample;
       }
@@ -157,21 +157,21 @@ TEST(FourPpaCoupling, OnlyWhatIsDemandedAndTheSameConditioning) {
   const auto plan = columns(away());
   const auto plain = survey(nominal(), plan, {.fields = {&kConditioning}}), all = survey(nominal(), plan, kAll),
              indices = survey(nominal(), plan, {.fields = {&kCouplingIndex}});
-  EXPECT_TRUE(plain.of(kCouplingIndex, 0).empty() && plain.of(kInertiaCondition).empty());
-  EXPECT_TRUE(indices.of(kConditioning).empty() && indices.of(kInertiaCondition).empty());
-  EXPECT_EQ(indices.of(kCouplingIndex, 3), all.of(kCouplingIndex, 3));
-  EXPECT_NEAR(weighted_mean(all.weight, all.of(kConditioning)), weighted_mean(plain.weight, plain.of(kConditioning)),
-              1e-12);
+  EXPECT_TRUE(plain.field(kCouplingIndex, 0).empty() && plain.field(kInertiaCondition).empty());
+  EXPECT_TRUE(indices.field(kConditioning).empty() && indices.field(kInertiaCondition).empty());
+  EXPECT_EQ(indices.field(kCouplingIndex, 3), all.field(kCouplingIndex, 3));
+  EXPECT_NEAR(weighted_mean(all.weight, all.field(kConditioning)),
+              weighted_mean(plain.weight, plain.field(kConditioning)), 1e-12);
   // Without an uneven payload the joints change places under mirroring, and have the same mean.
   for (std::size_t i = 1; i < 4; ++i)
-    EXPECT_NEAR(weighted_mean(all.weight, all.of(kCouplingIndex, i)),
-                weighted_mean(all.weight, all.of(kCouplingIndex, 0)), 1e-12);
+    EXPECT_NEAR(weighted_mean(all.weight, all.field(kCouplingIndex, i)),
+                weighted_mean(all.weight, all.field(kCouplingIndex, 0)), 1e-12);
 }
 
 // The accelerators are of the lower mode; others are the generic engine's.
 TEST(FourPpaCoupling, OfAnotherModeIsThatOfItsEquationsOfMotion) {
   const auto p = lopsided();
-  Demand upper = kAll;
+  FieldRequest upper = kAll;
   upper.mode = "upper,upper";
   const auto found = survey(p, voxels(away(), {9, 10, 11}), upper);
   ASSERT_GT(found.pose.size(), 20u);
@@ -181,8 +181,8 @@ TEST(FourPpaCoupling, OfAnotherModeIsThatOfItsEquationsOfMotion) {
     EXPECT_TRUE(four_ppa().inspect(p, found.pose[k], upper.mode, away()).feasible);
     const auto M = joint_inertia(dynamics(p, fixed<4>(found.pose[k]), {}, 3));
     const AxisVector<double> index = coupling_indices(M);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.of(kCouplingIndex, i)[k], index[i], 1e-9);
-    EXPECT_NEAR(found.of(kInertiaCondition)[k], inertia_condition(M), 1e-9);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.field(kCouplingIndex, i)[k], index[i], 1e-9);
+    EXPECT_NEAR(found.field(kInertiaCondition)[k], inertia_condition(M), 1e-9);
   }
 }
 
@@ -196,18 +196,18 @@ TEST(FourPpaCoupling, DerivativesOfMeansEqualDifferences) {
     for (const double value : design) direction.push_back(value * uniform(-1, 1));
     WorkspacePlan plan = columns(away(), at_y(k % 2 ? 0.6 : design[kL0] / 2));
     column_options(plan).nodes = {3, 3};
-    const auto surveyor = prepare_workspace(four_ppa(), plan, kAll);
+    const auto evaluator = prepare_workspace(four_ppa(), plan, kAll);
     const auto means = [&](double t) {
       std::vector<Dual4> p;
       for (std::size_t i = 0; i < design.size(); ++i) {
         p.emplace_back(design[i] + t * direction[i]);
         p.back().v[0] = direction[i];
       }
-      Survey<Dual4> found;
-      evaluate_once<Dual4>(*surveyor, p, found);
+      WorkspaceResult<Dual4> found;
+      evaluate_once<Dual4>(*evaluator, p, found);
       std::vector<Dual4> all;
-      for (std::size_t i = 0; i < 4; ++i) all.push_back(weighted_mean(found.weight, found.of(kCouplingIndex, i)));
-      all.push_back(weighted_mean(found.weight, found.of(kInertiaCondition)));
+      for (std::size_t i = 0; i < 4; ++i) all.push_back(weighted_mean(found.weight, found.field(kCouplingIndex, i)));
+      all.push_back(weighted_mean(found.weight, found.field(kInertiaCondition)));
       return all;
     };
     const auto here = means(0);

@@ -25,7 +25,7 @@ TEST(FourPpaDerivatives, GoldenGradientsThroughTheProblem) {
     ASSERT_EQ(problem.objectives()[0].name, "workspace-volume");
     ASSERT_EQ(problem.objectives()[1].name, "workspace-ratio");
     const auto p = design_of(entry);
-    const auto derivatives = problem.slopes(p, by);
+    const auto derivatives = problem.derivatives(p, by);
     const auto& gradient = entry["volume_gradient"];
     const double volume = entry["volume_exact"], size = kPi * p[kB] * (p[kLu] + p[kLd]);
     EXPECT_NEAR(derivatives[0] / volume, 1, 1e-9);
@@ -60,10 +60,10 @@ TEST(FourPpaDerivatives, SmoothApproximationConvergesToTheMinimum) {
     parts.plan = plan;
     parts.varies = {kA};
     parts.space = DesignSpace({{"a", "m", 0.1, 0.5}});
-    entry.demand(context, parts.demand);
+    entry.request(context, parts.request);
     parts.objectives.push_back({.name = entry.name, .quantity = entry.make(context)});
     const DesignProblem problem(parts);
-    const double minimum = problem.report(nominal()).objectives[0], smooth = problem.slopes(nominal(), {})[0];
+    const double minimum = problem.report(nominal()).objectives[0], smooth = problem.derivatives(nominal(), {})[0];
     EXPECT_GT(minimum, 0.001);
     EXPECT_GE(smooth, minimum);
     EXPECT_LT(smooth - minimum, gap);
@@ -108,8 +108,8 @@ void compare(unsigned designs, FixedCoordinate::Kind kind, std::array<int, 2> no
 }
 
 TEST(FourPpaDerivatives, MiddlePlaneWithShortRails) {
-  compare(1000, FixedCoordinate::Kind::middle, {0, 0}, 1e-13, true, 0.01);
-  compare(200, FixedCoordinate::Kind::middle, {6, 6}, 0, false, 0.02);
+  compare(1000, FixedCoordinate::Kind::default_value, {0, 0}, 1e-13, true, 0.01);
+  compare(200, FixedCoordinate::Kind::default_value, {6, 6}, 0, false, 0.02);
 }
 
 TEST(FourPpaDerivatives, OffTheMiddlePlane) {
@@ -124,13 +124,13 @@ TEST(FourPpaDerivatives, VolumesIntegratedOverY) {
 /// There are so many samples over y that every small step crosses a kink of one of them: their weights are compared to
 /// rounding, their mean conditioning as far as the kinks allow.
 TEST(FourPpaDerivatives, SamplesIntegratedOverY) {
-  Demand demand;
-  demand.add(kConditioning);
+  FieldRequest request;
+  request.add(kConditioning);
   int compared = 0;
   for (unsigned k = 0; compared < 3 && k < 10; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
     const DrawnPlane drawn = draw(k);
-    const auto surveyor = prepare_workspace(four_ppa(), columns(drawn.limits, over_y(), 1e-8), demand);
+    const auto evaluator = prepare_workspace(four_ppa(), columns(drawn.limits, over_y(), 1e-8), request);
     const auto sums = [&](double t) {
       std::vector<Dual4> p;
       for (std::size_t i = 0; i < drawn.design.size(); ++i) {
@@ -138,11 +138,11 @@ TEST(FourPpaDerivatives, SamplesIntegratedOverY) {
         p.emplace_back(drawn.design[i] + t * step);
         p.back().v[0] = step;
       }
-      Survey<Dual4> survey;
-      evaluate_once<Dual4>(*surveyor, p, survey);
+      WorkspaceResult<Dual4> survey;
+      evaluate_once<Dual4>(*evaluator, p, survey);
       Dual4 total;
       for (const Dual4& weight : survey.weight) total += weight;
-      return std::array{survey.volume, total, weighted_mean(survey.weight, survey.of(kConditioning))};
+      return std::array{survey.volume, total, weighted_mean(survey.weight, survey.field(kConditioning))};
     };
     const auto here = sums(0);
     if (!(here[0].a > 1e-4)) continue;

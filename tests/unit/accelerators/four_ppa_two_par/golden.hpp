@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/config/built_in_mechanisms.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/generic/files.hpp"
 #include "tests/unit/math/uniform.hpp"
 
@@ -64,20 +64,21 @@ inline FixedCoordinate over_y(std::int64_t cells = 0) {
 
 inline WorkspacePlan columns(const LimitSpec& limits, const FixedCoordinate& fixed_y = in_the_middle(),
                              double tolerance = 1e-10) {
-  return {.method = ColumnOptions{.tolerance = tolerance}, .held = {fixed_y}, .limits = limits};
+  return {.method = ColumnOptions{.tolerance = tolerance}, .fixed = {fixed_y}, .limits = limits};
 }
 
 inline WorkspacePlan voxels(const LimitSpec& limits, std::array<std::int64_t, 3> cells,
                             const FixedCoordinate& fixed_y = in_the_middle()) {
-  return {.method = VoxelOptions{.cells = cells}, .held = {fixed_y}, .limits = limits};
+  return {.method = VoxelOptions{.cells = cells}, .fixed = {fixed_y}, .limits = limits};
 }
 
 inline ColumnOptions& column_options(WorkspacePlan& plan) { return std::get<ColumnOptions>(plan.method); }
 inline VoxelOptions& voxel_options(WorkspacePlan& plan) { return std::get<VoxelOptions>(plan.method); }
 
-inline Survey<double> survey(const std::vector<double>& p, const WorkspacePlan& plan, const Demand& demand = {}) {
-  Survey<double> result;
-  evaluate_once<double>(*prepare_workspace(four_ppa(), plan, demand), p, result);
+inline WorkspaceResult<double> survey(const std::vector<double>& p, const WorkspacePlan& plan,
+                                      const FieldRequest& request = {}) {
+  WorkspaceResult<double> result;
+  evaluate_once<double>(*prepare_workspace(four_ppa(), plan, request), p, result);
   return result;
 }
 

@@ -56,7 +56,8 @@ TEST(SingularPose, HasNoInertiaInASurvey) {
 std::shared_ptr<const Motion> turn() { return point_to_point(kRegular, {{0, kSingularPose, 1}}, 0, TimeLaw::quintic); }
 
 TEST(SingularPose, IsMarkedInATrajectory) {
-  const Trajectory found = follow(four_ppa(), nominal(), "lower,lower", no_limits(four_ppa().info()), *turn(), 11);
+  const Trajectory found =
+      compute_trajectory(four_ppa(), nominal(), "lower,lower", no_limits(four_ppa().info()), *turn(), 11);
   for (std::size_t k = 0; k < 10; ++k) {
     EXPECT_TRUE(found.points[k].feasible) << found.points[k].reason;
     EXPECT_TRUE(found.points[k].forces) << k;
@@ -88,7 +89,7 @@ TEST(SingularPose, FailsADesignWhosePeakForceIsLookedFor) {
   EXPECT_EQ(report.status, Status::failed);
   EXPECT_TRUE(std::isnan(report.objectives[0]));
   EXPECT_THAT(report.reason, HasSubstr("the motion turn passes through a singularity at t = 1 s, sample 11 of 11"));
-  EXPECT_TRUE(std::isnan(problem.slopes(nominal(), {})[0]));
+  EXPECT_TRUE(std::isnan(problem.derivatives(nominal(), {})[0]));
 }
 
 TEST(SingularPose, IsNoBeginningOfASimulation) {
@@ -103,7 +104,8 @@ TEST(SingularPose, IsNoBeginningOfASimulation) {
 TEST(TrajectorySummary, HasNoPeakSpeedWithoutSpeeds) {
   const test::ThreeRopes ropes;
   const auto swing = point_to_point({0, -1}, {{0, {0.5, -2}, 1}}, 0, TimeLaw::quintic);
-  const Trajectory found = follow(ropes, std::vector<double>{2}, "hanging", no_limits(ropes.info()), *swing, 5);
+  const Trajectory found =
+      compute_trajectory(ropes, std::vector<double>{2}, "hanging", no_limits(ropes.info()), *swing, 5);
   EXPECT_EQ(found.summary.infeasible, 0u);
   EXPECT_FALSE(found.summary.peak_speed);
 }

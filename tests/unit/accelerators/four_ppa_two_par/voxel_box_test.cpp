@@ -8,7 +8,7 @@
 namespace pkm::testing {
 namespace {
 
-Survey<double> surveyed(const WorkspacePlan& plan) { return survey(nominal(), plan); }
+WorkspaceResult<double> surveyed(const WorkspacePlan& plan) { return survey(nominal(), plan); }
 
 TEST(FourPpaVoxelBox, PosesBeyondAQuarterTurnDoNotCount) {
   WorkspacePlan quarter = voxels(no_limits(four_ppa().info()), {16, 17, 30}), half = quarter;
@@ -31,7 +31,7 @@ TEST(FourPpaVoxelBox, ARowOfMoreCellsThan32BitsHold) {
   voxel_options(plan).cells = {4096, 4096, 2};
   EXPECT_EQ(surveyed(plan).feasible_cells, std::int64_t{1} << 25);
   voxel_options(plan).cells = {65536, 65536, 2};
-  const Survey<double> survey = surveyed(plan);
+  const WorkspaceResult<double> survey = surveyed(plan);
   EXPECT_EQ(survey.feasible_cells, std::int64_t{1} << 33);
   EXPECT_NEAR(survey.volume, 0.02 * 0.01 * 0.02, 1e-18);
 }

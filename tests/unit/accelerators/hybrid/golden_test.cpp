@@ -292,7 +292,7 @@ std::shared_ptr<const Motion> sample_motion() {
 TEST(HybridGolden, TheSampleMotion) {
   const Json& table = golden()["motion"];
   const auto motion = sample_motion();
-  const Trajectory found = follow(mechanism(), nominal(), "+,-,-", no_thresholds(), *motion, table.size());
+  const Trajectory found = compute_trajectory(mechanism(), nominal(), "+,-,-", no_thresholds(), *motion, table.size());
   EXPECT_EQ(found.summary.infeasible, 0u);
   EXPECT_FALSE(found.periodic);
   for (std::size_t k = 0; k < table.size(); ++k) {

@@ -8,7 +8,7 @@
 #include "engine/accelerators/hybrid/columns.hpp"
 #include "engine/accelerators/hybrid/voxels.hpp"
 #include "engine/math/statistics.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 #include "tests/unit/accelerators/hybrid/golden.hpp"
 #include "tests/unit/accelerators/hybrid/plain_pose.hpp"
 #include "tests/unit/generic/plain_loop.hpp"
@@ -27,17 +27,17 @@ WorkspacePlan voxels_plan(std::array<std::int64_t, 3> cells) {
   return {.method = VoxelOptions{.cells = cells}, .limits = no_thresholds()};
 }
 
-/// The demand in a working mode with the required sign of N2.
-Demand in_mode(const WorkingMode& mode, int branch = 1, Demand demand = {}) {
-  demand.mode = mode_name(mode, branch);
-  return demand;
+/// The request in a working mode with the required sign of N2.
+FieldRequest in_mode(const WorkingMode& mode, int branch = 1, FieldRequest request = {}) {
+  request.mode = mode_name(mode, branch);
+  return request;
 }
 
 template <class S>
-Survey<S> survey(const std::vector<S>& p, const WorkingMode& mode, const WorkspacePlan& plan,
-                 const Demand& demand = {}) {
-  Survey<S> result;
-  evaluate_once<S>(*prepare_workspace(mechanism(), plan, in_mode(mode, 1, demand)), p, result);
+WorkspaceResult<S> survey(const std::vector<S>& p, const WorkingMode& mode, const WorkspacePlan& plan,
+                          const FieldRequest& request = {}) {
+  WorkspaceResult<S> result;
+  evaluate_once<S>(*prepare_workspace(mechanism(), plan, in_mode(mode, 1, request)), p, result);
   return result;
 }
 
@@ -139,8 +139,8 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
     const std::vector<double> p = design_of(entry);
     const WorkingMode mode = mode_of(entry["wm"]);
     const Box box = default_box(sliced(p, mode));
-    Demand demand;
-    demand.add(kConditioning);
+    FieldRequest request;
+    request.add(kConditioning);
     for (const auto& grid : entry["grids"]) {
       SCOPED_TRACE(entry["design"].dump() + " " + grid.dump());
       WorkspacePlan voxels = voxels_plan({grid["shape"][0], grid["shape"][1], grid["shape"][2]});
@@ -148,10 +148,10 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
         voxels.limits.given[kClearanceMin] = 0;
         std::get<VoxelOptions>(voxels.method).box = box;
       }
-      const auto found = survey(p, mode, voxels, demand);
+      const auto found = survey(p, mode, voxels, request);
       EXPECT_EQ(found.feasible_cells, grid["count"].get<std::int64_t>());
       EXPECT_NEAR(found.volume, grid["volume"].get<double>(), 1e-12 * found.volume);
-      EXPECT_NEAR(weighted_mean(found.weight, found.of(kConditioning)), grid["gci"].get<double>(), 1e-12);
+      EXPECT_NEAR(weighted_mean(found.weight, found.field(kConditioning)), grid["gci"].get<double>(), 1e-12);
     }
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t end = 0; end < 2; ++end)
@@ -231,7 +231,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
       const VoxelGrid grid(voxels.voxels()->cells, given ? wide : box);
       const VoxelMap plain =
           test_every_cell(grid, [&](double x, double z, double beta) { return feasible(f, x, z, beta); });
-      Survey<double> expected;
+      WorkspaceResult<double> expected;
       summarise(grid, plain, expected);
       const auto found = survey(c.p, c.mode, voxels);
       EXPECT_EQ(found.feasible_cells, expected.feasible_cells);
@@ -248,7 +248,7 @@ TEST(HybridVoxels, TheOtherBranchIsEmpty) {
   for (const Case& c : random_cases(9, 2)) {
     const SlicedDesign<double> f = sliced(c.p, c.mode, no_thresholds(), -1);
     const VoxelGrid grid({15, 15, 40}, {{{-0.3, 0.3}, {0.05, 0.3}, {-1.5, 1.5}}});
-    Survey<double> found;
+    WorkspaceResult<double> found;
     summarise(grid, test_every_cell(grid, [&](double x, double z, double beta) { return feasible(f, x, z, beta); }),
               found);
     EXPECT_EQ(found.feasible_cells, 0);
@@ -293,17 +293,17 @@ TEST(HybridColumns, ToleranceIsKept) {
 }
 
 TEST(HybridColumns, SamplesAddUpAndHaveTheMeanOfTheVoxels) {
-  Demand demand;
-  demand.add(kConditioning);
+  FieldRequest request;
+  request.add(kConditioning);
   for (const Case& c : random_cases(18, 5)) {
-    const auto exact = survey(c.p, c.mode, columns_plan(), demand),
-               cells = survey(c.p, c.mode, voxels_plan({40, 60, 60}), demand);
+    const auto exact = survey(c.p, c.mode, columns_plan(), request),
+               cells = survey(c.p, c.mode, voxels_plan({40, 60, 60}), request);
     if (!(exact.volume > 1e-3)) continue;
     double sum = 0;
     for (const double w : exact.weight) sum += w;
     EXPECT_NEAR(sum / exact.volume, 1, 1e-5);  // 8 nodes along strips
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)),
-                weighted_mean(exact.weight, exact.of(kConditioning)), 2e-3);
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.field(kConditioning)),
+                weighted_mean(exact.weight, exact.field(kConditioning)), 2e-3);
   }
 }
 
@@ -311,11 +311,11 @@ TEST(HybridWorkspace, TheCarriageMultipliesByItsStroke) {
   WorkspacePlan columns = columns_plan(), voxels = voxels_plan({12, 12, 12});
   for (WorkspacePlan* p : {&columns, &voxels}) {
     const double still = survey(nominal(), {1, -1, -1}, *p).volume;
-    p->held = {held_y(FixedCoordinate::Kind::value, 0.199)};
+    p->fixed = {held_y(FixedCoordinate::Kind::value, 0.199)};
     EXPECT_EQ(survey(nominal(), {1, -1, -1}, *p).volume, still);
-    p->held = {held_y(FixedCoordinate::Kind::value, 0.201)};
+    p->fixed = {held_y(FixedCoordinate::Kind::value, 0.201)};
     EXPECT_EQ(survey(nominal(), {1, -1, -1}, *p).volume, 0);
-    p->held = {held_y(FixedCoordinate::Kind::integrated)};
+    p->fixed = {held_y(FixedCoordinate::Kind::integrated)};
     EXPECT_NEAR(survey(nominal(), {1, -1, -1}, *p).volume, 0.4 * still, 1e-15);
   }
 }
@@ -328,8 +328,8 @@ TEST(HybridWorkspace, ColumnsRefuseAClearance) {
     FAIL() << "the clearance is accepted";
   } catch (const std::invalid_argument& e) {
     EXPECT_STREQ(e.what(),
-                 "mechanism 2t1r-p-hybrid has no column surveys under a clearance (clearance_min), because links that "
-                 "meet end columns where no formula says; take workspace.method = \"voxels\"");
+                 "mechanism 2t1r-p-hybrid has no columns under a clearance (clearance_min), because links that "
+                 "meet end columns where no formula says; set workspace.method = \"voxels\"");
   }
 }
 
@@ -337,7 +337,7 @@ TEST(HybridWorkspace, ColumnsRefuseAClearance) {
 TEST(HybridColumns, DerivativesOfTheVolumeEqualDifferences) {
   int moved = 0;
   WorkspacePlan columns = columns_plan(1e-12);
-  columns.held = {held_y(FixedCoordinate::Kind::integrated)};
+  columns.fixed = {held_y(FixedCoordinate::Kind::integrated)};
   for (const Case& c : random_cases(12, 6)) {
     const double volume = survey(c.p, c.mode, columns).volume;
     if (!(volume > 1e-5)) continue;

@@ -69,7 +69,7 @@ TEST(Solvers, DerivativeFreeAlgorithmsEvaluateNoDerivatives) {
   });
   const Outcome outcome = solve("nlopt", problem, {{"algorithm", "bobyqa"}}, {{0.9, 0.9}});
   EXPECT_NEAR(best_value(outcome), 0, 1e-12);
-  EXPECT_TRUE(outcome.table.slopes.empty());
+  EXPECT_TRUE(outcome.table.derivatives.empty());
 }
 
 TEST(Solvers, StopAtTheirLimitAndReportIt) {

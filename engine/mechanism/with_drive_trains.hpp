@@ -1,4 +1,5 @@
-// A mechanism with drive trains: everything that it was, and in its equations of motion what turns with its motors.
+// Decorator that adds drive trains to a mechanism: the reflected inertia of their rotors enters the equations of
+// motion, everything else is forwarded.
 #pragma once
 
 #include <memory>
@@ -8,7 +9,7 @@
 
 namespace pkm {
 
-/// @param trains  as many as the mechanism has joints
+/// @param trains  one for each joint
 std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains);
 
 }  // namespace pkm

@@ -1,14 +1,14 @@
-// Abilities written once for numbers and for derivatives: a mechanism has templates, these bases call them.
+// Scalar dispatch: CRTP bases whose overloads for double and Dual4 both call one member template of the mechanism.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
 
 namespace pkm {
 
-/// Self has `template <class S> void find_dynamics(std::span<const S> parameters, const std::string& mode,
+/// Self defines `template <class S> void find_dynamics(std::span<const S> parameters, const std::string& mode,
 /// std::span<const MotionState<S>>, std::span<PoseDynamics<S>>) const`.
 template <class Self>
-class DynamicsOf : public Dynamics {
+class DynamicsDispatch : public Dynamics {
  public:
   void equations(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
                  std::span<PoseDynamics<double>> found) const final {
@@ -20,13 +20,11 @@ class DynamicsOf : public Dynamics {
   }
 };
 
-/// Self has `template <class S> void find_margins(std::span<const S> parameters, const std::string& mode,
-/// const LimitSpec&, std::span<const Pose<double>>, Scratch&, std::vector<S>&) const`, and `std::string
-/// common_margin_unit() const`.
+/// Self defines `template <class S> void find_margins(std::span<const S> parameters, const std::string& mode,
+/// const LimitSpec&, std::span<const Pose<double>>, Scratch&, std::vector<S>&) const`.
 template <class Self>
-class PoseMarginsOf : public PoseMargins {
+class PoseMarginsDispatch : public PoseMargins {
  public:
-  std::string margin_unit() const final { return static_cast<const Self&>(*this).common_margin_unit(); }
   void append(std::span<const double> p, const std::string& mode, const LimitSpec& limits,
               std::span<const Pose<double>> poses, Scratch& scratch, std::vector<double>& margins) const final {
     static_cast<const Self&>(*this).find_margins(p, mode, limits, poses, scratch, margins);

@@ -1,4 +1,4 @@
-// What a survey of a design's workspace found: voxels and exact columns fill the same structure.
+// Result of a workspace analysis, the same structure for voxels and for columns.
 #pragma once
 
 #include <algorithm>
@@ -13,39 +13,39 @@
 
 namespace pkm {
 
-/// Weighted samples of the feasible set. A mean is a weighted sum of a field over the sum of the weights.
-/// S is double or the derivative scalar.
+/// Volume of the feasible set, and fields at weighted samples of it. The mean of a field is its weighted sum divided by
+/// the sum of the weights. S is double or the derivative scalar.
 template <class S>
-struct Survey {
+struct WorkspaceResult {
   S volume{};  ///< measure of the feasible set, in the unit of volume_unit()
-  // voxels
+  // of voxels
   std::int64_t cells = 0;
   std::int64_t feasible_cells = 0;
   double cell_volume = 0;
-  bool touches_box = false;  ///< a feasible cell lies on the box's outer layer
-  // columns
-  std::int64_t columns = 0;  ///< nodes used
+  bool touches_box = false;  ///< true if a feasible cell lies in the outermost layer of the box
+  // of columns
+  std::int64_t columns = 0;  ///< number of columns evaluated
   double error = 0;          ///< estimated relative error of the volume
-  // per feasible sample, only what was demanded (empty otherwise), all of one length
+  // by feasible sample, if requested; otherwise empty
   std::vector<S> weight;
   std::vector<Pose<S>> pose;
-  std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;  ///< the first, or as many as joints
+  std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;  ///< one vector, or one by joint
 
-  /// A field; empty where it was not demanded.
-  const std::vector<S>& of(const PoseQuantity& quantity, std::size_t joint = 0) const {
+  /// Values of a quantity by sample; empty if it was not requested.
+  const std::vector<S>& field(const PoseQuantity& quantity, std::size_t joint = 0) const {
     static const std::vector<S> none;
     const auto found = fields.find(&quantity);
     return found == fields.end() ? none : found->second[joint];
   }
-  /// The same to add to; null where it was not demanded.
+  /// The vectors of a quantity, to append samples; null if it was not requested.
   std::vector<S>* find(const PoseQuantity& quantity) {
     const auto found = fields.find(&quantity);
     return found == fields.end() ? nullptr : found->second.data();
   }
 
-  /// Nothing found yet; memory is kept.
-  /// @param demanded  the fields to be filled
-  void clear(std::span<const PoseQuantity* const> demanded = {}) {
+  /// Resets the result to an empty workspace, and keeps the memory.
+  /// @param requested  the quantities for which samples will be appended
+  void clear(std::span<const PoseQuantity* const> requested = {}) {
     volume = S{};
     cells = feasible_cells = columns = 0;
     cell_volume = error = 0;
@@ -53,15 +53,15 @@ struct Survey {
     weight.clear();
     pose.clear();
     std::erase_if(fields,
-                  [&](const auto& field) { return std::ranges::find(demanded, field.first) == demanded.end(); });
-    for (const PoseQuantity* const quantity : demanded)
+                  [&](const auto& field) { return std::ranges::find(requested, field.first) == requested.end(); });
+    for (const PoseQuantity* const quantity : requested)
       for (auto& component : fields[quantity]) component.clear();
   }
 };
 
-/// Appends the samples of another survey.
+/// Appends the samples of another result.
 template <class S>
-void append_samples(const Survey<S>& from, Survey<S>& to) {
+void append_samples(const WorkspaceResult<S>& from, WorkspaceResult<S>& to) {
   const auto append = [](const auto& source, auto& target) {
     target.insert(target.end(), source.begin(), source.end());
   };
@@ -71,9 +71,9 @@ void append_samples(const Survey<S>& from, Survey<S>& to) {
     for (std::size_t i = 0; i < field.size(); ++i) append(field[i], to.fields[quantity][i]);
 }
 
-/// The values of a survey with derivatives.
+/// Copies a result without its derivatives.
 template <class S>
-void copy_values(const Survey<S>& from, Survey<double>& to) {
+void copy_values(const WorkspaceResult<S>& from, WorkspaceResult<double>& to) {
   to.volume = value_of(from.volume);
   to.cells = from.cells;
   to.feasible_cells = from.feasible_cells;
@@ -96,10 +96,10 @@ void copy_values(const Survey<S>& from, Survey<double>& to) {
     for (std::size_t i = 0; i < field.size(); ++i) copy(field[i], to.fields[quantity][i]);
 }
 
-/// Which cells of a voxel box are feasible, for pictures and the study file. Order of axes: Sweep::swept, the last
-/// one fastest; axes behind them have one cell, [0, 1].
+/// The feasible cells of a voxel box. The axes are in the order of Sweep::swept, the last one varies fastest; axes
+/// without a coordinate have one cell, [0, 1].
 struct VoxelMap {
-  std::vector<std::uint8_t> feasible;
+  std::vector<std::uint8_t> feasible;  ///< 0 or 1
   std::int64_t cells[3] = {0, 0, 0};
   double lower[3] = {0, 0, 0};
   double upper[3] = {0, 0, 0};

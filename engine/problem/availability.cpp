@@ -1,11 +1,11 @@
-#include "engine/problem/no_conditioning.hpp"
+#include "engine/problem/availability.hpp"
 
 #include "engine/core/error.hpp"
 #include "engine/geometry/mixed_units.hpp"
 
 namespace pkm {
 
-Unsupported no_conditioning(const MechanismInfo& info) {
+Unsupported why_no_conditioning(const MechanismInfo& info) {
   if (!info.characteristic_length.empty()) return {};
   const std::string what = "the conditioning of mechanism " + info.name + " is undefined: ";
   if (info.joints.size() < info.coordinates.size())
@@ -24,8 +24,8 @@ Unsupported no_conditioning(const MechanismInfo& info) {
   return what + "its " + join(mixed, " and its ") + " mix lengths and angles; [platform] needs " + join(keys, " and ");
 }
 
-Unsupported unavailable(const Mechanism& mechanism, const PoseQuantity& quantity) {
-  return quantity.needs_inertia() ? no_joint_forces(mechanism) : no_conditioning(mechanism.info());
+Unsupported why_unavailable(const Mechanism& mechanism, const PoseQuantity& quantity) {
+  return quantity.needs_inertia() ? why_no_joint_forces(mechanism) : why_no_conditioning(mechanism.info());
 }
 
 }  // namespace pkm

@@ -1,17 +1,17 @@
-#include "engine/mechanism/driven.hpp"
+#include "engine/mechanism/with_drive_trains.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "engine/core/error.hpp"
-#include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanism/scalar_dispatch.hpp"
 
 namespace pkm {
 namespace {
 
-class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
+class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, DynamicsDispatch<MechanismWithDriveTrains> {
  public:
-  Driven(std::shared_ptr<const Mechanism> bare, DriveTrains trains)
+  MechanismWithDriveTrains(std::shared_ptr<const Mechanism> bare, DriveTrains trains)
       : bare_(std::move(bare)), trains_(std::move(trains)), rotors_(reflected(trains_)) {
     PKM_EXPECTS(trains_.size() == bare_->info().joints.size());
   }
@@ -28,8 +28,8 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const override {
     return bare_->reach(parameters, coordinate);
   }
-  std::optional<double> middle(std::span<const double> parameters, int coordinate) const override {
-    return bare_->middle(parameters, coordinate);
+  std::optional<double> default_value(std::span<const double> parameters, int coordinate) const override {
+    return bare_->default_value(parameters, coordinate);
   }
   void thresholds(std::span<const double> parameters, const LimitSpec& limits,
                   std::span<double> values) const override {
@@ -43,9 +43,9 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
     return bare_->quantities(parameters, mode, limits, at);
   }
 
-  /// Where its surveys do not know rotors, none: they are those of any mechanism, cell by cell.
+  /// Null if the mechanism's own voxels do not support rotors; then cellwise voxels are used.
   const Voxels* voxels() const override {
-    return bare_->voxels() && (!has_rotors() || bare_->voxels()->take_rotors()) ? this : nullptr;
+    return bare_->voxels() && (!has_inertia() || bare_->voxels()->supports_rotors()) ? this : nullptr;
   }
   const Columns* columns() const override { return bare_->columns() ? this : nullptr; }
   std::string why_no_columns() const override { return bare_->why_no_columns(); }
@@ -62,29 +62,29 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   const DriveTrains* drive_trains() const override { return &trains_; }
 
  private:
-  friend DynamicsOf<Driven>;
+  friend DynamicsDispatch<MechanismWithDriveTrains>;
 
-  bool has_rotors() const {
+  bool has_inertia() const {
     return std::ranges::any_of(rotors_, [](double rotor) { return rotor > 0; });
   }
-  Demand with_rotors(Demand demand) const {
-    demand.rotors = rotors_;
-    return demand;
+  FieldRequest add_rotors(FieldRequest request) const {
+    request.rotors = rotors_;
+    return request;
   }
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                const Demand& demand) const override {
-    return bare_->voxels()->prepare(plan, voxels, with_rotors(demand));
+                                                const FieldRequest& request) const override {
+    return bare_->voxels()->prepare(plan, voxels, add_rotors(request));
   }
-  bool take_rotors() const override { return true; }
-  bool take_obstacles() const override { return bare_->voxels()->take_obstacles(); }
+  bool supports_rotors() const override { return true; }
+  bool supports_obstacles() const override { return bare_->voxels()->supports_obstacles(); }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                    const Demand& demand) const override {
-    if (demand.needs_inertia() && has_rotors() && !bare_->columns()->take_rotors())
-      throw std::invalid_argument("column surveys of mechanism " + info().name +
-                                  " have no inertia of drive trains; take workspace.method = \"voxels\"");
-    return bare_->columns()->prepare(plan, columns, with_rotors(demand));
+                                                    const FieldRequest& request) const override {
+    if (request.needs_inertia() && has_inertia() && !bare_->columns()->supports_rotors())
+      throw std::invalid_argument("columns of mechanism " + info().name +
+                                  " do not support the inertia of drive trains; set workspace.method = \"voxels\"");
+    return bare_->columns()->prepare(plan, columns, add_rotors(request));
   }
-  bool take_box() const override { return bare_->columns()->take_box(); }
+  bool supports_box() const override { return bare_->columns()->supports_box(); }
 
   const std::vector<std::string>& mass_models() const override { return bare_->dynamics()->mass_models(); }
   const std::string& mass_model() const override { return bare_->dynamics()->mass_model(); }
@@ -93,12 +93,13 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
     return other ? with_drive_trains(std::move(other), trains_) : nullptr;
   }
 
-  /// A rotor's kinetic energy is J (g qdot)^2 / 2: J^T D J to M_X, J^T D Jdot Xdot to h_X.
+  /// The kinetic energy of a rotor of inertia I at gear ratio g is I (g qdot)^2 / 2. With D = diag(I g^2) and
+  /// qdot = J Xdot, the rotors add J^T D J to M_X and J^T D Jdot Xdot to h_X.
   template <class S>
   void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
                      std::span<PoseDynamics<S>> found) const {
     bare_->dynamics()->equations(parameters, mode, states, found);
-    if (!has_rotors()) return;
+    if (!has_inertia()) return;
     for (PoseDynamics<S>& d : found) {
       if (!d.assembles) continue;
       AxisMatrix<S> weighted = d.J;
@@ -117,7 +118,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
 }  // namespace
 
 std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains) {
-  return std::make_shared<Driven>(std::move(mechanism), std::move(trains));
+  return std::make_shared<MechanismWithDriveTrains>(std::move(mechanism), std::move(trains));
 }
 
 }  // namespace pkm

@@ -1,0 +1,68 @@
+// Inverse dynamics along a motion: state and force of every actuator, for double and for the derivative scalar.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/motion/motion.hpp"
+
+namespace pkm {
+
+/// All actuators at one sample of a motion: qdot = J Xdot, qddot = J Xddot + Jdot Xdot, tau by virtual work.
+template <class S>
+struct ActuatorState {
+  AxisVector<S> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
+  AxisVector<S> forces;                         ///< tau [N, N m]; NaN if J is singular to working precision
+
+  S power(std::size_t joint) const { return forces[joint] * speeds[joint]; }  ///< > 0: the actuator drives [W]
+  /// Torque of the joint's motor [N m]. @param train  drive train of the joint; `forces` include its reflected inertia
+  S torque(const DriveTrain& train, std::size_t joint) const {
+    const S bare = forces[joint] - accelerations[joint] * train.reflected();
+    return train.torque(bare, speeds[joint], accelerations[joint]);
+  }
+};
+
+/// Scratch memory for one batch of states.
+template <class S>
+struct InverseDynamicsScratch {
+  std::vector<MotionState<S>> states;
+  std::vector<PoseDynamics<S>> dynamics;
+};
+
+/// Number of samples per call of Dynamics::equations().
+inline constexpr std::size_t kInverseDynamicsBatch = 32;
+
+/// Calls visit(k, ActuatorState<S>) for the samples in order, up to the first that cannot be assembled.
+/// @param parameters  all parameters of the design
+/// @param mode        one of MechanismInfo::modes
+/// @param wrench      constant load on the platform [N, N m]
+/// @return            index of the first sample that cannot be assembled; samples.size() if there is none
+template <class S, class Visit>
+std::size_t inverse_dynamics_along(const Dynamics& mechanism, std::span<const S> parameters, const std::string& mode,
+                                   std::span<const MotionSample> samples, const Wrench<double>& wrench,
+                                   InverseDynamicsScratch<S>& scratch, const Visit& visit) {
+  scratch.states.resize(kInverseDynamicsBatch);
+  scratch.dynamics.resize(kInverseDynamicsBatch);
+  Wrench<S> load;
+  for (std::size_t i = 0; i < 6; ++i) load[i] = S(wrench[i]);
+  for (std::size_t first = 0; first < samples.size(); first += kInverseDynamicsBatch) {
+    const std::size_t count = std::min(kInverseDynamicsBatch, samples.size() - first);
+    const std::span<MotionState<S>> states(scratch.states.data(), count);
+    const std::span<PoseDynamics<S>> dynamics(scratch.dynamics.data(), count);
+    for (std::size_t k = 0; k < count; ++k) states[k] = {samples[first + k].pose, samples[first + k].velocity};
+    mechanism.equations(parameters, mode, states, dynamics);
+    for (std::size_t k = 0; k < count; ++k) {
+      const PoseDynamics<S>& d = dynamics[k];
+      if (!d.assembles) return first + k;
+      const AxisVector<S>& acceleration = samples[first + k].acceleration;
+      visit(first + k, ActuatorState<S>{d.q, d.J * states[k].velocity, d.J * acceleration + d.J_rate_X,
+                                        drive_forces(d, acceleration, load)});
+    }
+  }
+  return samples.size();
+}
+
+}  // namespace pkm

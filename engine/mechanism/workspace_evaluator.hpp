@@ -1,0 +1,64 @@
+// Workspace analysis of many designs under one plan.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "engine/core/scratch.hpp"
+#include "engine/math/dual.hpp"
+#include "engine/mechanism/workspace_result.hpp"
+
+namespace pkm {
+
+class GradientEvaluator;
+
+/// Evaluator of a plan. The constructor computes everything that does not depend on the design. Immutable and
+/// thread-safe.
+class WorkspaceEvaluator {
+ public:
+  virtual ~WorkspaceEvaluator() = default;
+  /// @param parameters  all parameters of the design, in the order of MechanismInfo::parameters
+  /// @param result      overwritten; reuse one per thread
+  virtual void evaluate(std::span<const double> parameters, Scratch& scratch,
+                        WorkspaceResult<double>& result) const = 0;
+  /// The same analysis with derivatives; null if there is none, see why_no_derivatives().
+  virtual const GradientEvaluator* gradients() const { return nullptr; }
+  virtual std::string why_no_derivatives() const { return "workspace analyses of the mechanism have no derivatives"; }
+};
+
+class GradientEvaluator {
+ public:
+  virtual ~GradientEvaluator() = default;
+  /// The same analysis with derivatives by up to four variables. Values are bit-identical to those of
+  /// WorkspaceEvaluator::evaluate().
+  virtual void evaluate(std::span<const Dual4> parameters, Scratch& scratch, WorkspaceResult<Dual4>& result) const = 0;
+};
+
+/// Evaluator of a plan with voxels.
+class VoxelEvaluator : public WorkspaceEvaluator {
+ public:
+  /// The feasible cells of a design. If coordinates are integrated over, those of the first of their cells.
+  virtual VoxelMap map(std::span<const double> parameters) const = 0;
+  std::string why_no_derivatives() const final {
+    return "voxel counts are piecewise constant and have no derivatives; set workspace.method = \"columns\"";
+  }
+};
+
+/// Calls the overload of evaluate() for the scalar. @param evaluator  gradients() is not null if S is Dual4
+template <class S>
+void evaluate_workspace(const WorkspaceEvaluator& evaluator, std::span<const S> parameters, Scratch& scratch,
+                        WorkspaceResult<S>& result) {
+  if constexpr (std::is_same_v<S, double>)
+    evaluator.evaluate(parameters, scratch, result);
+  else
+    evaluator.gradients()->evaluate(parameters, scratch, result);
+}
+
+/// evaluate_workspace() with scratch memory of its own, for a single analysis.
+template <class S>
+void evaluate_once(const WorkspaceEvaluator& evaluator, std::span<const S> parameters, WorkspaceResult<S>& result) {
+  Scratch scratch;
+  evaluate_workspace(evaluator, parameters, scratch, result);
+}
+
+}  // namespace pkm

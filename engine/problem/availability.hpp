@@ -1,0 +1,17 @@
+// Availability of pose quantities for a mechanism: the conditioning needs consistent units and enough drives, the
+// quantities of the joint-space inertia need dynamics.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/pose_quantity.hpp"
+
+namespace pkm {
+
+/// Why the conditioning is undefined at every pose of every design, with the keys of the mechanism file that define it;
+/// empty if it is defined.
+Unsupported why_no_conditioning(const MechanismInfo& info);
+
+/// Why a pose quantity is undefined; empty if it is defined.
+Unsupported why_unavailable(const Mechanism& mechanism, const PoseQuantity& quantity);
+
+}  // namespace pkm

@@ -1,0 +1,127 @@
+#include "engine/workspace/bounds/constraints.hpp"
+
+#include <algorithm>
+
+#include "engine/expression/derivative.hpp"
+#include "engine/expression/interval_steps.hpp"
+
+namespace pkm::bounds {
+
+using expression::Graph, expression::Groups, expression::Node, expression::Program;
+
+namespace {
+
+// Groups of inputs: the constant ones, and one for each axis.
+constexpr Groups kConstant = 1;
+constexpr Groups axis_group(std::size_t axis) { return 2U << axis; }
+
+}  // namespace
+
+Constraints::Constraints(Graph graph, const std::vector<NamedConstraint>& constraints, std::vector<std::size_t> axes,
+                         std::vector<Interval> inputs)
+    : axes_(std::move(axes)) {
+  std::vector<Node> roots;
+  for (const NamedConstraint& constraint : constraints) roots.push_back(constraint.node);
+  const auto group_of = [&](std::size_t input) {
+    const auto axis = std::ranges::find(axes_, input);
+    return axis == axes_.end() ? kConstant : axis_group(static_cast<std::size_t>(axis - axes_.begin()));
+  };
+  std::vector<double> numbers;
+  graph = expression::without_numbers(graph, inputs.size(), group_of, numbers, roots);
+  inputs.insert(inputs.end(), numbers.begin(), numbers.end());
+  std::vector<Node> coordinates;
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+    coordinates.push_back(graph.input(axes_[axis], axis_group(axis)));
+  std::vector<Node> outputs;
+  for (std::size_t k = 0; k < roots.size(); ++k) {
+    const auto here = roots.begin() + static_cast<std::ptrdiff_t>(k);
+    if (std::find(roots.begin(), here, *here) != here) continue;  // identical to an earlier constraint
+    Constraint constraint{.name = constraints[k].name, .node = constraints[k].node, .value = {}, .derivatives = {}};
+    outputs.push_back(roots[k]);
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+      constraint.depends[axis] = (graph[roots[k]].groups & axis_group(axis)) != 0;
+      outputs.push_back(expression::derivative(graph, roots[k], coordinates[axis]));
+    }
+    all_.push_back(std::move(constraint));
+  }
+  const Groups last = axis_group(axes_.size() - 1);
+  const Program program(graph, outputs, std::array{kConstant, ~(kConstant | last), last});
+  const std::size_t width = 1 + axes_.size();
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    all_[k].value = extract(program, k * width, 1);
+    all_[k].derivatives = extract(program, k * width, width);
+  }
+  registers_.resize(axes_.size());
+  for (const Program::Stage& stage : program.stages())
+    for (const Program::Input& input : stage.inputs)
+      for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+        if (axes_[axis] == input.position) registers_[axis] = input.to;
+  initial_.registers_.resize(program.registers());
+  initial_.versions_.resize(program.registers());
+  program.start<Interval>(initial_.registers_);
+  program.run<Interval>(0, inputs, initial_.registers_);
+}
+
+Constraints::Subprogram Constraints::extract(const Program& program, std::size_t first_output, std::size_t count) {
+  Subprogram subprogram{.outputs = {}, .outer_steps = {}, .last_steps = {}, .index = initial_.evaluated_.size()};
+  initial_.evaluated_.push_back(0);
+  std::vector<bool> needed(program.registers());
+  for (std::size_t i = 0; i < count; ++i) {
+    subprogram.outputs.push_back(program.outputs()[first_output + i]);
+    needed[subprogram.outputs.back()] = true;
+  }
+  const auto collect = [&](const Program::Stage& stage, std::vector<Program::Step>& to) {
+    for (auto step = stage.steps.rbegin(); step != stage.steps.rend(); ++step) {
+      if (!needed[step->to]) continue;
+      for (std::size_t i = 0; i < step->count; ++i) needed[step->from[i]] = true;
+      to.push_back(*step);
+    }
+    std::ranges::reverse(to);
+  };
+  collect(program.stages()[2], subprogram.last_steps);
+  collect(program.stages()[1], subprogram.outer_steps);
+  return subprogram;
+}
+
+void Constraints::set_box(const IntervalBox& box, Scratch& scratch) const {
+  for (std::size_t axis = 0; axis + 1 < axes_.size(); ++axis)
+    if (registers_[axis]) scratch.registers_[*registers_[axis]] = box[axis];
+  scratch.box_version_ = ++scratch.version_;
+  scratch.last_ = Interval::empty();  // differs from every side
+}
+
+void Constraints::run(const Subprogram& subprogram, const Interval& last, Scratch& scratch) const {
+  if (scratch.evaluated_[subprogram.index] != scratch.box_version_) {
+    expression::run_steps(subprogram.outer_steps, scratch.box_version_, scratch.versions_, scratch.registers_);
+    scratch.evaluated_[subprogram.index] = scratch.box_version_;
+  }
+  if (last.lower != scratch.last_.lower || last.upper != scratch.last_.upper) {
+    scratch.last_ = last;
+    scratch.last_version_ = ++scratch.version_;
+    if (registers_.back()) scratch.registers_[*registers_.back()] = last;
+  }
+  expression::run_steps(subprogram.last_steps, scratch.last_version_, scratch.versions_, scratch.registers_);
+}
+
+Interval Constraints::value(std::size_t k, const Interval& last, Scratch& scratch) const {
+  run(all_[k].value, last, scratch);
+  return scratch.registers_[all_[k].value.outputs.front()];
+}
+
+Derivatives Constraints::derivatives(std::size_t k, const Interval& last, Scratch& scratch) const {
+  run(all_[k].derivatives, last, scratch);
+  const std::span<const Interval> registers = scratch.registers_;
+  const std::vector<std::uint32_t>& outputs = all_[k].derivatives.outputs;
+  Derivatives found{.value = registers[outputs[0]], .by_axis = {}};
+  found.is_known = found.value.is_continuous();
+  for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
+    if (axis >= axes_.size()) break;
+    found.by_axis[axis] = registers[outputs[axis + 1]];
+    const bool known = found.by_axis[axis].is_defined() && !found.by_axis[axis].is_empty();
+    if (axis + 1 == axes_.size()) found.is_known_by_last = known && found.value.is_continuous();
+    found.is_known = found.is_known && known;
+  }
+  return found;
+}
+
+}  // namespace pkm::bounds

@@ -1,0 +1,90 @@
+// Constraints g >= 0 as interval programs: enclosures of their values and of their partial derivatives over boxes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/expression/program.hpp"
+#include "engine/geometry/pose.hpp"
+
+namespace pkm::bounds {
+
+inline constexpr std::size_t kMaxAxes = kMaxCoordinates;
+
+/// Sides of a box by axis; elements beyond the number of axes are unused.
+using IntervalBox = std::array<Interval, kMaxAxes>;
+
+/// Enclosures of a constraint's value and partial derivatives over a box.
+struct Derivatives {
+  Interval value;
+  std::array<Interval, kMaxAxes> by_axis;
+  bool is_known = false;          ///< the constraint is continuous, and all partial derivatives are enclosed
+  bool is_known_by_last = false;  ///< it is continuous, and the derivative by the last axis is enclosed
+};
+
+struct NamedConstraint {
+  std::string name;
+  expression::Node node;
+};
+
+/// Immutable and thread-safe.
+class Constraints {
+ public:
+  /// Registers of one worker. They cache results: steps that do not depend on the last axis are evaluated once per box,
+  /// and common subexpressions of several constraints are evaluated once.
+  class Scratch {
+    friend Constraints;
+    std::vector<Interval> registers_;
+    std::vector<std::uint64_t> versions_;   ///< by register: version of the inputs for which it was computed
+    std::vector<std::uint64_t> evaluated_;  ///< by subprogram: version of the box for which its outer steps were run
+    std::uint64_t version_ = 0, box_version_ = 0, last_version_ = 0;
+    Interval last_;  ///< side of the last axis
+  };
+
+  /// @param axes    indices of the graph's inputs that are the axes
+  /// @param inputs  all inputs of the graph; those that are no axes keep these values
+  Constraints(expression::Graph graph, const std::vector<NamedConstraint>& constraints, std::vector<std::size_t> axes,
+              std::vector<Interval> inputs);
+
+  /// Number of different constraints: identical ones are merged.
+  std::size_t size() const { return all_.size(); }
+  std::size_t axes() const { return axes_.size(); }
+  const std::string& name(std::size_t k) const { return all_[k].name; }
+  expression::Node node(std::size_t k) const { return all_[k].node; }  ///< in the graph passed to the constructor
+  bool depends(std::size_t k, std::size_t axis) const { return all_[k].depends[axis]; }
+  Scratch make_scratch() const { return initial_; }
+
+  /// Sets the sides of all axes but the last.
+  void set_box(const IntervalBox& box, Scratch& scratch) const;
+  /// Enclosure of the value of constraint k over the box. @param last  side of the last axis
+  Interval value(std::size_t k, const Interval& last, Scratch& scratch) const;
+  Derivatives derivatives(std::size_t k, const Interval& last, Scratch& scratch) const;
+
+ private:
+  /// The steps of the program that some of its outputs depend on.
+  struct Subprogram {
+    std::vector<std::uint32_t> outputs;  ///< registers
+    std::vector<expression::Program::Step> outer_steps, last_steps;
+    std::size_t index = 0;
+  };
+  struct Constraint {
+    std::string name;
+    expression::Node node;
+    Subprogram value, derivatives;
+    std::array<bool, kMaxAxes> depends{};
+  };
+
+  void run(const Subprogram& subprogram, const Interval& last, Scratch& scratch) const;
+  Subprogram extract(const expression::Program& program, std::size_t first_output, std::size_t count);
+
+  std::vector<std::size_t> axes_;
+  std::vector<std::optional<std::uint32_t>> registers_;  ///< by axis: its register; std::nullopt: unused
+  std::vector<Constraint> all_;
+  Scratch initial_;
+};
+
+}  // namespace pkm::bounds
