@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
+std::vector<OptionSpec> clearance_options(const MechanismInfo& mechanism) {
   const auto owned = limits_of(mechanism, "clearance");
   if (owned.empty()) return {};
   const LimitInfo& limit = mechanism.limits[owned.front()];
@@ -19,7 +19,7 @@ std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
                "minimum distance of links that are not joined; 0: they do not touch; < 0: they may overlap that far"}};
 }
 
-LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
+LimitSpec clearance_limits(const MechanismInfo& mechanism, const Options& options) {
   LimitSpec spec = no_limits(mechanism);
   for (const std::size_t i : limits_of(mechanism, "clearance")) spec.given[i] = options.number("min");
   return spec;
@@ -31,9 +31,9 @@ ConstraintEntry clearance() {
   return {
       .name = "clearance",
       .meaning = "minimum distance of links that are not joined (limbs, platforms, sliders or rails), as capsules",
-      .options = options,
+      .options = clearance_options,
       .refusal = check_limits("clearance"),
-      .limits = limits,
+      .limits = clearance_limits,
   };
 }
 

@@ -26,7 +26,7 @@ Bounds bounds(const Options& options) {
   return bounds;
 }
 
-std::vector<OptionSpec> options(const MechanismInfo&) {
+std::vector<OptionSpec> bounded_expression_options(const MechanismInfo&) {
   auto specs = expression_options();
   specs.push_back({.name = "min", .unit = kUnitOfEntry, .meaning = "minimum allowed value; default without max: 0"});
   specs.push_back({.name = "max", .unit = kUnitOfEntry, .meaning = "maximum allowed value"});
@@ -39,7 +39,7 @@ std::string detail(const EntryContext& context) {
   return expression_text(context) + (max ? " <= " + with_unit(*max, unit) : " >= " + with_unit(min, unit));
 }
 
-std::unique_ptr<const Quantity> make(const EntryContext& context) {
+std::unique_ptr<const Quantity> make_expression(const EntryContext& context) {
   return make_quantity([expression = Expression(context), bounds = bounds(context.options)](const auto& design) {
     const auto value = expression.value(design);
     return bounds.max ? *bounds.max - value : value - bounds.min;
@@ -52,9 +52,9 @@ ConstraintEntry expression_constraint() {
   return {
       .name = "expression",
       .meaning = "a formula of parameters, thresholds and results of the workspace analysis is >= 0, or min, or <= max",
-      .options = options,
+      .options = bounded_expression_options,
       .unit = expression_unit,
-      .make = make,
+      .make = make_expression,
       .needs_workspace = [](const EntryContext& context) { return Expression(context).needs_workspace(); },
       .request = [](const EntryContext& context,
                     FieldRequest& request) { Expression(context).add_request(context, request); },

@@ -24,7 +24,7 @@ std::vector<double> coefficients(const EntryContext& context) {
   return values;
 }
 
-std::unique_ptr<const Quantity> make(const EntryContext& context) {
+std::unique_ptr<const Quantity> make_linear(const EntryContext& context) {
   return make_quantity(
       [coefficient = coefficients(context), bound = context.options.number("bound")](const auto& design) {
         auto margin = design.parameters[0] * 0.0 + bound;
@@ -65,7 +65,7 @@ ConstraintEntry linear() {
             };
           },
       .unit = unit,
-      .make = make,
+      .make = make_linear,
   };
 }
 

@@ -5,7 +5,7 @@
 namespace pkm {
 namespace {
 
-std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
+std::vector<OptionSpec> singularity_options(const MechanismInfo& mechanism) {
   std::vector<OptionSpec> specs;
   for (const std::size_t i : limits_of(mechanism, "singularity-margin")) {
     const LimitInfo& limit = mechanism.limits[i];
@@ -21,7 +21,7 @@ std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
   return specs;
 }
 
-LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
+LimitSpec singularity_limits(const MechanismInfo& mechanism, const Options& options) {
   LimitSpec spec = no_limits(mechanism);
   std::vector<std::string> names;
   bool any = false;
@@ -44,9 +44,9 @@ ConstraintEntry singularity_margin() {
   return {
       .name = "singularity-margin",
       .meaning = "every pose has a minimum distance from singularities",
-      .options = options,
+      .options = singularity_options,
       .refusal = check_limits("singularity-margin"),
-      .limits = limits,
+      .limits = singularity_limits,
   };
 }
 

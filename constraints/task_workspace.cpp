@@ -54,7 +54,7 @@ std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& in
   return poses;
 }
 
-std::unique_ptr<const Quantity> make(const EntryContext& context) {
+std::unique_ptr<const Quantity> make_task_workspace(const EntryContext& context) {
   const Region& region = region_of(context);
   const MechanismInfo& info = context.mechanism.info();
   const MarginPoses of{poses_of(region, info, static_cast<int>(context.options.integer("points"))), info.modes.front(),
@@ -96,7 +96,7 @@ ConstraintEntry task_workspace() {
                 sharpness_of_minimum()};
           },
       .unit = unit_of_minimum,
-      .make = make,
+      .make = make_task_workspace,
   };
 }
 

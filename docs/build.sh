@@ -41,7 +41,7 @@ sed -n '/^@media not print/,/^$/p' "$furo/styles/furo.css" |
     >> "$tree/docs/_static/site.css"
 
 # Doxygen's XML of the public headers, for Breathe. The filter restores the names of unused function arguments, which
-# are commented out in the source.
+# are commented out in the source, and escapes templates in comments, which would be read as HTML.
 cd -- "$tree"
 doxygen - <<SETTINGS
 INPUT = $(/usr/bin/python3 docs/cpp.py --headers)
@@ -54,7 +54,7 @@ EXTRACT_ALL = YES
 MARKDOWN_SUPPORT = NO
 QUIET = YES
 WARN_IF_INCOMPLETE_DOC = NO
-INPUT_FILTER = "sed -E 's@/[*]([a-z_]+)[*]/@\\1@'"
+INPUT_FILTER = "sed -E 's@/[*]([a-z_]+)[*]/@\\1@; /^ *[/]{3} /{s@\`@@g; s@[<>]@\\\\&@g}'"
 WARN_AS_ERROR = YES
 SETTINGS
 

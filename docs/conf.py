@@ -28,9 +28,10 @@ breathe_show_include = False
 # headers use but users do not need.
 nitpick_ignore_regex = [
     ("cpp:identifier", r"(std|Eigen)(::.*)?"),
-    ("cpp:identifier", r"u?int\d+_t|size_t|pkm|S|N"),
-    ("cpp:identifier", r"(Dual4|AxisVector|AxisMatrix|Vector|Matrix|MatrixUpTo|MatrixOf|SmallMatrix|Capsule|Scratch|"
-                       r"SourceText|StartOutcome|UnmergedStart|StopReason|Front|kMaxJoints|Obstacles|TimeGraph|expression)"
+    ("cpp:identifier", r"u?int\d+_t|size_t|pkm|S|N|pkm::Abilities"),
+    ("cpp:identifier", r"(Dual|Dual4|VoxelGrid|AxisVector|AxisMatrix|Vector|Matrix|MatrixUpTo|MatrixOf|SmallMatrix|"
+                       r"Capsule|Scratch|SourceText|StartOutcome|UnmergedStart|StopReason|Front|kMaxJoints|Obstacles|"
+                       r"TimeGraph|expression)"
                        r"(<.*>|::.*)?"),
 ]
 

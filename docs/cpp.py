@@ -7,27 +7,16 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-# Public headers of the library by page, in the order of the documentation.
-HEADERS = {
-    "The command line as a library": ["experiments/app/program.hpp"],
-    "A mechanism": ["engine/mechanism/mechanism.hpp", "engine/mechanism/mechanism_list.hpp",
-                    "engine/core/parameter.hpp", "engine/core/unsupported.hpp", "engine/geometry/pose.hpp"],
-    "Capabilities of a mechanism": [
-        "engine/mechanism/abilities/kinematics.hpp", "engine/mechanism/abilities/design.hpp",
-        "engine/mechanism/abilities/columns.hpp", "engine/mechanism/abilities/dynamics.hpp",
-        "engine/mechanism/abilities/bounds.hpp", "engine/dynamics/drive_train.hpp",
-        "engine/geometry/influence.hpp", "engine/geometry/placed_link.hpp",
-        "engine/dynamics/pose_dynamics.hpp", "engine/dynamics/reactions.hpp", "engine/motion/motion.hpp",
-        "engine/mechanism/pose_quantity.hpp"],
-    "Workspace analysis": ["engine/mechanism/plan.hpp", "engine/mechanism/workspace_result.hpp",
-                           "engine/mechanism/workspace_evaluator.hpp"],
-    "A design problem": ["engine/problem/problem.hpp", "engine/problem/evaluation.hpp",
-                         "engine/problem/evaluator.hpp", "engine/problem/design_problem.hpp",
-                         "engine/problem/quantity.hpp"],
-    "Optimisers and options": ["engine/optimisers/optimiser.hpp", "engine/core/options.hpp"],
-    "Studies": ["engine/config/study.hpp", "engine/config/study_changes.hpp", "engine/config/mechanism_file.hpp",
-                "engine/core/error.hpp"],
-}
+
+def public_headers(repository):
+    """The public headers by page, in the order of engine/public_headers.txt."""
+    pages = {}
+    for line in (repository / "engine/public_headers.txt").read_text().splitlines():
+        if line.startswith("["):
+            group = pages.setdefault(line.strip("[]"), [])
+        elif line.endswith(".hpp"):
+            group.append(line)
+    return pages
 
 
 def fenced(code):
@@ -78,11 +67,13 @@ def declared_in(header, xml):
 
 
 def write_pages(repository, docs, xml):
-    index = ("# The C++ library\n\nThe public headers, with the paths to use in `#include`. "
-             "[A mechanism in C++](../../tutorials/own-mechanism.md#in-c) shows a complete program.\n\n")
+    index = ("# The C++ library\n\nThe public headers, with the paths to use in `#include`. Only these are meant for "
+             "other programs: the package also installs the headers that they include, but those may change in any "
+             "version. [As a library](../../install.md#as-a-library) lists the CMake targets; "
+             "[a mechanism in C++](../../tutorials/own-mechanism.md#in-c) shows a complete program.\n\n")
     toc = []
-    for title, group in HEADERS.items():
-        name = title.lower().replace(" ", "-")
+    for title, group in public_headers(repository).items():
+        name = title.lower().replace(" ", "-").replace("+", "p")
         toc.append(f"{title} <{name}>")
         text = f"# {title}\n\n"
         for header in group:
@@ -94,7 +85,7 @@ def write_pages(repository, docs, xml):
 
 def main():
     if sys.argv[1:] == ["--headers"]:
-        print(*(header for group in HEADERS.values() for header in group))
+        print(*(header for group in public_headers(Path(__file__).parent.parent).values() for header in group))
         return
     repository, docs, xml = map(Path, sys.argv[1:])
     pages = docs / "reference" / "cpp"

@@ -4,14 +4,22 @@ if(NOT PKM_BUNDLE)  # for the archive's users, other compilers and libraries app
   include(CMakePackageConfigHelpers)
   set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pkmopt)
   write_basic_package_version_file(pkmopt-config-version.cmake COMPATIBILITY SameMinorVersion)
-  # This folder is added to the users' include path, so that #include lines are the same as in this repository.
-  set(libraries pkmopt)
-  if(PKM_PROGRAM)
-    list(APPEND libraries pkmopt_program)
-  endif()
-  install(TARGETS ${libraries} EXPORT pkmopt-targets
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pkmopt)
-  install(EXPORT pkmopt-targets NAMESPACE pkmopt:: DESTINATION ${package_folder})
+  # One file of targets for each component of find_package(), so that the others' dependencies need not be installed.
+  foreach(library core mechanisms optimisers io program pkmopt)
+    set(target pkmopt_${library})
+    if(library STREQUAL pkmopt)
+      set(target pkmopt)
+    endif()
+    if(NOT TARGET ${target} OR (library STREQUAL program AND NOT PKM_PROGRAM))
+      continue()
+    endif()
+    install(TARGETS ${target} EXPORT pkmopt-${library})
+    install(EXPORT pkmopt-${library} NAMESPACE pkmopt:: FILE pkmopt-${library}.cmake DESTINATION ${package_folder})
+  endforeach()
+  # This folder is in the users' include path, so that #include lines are the same as in this repository.
+  install(CODE "set(SOURCE ${PROJECT_SOURCE_DIR})\nset(PROGRAM ${PKM_PROGRAM})
+set(HEADERS \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/pkmopt)")
+  install(SCRIPT engine/install_headers.cmake)
   configure_file(engine/pkmopt-config.cmake.in pkmopt-config.cmake @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/pkmopt-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/pkmopt-config-version.cmake
           DESTINATION ${package_folder})

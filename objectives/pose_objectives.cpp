@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/problem/availability.hpp"
+#include "engine/mechanism/availability.hpp"
 #include "engine/problem/pose_statistic.hpp"
 #include "objectives/list.hpp"
 

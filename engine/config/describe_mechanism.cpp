@@ -14,7 +14,7 @@
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/problem/availability.hpp"
+#include "engine/mechanism/availability.hpp"
 
 namespace pkm {
 namespace {

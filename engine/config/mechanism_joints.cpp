@@ -17,7 +17,7 @@
 #include <map>
 
 #include "engine/config/mechanism_draft.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 
 namespace pkm {

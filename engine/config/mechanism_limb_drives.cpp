@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "engine/config/mechanism_limb.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/tables.hpp"
 #include "engine/expression/formula_lexer.hpp"
 
 namespace pkm {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/config/mechanism_limb.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/tables.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {

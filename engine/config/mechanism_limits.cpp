@@ -1,7 +1,7 @@
 // [[limit]], [[margin]], [[design]]: what bounds a pose, a study or a design.
 
 #include "engine/config/mechanism_draft.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/tables.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {

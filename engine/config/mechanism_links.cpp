@@ -1,7 +1,7 @@
 // [[link]]: what is drawn beside the limbs' own links; the clearance of all links.
 
 #include "engine/config/mechanism_draft.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/generic/clearance.hpp"
 

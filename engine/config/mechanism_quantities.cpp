@@ -1,7 +1,7 @@
 // [inputs] and [[quantity]]: named formulas of the design, of the pose and of its motion.
 
 #include "engine/config/mechanism_draft.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/expression/derivative.hpp"
 

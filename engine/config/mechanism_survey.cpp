@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/config/mechanism_draft.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 
 namespace pkm {

@@ -191,15 +191,15 @@ std::shared_ptr<const Motion> read_formulas(const ConfigValue& table, const Coor
   return motion_from_formulas(formulas, duration);
 }
 
-struct Kind {
+struct MotionKind {
   const char* name;
   std::shared_ptr<const Motion> (*read)(const ConfigValue&, const Coordinates&, const Keys&);
 };
 
-constexpr Kind kKinds[] = {{"points", read_points},
-                           {"pick-and-place", read_pick_and_place},
-                           {"oscillation", read_oscillation},
-                           {"formulas", read_formulas}};
+constexpr MotionKind kKinds[] = {{"points", read_points},
+                                 {"pick-and-place", read_pick_and_place},
+                                 {"oscillation", read_oscillation},
+                                 {"formulas", read_formulas}};
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 #include "engine/config/config_value.hpp"
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/study.hpp"
-#include "engine/core/catalogue.hpp"
+#include "engine/config/tables.hpp"
 
 namespace pkm {
 
@@ -58,22 +58,6 @@ void read_references(const ConfigValue& root, StudyDraft& draft);
 /// [[stage]]
 void read_stages(const ConfigValue& root, StudyDraft& draft);
 
-/// The tables [[name]] of the document; none: empty.
-std::vector<ConfigValue> tables_of(const ConfigValue& root, const std::string& name);
-/// The value of `key` ("type", "optimiser"), which must be one of `choices`. It is read before the other keys are
-/// checked, since it decides which are allowed; a key that looks like it is named in the message.
-const std::string& type_of(const ConfigValue& table, const std::string& key, const std::vector<std::string>& choices);
-/// The name of a table, which none of `others` of its kind has.
-/// @param expected  "a name for objectives to refer to", for messages
-template <class List>
-std::string new_name(const ConfigValue& table, const std::string& kind, const List& others,
-                     const std::string& expected) {
-  const ConfigValue name = table.at("name", expected);
-  const std::string& text = name.text(expected);
-  if (text.empty()) throw name.error(expected);
-  if (find_named(others, text)) throw name.refusal("there is already a " + kind + " called '" + text + "'");
-  return text;
-}
 /// The options with kUnitOfEntry replaced by `unit`.
 std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std::string& unit);
 /// Refuses keys that are neither in `keys` nor the name of one of `specs`.

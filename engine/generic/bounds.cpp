@@ -13,7 +13,7 @@
 namespace pkm::generic {
 namespace {
 
-using bounds::Constraints, bounds::Ranges;
+using bounds::Ranges;
 
 void refuse_clearance_of_boxes(const Model& model, const LimitSpec& limits) {
   refuse_clearance(model, limits,
@@ -65,7 +65,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
 
   // Try each coordinate as the innermost one with few boxes, and use the one that gives the smallest gap.
   struct Order {
-    Constraints conditions;
+    bounds::Constraints conditions;
     Ranges ranges;
     std::vector<std::size_t> coordinates;  ///< by axis
   };
@@ -80,7 +80,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
       positions.push_back(e.model.inputs.coordinate(coordinates.back()));
       ranges[i] = given[axis];
     }
-    Order order{Constraints(constraints.graph, constraints.all, positions, inputs), ranges, coordinates};
+    Order order{bounds::Constraints(constraints.graph, constraints.all, positions, inputs), ranges, coordinates};
     if (order.conditions.size() > bounds::kMaxConstraints)
       throw std::invalid_argument("certified bounds support at most " + std::to_string(bounds::kMaxConstraints) +
                                   " constraints, but mechanism " + mechanism.info().name + " has " +
@@ -205,7 +205,7 @@ PoseCertificate certify_box(const Evaluation& e, std::span<const double> paramet
   std::vector<std::size_t> axes;
   for (std::size_t i = 0; i < ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
   const IntervalConstraints constraints = interval_constraints(e.model, inputs);
-  const Constraints conditions(constraints.graph, constraints.all, axes, inputs);
+  const bounds::Constraints conditions(constraints.graph, constraints.all, axes, inputs);
   Graph graph;
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
@@ -227,7 +227,7 @@ PoseCertificate certify_motion(const Evaluation& e, std::span<const double> para
   std::vector<Interval> inputs = design;
   const std::size_t time = substitute_motion(motion, e.model.inputs, constraints.graph, inputs, roots);
   for (std::size_t i = 0; i < roots.size(); ++i) constraints.all[i].node = roots[i];
-  const Constraints conditions(constraints.graph, constraints.all, {time}, inputs);
+  const bounds::Constraints conditions(constraints.graph, constraints.all, {time}, inputs);
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
   if (!not_examined) matrices = jacobians_along(motion, e.model, design);

@@ -16,7 +16,7 @@ namespace {
 template <std::size_t N>
 using Point = std::array<double, N>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// The finite points that are better than the reference point, in lexicographic order: every point comes after all
 /// points that dominate it, and duplicates are adjacent.
@@ -54,7 +54,7 @@ double area(const std::vector<Point<2>>& points, const Point<2>& reference) {
 /// total, and 8 ms in the worst case where every point is a step.
 class Staircase {
  public:
-  explicit Staircase(const Point<2>& reference) : steps_{{-kInfinity, reference[1]}, {reference[0], -kInfinity}} {}
+  explicit Staircase(const Point<2>& reference) : steps_{{-kUnbounded, reference[1]}, {reference[0], -kUnbounded}} {}
 
   double area() const { return area_; }
 

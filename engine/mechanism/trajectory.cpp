@@ -112,8 +112,7 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
       inverse_dynamics_along<double>(*dynamics, parameters, mode, {&at, 1}, wrench, scratch, visit);
     } else if (velocities && report.assembles) {
       const auto joints = velocities->influence(parameters, at.pose, mode);
-      if (joints)
-        set_rates(point, joints->G * at.velocity, accelerations<double, 0>(*joints, at.velocity, at.acceleration));
+      if (joints) set_rates(point, joints->G * at.velocity, accelerations(*joints, at.velocity, at.acceleration));
       if (!joints || (joints->G.rows() >= joints->G.cols() && is_rank_deficient(joints->G))) mark_singular(point);
     }
     point.quantities = mechanism.quantities(parameters, mode, limits, at);
@@ -121,6 +120,25 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
   }
   trajectory.summary = summarise(trajectory.points, info.joints.size());
   return trajectory;
+}
+
+NamedValues pose_quantities_of(const MechanismInfo& info, const std::vector<double>& values) {
+  NamedValues named;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!info.quantities[i].of_design) named.emplace_back(info.quantities[i].name, values[i]);
+  return named;
+}
+
+NamedValues input_and_quantity_values(const MechanismInfo& info, const TrajectoryPoint& point) {
+  NamedValues values;
+  for (std::size_t i = 0; i < point.motion.inputs.size(); ++i) {
+    const auto& [value, rate, acceleration] = point.motion.inputs[i];
+    const std::string& name = info.inputs[i].name;
+    values.insert(values.end(), {{name, value}, {name + "_speed", rate}, {name + "_acceleration", acceleration}});
+  }
+  const NamedValues quantities = pose_quantities_of(info, point.quantities);
+  values.insert(values.end(), quantities.begin(), quantities.end());
+  return values;
 }
 
 }  // namespace pkm

@@ -59,4 +59,11 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
                               const LimitSpec& limits, const Motion& motion, std::size_t count,
                               const Wrench<double>& wrench = {});
 
+/// Names and values of the quantities of a pose and motion: all but those of the design.
+/// @param values  by MechanismInfo::quantities; may be empty
+NamedValues pose_quantities_of(const MechanismInfo& info, const std::vector<double>& values);
+
+/// Names and values of the inputs with their rates and accelerations, then of the quantities; undefined values are NaN.
+NamedValues input_and_quantity_values(const MechanismInfo& info, const TrajectoryPoint& point);
+
 }  // namespace pkm

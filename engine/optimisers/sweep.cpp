@@ -146,7 +146,7 @@ class Sweep final : public Optimiser {
   bool factorial_;
 };
 
-std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space) {
+std::unique_ptr<Optimiser> make_sweep(const Options& options, const DesignSpace& space) {
   Levels levels = grid_levels(space, static_cast<std::size_t>(options.integer("points")));
   const bool factorial = options.word("design") == "full-factorial";
   if (factorial && combinations(levels) > kMaxDesigns)
@@ -166,7 +166,7 @@ OptimiserEntry sweep() {
           .options = {word_option("design", {"one-at-a-time", "full-factorial"},
                                   "vary one variable at a time, or combine all values"),
                       integer_option("points", std::int64_t{41}, 2, 1e6, "values per variable, both bounds included")},
-          .make = make};
+          .make = make_sweep};
 }
 
 }  // namespace pkm

@@ -8,7 +8,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/expression/formula_lexer.hpp"
-#include "engine/problem/availability.hpp"
+#include "engine/mechanism/availability.hpp"
 #include "engine/problem/pose_statistic.hpp"
 
 namespace pkm {

@@ -7,8 +7,8 @@
 
 #include "engine/core/error.hpp"
 #include "engine/problem/front.hpp"
-#include "engine/report/comparison.hpp"
 #include "engine/report/thinning.hpp"
+#include "engine/results/comparison.hpp"
 #include "engine/workspace/visualisation_plan.hpp"
 
 namespace pkm {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/config/study.hpp"
-#include "engine/report/workspace_fields.hpp"
 #include "engine/storage/study_contents.hpp"
+#include "engine/workspace/workspace_fields.hpp"
 
 namespace pkm {
 

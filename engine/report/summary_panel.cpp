@@ -1,8 +1,8 @@
 // Data of the panel "Summary": state, table of designs, active constraints, computing time, reproduction of the study.
 #include <array>
 
-#include "engine/report/design_table.hpp"
 #include "engine/report/panels.hpp"
+#include "engine/results/design_table.hpp"
 
 namespace pkm {
 namespace {

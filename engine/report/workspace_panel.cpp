@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/report/isosurface.hpp"
+#include "engine/export/isosurface.hpp"
 #include "engine/report/packed_array.hpp"
 #include "engine/report/panels.hpp"
 #include "engine/workspace/pose_quantities.hpp"

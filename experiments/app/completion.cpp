@@ -12,12 +12,12 @@ namespace pkm {
 namespace {
 
 /// Possible values of an option or of an argument: words, files, or both.
-struct Values {
+struct PossibleValues {
   std::vector<std::string> words;
   std::string extension;  ///< of files, for example "h5"; "*": any file; "": no files
 };
 
-Values values_of(const std::string& command, const std::string& type, const Session& session) {
+PossibleValues values_of(const std::string& command, const std::string& type, const Session& session) {
   if (type == "KIND" && command == "new") return {{"mechanism", "study"}, ""};
   if (type == "KIND") return {{"mechanisms", "objectives", "constraints", "optimisers"}, ""};
   if (type == "SET") return {{kInstructionSets.begin(), kInstructionSets.end()}, ""};
@@ -26,7 +26,7 @@ Values values_of(const std::string& command, const std::string& type, const Sess
   if (type.starts_with("DIR")) return {{}, "*"};
   if (type.starts_with("F.h5")) return {{}, "h5"};
   if (type.starts_with("MECHANISM|")) {
-    Values values{{}, "toml"};
+    PossibleValues values{{}, "toml"};
     for (const auto& mechanism : session.catalogues.mechanisms) values.words.push_back(mechanism.name());
     return values;
   }
@@ -50,7 +50,7 @@ std::string zsh_escaped(std::string text) {
 
 void print_bash(const std::vector<DeclaredCommand>& commands, const Session& session) {
   const std::string& name = session.program;
-  const auto offer = [&](const Values& values) {
+  const auto offer = [&](const PossibleValues& values) {
     std::string line;
     if (!values.words.empty())
       line += "COMPREPLY=($(compgen -W " + in_quotes(join_words(values.words)) + " -- \"$word\"))";
@@ -97,7 +97,7 @@ _)" << name << R"(() {
     for (const DeclaredOption& option : command.options) options.push_back(option.name);
     std::cout << "  " << command.name << ")\n    if [[ $word == -* ]]; then COMPREPLY=($(compgen -W "
               << in_quotes(join_words(options)) << " -- \"$word\"))\n    else ";
-    std::cout << offer(command.arguments.empty() ? Values{}
+    std::cout << offer(command.arguments.empty() ? PossibleValues{}
                                                  : values_of(command.name, command.arguments.front().type, session))
               << "\n    fi ;;\n";
   }
@@ -106,7 +106,7 @@ _)" << name << R"(() {
 
 void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& session) {
   const auto action = [&](const std::string& command, const std::string& type) {
-    const Values values = values_of(command, type, session);
+    const PossibleValues values = values_of(command, type, session);
     std::string files;
     if (values.extension == "*") files = "_files";
     if (!values.extension.empty() && files.empty()) files = "_files -g \"*." + values.extension + "\"";
@@ -140,7 +140,7 @@ void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& sess
 
 void print_fish(const std::vector<DeclaredCommand>& commands, const Session& session) {
   const auto offer = [&](const std::string& command, const std::string& type) {
-    const Values values = values_of(command, type, session);
+    const PossibleValues values = values_of(command, type, session);
     std::string words = join_words(values.words);
     if (!values.extension.empty() && values.extension != "*") {
       if (!words.empty()) words += ' ';

@@ -5,9 +5,9 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/export/tables.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/problem/pose_statistic.hpp"
-#include "engine/report/csv_table.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 #include "experiments/app/axes.hpp"
@@ -71,23 +71,6 @@ std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const Wo
   return {json, rows};
 }
 
-/// The coupling indices of every feasible cell, one row each.
-CsvTable table_of(const MechanismInfo& info, const WorkspaceResult<double>& survey) {
-  std::vector<std::string> columns = names_of(info.coordinates);
-  for (std::size_t i = 1; i <= info.joints.size(); ++i) columns.push_back("dci_" + std::to_string(i));
-  columns.emplace_back("dci_worst");
-  CsvTable table(columns);
-  Scratch scratch;
-  const std::vector<double>& worst = reduced_field(survey, kCouplingIndex, "worst", scratch);
-  for (std::size_t k = 0; k < survey.weight.size(); ++k) {
-    table.begin_row();
-    table.add(survey.pose[k]);
-    for (std::size_t i = 0; i < info.joints.size(); ++i) table.add(survey.field(kCouplingIndex, i)[k]);
-    table.add(worst[k]);
-  }
-  return table;
-}
-
 std::string coupling(const Target& target, const CouplingArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
   if (const Unsupported reason = why_no_joint_forces(*target.mechanism))
@@ -139,7 +122,7 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
     out.add_table(title("phi = " + position(phi, find_named(info.coordinates, "phi")->unit), found), rows_of_one);
   }
   if (each.size() != 1) out.add_table(title(each.empty() ? "coupling indices" : "all angles", all), rows);
-  if (!arguments.csv.empty()) write_table(arguments, table_of(info, all));
+  if (!arguments.csv.empty()) write_table(arguments, coupling_table(info, all));
   return "";
 }
 

@@ -5,7 +5,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
-#include "engine/report/study_tables.hpp"
+#include "engine/export/study_tables.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/next_step.hpp"

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "engine/core/error.hpp"
-#include "engine/math/hypervolume.hpp"
-#include "engine/problem/front.hpp"
+#include "engine/results/front_points.hpp"
 
 namespace pkm {
 namespace {
@@ -16,26 +15,6 @@ namespace {
 constexpr std::size_t kMaxFullFront = 20, kExcerptSize = 10;
 
 std::string six_digits(double value) { return formatted("%.6g", value); }
-
-/// Labels of each point that stands out: "best conditioning", "knee", "compromise".
-std::vector<std::vector<std::string>> point_labels(const ProblemRecord& problem, const Scores& front) {
-  std::vector<std::vector<std::string>> list(front.size());
-  const std::vector<std::size_t> ends = ends_of(front);
-  for (std::size_t k = 0; k < ends.size(); ++k) list[ends[k]].push_back("best " + problem.objectives[k].name);
-  for (const std::size_t i : knees(front)) list[i].push_back("knee");
-  list[compromise(front)].push_back("compromise");
-  return list;
-}
-
-/// Hypervolume of the front with respect to the stage's reference point; NaN if there is none.
-double hypervolume_of(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
-  const std::vector<double>& reference = stage.front->reference;
-  if (reference.empty()) return std::nan("");
-  std::vector<double> reference_point;  // all objectives minimised
-  for (std::size_t k = 0; k < reference.size(); ++k)
-    reference_point.push_back(problem.objectives[k].direction == Direction::maximise ? -reference[k] : reference[k]);
-  return hypervolume(front.values, front.objectives, reference_point);
-}
 
 std::string headline(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
   const FrontRecord& record = *stage.front;

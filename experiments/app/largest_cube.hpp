@@ -1,10 +1,11 @@
-// The largest axis-parallel cube of feasible cells in a workspace, or the largest square if two coordinates are swept.
+// The options --cube and --least: the largest cube of feasible cells in a workspace, or the largest square if two
+// coordinates are swept.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "engine/report/workspace_fields.hpp"
+#include "engine/workspace/workspace_fields.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
@@ -25,7 +26,7 @@ void expect_length_axes(const Axes& swept, const CubeArguments& arguments);
 void expect_known_fields(const WorkspaceFields& workspace, const MechanismInfo& info, const CubeArguments& arguments);
 
 /// If requested, adds to the output the largest cube of cells that are feasible and reach the minimum values of
-/// --least. Among several cubes of this size, the one closest to the mean of their positions is chosen.
+/// --least.
 void report_largest_cube(const WorkspaceFields& workspace, const CubeArguments& arguments, Printout& out);
 
 }  // namespace pkm

@@ -1,10 +1,11 @@
 #include "experiments/app/link_files.hpp"
 
+#include "engine/export/dxf.hpp"
+#include "engine/export/stl.hpp"
+#include "engine/export/urdf.hpp"
+#include "engine/export/vtp.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/link_cad_files.hpp"
-#include "experiments/app/urdf.hpp"
-#include "experiments/app/vtp.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {

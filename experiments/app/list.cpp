@@ -107,8 +107,8 @@ void list(const Session& session, const ListArguments& arguments) {
     json ? print_json(listed) : print_overview(listed, session.program);
   } else {
     Json found = Json::object();
-    const auto json_of_file = [&session](const std::string& file) {
-      return mechanism_json(*find_mechanism(session.catalogues, file), session.catalogues);
+    const auto json_of_file = [&session](const std::string& mechanism) {
+      return mechanism_json(*find_mechanism(session.catalogues, mechanism), session.catalogues);
     };
     if (kind == "mechanisms" && !is_known(all, name) && looks_like_file(name))
       found[kind] = json_of_file(name);

@@ -1,6 +1,7 @@
 #include "experiments/app/motion_inputs.hpp"
 
 #include "engine/config/assignments.hpp"
+#include "engine/mechanism/trajectory.hpp"
 #include "experiments/app/axes.hpp"
 
 namespace pkm {
@@ -44,13 +45,6 @@ std::shared_ptr<const Motion> with_given_inputs(const Mechanism& mechanism, std:
     return sample;
   };
   return std::make_shared<const Motion>(motion->duration(), at, [motion](TimeGraph& to) { return motion->write(to); });
-}
-
-NamedValues pose_quantities_of(const MechanismInfo& info, const std::vector<double>& values) {
-  NamedValues named;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!info.quantities[i].of_design) named.emplace_back(info.quantities[i].name, values[i]);
-  return named;
 }
 
 void report_quantities(const MechanismInfo& info, const MotionSample& at, const std::vector<double>& values,

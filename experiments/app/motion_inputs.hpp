@@ -22,10 +22,6 @@ void set_inputs(const Mechanism& mechanism, const InputArguments& arguments, Mot
 std::shared_ptr<const Motion> with_given_inputs(const Mechanism& mechanism, std::shared_ptr<const Motion> motion,
                                                 const InputArguments& arguments);
 
-/// Names and values of the quantities of a pose and motion: all but those of the design.
-/// @param values  by MechanismInfo::quantities; may be empty
-NamedValues pose_quantities_of(const MechanismInfo& info, const std::vector<double>& values);
-
 /// Adds "quantities" to the output, and a table of those that depend on inputs or rates.
 void report_quantities(const MechanismInfo& info, const MotionSample& at, const std::vector<double>& values,
                        Printout& out);

@@ -1,16 +1,12 @@
-// The samples of a trajectory as a CSV table and as JSON objects, and the text that locates a sample in a message.
+// The samples of a trajectory as JSON objects, and the text that locates a sample in a message.
 #pragma once
 
 #include <string>
 
 #include "engine/mechanism/trajectory.hpp"
-#include "engine/report/csv_table.hpp"
 #include "experiments/app/print.hpp"
 
 namespace pkm {
-
-/// One row per sample, in SI units; undefined values are empty cells.
-CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajectory);
 
 Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& point);
 

@@ -1,46 +1,9 @@
 #include "experiments/app/motor_check.hpp"
 
-#include <algorithm>
-
-#include "engine/dynamics/coupling.hpp"
+#include "engine/mechanism/motor_demand.hpp"
 #include "experiments/app/axes.hpp"
 
 namespace pkm {
-namespace {
-
-/// Loads along the motion, indexed by joint and sample: the force without the inertia of the motor that the study has
-/// mounted, the speed and the acceleration.
-std::vector<std::vector<JointLoad>> joint_loads(const DriveTrains& trains, const Trajectory& trajectory) {
-  std::vector<std::vector<JointLoad>> loads(trains.size());
-  for (const TrajectoryPoint& p : trajectory.points)
-    for (std::size_t i = 0; i < trains.size(); ++i) {
-      const double acceleration = (*p.accelerations)[i];
-      loads[i].push_back({(*p.forces)[i] - trains[i].reflected() * acceleration, (*p.speeds)[i], acceleration});
-    }
-  return loads;
-}
-
-/// Mean over the samples of the largest dynamic coupling index if every joint has this motor.
-double mean_coupling_index(const Motor& motor, const Mechanism& mechanism, std::span<const double> parameters,
-                           const std::string& mode, const Trajectory& trajectory) {
-  double sum = 0;
-  for (const TrajectoryPoint& p : trajectory.points) {
-    const MotionState<double> state{p.motion.pose, p.motion.velocity};
-    PoseDynamics<double> d;
-    mechanism.dynamics()->equations(parameters, mode, {&state, 1}, {&d, 1});
-    AxisMatrix<double> M_q = joint_inertia(d);
-    for (std::size_t i = 0; i < M_q.rows(); ++i) {
-      DriveTrain train = (*mechanism.drive_trains())[i];
-      const double mounted = train.reflected();
-      train.rotor = motor.rotor;
-      M_q(i, i) += train.reflected() - mounted;
-    }
-    sum += std::ranges::max(coupling_indices(M_q));
-  }
-  return sum / static_cast<double>(trajectory.points.size());
-}
-
-}  // namespace
 
 void report_motor_check(const Target& target, const std::string& mode, const Trajectory& trajectory,
                         const std::vector<Motor>& motors, Printout& out) {

@@ -6,7 +6,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/math/satisfied.hpp"
-#include "engine/problem/availability.hpp"
+#include "engine/mechanism/availability.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/link_files.hpp"
 #include "experiments/app/motion_inputs.hpp"

@@ -1,8 +1,6 @@
 #include "experiments/app/print.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <numbers>
 
@@ -10,13 +8,6 @@
 #include "engine/core/unit.hpp"
 
 namespace pkm {
-
-std::string formatted(const char* format, double value) {
-  if (std::isnan(value)) return "-";
-  std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value + 0.0);  // no "-0"
-  return buffer.data();
-}
 
 std::string number(double value, std::string_view unit) {
   if (std::isnan(value)) return "not computed";
@@ -31,13 +22,6 @@ DisplayUnit display_unit(const std::string& si_unit) {
   if (si_unit == "m") return {1e-3, "mm"};
   if (si_unit == "rad") return {std::numbers::pi / 180, "deg"};
   return {1, si_unit};
-}
-
-std::string xml_text(const std::string& text) {
-  std::string result;
-  for (const char c : printable(text))
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return result;
 }
 
 void print_json(const Json& json) {

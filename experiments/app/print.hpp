@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/formatted.hpp"
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 
@@ -32,13 +33,8 @@ struct DisplayUnit {
 };
 DisplayUnit display_unit(const std::string& si_unit);
 
-/// A number formatted by std::printf; "-" for NaN.
-std::string formatted(const char* format, double value);
 /// Ten significant digits; "-" for NaN.
 inline std::string digits(double value) { return formatted("%.10g", value); }
-
-/// Escapes text for an element or an attribute of XML.
-std::string xml_text(const std::string& text);
 
 void print_json(const Json& json);
 

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "engine/core/stop.hpp"
-#include "engine/report/comparison.hpp"
+#include "engine/results/comparison.hpp"
 #include "engine/runner/records.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"

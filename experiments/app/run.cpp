@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/core/stop.hpp"
-#include "engine/report/comparison.hpp"
+#include "engine/results/comparison.hpp"
 #include "engine/runner/records.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"

@@ -8,7 +8,7 @@
 #include "engine/core/team.hpp"
 #include "engine/core/thread_limit.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/report/comparison.hpp"
+#include "engine/results/comparison.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/summary.hpp"

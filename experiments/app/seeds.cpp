@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "engine/core/printable.hpp"
-#include "engine/report/comparison.hpp"
+#include "engine/results/comparison.hpp"
+#include "engine/results/front_points.hpp"
 #include "engine/runner/stop_request.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
@@ -42,17 +43,6 @@ class SeedProgress final : public Progress {
   Progress& screen_;
   int seeds_, seed_ = 0;
 };
-
-/// Final hypervolume of the front that the last evolutionary stage found. std::nullopt if the study does not specify
-/// its reference point: hypervolumes with different reference points cannot be compared.
-std::optional<double> evolved_hypervolume(const Study& study, const StudyContents& contents) {
-  for (std::size_t i = contents.stages.size(); i-- > 0;) {
-    const std::optional<FrontRecord>& front = contents.stages[i].front;
-    if (!front || front->hypervolume.empty() || !study.stages[i].options.has("reference")) continue;
-    if (std::isfinite(front->hypervolume.back())) return front->hypervolume.back();
-  }
-  return {};
-}
 
 /// Results of the seeds: one row each, and the values for the spread.
 struct SeedTable {

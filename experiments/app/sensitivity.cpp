@@ -6,56 +6,30 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/problem/tolerance_analysis.hpp"
 
 namespace pkm {
 namespace {
 
-/// An objective or a margin of the design, with its gradient.
-struct Gradient {
-  std::string name, unit;
-  double value;
-  double worse_sign;           ///< sign of a change for the worse: -1 or 1
-  std::span<const double> by;  ///< derivatives with respect to all parameters [SI]
-};
-
-/// @param derivatives  for each objective and margin its value, then its derivatives with respect to all parameters
-std::vector<Gradient> gradients_of(const DesignProblem& problem, const DesignReport& report,
-                                   const std::vector<double>& derivatives) {
-  const std::size_t width = report.parameters.size() + 1;  // the value comes before its derivatives
-  std::vector<Gradient> found;
-  const auto add = [&](const std::string& name, const std::string& unit, double value, bool maximise) {
-    found.push_back({name, unit, value, maximise ? -1.0 : 1.0,
-                     std::span(derivatives).subspan(found.size() * width + 1, width - 1)});
-  };
-  for (std::size_t k = 0; k < report.objectives.size(); ++k) {
-    const ObjectiveInfo& o = problem.objectives()[k];
-    add(o.name, o.unit, report.objectives[k], o.direction == Direction::maximise);
-  }
-  for (std::size_t k = 0; k < report.margins.size(); ++k) {
-    const MarginInfo& m = problem.margins()[k];
-    add(m.name + " margin", m.unit, report.margins[k], true);
-  }
-  return found;
-}
-
 /// Reports the derivatives, per mm of lengths and per degree of angles: a row for each parameter that has an influence,
 /// in decreasing order of the influence on the first quantity.
-void report_gradients(const std::vector<Parameter>& parameters, const std::vector<Gradient>& gradients, Printout& out) {
+void report_gradients(const std::vector<Parameter>& parameters, const std::vector<QuantityGradient>& gradients,
+                      Printout& out) {
   std::vector<std::size_t> order(parameters.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto per_unit = [&](const Gradient& g, std::size_t i) {
+  const auto per_unit = [&](const QuantityGradient& g, std::size_t i) {
     return g.by[i] * display_unit(parameters[i].unit).size;
   };
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return std::fabs(per_unit(gradients[0], i)); });
   std::vector<Row> rows = {{"", "per"}};
-  for (const Gradient& g : gradients) rows[0].push_back(g.name + (g.unit == "1" ? "" : " [" + g.unit + "]"));
+  for (const QuantityGradient& g : gradients) rows[0].push_back(g.name + (g.unit == "1" ? "" : " [" + g.unit + "]"));
   for (const std::size_t i : order) {
-    if (std::ranges::all_of(gradients, [i](const Gradient& g) { return g.by[i] == 0; })) continue;
+    if (std::ranges::all_of(gradients, [i](const QuantityGradient& g) { return g.by[i] == 0; })) continue;
     Row& row = rows.emplace_back(Row{parameters[i].name, display_unit(parameters[i].unit).name});
-    for (const Gradient& g : gradients) row.push_back(g.by[i] == 0 ? "0" : formatted("%+.4g", per_unit(g, i)));
+    for (const QuantityGradient& g : gradients) row.push_back(g.by[i] == 0 ? "0" : formatted("%+.4g", per_unit(g, i)));
   }
   out.add_table("sensitivities: derivatives with all other parameters fixed", rows);
-  for (const Gradient& g : gradients) out.json["sensitivities"][g.name] = values_by_name(parameters, g.by);
+  for (const QuantityGradient& g : gradients) out.json["sensitivities"][g.name] = values_by_name(parameters, g.by);
 }
 
 /// Parses --tolerance: one tolerance for all lengths or all angles, or tolerances of parameters by name.
@@ -82,23 +56,13 @@ std::vector<double> tolerances(const MechanismInfo& info, const std::vector<std:
 /// Reports the worst case of each quantity for parameters within +- their tolerances: to first order, and evaluated at
 /// the corner of the tolerance box that is the worst to first order.
 void report_worst_cases(const DesignProblem& problem, const DesignReport& report,
-                        const std::vector<Gradient>& gradients, const std::vector<double>& each, Printout& out) {
+                        const std::vector<QuantityGradient>& gradients, const std::vector<double>& each,
+                        Printout& out) {
   std::vector<Row> rows = {{"", "nominal", "worst case, first order", "evaluated at that corner"}};
   out.json["tolerance"] = values_by_name(problem.parts().mechanism->info().parameters, each);
   for (std::size_t k = 0; k < gradients.size(); ++k) {
-    const Gradient& g = gradients[k];
-    std::vector<double> corner = report.parameters;
-    double change = 0;
-    for (std::size_t i = 0; i < corner.size(); ++i) {
-      change += std::fabs(g.by[i]) * each[i];
-      if (g.by[i] != 0) corner[i] += std::copysign(each[i], g.worse_sign * g.by[i]);
-    }
-    const DesignReport at_corner = problem.report(corner);
-    const bool objective = k < report.objectives.size();
-    const double evaluated = at_corner.status == Status::failed ? std::nan("")
-                             : objective                        ? at_corner.objectives[k]
-                                                                : at_corner.margins[k - report.objectives.size()];
-    const double worst = g.value + g.worse_sign * change;
+    const QuantityGradient& g = gradients[k];
+    const auto [worst, evaluated] = worst_case(problem, report, gradients, k, each);
     rows.push_back({g.name, number(g.value, g.unit), number(worst, g.unit), number(evaluated, g.unit)});
     out.json["worst_case"][g.name] = {
         {"nominal", g.value}, {"first_order", worst}, {"evaluated", std::isnan(evaluated) ? Json() : Json(evaluated)}};
@@ -123,10 +87,7 @@ void report_sensitivities(const DesignProblem& problem, const DesignReport& repo
     throw ConfigError({"", 0, arguments.sensitivity ? "--sensitivity" : "--tolerance"},
                       "needs derivatives, but " + *reason);
   const MechanismInfo& info = problem.parts().mechanism->info();
-  std::vector<std::size_t> all(report.parameters.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  const std::vector<double> values = problem.derivatives(report.parameters, all);
-  const std::vector<Gradient> gradients = gradients_of(problem, report, values);
+  const std::vector<QuantityGradient> gradients = quantity_gradients(problem, report);
   if (gradients.empty()) return;
   if (arguments.sensitivity) report_gradients(info.parameters, gradients, out);
   if (!arguments.tolerance.empty())

@@ -2,7 +2,7 @@
 
 #include <iostream>
 
-#include "engine/report/comparison.hpp"
+#include "engine/results/comparison.hpp"
 #include "engine/runner/progress.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/storage/study_lock.hpp"

@@ -3,7 +3,7 @@
 #include "engine/config/assignments.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/dynamics/simulation.hpp"
-#include "engine/report/csv_table.hpp"
+#include "engine/export/tables.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/target.hpp"
@@ -50,25 +50,6 @@ SimulationSetup simulation_setup(const Target& target, const Dynamics& dynamics,
   if (setup.duration / setup.step > kMaxSteps)
     throw ConfigError({"", 0, "--step"}, arguments.step, "at most 1e7 steps in the duration");
   return setup;
-}
-
-/// @param friction  whether the drives have friction
-CsvTable simulation_table(const MechanismInfo& info, const Simulation& run, bool friction) {
-  std::vector<std::string> columns = {"time"};
-  for (const char* suffix : {"", "_speed", "_acceleration"})
-    for (const AxisInfo& axis : info.coordinates) columns.push_back(axis.name + suffix);
-  columns.insert(columns.end(), {"kinetic_energy", "work_of_drives", "work_of_weight", "work_of_wrench"});
-  if (friction) columns.emplace_back("work_of_friction");
-  CsvTable table(columns);
-  for (const SimulationState& s : run.states) {
-    table.begin_row();
-    table.add(s.time);
-    for (const auto* values : {&s.pose, &s.velocity, &s.acceleration}) table.add(*values);
-    for (const double value : {s.kinetic_energy, s.work_of_drives, s.work_of_weight, s.work_of_wrench})
-      table.add(value);
-    if (friction) table.add(s.work_of_friction);
-  }
-  return table;
 }
 
 Json state_json(const MechanismInfo& info, const SimulationState& s) {

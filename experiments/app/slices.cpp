@@ -5,11 +5,6 @@
 #include "experiments/app/grid.hpp"
 
 namespace pkm {
-namespace {
-
-constexpr double kHalfThickness = 0x1p-10;  // of a layer of cells [m or rad]
-
-}  // namespace
 
 Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists) {
   const SourceLocation place{"", 0, "--held"};
@@ -75,33 +70,11 @@ void apply_slices(WorkspacePlan& plan, const Target& target, const Slices& slice
   if (slices.empty()) return;
   VoxelOptions voxels = *plan.voxels();
   if (!voxels.box) voxels.box = reachable_box(plan, target);
+  plan.method = voxels;
+  set_thin_layers(plan, target.info(), slices);
   const std::vector<int>& swept = sweep_of(target.info(), plan).swept;
   for (std::size_t i = 0; i < swept.size(); ++i)
-    if (const auto slice = slices.find(swept[i]); slice != slices.end()) {
-      voxels.cells[i] = 1;
-      (*voxels.box)[i] = {slice->second - kHalfThickness, slice->second + kHalfThickness};
-      ranges_given[i] = false;
-    }
-  plan.method = voxels;
-}
-
-void remove_sliced_axes(WorkspaceFields& workspace, const MechanismInfo& info, const Slices& slices) {
-  if (slices.empty()) return;
-  std::vector<int> swept;
-  for (auto axis = workspace.axes.begin(); axis != workspace.axes.end();) {
-    const auto slice = slices.find(axis->coordinate);
-    if (slice == slices.end()) {
-      swept.push_back((axis++)->coordinate);
-      continue;
-    }
-    axis->lower = axis->upper = slice->second;
-    axis->cells = 0;
-    workspace.fixed.push_back(*axis);
-    workspace.fixed_note.push_back("as given (slice)");
-    workspace.volume /= 2 * kHalfThickness;
-    axis = workspace.axes.erase(axis);
-  }
-  workspace.volume_unit = unit_of_product(info, swept);
+    if (slices.contains(swept[i])) ranges_given[i] = false;
 }
 
 }  // namespace pkm

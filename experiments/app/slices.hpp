@@ -1,20 +1,15 @@
-// Slices of a workspace: swept coordinates that are fixed at a value. The workspace analysis uses a single, thin layer
-// of cells around the value; the volume is then divided by the thickness of the layer, which gives an area or a length.
+// The options --held and --cut, which fix coordinates of a workspace at a value.
 #pragma once
 
 #include <array>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "engine/report/workspace_fields.hpp"
+#include "engine/workspace/slices.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
-
-/// Values [m or rad] of the sliced coordinates, by index of the coordinate.
-using Slices = std::map<int, double>;
 
 /// Fixes the coordinates named by --held at their values. Those that no sweep of the mechanism keeps fixed become
 /// slices. If the sweep of the plan can fix the others, the coordinates that the plan has fixed stay fixed. Otherwise
@@ -31,12 +26,10 @@ void add_cuts(Slices& slices, const WorkspacePlan& plan, const MechanismInfo& in
 /// The swept coordinates that are not sliced.
 Axes swept_axes(const WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
 
-/// Replaces the range of each sliced coordinate by one thin cell.
+/// Replaces the range of each sliced coordinate by one thin cell; a box that is not specified encloses the reachable
+/// poses. Throws ConfigError.
 /// @param plan          of voxels
 /// @param ranges_given  by swept coordinate, see set_grid(); reset for slices
 void apply_slices(WorkspacePlan& plan, const Target& target, const Slices& slices, std::array<bool, 3>& ranges_given);
-
-/// Turns the sliced axes into fixed coordinates, and the volume into that over the remaining axes.
-void remove_sliced_axes(WorkspaceFields& workspace, const MechanismInfo& info, const Slices& slices);
 
 }  // namespace pkm

@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "engine/core/printable.hpp"
-#include "engine/report/comparison.hpp"
-#include "engine/report/design_table.hpp"
 #include "engine/report/json_text.hpp"
+#include "engine/results/comparison.hpp"
+#include "engine/results/design_table.hpp"
 #include "engine/runner/progress.hpp"
 #include "experiments/app/stage_summary.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/report/chosen_design.hpp"
-#include "engine/report/csv_table.hpp"
+#include "engine/export/csv_table.hpp"
+#include "engine/results/chosen_design.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 

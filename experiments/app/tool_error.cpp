@@ -1,10 +1,9 @@
 #include "experiments/app/tool_error.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "engine/config/assignments.hpp"
+#include "engine/geometry/pose_error.hpp"
 #include "engine/geometry/singular.hpp"
 #include "experiments/app/axes.hpp"
 
@@ -23,31 +22,6 @@ std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<st
   for (const double error : errors)
     if (error < 0) throw ConfigError({"", 0, option}, shortest(error), "an error >= 0");
   return errors;
-}
-
-/// Map from coordinate rates to the twist for a mechanism that does not provide it: the coordinates that are lengths
-/// are taken as the components of the position; the rotation is unknown and set to 0.
-AxisMatrix<double> translation_map(const MechanismInfo& info) {
-  auto T = AxisMatrix<double>::zero(6, info.coordinates.size());
-  for (std::size_t j = 0, row = 0; j < info.coordinates.size() && row < 3; ++j)
-    if (!info.coordinates[j].turns()) T(row++, j) = 1;
-  return T;
-}
-
-/// Maximum norms of the translation and of the rotation of the twists E e over the box |e_i| <= errors[i]. A norm is
-/// convex, so its maximum is attained at a vertex of the box.
-std::array<double, 2> max_twist(const AxisMatrix<double>& E, const std::vector<double>& errors) {
-  std::array<double, 2> max{};
-  for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
-    std::array<double, 2> squares{};
-    for (std::size_t i = 0; i < E.rows(); ++i) {
-      double component = 0;
-      for (std::size_t j = 0; j < errors.size(); ++j) component += (corner >> j & 1 ? 1 : -1) * E(i, j) * errors[j];
-      squares[i / 3] += component * component;
-    }
-    for (std::size_t part = 0; part < 2; ++part) max[part] = std::max(max[part], std::sqrt(squares[part]));
-  }
-  return max;
 }
 
 }  // namespace
@@ -74,13 +48,12 @@ void report_tool_error(const Target& target, const std::string& mode, const Moti
     return number(error, "m") + " (" + formatted("%.6g", 1e6 * error) + " um)";
   };
   std::vector<Row> rows;
-  std::vector<double> worst(errors.size(), 0);
+  const std::vector<double> worst = max_components(inverse, errors);
   for (std::size_t i = 0; i < worst.size(); ++i) {
-    for (std::size_t j = 0; j < errors.size(); ++j) worst[i] += std::fabs(inverse(i, j)) * errors[j];
     const AxisInfo& axis = info.coordinates[i];
     rows.push_back({axis.name, axis.turns() ? position(worst[i], axis.unit) : with_micrometres(worst[i])});
   }
-  const auto [translation, rotation] = max_twist((T ? *T : translation_map(info)) * inverse, errors);
+  const auto [translation, rotation] = max_twist((T ? *T : translation_map(info.coordinates)) * inverse, errors);
   rows.push_back({"translation", with_micrometres(translation)});
   Json json = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", translation}};
   if (T && std::ranges::any_of(info.coordinates, &AxisInfo::turns)) {

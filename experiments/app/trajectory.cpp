@@ -5,6 +5,7 @@
 #include "engine/config/assignments.hpp"
 #include "engine/config/motor_table.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/export/tables.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"

@@ -5,18 +5,18 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
+#include "engine/export/picture.hpp"
+#include "engine/export/slice_outline.hpp"
+#include "engine/export/tables.hpp"
 #include "engine/math/rounding.hpp"
-#include "engine/problem/availability.hpp"
+#include "engine/mechanism/availability.hpp"
 #include "engine/report/html_page.hpp"
-#include "engine/report/workspace_export.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/largest_cube.hpp"
-#include "experiments/app/picture.hpp"
 #include "experiments/app/running.hpp"
-#include "experiments/app/slice_outline.hpp"
 #include "experiments/app/slices.hpp"
 #include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
@@ -72,28 +72,6 @@ Picture slice_picture(const Target& target, const WorkspaceFields& workspace, Pr
   return draw_slice(outline, lines);
 }
 
-/// Bounding box of the feasible cells, [min, max] of each axis; std::nullopt if no cell is feasible.
-using Extents = std::optional<std::vector<std::array<double, 2>>>;
-
-Extents extents_of(const WorkspaceFields& workspace) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Extents extents;
-  const VoxelGrid grid = workspace.grid();
-  const std::vector<double>& feasible = workspace.field("feasible").values;
-  for (std::size_t cell = 0; cell < feasible.size(); ++cell) {
-    if (!(feasible[cell] > 0)) continue;
-    if (!extents) extents.emplace(workspace.axes.size(), std::array{kInfinity, -kInfinity});
-    const Pose<double> pose = workspace.pose(cell);
-    for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
-      const double centre = pose[static_cast<std::size_t>(workspace.axes[i].coordinate)], half = grid.step[i] / 2;
-      auto& [min, max] = (*extents)[i];
-      min = std::min(min, centre - half);
-      max = std::max(max, centre + half);
-    }
-  }
-  return extents;
-}
-
 void report_workspace(const Target& target, const WorkspaceFields& workspace, Printout& out) {
   Json& json = out.json;
   out.add("mechanism", target.info().name);
@@ -111,7 +89,7 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
   }
 
   std::vector<Row> rows;
-  const Extents extents = extents_of(workspace);
+  const auto extents = feasible_extents(workspace);
   json["axes"] = Json::array();
   for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
     const WorkspaceAxis& axis = workspace.axes[i];

@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "engine/report/workspace_export.hpp"
+#include "engine/export/stl.hpp"
+#include "engine/export/vtk_image.hpp"
 #include "engine/storage/safe_file.hpp"
 
 namespace pkm {

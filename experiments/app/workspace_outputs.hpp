@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/report/workspace_fields.hpp"
+#include "engine/workspace/workspace_fields.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {

@@ -34,12 +34,12 @@ class Certify : public ::testing::Test {
 TEST_F(Certify, BoundsVolumes) {
   const auto found = run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0.1", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
-  const auto json = found.json();
-  EXPECT_LT(json["volume"]["lower"], 0.017428);
-  EXPECT_GT(json["volume"]["upper"], 0.017415);
-  EXPECT_LE(json["gap"], 0.1);
+  const auto printed = found.json();
+  EXPECT_LT(printed["volume"]["lower"], 0.017428);
+  EXPECT_GT(printed["volume"]["upper"], 0.017415);
+  EXPECT_LE(printed["gap"], 0.1);
   const auto shorter = run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0.1", "--set", "L=300mm", "--json"});
-  EXPECT_NE(shorter.json()["volume"], json["volume"]);
+  EXPECT_NE(shorter.json()["volume"], printed["volume"]);
   const auto few = run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0.01", "--boxes", "50"});
   EXPECT_EQ(few.exit_code, 1);
   EXPECT_THAT(few.out, HasSubstr("at least"));
@@ -65,11 +65,11 @@ TEST_F(Certify, BoundsHoldTheExactVolumesOfTheBuiltInMechanisms) {
 TEST_F(Certify, EvaluateChecksItsVolumeAgainstTheBounds) {
   const auto found = run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "1e-2", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
-  const auto json = found.json();
-  EXPECT_EQ(json["certain"]["holds_volume"], true);
-  EXPECT_LE(json["certain"]["gap"], 1e-2);
-  EXPECT_LE(json["certain"]["lower"], json["workspace"]["volume"]);
-  EXPECT_GE(json["certain"]["upper"], json["workspace"]["volume"]);
+  const auto printed = found.json();
+  EXPECT_EQ(printed["certain"]["holds_volume"], true);
+  EXPECT_LE(printed["certain"]["gap"], 1e-2);
+  EXPECT_LE(printed["certain"]["lower"], printed["workspace"]["volume"]);
+  EXPECT_GE(printed["certain"]["upper"], printed["workspace"]["volume"]);
   std::ofstream(folder_.path() + "/voxels.toml") << "[mechanism]\nfile = \"" << kMechanisms << R"(five-bar.toml"
 [variables]
 l_a = { min = "100 mm", max = "300 mm" }
@@ -180,10 +180,10 @@ TEST_F(CertifiedVolumes, ArePrintedByRunShowAndExport) {
   EXPECT_THAT(run({"show", "s.h5"}).out, HasSubstr("volume, at least"));
   const auto shown = run({"show", "s.h5", "--json"}).json();
   for (const char* design : {"best", "rounded", "baseline"}) {
-    const auto& json = shown[design];
-    EXPECT_LE(json["certain"]["lower"], json["volume"]) << design;
-    EXPECT_GE(json["certain"]["upper"], json["volume"]) << design;
-    EXPECT_LE(json["certain"]["gap"], 1e-3) << design;
+    const auto& printed = shown[design];
+    EXPECT_LE(printed["certain"]["lower"], printed["volume"]) << design;
+    EXPECT_GE(printed["certain"]["upper"], printed["volume"]) << design;
+    EXPECT_LE(printed["certain"]["gap"], 1e-3) << design;
   }
   ASSERT_EQ(run({"export", "s.h5", "--csv", "tables"}).exit_code, 0);
   std::ostringstream table;

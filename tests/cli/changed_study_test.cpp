@@ -105,25 +105,25 @@ TEST_F(ChangedStudy, RejectsInvalidChanges) {
 
 TEST_F(ChangedStudy, OneNumberOfCellsAppliesToAllAxes) {
   const std::string delta = kFiles + "/rotary-delta.toml";
-  const auto json = [this] { return nlohmann::json::parse(output_); };
+  const auto printed = [this] { return nlohmann::json::parse(output_); };
   for (const std::string& target : {delta, std::string("study.toml"), std::string("4ppa-2par")}) {
     ASSERT_EQ(run({"workspace", target, "--cells", "7", "--json"}), 0) << output_;
-    EXPECT_EQ(json()["cells"], 343) << output_;
+    EXPECT_EQ(printed()["cells"], 343) << output_;
     ASSERT_EQ(run({"evaluate", target, "--cells", "7", "--json"}), 0) << output_;
-    EXPECT_EQ(json()["workspace"]["cells"], 343) << output_;
+    EXPECT_EQ(printed()["workspace"]["cells"], 343) << output_;
   }
   ASSERT_EQ(run({"coupling", "3crr-r-cru", "--cells", "5", "--json"}), 0) << output_;
-  EXPECT_EQ(json()["cells"]["x"], 5);
+  EXPECT_EQ(printed()["cells"]["x"], 5);
   // --limit also works for mechanism files without a study
   const auto cells = [&](const std::string& limit) {
     EXPECT_EQ(run({"workspace", delta, "--cells", "12", "--limit", limit, "--json"}), 0) << output_;
-    return json()["feasible_cells"].get<int>();
+    return printed()["feasible_cells"].get<int>();
   };
   EXPECT_LT(cells("clear_z=0.3"), cells("clear_z=0"));
   EXPECT_EQ(run({"workspace", kFiles + "/gough.toml", "--limit", "clear_z=0.1"}), 2);
   EXPECT_THAT(output_, HasSubstr("--limit: found the unknown name 'clear_z'; expected one of clearance_min"));
   ASSERT_EQ(run({"pose", delta, "--at", "x=0,y=0,z=-0.45", "--limit", "clear_z=0.6", "--json"}), 0) << output_;
-  EXPECT_EQ(json()["feasible"], false);
+  EXPECT_EQ(printed()["feasible"], false);
 }
 
 }  // namespace

@@ -36,9 +36,9 @@ TEST(CliDiagnosis, ARunThatFindsNothingIsExplainedWithExitCode4) {
   const auto shown = pkmopt({"show", "s.h5"}, folder.path());
   EXPECT_EQ(shown.exit_code, 0) << "show itself has succeeded";
   EXPECT_THAT(shown.out, HasSubstr(diagnosis));
-  const auto json = pkmopt({"show", "s.h5", "--json"}, folder.path()).json();
-  EXPECT_EQ(json["verdict"]["finding"], "nothing feasible");
-  EXPECT_EQ(json["verdict"]["reasons"][0]["names"][0], "conditioning");
+  const auto printed = pkmopt({"show", "s.h5", "--json"}, folder.path()).json();
+  EXPECT_EQ(printed["verdict"]["finding"], "nothing feasible");
+  EXPECT_EQ(printed["verdict"]["reasons"][0]["names"][0], "conditioning");
   const auto resumed = pkmopt({"resume", "s.h5"}, folder.path());
   EXPECT_EQ(resumed.exit_code, 4);
   EXPECT_THAT(resumed.out, HasSubstr(diagnosis));
@@ -127,9 +127,9 @@ TEST(CliDiagnosis, CheckFindsContradictionsAndEvaluatesSampleDesigns) {
   const auto empty = pkmopt({"check", "empty.toml"}, folder.path());
   EXPECT_EQ(empty.exit_code, 4) << empty.err;
   EXPECT_THAT(empty.out, HasSubstr("\ncontradiction: beta_min = 0.9 rad is not below beta_max = 0.5 rad"));
-  const auto json = pkmopt({"check", "empty.toml", "--json"}, folder.path());
-  EXPECT_EQ(json.exit_code, 4);
-  EXPECT_EQ(json.json()["contradictions"][0]["names"][1], "beta_max");
+  const auto printed = pkmopt({"check", "empty.toml", "--json"}, folder.path());
+  EXPECT_EQ(printed.exit_code, 4);
+  EXPECT_EQ(printed.json()["contradictions"][0]["names"][1], "beta_max");
 
   folder.write("infeasible.toml", kInfeasible);
   const auto infeasible = pkmopt({"check", "infeasible.toml"}, folder.path());

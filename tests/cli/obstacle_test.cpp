@@ -60,11 +60,11 @@ TEST_F(Obstacle, IsListedByCheck) {
                                  "  table  box     centre (0, 0, -0.7) m      sizes (1, 1, 0.1) m\n"
                                  "  lamp   sphere  centre (0.15, 0, -0.45) m  radius 0.04 m\n"));
   ASSERT_EQ(run({"check", "s.toml", "--json"}), 0) << output_;
-  const auto json = nlohmann::json::parse(output_)["obstacles"];
-  ASSERT_EQ(json.size(), 2u);
-  EXPECT_EQ(json[0]["name"], "table");
-  EXPECT_EQ(json[0]["size"], nlohmann::json({1.0, 1.0, 0.1}));
-  EXPECT_EQ(json[1]["radius"], 0.04);
+  const auto printed = nlohmann::json::parse(output_)["obstacles"];
+  ASSERT_EQ(printed.size(), 2u);
+  EXPECT_EQ(printed[0]["name"], "table");
+  EXPECT_EQ(printed[0]["size"], nlohmann::json({1.0, 1.0, 0.1}));
+  EXPECT_EQ(printed[1]["radius"], 0.04);
   write("s.toml", study(kDeltaFile, kTable));
   ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("warning: the obstacles cut nothing from the workspace, because the study asks for no "

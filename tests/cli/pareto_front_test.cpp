@@ -93,10 +93,10 @@ TEST_F(ParetoFrontProgram, ShowsFrontsAndEvaluatesTheirPoints) {
   EXPECT_THAT(output_, HasSubstr("of the front of stage 1"));
   EXPECT_THAT(output_, HasSubstr("with reference point workspace-ratio 0, conditioning 0"));
 
-  const Json json = show("f.h5");
+  const Json printed = show("f.h5");
   const StudyContents contents = read("f.h5");
   for (std::size_t s = 0; s < 2; ++s) {
-    const Json& front = json["stages"][s]["front"];
+    const Json& front = printed["stages"][s]["front"];
     const StageRecord& stage = contents.stages[s];
     ASSERT_EQ(front["points"].size(), stage.front->rows.size());
     double before = 1e300;
@@ -109,8 +109,9 @@ TEST_F(ParetoFrontProgram, ShowsFrontsAndEvaluatesTheirPoints) {
       before = stage.table.objective_row(row)[0];
     }
   }
-  EXPECT_EQ(json["stages"][0]["front"]["generations"]["hypervolume"].back(), json["stages"][0]["front"]["hypervolume"]);
-  EXPECT_EQ(json["stages"][0]["front"]["reference"], (Json{{"workspace-ratio", 0.0}, {"conditioning", 0.0}}));
+  EXPECT_EQ(printed["stages"][0]["front"]["generations"]["hypervolume"].back(),
+            printed["stages"][0]["front"]["hypervolume"]);
+  EXPECT_EQ(printed["stages"][0]["front"]["reference"], (Json{{"workspace-ratio", 0.0}, {"conditioning", 0.0}}));
 
   for (const auto& [stage, point] : {std::pair{1, 7}, {2, 2}}) {
     ASSERT_EQ(run({"evaluate", "--from", "f.h5", "--stage", std::to_string(stage), "--front", std::to_string(point),
@@ -119,17 +120,17 @@ TEST_F(ParetoFrontProgram, ShowsFrontsAndEvaluatesTheirPoints) {
         << output_;
     const Json evaluated = Json::parse(output_);
     const Json& stored =
-        json["stages"][static_cast<std::size_t>(stage - 1)]["front"]["points"][static_cast<std::size_t>(point - 1)];
+        printed["stages"][static_cast<std::size_t>(stage - 1)]["front"]["points"][static_cast<std::size_t>(point - 1)];
     EXPECT_EQ(evaluated["objectives"], stored["objectives"]);
     EXPECT_EQ(evaluated["constraints"], stored["constraints"]);
   }
   ASSERT_EQ(run({"evaluate", "--from", "f.h5", "--front", "2", "--json"}), 0) << output_;  // of the last stage
-  EXPECT_EQ(Json::parse(output_)["objectives"], json["stages"][1]["front"]["points"][1]["objectives"]);
+  EXPECT_EQ(Json::parse(output_)["objectives"], printed["stages"][1]["front"]["points"][1]["objectives"]);
   ASSERT_EQ(run({"evaluate", "--from", "f.h5", "--json"}), 0) << output_;  // the compromise
-  EXPECT_EQ(Json::parse(output_)["objectives"], json["best"]["objectives"]);
-  for (const Json& point : json["stages"][1]["front"]["points"])
+  EXPECT_EQ(Json::parse(output_)["objectives"], printed["best"]["objectives"]);
+  for (const Json& point : printed["stages"][1]["front"]["points"])
     EXPECT_EQ(point["marks"].dump().find("compromise") != std::string::npos,
-              point["objectives"] == json["best"]["objectives"]);
+              point["objectives"] == printed["best"]["objectives"]);
 }
 
 TEST_F(ParetoFrontProgram, RefinedPointsDominateTheirStarts) {

@@ -122,9 +122,9 @@ TEST_F(SolverProgram, ShowsStartsOptimalityAndSensitivities) {
         "sensitivity of workspace-ratio [rad], largest first within each unit", "as built", "reoptimised"})
     EXPECT_THAT(output_, HasSubstr(part));
   ASSERT_EQ(run({"show", "s.h5", "--json"}), 0);
-  const auto json = nlohmann::json::parse(output_);
-  EXPECT_TRUE(json["reproducible"]);
-  const auto& stage = json["stages"][0];
+  const auto printed = nlohmann::json::parse(output_);
+  EXPECT_TRUE(printed["reproducible"]);
+  const auto& stage = printed["stages"][0];
   ASSERT_EQ(stage["starts"].size(), 3u);
   for (const auto& start : stage["starts"]) {
     EXPECT_EQ(start["stop"], "converged");
@@ -144,15 +144,15 @@ TEST_F(SolverProgram, StartsFromDistinctBasinsFindSeveralOptima) {
   ASSERT_EQ(run({"run", PKM_EXPERIMENTS "/4ppa-2par/conditioning-optima.toml", "--output", "s.h5", "--quiet"}), 0)
       << output_;
   ASSERT_EQ(run({"show", "s.h5", "--json"}), 0);
-  const auto json = nlohmann::json::parse(output_);
+  const auto printed = nlohmann::json::parse(output_);
   std::map<int, double> optima;
-  for (const auto& start : json["stages"][1]["starts"]) {
+  for (const auto& start : printed["stages"][1]["starts"]) {
     EXPECT_LT(start["optimality"], 1e-6) << start["origin"];
     optima[start["optimum"]] = start["end"]["objectives"]["conditioning"];
   }
   ASSERT_GE(optima.size(), 2u);
   EXPECT_GT(optima[1], optima[2] + 0.01);
-  EXPECT_EQ(json["best"]["objectives"]["conditioning"], optima[1]);
+  EXPECT_EQ(printed["best"]["objectives"]["conditioning"], optima[1]);
 }
 
 TEST_F(SolverProgram, ATimeLimitIsRecordedAndReplayed) {

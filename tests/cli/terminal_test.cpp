@@ -19,8 +19,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::vector<std::string> kPoseCommand = {"pose",    "4ppa-2par",     "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg",
-                                               "--limit", "beta_max=10deg"};
+const std::vector<std::string> kColouredCommand = {
+    "pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg", "--limit", "beta_max=10deg"};
 
 /// Runs the program on a pseudo-terminal. @return the output, both stdout and stderr
 std::string on_terminal(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment = {},
@@ -57,19 +57,19 @@ std::string without_colours(const std::string& text) {
 }
 
 TEST(CliTerminal, HeadingsAndResultsAreColoured) {
-  const std::string text = on_terminal(kPoseCommand);
+  const std::string text = on_terminal(kColouredCommand);
   EXPECT_THAT(text, HasSubstr("\n\x1b[1mmargins (satisfied if >= 0)\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[32msatisfied\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[31mviolated\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("\x1b[31mno: beta_max is violated\x1b[0m\n"));
-  EXPECT_EQ(without_colours(text), pkmopt(kPoseCommand).out);
+  EXPECT_EQ(without_colours(text), pkmopt(kColouredCommand).out);
 }
 
 TEST(CliTerminal, NoColoursInPipesOrIfDisabled) {
-  const std::string text = pkmopt(kPoseCommand).out;
+  const std::string text = pkmopt(kColouredCommand).out;
   EXPECT_THAT(text, Not(HasSubstr("\x1b")));
-  EXPECT_EQ(on_terminal(kPoseCommand, {{"NO_COLOR", "1"}}), text);
-  EXPECT_EQ(on_terminal(kPoseCommand, {{"TERM", "dumb"}}), text);
+  EXPECT_EQ(on_terminal(kColouredCommand, {{"NO_COLOR", "1"}}), text);
+  EXPECT_EQ(on_terminal(kColouredCommand, {{"TERM", "dumb"}}), text);
 }
 
 TEST(CliTerminal, ErrorsAreRed) {

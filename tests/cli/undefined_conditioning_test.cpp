@@ -70,10 +70,10 @@ TEST_F(UndefinedConditioning, IsAbsentFromPosesAndWorkspaces) {
   EXPECT_EQ(pose.exit_code, 0) << pose.err;
   EXPECT_THAT(pose.out, HasSubstr("conditioning  none: "));
   EXPECT_THAT(pose.out, HasSubstr(kRadius));
-  const auto json = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--json"}).json();
-  EXPECT_TRUE(json["conditioning"].is_null());
-  EXPECT_THAT(json["why_no_conditioning"], HasSubstr(kRadius));
-  EXPECT_FALSE(json["joints"]["crank"].is_null());
+  const auto printed = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--json"}).json();
+  EXPECT_TRUE(printed["conditioning"].is_null());
+  EXPECT_THAT(printed["why_no_conditioning"], HasSubstr(kRadius));
+  EXPECT_FALSE(printed["joints"]["crank"].is_null());
 
   const auto workspace = run({"workspace", "crank-and-slide.toml", "--cells", "8", "--json"});
   EXPECT_EQ(workspace.exit_code, 0) << workspace.err;

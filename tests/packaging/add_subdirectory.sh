@@ -9,6 +9,8 @@ shift 3
 "$cmake" -S "$source" -B "$build" -G Ninja "$@"
 "$cmake" --build "$build" --target CMakeFiles/scara.dir/scara.cpp.o pkm_ranks pkmopt_version
 commands=$(ninja -C "$build" -t commands scara)
-grep -q -- '-o pkmopt/CMakeFiles/pkmopt.dir/' <<<"$commands"
+for library in core mechanisms optimisers io; do
+  grep -q -- "-o pkmopt/CMakeFiles/pkmopt_$library.dir/" <<<"$commands"
+done
 grep -q -- '-o scara ' <<<"$commands"
 if grep -E -- '-o (pkmopt/(tests|benchmarks)/|pkmopt/bin)' <<<"$commands"; then exit 1; fi

@@ -10,7 +10,7 @@ installed() { grep -Eq -- "^$prefix/$1\$" "$manifest" || fail "not installed: $1
 commands=$("$prefix/bin/pkmopt" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p')
 (($(wc -w <<< "$commands") > 15)) || fail "few commands: $commands"
 for command in $commands; do installed "share/man/man1/pkmopt-$command\.1\.gz"; done
-for file in bin/pkmopt bin/pkmopt-check-proof 'lib[^/]*(/.*)?/libpkmopt\.a' 'lib[^/]*(/.*)?/libpkmopt_program\.a' \
+for file in bin/pkmopt bin/pkmopt-check-proof 'lib[^/]*(/.*)?/libpkmopt_'{core,mechanisms,optimisers,io,program}'\.a' \
   'lib[^/]*(/.*)?/cmake/pkmopt/pkmopt-config\.cmake' include/pkmopt/engine/mechanism/mechanism.hpp \
   include/pkmopt/experiments/app/program.hpp share/man/man1/pkmopt{,-check-proof}\\.1\\.gz share/bash-completion/completions/pkmopt \
   share/zsh/vendor-completions/_pkmopt share/fish/vendor_completions.d/pkmopt.fish \
@@ -21,6 +21,12 @@ done
 for script in "$prefix"/share/pkmopt/experiments/{3crr-r-cru/{force-curves,coupling-maps},2t1r-p-hybrid/motion-curves}.sh; do
   [[ -x $script ]] || fail "missing or not executable: $script"
 done
+# Headers: the public ones and those that they include, but not the implementation.
+headers=$(grep 'hpp$' "$prefix/include/pkmopt/public_headers.txt")
+(($(wc -w <<< "$headers") > 20)) || fail "few public headers: $headers"
+for header in $headers; do installed "include/pkmopt/$header"; done
+! grep -E '/include/pkmopt/(engine/(generic|accelerators|storage|runner|report)/|objectives|constraints)' "$manifest" ||
+  fail "installed, but no public header includes it"
 ! grep -E '\.(cpp|in|h5)$|CMakeLists|/(debian-packages|package|quickstart)\.sh$|experiments/app/[^p]' "$manifest" ||
   fail "installed, but for developers only"
 

@@ -1,4 +1,4 @@
-"""Reads an image in VTKHDF format with VTK's own reader, for tests of engine/report/workspace_export.hpp.
+"""Reads an image in VTKHDF format with VTK's own reader, for tests of engine/export/vtk_image.hpp.
 
 read_vtk.py FILE            prints dimensions, spacing, origin, and the bits of each array, x varying fastest
 read_vtk.py FILE TABLE.csv  compares every array with the column of the same name in a table of pkmopt workspace --csv

@@ -20,7 +20,7 @@
 namespace pkm {
 namespace {
 
-struct Plan {
+struct GeneticPlan {
   EvolutionPlan evolution;
   std::size_t competing_parents = 0;  ///< number of best parents that compete with the children
   std::optional<double> target;
@@ -29,7 +29,7 @@ struct Plan {
 /// Survivor selection by rank: feasibility, then the objective or the constraint violation.
 class RankSelection final : public SurvivorSelection {
  public:
-  RankSelection(const Plan& plan, const Problem& problem, const EvaluationTable& table)
+  RankSelection(const GeneticPlan& plan, const Problem& problem, const EvaluationTable& table)
       : plan_(plan), problem_(problem), table_(table) {}
 
   bool update(const std::vector<std::int64_t>& children) override {
@@ -64,7 +64,7 @@ class RankSelection final : public SurvivorSelection {
            plan_.evolution.is_progress(progress_reference_.value - best_.value, progress_reference_.value);
   }
 
-  const Plan& plan_;
+  const GeneticPlan& plan_;
   const Problem& problem_;
   const EvaluationTable& table_;
   std::vector<RankKey> population_;  // best first
@@ -73,8 +73,8 @@ class RankSelection final : public SurvivorSelection {
   RankKey progress_reference_;       // best design at the last generation that made progress
 };
 
-std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space) {
-  Plan plan;
+std::unique_ptr<Optimiser> make_genetic_algorithm(const Options& options, const DesignSpace& space) {
+  GeneticPlan plan;
   plan.evolution = evolution_plan(options, space);
   const std::size_t population = plan.evolution.breeding.population;
   const auto elite = static_cast<std::size_t>(options.integer("elite"));
@@ -90,7 +90,7 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
   });
 }
 
-std::vector<OptionSpec> options() {
+std::vector<OptionSpec> genetic_options() {
   std::vector<OptionSpec> specs = evolution_options("the best objective value");
   specs.insert(specs.end() - 2,
                {word_option("replacement", {"best", "generational"},
@@ -110,8 +110,8 @@ OptimiserEntry genetic_algorithm() {
       .name = "ga",
       .meaning = "genetic algorithm for one objective with constraints",
       .capabilities = [](const Options&) { return Capabilities{.too_many_objectives_hint = "use nsga2 for several"}; },
-      .options = options(),
-      .make = make,
+      .options = genetic_options(),
+      .make = make_genetic_algorithm,
       .resolve = resolve_breeding};
 }
 

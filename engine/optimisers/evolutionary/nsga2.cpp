@@ -17,7 +17,7 @@
 namespace pkm {
 namespace {
 
-struct Plan {
+struct Nsga2Plan {
   EvolutionPlan evolution;
   ParetoArchivePlan archive;
 };
@@ -26,7 +26,7 @@ struct Plan {
 /// designs by constraint violation.
 class Nsga2Selection final : public SurvivorSelection {
  public:
-  Nsga2Selection(const Plan& plan, const Problem& problem, const EvaluationTable& table)
+  Nsga2Selection(const Nsga2Plan& plan, const Problem& problem, const EvaluationTable& table)
       : plan_(plan),
         problem_(problem),
         table_(table),
@@ -111,7 +111,7 @@ class Nsga2Selection final : public SurvivorSelection {
     return true;
   }
 
-  const Plan& plan_;
+  const Nsga2Plan& plan_;
   const Problem& problem_;
   const EvaluationTable& table_;
   ParetoArchive archive_;
@@ -123,15 +123,15 @@ class Nsga2Selection final : public SurvivorSelection {
   double last_hypervolume_ = -1;
 };
 
-Capabilities capabilities(const Options& options) {
+Capabilities nsga2_capabilities(const Options& options) {
   return {.min_objectives = 2,
           .max_objectives = options.has("stall") || options.has("reference") ? 3 : kUnlimitedObjectives,
           .too_many_objectives_hint =
               "for more objectives omit stall and reference: hypervolumes are computed for two or three only"};
 }
 
-std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space) {
-  Plan plan;
+std::unique_ptr<Optimiser> make_nsga2(const Options& options, const DesignSpace& space) {
+  Nsga2Plan plan;
   plan.evolution = evolution_plan(options, space);
   if (options.has("archive")) plan.archive.max_size = static_cast<std::size_t>(options.integer("archive"));
   if (options.has("reference")) plan.archive.reference = options.numbers("reference");
@@ -144,7 +144,7 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
   });
 }
 
-std::vector<OptionSpec> options() {
+std::vector<OptionSpec> nsga2_options() {
   std::vector<OptionSpec> specs = evolution_options("the hypervolume");
   for (OptionSpec& spec : specs) {
     // Differences of members from distant parts of the front, as in differential crossover, rarely improve a design.
@@ -174,9 +174,9 @@ std::vector<OptionSpec> options() {
 OptimiserEntry nsga2() {
   return {.name = "nsga2",
           .meaning = "NSGA-II: genetic algorithm for the Pareto front of several objectives, with constraints",
-          .capabilities = capabilities,
-          .options = options(),
-          .make = make,
+          .capabilities = nsga2_capabilities,
+          .options = nsga2_options(),
+          .make = make_nsga2,
           .resolve = resolve_breeding};
 }
 

@@ -197,9 +197,9 @@ class IpoptSolver final : public Solver {
   Options options_;
 };
 
-Capabilities capabilities(const Options& options) { return solver_capabilities(options, true, true); }
+Capabilities ipopt_capabilities(const Options& options) { return solver_capabilities(options, true, true); }
 
-std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
+std::unique_ptr<Optimiser> make_ipopt(const Options& options, const DesignSpace&) {
   SolverPlan plan = solver_plan(options);
   const auto solver = std::make_shared<IpoptSolver>(options);
   {
@@ -212,7 +212,7 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
   return make_solver_stage(std::move(plan));
 }
 
-std::vector<OptionSpec> options() {
+std::vector<OptionSpec> ipopt_options() {
   std::vector<OptionSpec> specs = solver_options();
   specs.push_back(tighten_option());
   specs.push_back({.name = "options",
@@ -226,9 +226,9 @@ std::vector<OptionSpec> options() {
 OptimiserEntry ipopt_stage() {
   return {.name = "ipopt",
           .meaning = "Ipopt: local optimisation by an interior-point method, with gradients",
-          .capabilities = capabilities,
-          .options = options(),
-          .make = make};
+          .capabilities = ipopt_capabilities,
+          .options = ipopt_options(),
+          .make = make_ipopt};
 }
 
 }  // namespace pkm

@@ -146,11 +146,11 @@ class NloptSolver final : public Solver {
   Options options_;
 };
 
-Capabilities capabilities(const Options& options) {
+Capabilities nlopt_capabilities(const Options& options) {
   return solver_capabilities(options, find_algorithm(options.word("algorithm")).constraints, uses_gradient(options));
 }
 
-std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
+std::unique_ptr<Optimiser> make_nlopt(const Options& options, const DesignSpace&) {
   const Algorithm& outer = find_algorithm(options.word("algorithm"));
   if (options.integer("population") > 0 && !outer.population) {
     std::vector<std::string> with;
@@ -168,7 +168,7 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
   return make_solver_stage(std::move(plan));
 }
 
-std::vector<OptionSpec> options() {
+std::vector<OptionSpec> nlopt_options() {
   std::vector<std::string> all, inner;
   std::string table;
   for (const Algorithm& a : kAlgorithms) {
@@ -199,9 +199,9 @@ std::vector<OptionSpec> options() {
 OptimiserEntry nlopt_stage() {
   return {.name = "nlopt",
           .meaning = "NLopt: local optimisation with gradients, and derivative-free and global search",
-          .capabilities = capabilities,
-          .options = options(),
-          .make = make};
+          .capabilities = nlopt_capabilities,
+          .options = nlopt_options(),
+          .make = make_nlopt};
 }
 
 }  // namespace pkm

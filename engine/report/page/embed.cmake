@@ -43,6 +43,6 @@ endforeach()
 configure_file(${PKM_PAGE}/embedded.cpp.in ${pkm_page_build}/embedded.cpp @ONLY)
 set_source_files_properties(${pkm_page_build}/embedded.cpp PROPERTIES
   OBJECT_DEPENDS "${scripts};${PKM_PAGE}/page.html;${PKM_PAGE}/page.css;${PKM_PLOTLY}")
-target_sources(pkmopt PRIVATE ${pkm_page_build}/embedded.cpp)
+target_sources(pkmopt_io PRIVATE ${pkm_page_build}/embedded.cpp)
 set(PKM_HAS_PAGE ON)
 set_source_files_properties(engine/report/html_page.cpp PROPERTIES COMPILE_DEFINITIONS PKM_PAGE_EMBEDDED)

@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "engine/core/error.hpp"
-#include "engine/report/chosen_design.hpp"
-#include "engine/report/study_tables.hpp"
+#include "engine/export/study_tables.hpp"
+#include "engine/results/chosen_design.hpp"
 #include "engine/runner/records.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/program.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/report/workspace_fields.hpp"
+#include "engine/workspace/workspace_fields.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 
 namespace pkm {

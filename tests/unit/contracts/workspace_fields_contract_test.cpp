@@ -6,11 +6,11 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
+#include "engine/export/isosurface.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/problem/pose_options.hpp"
-#include "engine/report/isosurface.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
-#include "tests/unit/report/enclosed_volume.hpp"
+#include "tests/unit/export/enclosed_volume.hpp"
 
 namespace pkm {
 namespace {

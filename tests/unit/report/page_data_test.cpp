@@ -9,12 +9,12 @@
 
 #include "engine/mechanism/trajectory.hpp"
 #include "engine/motion/motion_factories.hpp"
-#include "engine/report/comparison.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/report/packed_array.hpp"
 #include "engine/report/panels.hpp"
 #include "engine/report/thinning.hpp"
+#include "engine/results/comparison.hpp"
 #include "tests/unit/config/real_studies.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 #include "tests/unit/storage/sample_study.hpp"

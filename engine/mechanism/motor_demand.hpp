@@ -1,0 +1,24 @@
+// FieldRequest of a trajectory on the motors of a mechanism with drive trains, for the choice of motors.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/dynamics/motor.hpp"
+#include "engine/mechanism/trajectory.hpp"
+
+namespace pkm {
+
+/// Loads along the motion, indexed by joint and sample: the force without the inertia of the motor that the mechanism
+/// has, the speed and the acceleration.
+/// @param trajectory  all samples have forces
+std::vector<std::vector<JointLoad>> joint_loads(const DriveTrains& trains, const Trajectory& trajectory);
+
+/// Mean over the samples of the largest dynamic coupling index if every joint has this motor.
+/// @param mechanism  with dynamics and drive trains
+/// @param mode       one of MechanismInfo::modes
+double mean_coupling_index(const Motor& motor, const Mechanism& mechanism, std::span<const double> parameters,
+                           const std::string& mode, const Trajectory& trajectory);
+
+}  // namespace pkm

@@ -1,0 +1,37 @@
+// First-order tolerance analysis of a design: gradients of objectives and margins with respect to all parameters of the
+// mechanism, and the worst case of each within tolerances of the parameters.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/problem/design_problem.hpp"
+
+namespace pkm {
+
+/// An objective or a margin of a design, with its gradient.
+struct QuantityGradient {
+  std::string name, unit;
+  double value;
+  double worse_sign;       ///< sign of a change for the worse: -1 or 1
+  std::vector<double> by;  ///< derivatives with respect to all parameters [SI]
+};
+
+/// The gradients of all objectives, then of all margins. Precondition: the problem has derivatives.
+/// @param report  of the design
+std::vector<QuantityGradient> quantity_gradients(const DesignProblem& problem, const DesignReport& report);
+
+/// Worst value of a quantity for parameters within +- their tolerances.
+struct WorstCase {
+  double first_order;  ///< by the gradient
+  double evaluated;    ///< at the corner of the tolerance box that is the worst to first order; NaN: evaluation failed
+};
+/// @param gradients  quantity_gradients() of the design
+/// @param k          index of the quantity in `gradients`
+/// @param tolerance  by parameter, >= 0 [SI]
+WorstCase worst_case(const DesignProblem& problem, const DesignReport& report,
+                     const std::vector<QuantityGradient>& gradients, std::size_t k, std::span<const double> tolerance);
+
+}  // namespace pkm

@@ -1,0 +1,22 @@
+// Slices of a workspace: swept coordinates that are fixed at a value. The workspace analysis uses a single, thin layer
+// of cells around the value; the volume is then divided by the thickness of the layer, which gives an area or a length.
+#pragma once
+
+#include <map>
+
+#include "engine/workspace/workspace_fields.hpp"
+
+namespace pkm {
+
+/// Values [m or rad] of the sliced coordinates, by index of the coordinate.
+using Slices = std::map<int, double>;
+
+/// Replaces the range of each sliced coordinate by one thin cell.
+/// @param plan  of voxels with a box
+void set_thin_layers(WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
+
+/// Turns the sliced axes into fixed coordinates, and the volume into that over the remaining axes.
+/// @param workspace  of a plan with thin layers
+void remove_sliced_axes(WorkspaceFields& workspace, const MechanismInfo& info, const Slices& slices);
+
+}  // namespace pkm
