@@ -35,10 +35,11 @@ template <class S, class T>
 [[gnu::always_inline]] inline S conditioning(const ConditioningDesign<T>& g, const S& z, const S& sin_b,
                                              const S& cos_b) {
   auto regular = value_of(z) >= value_of(z);
-  const Limbs<S> j = limbs(g, z, sin_b, cos_b, [&](const S& square, const T& length, std::size_t limb) {
+  const auto root = [&](const S& square, const T& length, std::size_t limb) __attribute__((always_inline)) {
     regular = regular & (value_of(square) > kRoundoff * value_of(length) * value_of(length));
     return S(sqrt_or_zero(square) * g.signs[limb]);
-  });
+  };
+  const Limbs<S> j = limbs(g, z, sin_b, cos_b, root);
   return select(regular, inverse_condition(homogeneous_jacobian(z, j, S(g.length))), S(0.0));
 }
 
