@@ -60,6 +60,7 @@ PAGES = {
     "experiments/README.md#the-hybrid-robot": "theory/2t1r-p-hybrid#the-paper-and-this-program",
     "experiments/README.md#workspaces-and-tables-for-other-programs": "reference/exports",
     "experiments/catalogue.md": "reference/catalogue/index",
+    "experiments/keys.md": "reference/keys",
     "experiments/mechanisms": "reference/mechanisms",
     "experiments/mechanisms/README.md": "reference/mechanisms",
     "experiments/slurm/README.md": "tutorials/cluster",

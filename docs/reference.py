@@ -85,7 +85,7 @@ def options(entries):
 def mechanism_page(entry):
     text = f"# {entry['name']}\n\n{sentence(entry['meaning'])}\n\nSource: {entry['source']}.\n\n"
     names = {"coordinates": "pose", "joints": "joints", "modes": "working modes; the first is the default",
-             "branches": "assembly branches", "swept": "swept coordinates", "held": "fixed coordinates",
+             "branches": "assembly branches", "swept": "swept coordinates", "fixed": "fixed coordinates",
              "columns_along": "direction of columns", "volume_unit": "unit of the volume",
              "integrated_unit": "unit of the volume integrated over the fixed coordinates",
              "size": "size, for workspace-ratio",
@@ -95,7 +95,7 @@ def mechanism_page(entry):
     text += table(["property", "value"], [[title, entry[key]] for key, title in names.items() if cell(entry[key])])
     if entry["other_sweeps"]:
         text += "## Other sweeps\n\n" + table(["fixed", "swept", "direction of columns", "unit of the volume"], [
-            [s["held"], s["swept"], s["columns_along"], s["volume_unit"]] for s in entry["other_sweeps"]])
+            [s["fixed"], s["swept"], s["columns_along"], s["volume_unit"]] for s in entry["other_sweeps"]])
     text += "## Parameters\n\n" + parameters(entry["parameters"])
     for model, besides in entry.get("parameters_besides", {}).items():
         text += f"## Parameters of {model.replace(' = ', ' ')}\n\n" + parameters(besides)
@@ -130,7 +130,7 @@ def support(entry):
 
 
 def objectives_page(entries):
-    text = ("# Objectives\n\nThe `type` of an `[[objective]]`, a `[[report]]`, or, with `min` or `max`, a "
+    text = ("# Objectives\n\nThe `type` of an `[[objective]]`, a `[[output]]`, or, with `min` or `max`, a "
             "`[[constraint]]`. Options are keys of the same table.\n\n")
     for e in entries:
         text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\n"

@@ -17,6 +17,7 @@ pkm_test_packages=(
   libsimbody-dev                              # independent computation of drive forces
   libmpfi-dev                                 # independent interval arithmetic
   python3 python3-numpy python3-h5py          # independent reading of study files
+  python3-jsonschema                          # validation of files by `pkmopt schema`
   python3-vtk9                                # reading of exported workspaces as in ParaView
   chromium                                    # tests of the pages of pkmopt report
   clang-14 libclang-rt-14-dev libomp-14-dev   # second compiler, its sanitizers and OpenMP

@@ -125,7 +125,7 @@ class PeakLoad final : public Quantity {
       if (!joints) return k;
       append(design,
              ActuatorState<double>{.speeds = joints->G * at.velocity,
-                                   .accelerations = accelerations<double, 0>(*joints, at.velocity, at.acceleration)},
+                                   .accelerations = accelerations(*joints, at.velocity, at.acceleration)},
              loads);
     }
     return samples_.size();

@@ -13,7 +13,7 @@ namespace {
 
 SourceLocation place_of(const std::string& option) { return {"", 0, option}; }
 
-/// What an option gives to a target; one without a name takes the option's whole text.
+/// Parses one value. @param target  without a name if the option has a single value
 double parse_value(const std::string& text, const std::string& option, const Assignable& target) {
   const std::string found = target.name.empty() ? text : target.name + "=" + text;
   const auto value = parse_quantity(text, target.unit);
@@ -35,7 +35,7 @@ std::vector<std::string> split(std::string_view text, char at) {
   return parts;
 }
 
-/// What stands after `name=` in comma-separated lists, in the order of `known`.
+/// The texts after `name=` in comma-separated lists, in the order of `known`.
 std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::string>& lists, const std::string& option,
                                                        const std::string& form, const std::vector<Assignable>& known) {
   const SourceLocation place = place_of(option);
@@ -59,7 +59,7 @@ std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::st
   return texts;
 }
 
-/// Throws for the names of `known` that have nothing.
+/// Throws ConfigError if a name of `known` has no value.
 template <class T>
 void expect_all(const std::vector<std::optional<T>>& given, const std::string& option,
                 const std::vector<Assignable>& known) {

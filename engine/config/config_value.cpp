@@ -1,8 +1,11 @@
 #include "engine/config/config_value.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
+#include "engine/config/renamed_keys.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 
@@ -11,24 +14,22 @@ namespace {
 
 constexpr const char* kNumbers = "a table of numbers, { name = number, ... }";
 
-std::string expectation(const OptionSpec& spec) {
-  switch (spec.kind) {
-    case OptionKind::integer:
-      return range_text("an integer", spec.lower, spec.upper);
-    case OptionKind::flag:
-      return "true or false";
-    case OptionKind::word:
-      return spec.choices.empty() ? "text" : "one of " + join(spec.choices);
-    case OptionKind::named_numbers:
-      return kNumbers;
-    case OptionKind::list_of_numbers:
-      return "a list of tables, [{ name = number, ... }, ...]";
-    case OptionKind::named_settings:
-      return "a table, { name = number or text, ... }";
-    case OptionKind::number:
-      break;
-  }
-  return range_text("a number", spec.lower, spec.upper, spec.unit);
+/// "a table { default = .., min = .., ... }"
+std::string table_expectation(const TableSpec& spec) {
+  if (!spec.header.empty()) return (spec.header.starts_with("[[") ? "tables " : "a table ") + spec.header;
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> words;
+  for (const OptionSpec& key : spec.keys)
+    if (words.size() < kMost) words.push_back(key.name + " = ..");
+  if (!spec.named.empty()) words.push_back((spec.keys.empty() ? spec.noun : "name") + " = ..");
+  if (spec.keys.size() > kMost) words.emplace_back("..");
+  return "a table { " + join(words) + " }";
+}
+
+const char* kind_word(OptionKind kind) {
+  constexpr std::array words = {"number",   "integer", "flag", "word",  "named numbers", "list of named numbers",
+                                "settings", "formula", "list", "table", "alternatives"};
+  return words[static_cast<std::size_t>(kind)];
 }
 
 /// { name = number, ... } with the names and units of `fields`.
@@ -53,7 +54,7 @@ OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
     case OptionKind::word:
       if (spec.choices.empty()) return value.text(expectation(spec));
       if (value.is_integer()) {  // "limb = 2" is as good as limb = "2"
-        const std::string word = std::to_string(value.integer());
+        const std::string word = std::to_string(value.integer(-kUnbounded, kUnbounded));
         if (contains(spec.choices, word)) return word;
       }
       return value.word(spec.choices);
@@ -76,11 +77,50 @@ OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
     }
     case OptionKind::number:
       break;
+    default:
+      throw std::logic_error("an option of a catalogue entry is of the kind " + std::string(kind_word(spec.kind)));
   }
   return value.number(spec.unit, spec.lower, spec.upper);
 }
 
 }  // namespace
+
+std::string expectation(const OptionSpec& spec) {
+  switch (spec.kind) {
+    case OptionKind::integer:
+      return range_text("an integer", spec.lower, spec.upper);
+    case OptionKind::flag:
+      return "true or false";
+    case OptionKind::word:
+      return spec.choices.empty() ? "text" : "one of " + join(spec.choices);
+    case OptionKind::named_numbers:
+      return kNumbers;
+    case OptionKind::list_of_numbers:
+      return "a list of tables, [{ name = number, ... }, ...]";
+    case OptionKind::named_settings:
+      return "a table, { name = number or text, ... }";
+    case OptionKind::formula:
+      return spec.unit == "1" || spec.unit == kUnitOfEntry ? "a number or a formula"
+                                                           : "a number or a formula in " + spec.unit;
+    case OptionKind::list:
+      return spec.count > 0
+                 ? "a list of " + std::to_string(spec.count) + " elements, each " + expectation(spec.parts[0])
+                 : "a list, each element " + expectation(spec.parts[0]);
+    case OptionKind::table:
+      return table_expectation(*spec.table);
+    case OptionKind::any_of: {
+      std::string text;
+      for (const OptionSpec& part : spec.parts) text += (text.empty() ? "" : ", or ") + expectation(part);
+      return text;
+    }
+    case OptionKind::number:
+      break;
+  }
+  const std::string unit = spec.unit == kUnitOfEntry ? "1" : spec.unit;
+  if (!spec.positive) return range_text("a number", spec.lower, spec.upper, unit);
+  return "a number > " + with_unit(0, unit) +
+         (std::isfinite(spec.upper) ? " and <= " + with_unit(spec.upper, unit) : "");
+}
 
 std::string range_text(std::string_view noun, double lower, double upper, std::string_view unit) {
   const bool below = std::isfinite(upper), above = std::isfinite(lower);
@@ -93,11 +133,71 @@ std::string range_text(std::string_view noun, double lower, double upper, std::s
   return unit == "1" ? head : head + " in " + std::string(unit);
 }
 
+std::vector<OptionSpec> named_keys(const TableSpec& table, const std::vector<std::string>& names) {
+  std::vector<OptionSpec> specs;
+  for (const std::string& name : names) {
+    specs.push_back(table.named.at(0));
+    specs.back().name = name;
+  }
+  return specs;
+}
+
 ConfigValue::ConfigValue(const TomlValue& value, std::string file, std::string path)
     : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
 
+ConfigValue ConfigValue::child(const TomlValue& value, std::string path, Spec spec) const {
+  ConfigValue found(value, file_, std::move(path));
+  found.spec_ = std::move(spec);
+  return found;
+}
+
+ConfigValue::Spec ConfigValue::spec_of(const std::string& key) const {
+  if (!table_) return nullptr;
+  const auto& [spec, more] = *table_;
+  const OptionSpec* found = spec->find(key);
+  if (!found) found = find_named(more, key);
+  if (!found && more.empty() && !spec->named.empty()) found = &spec->named.front();
+  if (!found) throw std::logic_error(path_ + ": the key " + key + " is not in the description of the table");
+  return Spec(table_, found);
+}
+
+const OptionSpec* ConfigValue::spec_as(std::initializer_list<OptionKind> kinds, std::string_view unit) const {
+  if (!spec_) return nullptr;
+  const auto fits = [&](const OptionSpec& spec) {
+    return contains(kinds, spec.kind) && (unit.empty() || spec.unit == kUnitOfEntry || spec.unit == unit);
+  };
+  if (fits(*spec_)) return spec_.get();
+  if (spec_->kind == OptionKind::any_of)
+    if (const auto part = std::ranges::find_if(spec_->parts, fits); part != spec_->parts.end()) return &*part;
+  throw std::logic_error(path_ + " is described as " + kind_word(spec_->kind) + " [" + spec_->unit + "] and read as " +
+                         kind_word(*kinds.begin()) + " [" + std::string(unit) + "]");
+}
+
+const OptionSpec& ConfigValue::described_as(OptionKind kind) const {
+  if (const OptionSpec* const spec = spec_as({kind})) return *spec;
+  throw std::logic_error(path_ + " has no description, and is read as " + kind_word(kind));
+}
+
+double ConfigValue::number() const {
+  const OptionSpec& spec = described_as(OptionKind::number);
+  if (!spec.positive) return number(spec.unit, spec.lower, spec.upper);
+  const double value = number(spec.unit, -kUnbounded, spec.upper);
+  if (!(value > 0)) throw error(expectation(spec));
+  return value;
+}
+
+std::int64_t ConfigValue::integer() const {
+  const OptionSpec& spec = described_as(OptionKind::integer);
+  return integer(spec.lower, spec.upper);
+}
+
+const std::string& ConfigValue::word() const { return word(described_as(OptionKind::word).choices); }
+
+std::vector<ConfigValue> ConfigValue::elements() const { return elements(expectation(described_as(OptionKind::list))); }
+
 double ConfigValue::number(std::string_view unit, double lower, double upper) const {
   using Kind = TomlValue::Kind;
+  spec_as({OptionKind::number, OptionKind::formula}, unit);
   std::optional<double> result;
   if (is_text()) result = parse_quantity(value_->text, unit);
   if (value_->kind == Kind::number || value_->kind == Kind::integer) result = value_->number;
@@ -121,6 +221,7 @@ std::int64_t ConfigValue::integer(double lower, double upper) const {
 }
 
 bool ConfigValue::flag() const {
+  spec_as({OptionKind::flag});
   if (value_->kind != TomlValue::Kind::flag) throw error("true or false");
   return value_->flag;
 }
@@ -146,16 +247,74 @@ const std::string& ConfigValue::word(const std::vector<std::string>& choices) co
 
 std::vector<ConfigValue> ConfigValue::elements(std::string_view expected) const {
   if (value_->kind != TomlValue::Kind::array) throw error(expected);
+  const OptionSpec* const spec = spec_as({OptionKind::list, OptionKind::list_of_numbers});
   std::vector<ConfigValue> list;
   for (std::size_t i = 0; i < value_->items.size(); ++i)
-    list.emplace_back(value_->items[i], file_, path_ + "[" + std::to_string(i + 1) + "]");
+    list.push_back(child(value_->items[i], path_ + "[" + std::to_string(i + 1) + "]",
+                         spec && !spec->parts.empty() ? Spec(spec_, &spec->parts.front()) : nullptr));
   return list;
 }
 
+ConfigValue ConfigValue::described_by(const TableSpec& spec, const std::vector<OptionSpec>& more) const {
+  expect_table(table_expectation(spec));
+  std::vector<std::string> known = names_of(spec.keys, more);
+  if (!spec.choice.empty()) {
+    std::vector<std::string> words;
+    for (const TableVariant& variant : spec.variants) words.push_back(variant.word);
+    const std::string& chosen = choice(spec.choice, words);
+    for (const TableVariant& variant : spec.variants)
+      if (variant.word == chosen)
+        for (const OptionSpec& key : variant.keys) known.push_back(key.name);
+  }
+  const bool any_names = !spec.named.empty() && spec.keys.empty() && more.empty();
+  if (!any_names) allow(known, spec.noun);
+  ConfigValue table = *this;
+  table.table_ = std::make_shared<const Description>(Description{&spec, more});
+  return table;
+}
+
+ConfigValue ConfigValue::table(const std::vector<OptionSpec>& more) const {
+  return described_by(*described_as(OptionKind::table).table, more);
+}
+
+ConfigValue ConfigValue::table_of_names(const std::vector<std::string>& names) const {
+  const TableSpec& spec = *described_as(OptionKind::table).table;
+  std::string expected;
+  for (const std::string& name : names) expected += (expected.empty() ? "" : ", ") + name + " = ..";
+  expect_table("a table { " + expected + " }").allow(names, spec.noun);
+  return described_by(spec, named_keys(spec, names));
+}
+
+std::optional<ConfigValue> ConfigValue::find_table(const std::string& key, const std::vector<OptionSpec>& more) const {
+  const auto found = find(key);
+  return found ? std::optional(found->table(more)) : std::nullopt;
+}
+
+std::vector<ConfigValue> ConfigValue::tables(const std::string& key, const std::vector<OptionSpec>& more) const {
+  const auto list = find(key);
+  if (!list) return {};
+  const std::string expected = "a list of tables, each written [[" + key + "]]";
+  std::vector<ConfigValue> tables;
+  for (const ConfigValue& each : list->elements(expected)) tables.push_back(each.expect_table(expected).table(more));
+  return tables;
+}
+
+const std::string& ConfigValue::choice(const std::string& key, const std::vector<std::string>& choices) const {
+  const std::string expected = "one of " + join(choices);
+  if (!has(key))
+    for (const auto& present : keys())
+      if (!nearest_name(present, {key}).empty())
+        throw find(present)->error_of("an unknown key", key + " = " + expected, key);
+  return at(key, expected).word(choices);
+}
+
 void ConfigValue::allow(const std::vector<std::string>& known, std::string_view what) const {
-  for (const auto& key : keys())
-    if (!contains(known, key))
-      throw find(key)->error_of("an unknown " + std::string(what), "one of " + join(known), nearest_name(key, known));
+  for (const auto& key : keys()) {
+    if (contains(known, key)) continue;
+    if (const std::string present = present_name(path_.empty() ? key : path_ + "." + key); contains(known, present))
+      throw find(key)->refusal("the key is now called " + present + "; 'pkmopt upgrade " + file_ + "' renames it");
+    throw find(key)->error_of("an unknown " + std::string(what), "one of " + join(known), nearest_name(key, known));
+  }
 }
 
 std::vector<std::string> ConfigValue::dotted_keys(bool of_tables) const {
@@ -173,17 +332,43 @@ std::vector<std::string> ConfigValue::dotted_keys(bool of_tables) const {
 }
 
 std::optional<ConfigValue> ConfigValue::find(const std::string& key) const {
-  const TomlValue* child = value_->find(key);
-  if (const auto dot = key.find('.'); !child && dot != std::string::npos)
-    if (const TomlValue* const within = value_->find(key.substr(0, dot))) child = within->find(key.substr(dot + 1));
-  if (!child) return std::nullopt;
-  return ConfigValue(*child, file_, path_.empty() ? key : path_ + "." + key);
+  const TomlValue* found = value_->find(key);
+  if (const auto dot = key.find('.'); !found && dot != std::string::npos)
+    if (const TomlValue* const within = value_->find(key.substr(0, dot))) found = within->find(key.substr(dot + 1));
+  Spec spec = spec_of(key);
+  if (!found) return std::nullopt;
+  return child(*found, path_.empty() ? key : path_ + "." + key, std::move(spec));
 }
 
 std::optional<double> ConfigValue::find_number(const std::string& key, std::string_view unit, double lower,
                                                double upper) const {
   const auto found = find(key);
   return found ? std::optional(found->number(unit, lower, upper)) : std::nullopt;
+}
+
+ConfigValue ConfigValue::at(const std::string& key) const {
+  const Spec spec = spec_of(key);
+  return at(key, spec->meaning.empty() ? expectation(*spec) : expectation(*spec) + " (" + spec->meaning + ")");
+}
+
+double ConfigValue::number_at(const std::string& key) const {
+  const Spec spec = spec_of(key);
+  return spec->initial && !has(key) ? std::get<double>(*spec->initial) : at(key).number();
+}
+
+bool ConfigValue::flag_at(const std::string& key) const {
+  const Spec spec = spec_of(key);
+  return spec->initial && !has(key) ? std::get<bool>(*spec->initial) : at(key).flag();
+}
+
+std::string ConfigValue::word_at(const std::string& key) const {
+  const Spec spec = spec_of(key);
+  return spec->initial && !has(key) ? std::get<std::string>(*spec->initial) : at(key).word();
+}
+
+std::optional<double> ConfigValue::find_number(const std::string& key) const {
+  const auto found = find(key);
+  return found ? std::optional(found->number()) : std::nullopt;
 }
 
 ConfigValue ConfigValue::at(const std::string& key, std::string_view expected) const {

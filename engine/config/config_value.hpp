@@ -1,9 +1,16 @@
-// A strict view of one value of a study file: it reads what is expected and refuses everything else with file, line,
-// key path, the value as written, what was expected and the nearest known name.
+// Strict reader of one value of a TOML file. It accepts what is expected and refuses everything else with file, line,
+// key path, the value as written, what is expected, and the nearest known name.
+//
+// A table is read by its description (TableSpec in engine/core/options.hpp): keys that the description lacks are
+// refused, and the values have the types, units, ranges and defaults that it gives. `pkmopt schema` and the reference
+// of keys are generated from the same descriptions, so a reader that reads a key or a type that its description lacks
+// is an error of the program: std::logic_error.
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +27,9 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// "a number in [0, 1]", "a number >= 0 s", "any number": a range for messages; `noun` is "a number" or "an integer".
 std::string range_text(std::string_view noun, double lower, double upper, std::string_view unit = "1");
 
+/// What a value has to be, for messages: "an integer in [1, 200]", "one of box, sphere, capsule".
+std::string expectation(const OptionSpec& spec);
+
 /// Refers to a TomlValue that must outlive it. Every function that reads throws ConfigError.
 class ConfigValue {
  public:
@@ -32,37 +42,76 @@ class ConfigValue {
   bool is_integer() const { return value_->kind == TomlValue::Kind::integer; }
   bool is_text() const { return value_->kind == TomlValue::Kind::text; }
 
+  // Values whose description gives unit, range and words
+
+  /// A finite number in SI, or text with a unit.
+  double number() const;
+  std::int64_t integer() const;
+  const std::string& word() const;
+  /// The elements of a list: `path[1]`, `path[2]`, ...
+  std::vector<ConfigValue> elements() const;
+
+  // Values whose unit, range or words depend on the mechanism or the study
+
   /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].
   double number(std::string_view unit, double lower = -kUnbounded, double upper = kUnbounded) const;
   /// A finite number > 0.
   double positive(std::string_view unit) const;
-  /// A whole number written without point or exponent.
-  std::int64_t integer(double lower = -kUnbounded, double upper = kUnbounded) const;
+  /// An integer without decimal point or exponent.
+  std::int64_t integer(double lower, double upper) const;
   bool flag() const;
   const std::string& text(std::string_view expected) const;
-  /// A number, an integer or text, whichever it is.
+  /// A number, an integer or text.
   Setting setting() const;
   /// Text that is one of `choices`.
   const std::string& word(const std::vector<std::string>& choices) const;
-  /// The elements of an array: `path[1]`, `path[2]`, ...
   std::vector<ConfigValue> elements(std::string_view expected) const;
 
   // Tables
-  /// Refuses any key that is not in `known`; `what` says what the keys are: "key", "parameter".
+
+  /// The table, to be read by its description. Refuses anything but a table, and keys that it does not describe. For
+  /// tables with variants, also refuses a missing or unknown TableSpec::choice, and the keys of other variants.
+  /// @param more  further keys: of a catalogue entry, or the names of TableSpec::named if these are known
+  ConfigValue described_by(const TableSpec& spec, const std::vector<OptionSpec>& more = {}) const;
+  /// The same by the description of the table in that of its key.
+  ConfigValue table(const std::vector<OptionSpec>& more = {}) const;
+  /// The same for a table whose keys are names, which have to be among `names`.
+  ConfigValue table_of_names(const std::vector<std::string>& names) const;
+  /// The table [key], read by its description; std::nullopt if the file has none.
+  std::optional<ConfigValue> find_table(const std::string& key, const std::vector<OptionSpec>& more = {}) const;
+  /// The description of this value as a table.
+  const TableSpec& table_spec() const { return *described_as(OptionKind::table).table; }
+  /// The tables [[key]], read by their description; empty if the file has none.
+  std::vector<ConfigValue> tables(const std::string& key, const std::vector<OptionSpec>& more = {}) const;
+  /// Refuses any key that is not in `known`. @param what  what the keys are: "key", "parameter"
   void allow(const std::vector<std::string>& known, std::string_view what = "key") const;
   const std::vector<std::string>& keys() const { return value_->keys; }
-  /// The keys, those of tables in it behind theirs: "arm2.l_b".
-  /// @param of_tables  what a key holds is a table; then only tables of tables count as tables in it
+  /// The keys; for keys with tables, dotted keys: "arm2.l_b".
+  /// @param of_tables  the values are tables themselves; only tables of tables give dotted keys
   std::vector<std::string> dotted_keys(bool of_tables) const;
   bool has(const std::string& key) const { return find(key).has_value(); }
-  /// The value under "arm2.l_b", whether the key is written so or the table has one called arm2.
+  /// The value under "arm2.l_b", whether the key is written in this form or the table contains a table arm2.
   std::optional<ConfigValue> find(const std::string& key) const;
+  /// The value of a required key.
+  ConfigValue at(const std::string& key, std::string_view expected) const;
+  /// The same; what is expected is the description of the key.
+  ConfigValue at(const std::string& key) const;
+  /// The value of a key, else its default.
+  double number_at(const std::string& key) const;
+  bool flag_at(const std::string& key) const;
+  std::string word_at(const std::string& key) const;
+  /// The value of a key that may be absent.
+  std::optional<double> find_number(const std::string& key) const;
   std::optional<double> find_number(const std::string& key, std::string_view unit, double lower = -kUnbounded,
                                     double upper = kUnbounded) const;
-  /// The value of a key that must be there.
-  ConfigValue at(const std::string& key, std::string_view expected) const;
   /// Refuses anything but a table.
   const ConfigValue& expect_table(std::string_view expected = "a table") const;
+  /// The word under `key`, which has to be one of `choices`. It decides which other keys are allowed, so it is read
+  /// before they are checked; the message for a missing key names a key that is similar to it.
+  const std::string& choice(const std::string& key, const std::vector<std::string>& choices) const;
+
+  /// Throws std::logic_error if the description of this value is not a formula of this unit.
+  void expect_formula(std::string_view unit) const { spec_as({OptionKind::formula}, unit); }
 
   SourceLocation place() const { return {file_, value_->line, path_}; }
   /// "line 12", for a message about another place.
@@ -72,7 +121,7 @@ class ConfigValue {
   ConfigError error_of(std::string_view found, std::string_view expected, std::string_view nearest = {}) const;
   /// A message that is a sentence of its own.
   ConfigError refusal(std::string_view sentence) const;
-  /// Does `work`; what it refuses by std::invalid_argument is a refusal of this value.
+  /// Calls `work`, and converts std::invalid_argument into a refusal of this value.
   template <class Work>
   auto explained(Work work) const {
     try {
@@ -83,13 +132,34 @@ class ConfigValue {
   }
 
  private:
+  /// A description of a table, and the further keys that this table has.
+  struct Description {
+    const TableSpec* spec;
+    std::vector<OptionSpec> more;
+  };
+  using Spec = std::shared_ptr<const OptionSpec>;  // shares the ownership of `Description::more`
+
+  ConfigValue child(const TomlValue& value, std::string path, Spec spec) const;
+  /// The description of a key; null if this table is not described. Throws std::logic_error if the key is not.
+  Spec spec_of(const std::string& key) const;
+  /// The description of this value; null if it has none. Throws std::logic_error if it is of none of these kinds, or of
+  /// another unit. @param unit  "": any
+  const OptionSpec* spec_as(std::initializer_list<OptionKind> kinds, std::string_view unit = "") const;
+  /// The description of this value, which has to be of this kind.
+  const OptionSpec& described_as(OptionKind kind) const;
+
   const TomlValue* value_;
   std::string file_;
   std::string path_;
+  Spec spec_ = nullptr;                                 ///< of this value
+  std::shared_ptr<const Description> table_ = nullptr;  ///< of its keys
 };
 
-/// The options of one entry of a catalogue, read by their descriptions; defaults filled in. Only the options' own keys
-/// are looked at: the caller refuses unknown keys with `allow`.
+/// Descriptions of the values under these names, by TableSpec::named.
+std::vector<OptionSpec> named_keys(const TableSpec& table, const std::vector<std::string>& names);
+
+/// The options of one entry of a catalogue, read by their descriptions; defaults filled in. Other keys are ignored: the
+/// table has been described_by() these options.
 Options read_options(const ConfigValue& table, const std::vector<OptionSpec>& specs);
 
 }  // namespace pkm

@@ -1,8 +1,8 @@
-// The text of `pkmopt check`.
+// Text of `pkmopt check` for a study: the resolved problem with all defaults.
 
 #include <sstream>
 
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/printable.hpp"
 #include "engine/core/text_table.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// Behind what a study gives or leaves out: whether it is what it would be without.
+/// Marks values that are the defaults, whether the study gives them or not.
 const char* mark(bool is_default) { return is_default ? "(default)" : ""; }
 
 void write_parameters(std::ostream& out, const Study& study) {
@@ -45,8 +45,8 @@ void write_parameters(std::ostream& out, const Study& study) {
   out << format_titled_table("fixed parameters", fixed);
 }
 
-/// How a coordinate is fixed.
-std::string held_text(const FixedCoordinate& fixed, const std::string& unit) {
+/// Value of a fixed coordinate.
+std::string fixed_text(const FixedCoordinate& fixed, const std::string& unit) {
   using Kind = FixedCoordinate::Kind;
   if (fixed.kind == Kind::default_value) return "middle of each design";
   if (fixed.kind == Kind::integrated) return "integrated over its range";
@@ -58,7 +58,7 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
   const Sweep& sweep = sweep_of(info, plan);
   WorkspacePlan usual = plan;
-  set_usual(info, usual);
+  set_defaults(info, usual);
   bool usual_cells = true;
   std::vector<std::string> swept, cells, nodes, box;
   for (std::size_t k = 0; k < sweep.swept.size(); ++k) {
@@ -91,11 +91,11 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
     else
       rows.push_back({"tolerance", shortest(columns->tolerance) + " relative",
                       mark(columns->tolerance == usual.columns()->tolerance)});
-    if (columns->certain) rows.push_back({"certain", "within bounds of the gap " + shortest(*columns->certain)});
+    if (columns->certified) rows.push_back({"certified", "within bounds of the gap " + shortest(*columns->certified)});
   }
   for (const int i : sweep.fixed) {
     const FixedCoordinate fixed = how_fixed(plan, i);
-    rows.push_back({coordinate(i).name, held_text(fixed, coordinate(i).unit),
+    rows.push_back({coordinate(i).name, fixed_text(fixed, coordinate(i).unit),
                     mark(fixed.kind == FixedCoordinate::Kind::default_value)});
   }
   return rows;
@@ -211,7 +211,7 @@ std::string describe(const Study& study) {
   out << format_titled_table("limits of a pose", limit_rows(study));
   write_entries(out, "objectives", study.objectives);
   write_entries(out, "constraints", study.constraints);
-  write_entries(out, "reports", study.reports);
+  write_entries(out, "outputs", study.outputs);
   out << "\nstages\n";
   for (std::size_t i = 0; i < study.stages.size(); ++i) {
     const Stage& stage = study.stages[i];

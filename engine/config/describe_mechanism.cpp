@@ -1,4 +1,4 @@
-// The text of `pkmopt check` of a mechanism's file.
+// Text of `pkmopt check` for a mechanism file: how it was interpreted, and which analyses it supports.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kNominalCells = 16;  ///< per swept coordinate, of the grid in which a nominal pose is looked for
+constexpr std::int64_t kNominalCells = 16;  ///< per swept coordinate, of the grid that is searched for a nominal pose
 
 std::string names_text(const std::vector<std::string>& names, std::size_t most = 8) {
   const std::vector<std::string> first(names.begin(),
@@ -27,7 +27,7 @@ std::string names_text(const std::vector<std::string>& names, std::size_t most =
   return join(first) + (names.size() > most ? ", .. (" + std::to_string(names.size()) + " in all)" : "");
 }
 
-/// The poses of a coarse grid over the usual sweep's box.
+/// The poses of a coarse grid over the box of the default sweep; empty if there is no box.
 std::vector<Pose<double>> grid_of_poses(const Mechanism& mechanism, std::span<const double> parameters) {
   const MechanismInfo& info = mechanism.info();
   const auto ranges = mechanism.ranges(parameters);
@@ -54,7 +54,8 @@ std::vector<Pose<double>> grid_of_poses(const Mechanism& mechanism, std::span<co
   return poses;
 }
 
-/// The feasible pose nearest to the middle of all feasible ones; else the margins that no pose keeps.
+/// Writes the feasible pose closest to the centroid of all feasible poses, otherwise the margins that no pose
+/// satisfies.
 void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span<const double> parameters) {
   const MechanismInfo& info = mechanism.info();
   const std::vector<Pose<double>> poses = grid_of_poses(mechanism, parameters);
@@ -71,7 +72,7 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   }
   out << "\nnominal pose, of the default parameters in working mode " << info.modes.front() << '\n';
   if (poses.empty()) {
-    out << "  none: [survey] gives no box for all swept coordinates, and no place to hold the others\n";
+    out << "  none: [survey] gives no box for all swept coordinates, and no values of the others\n";
     return;
   }
   if (feasible.empty()) {
@@ -109,7 +110,7 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   out << "  mobility: " << mobility_text(mechanism, parameters, nominal, rank) << '\n';
 }
 
-/// What is wrong with the masses of the default design; "": nothing.
+/// Why the masses of the default design are invalid; "" if they are valid.
 std::string why_no_masses(const Mechanism& mechanism) {
   std::vector<double> nominal;
   for (const Parameter& p : mechanism.info().parameters) nominal.push_back(p.nominal);
@@ -129,7 +130,7 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
   tell(mechanism.columns(), "exact workspace by columns",
        "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
-  tell(mechanism.bounds(), "certain bounds of the workspace", "pkmopt certify, by intervals", "");
+  tell(mechanism.bounds(), "certified bounds of the workspace", "pkmopt certify, by intervals", "");
   const Unsupported undefined = why_no_conditioning(mechanism.info());
   tell(!undefined, "conditioning", "", undefined.value_or(""));
   tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
@@ -168,7 +169,7 @@ std::string describe_mechanism(const Mechanism& mechanism) {
     const AxisInfo& axis = info.coordinates[i];
     const auto swept =
         std::ranges::find(info.sweeps.front().swept, static_cast<int>(i)) != info.sweeps.front().swept.end();
-    coordinates.push_back({axis.name, axis.unit, swept ? "swept" : "held",
+    coordinates.push_back({axis.name, axis.unit, swept ? "swept" : "fixed",
                            ranges ? format_range((*ranges)[i][0], (*ranges)[i][1], axis.unit) : "no box"});
   }
   for (std::size_t i = 0; i < info.joints.size(); ++i)

@@ -1,11 +1,12 @@
-// Masses of a mechanism's file: parts of limbs, links, the platform, [[body]].
+// Reader of masses: parts of limbs, links, the platform, [[body]].
 //
-// Parts of limbs and links are thin: they turn with the line between their ends and have no spin about it, so that
-// their inertia is one number, across that line about the centre of mass.
+// Parts of limbs and links are thin: they rotate with the line between their ends, without spin about it, so that their
+// inertia is one number: about the centre of mass, across that line.
 
 #include <algorithm>
 
 #include "engine/config/mechanism_draft.hpp"
+#include "engine/config/mechanism_keys.hpp"
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 
@@ -15,10 +16,7 @@ namespace {
 using generic::BodyNodes;
 using limbs::Term, limbs::Vector3;
 
-bool has_length(const std::string& part) { return part == "crank" || part == "rod" || part.ends_with("_link"); }
-bool is_telescopic(const std::string& part) { return part == "cylinder" || part == "piston"; }
-
-/// A mass or an inertia, which has to be positive.
+/// Registers a mass, an inertia or a dimension that has to be positive for every design.
 Term checked(MechanismDraft& draft, const Term& value, const std::string& name, const std::string& unit,
              bool may_vanish) {
   draft.model.masses.push_back({name, unit, value.node(), may_vanish});
@@ -27,38 +25,43 @@ Term checked(MechanismDraft& draft, const Term& value, const std::string& name, 
 
 struct Mass {
   Term mass;
-  std::optional<Term> inertia;  ///< where the cross-section says it
+  std::optional<Term> inertia;  ///< if it follows from a cross-section
 };
 
-/// A tube or a rod of some material.
-Mass mass_of_section(const ConfigValue& section, const Term& length, const std::string& what, MechanismDraft& draft) {
-  section.expect_table("a table { density = .., outer = .., inner = .. }").allow({"density", "outer", "inner"});
-  const auto value = [&](const char* key, const char* unit, const char* expected) {
+/// Mass and inertia of a tube or rod of some material.
+Mass mass_of_profile(const ConfigValue& value, const Term& length, const std::string& what, MechanismDraft& draft) {
+  const ConfigValue profile = value.table();
+  const auto number = [&](const char* key, const char* unit, const char* expected) {
     return checked(
-        draft, draft.scope.positive(section.at(key, expected), unit, what),
+        draft, draft.scope.positive(profile.at(key, expected), unit, what),
         "the " + std::string(key == std::string("density") ? key : std::string(key) + " diameter") + " of " + what,
         unit, false);
   };
-  const Term density = value("density", "kg/m^3", "the material's density: \"2700 kg/m^3\"");
-  const Term outer = value("outer", "m", "the outer diameter");
-  const Term inner = section.has("inner") ? value("inner", "m", "the inner diameter") : draft.zero();
+  const Term density = number("density", "kg/m^3", "the material's density: \"2700 kg/m^3\"");
+  const Term outer = number("outer", "m", "the outer diameter");
+  const Term inner = profile.has("inner") ? number("inner", "m", "the inner diameter") : draft.zero();
   const Term mass = density * length * (outer * outer - inner * inner) * (kPi / 4);
   return {mass, mass * (length * length / 12 + (outer * outer + inner * inner) / 16)};
 }
 
-/// The mass of a limb's part, as its table says it; none: it says nothing.
+/// The value of a key of a part's mass, "rod_inertia"; std::nullopt also if parts of this kind have no such key.
+std::optional<ConfigValue> find_mass_key(const ConfigValue& table, const std::string& part, const std::string& suffix) {
+  return find_named(mass_keys(part), part + suffix) ? table.find(part + suffix) : std::nullopt;
+}
+
+/// The mass of a limb's part; std::nullopt if its table gives none.
 std::optional<Mass> mass_of_part(const ConfigValue& table, const LimbPart& part, const std::string& what,
                                  MechanismDraft& draft) {
   std::optional<ConfigValue> given;
   for (const char* way : {"_mass", "_mass_per_length", "_section"}) {
-    const auto value = table.find(part.name + way);
+    const auto value = find_mass_key(table, part.name, way);
     if (value && given) throw value->refusal("the mass of the " + part.name + " is also given at " + given->line());
     if (value) given = value;
   }
   if (!given) return {};
-  if (const auto section = table.find(part.name + "_section"))
-    return mass_of_section(*section, *part.length, what, draft);
-  if (const auto per_length = table.find(part.name + "_mass_per_length"))
+  if (const auto profile = find_mass_key(table, part.name, "_section"))
+    return mass_of_profile(*profile, *part.length, what, draft);
+  if (const auto per_length = find_mass_key(table, part.name, "_mass_per_length"))
     return Mass{draft.scope.positive(*per_length, "kg/m", what) * *part.length, {}};
   return Mass{draft.scope.positive(*given, "kg", what, part.name == "slider"), {}};
 }
@@ -69,8 +72,8 @@ void add_square(const std::array<expression::Node, 3>& f, const Term& weight, Bo
   body.products.push_back({f, f, weight.node()});
 }
 
-/// Three principal values along the platform's axes, of a body that turns with it: the inertia about the one axis of
-/// its turns, else the second moments of its mass along its axes.
+/// Adds the rotational inertia of a body that rotates with the platform, from its principal values along the platform's
+/// axes: the inertia about the only axis of rotation, otherwise the second moments of mass along the axes.
 void add_turns_of_platform(const std::array<Term, 3>& inertia, BodyNodes& body, MechanismDraft& draft) {
   const auto turns = [](const auto& axis) { return axis.has_value(); };
   const auto& about = draft.model.rotation_axes;
@@ -99,27 +102,15 @@ std::array<Term, 3> read_inertia(const ConfigValue& value, const std::string& of
   return {one(0), one(1), one(2)};
 }
 
-}  // namespace
-
-std::vector<std::string> mass_keys(const std::string& part) {
-  std::vector<std::string> keys = {part + "_mass"};
-  if (part != "slider") keys.push_back(part + "_inertia");
-  if (has_length(part)) keys.insert(keys.end(), {part + "_mass_per_length", part + "_section"});
-  if (is_telescopic(part)) keys.push_back(part + "_centre");
-  return keys;
-}
-
-namespace {
-
-/// A body of this mass, whose centre moves.
+/// A point mass at `centre`.
 BodyNodes body_at(const Vector3& centre, const Term& mass, const std::string& name) {
   BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
   add_square(body.centre, mass, body);
   return body;
 }
 
-/// The mass of a thin part of constant length, its centre in its middle, by the rates of its ends P and Q:
-/// (m/4 + I/l^2) (P'^2 + Q'^2) + 2 (m/4 - I/l^2) P' . Q'.
+/// A thin part of constant length with its centre of mass in the middle. Its kinetic energy by the rates of its ends P,
+/// Q: (m/4 + I/l^2) (P'^2 + Q'^2) + 2 (m/4 - I/l^2) P' . Q'.
 BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia, const std::string& name,
                     MechanismDraft& draft) {
   const Term quarter = mass * 0.25, turning = inertia / (*part.length * *part.length);
@@ -142,7 +133,7 @@ BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia,
   return body;
 }
 
-/// Half a leg, with its centre of mass on the line from A to B, whose direction is `part.line`.
+/// One half of a leg, with its centre of mass on the line from A to B, whose direction is `part.line`.
 BodyNodes telescopic_body(const LimbPart& part, const Term& mass, const Term& along, const Term& inertia,
                           const std::string& name) {
   const std::array<expression::Node, 3> direction = nodes(*part.line);
@@ -162,14 +153,15 @@ void add_part_body(const ConfigValue& table, const std::string& limb, const Limb
   const std::string what = part.name + " of " + limb;
   const std::optional<Mass> given = mass_of_part(table, part, what, draft);
   for (const char* key : {"_inertia", "_centre"})
-    if (const auto alone = table.find(part.name + key); alone && !given)
+    if (const auto alone = find_mass_key(table, part.name, key); alone && !given)
       throw alone->refusal("the " + part.name + " has no mass: " + part.name + "_mass is missing");
   if (!given) return;
   const Term mass = checked(draft, given->mass, "the mass of " + what, "kg", part.name == "slider");
   Term inertia = given->inertia ? *given->inertia
                  : part.length  ? mass * *part.length * *part.length / 12
                                 : draft.zero();
-  if (const auto own = table.find(part.name + "_inertia")) inertia = draft.scope.positive(*own, "kg m^2", what, true);
+  if (const auto own = find_mass_key(table, part.name, "_inertia"))
+    inertia = draft.scope.positive(*own, "kg m^2", what, true);
   checked(draft, inertia, "the inertia of " + what, "kg m^2", true);
   const expression::Node none = draft.zero().node(), across = inertia.node();
   if (part.length) {
@@ -227,8 +219,7 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
     }
   std::vector<std::string> names = {"platform"};
   for (const LimbPart& part : turning) names.push_back(part.name);
-  for (const ConfigValue& table : tables_of(root, "body")) {
-    table.allow({"name", "centre", "mass", "inertia", "rotation"});
+  for (const ConfigValue& table : root.tables("body")) {
     const std::string name = new_name(table, "body", draft.model.bodies, "the body's name");
     const Vector3 centre = read_point(table.at("centre", "a point"), name, draft);
     const Term mass = checked(draft, draft.scope.positive(table.at("mass", "the body's mass"), "kg", name, true),

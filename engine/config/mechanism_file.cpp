@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/config/mechanism_draft.hpp"
+#include "engine/config/mechanism_keys.hpp"
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
@@ -16,11 +17,9 @@ using generic::Inputs;
 using limbs::Term;
 
 const std::vector<std::string> kUnits = {"m", "rad", "kg", "kg m^2", "kg/m", "kg/m^3", "N", "N/m", "N m/rad", "1"};
-const std::vector<std::string> kAxes = {"along x", "along y", "along z", "about x", "about y", "about z"};
 
 void read_names(const ConfigValue& root, MechanismDraft& draft) {
-  const ConfigValue table = root.at("mechanism", "a table [mechanism] with name, title, source");
-  table.expect_table("a table [mechanism]").allow({"name", "title", "source"});
+  const ConfigValue table = root.at("mechanism", "a table [mechanism] with name, title, source").table();
   const ConfigValue name = table.at("name", "the mechanism's name");
   draft.model.info.name = name.text("the mechanism's name");
   const auto fits = [](char c) {
@@ -33,7 +32,7 @@ void read_names(const ConfigValue& root, MechanismDraft& draft) {
   draft.model.info.source = text_of(table, "source");
 }
 
-/// The unit in which a quantity is written: of "200 mm" it is m.
+/// The SI unit of a parameter, by its default: m for "200 mm".
 std::string unit_of(const ConfigValue& table) {
   if (const auto unit = table.find("unit")) return si_unit(*unit);
   const ConfigValue value = table.at("default", "the default, a number or text with a unit: \"200 mm\"");
@@ -45,7 +44,7 @@ std::string unit_of(const ConfigValue& table) {
   throw value.error("a number, or text with a unit: \"200 mm\", \"40 deg\"; other units by unit = \"..\"");
 }
 
-/// A limb's own parameter is what that of all is, but for what the file says.
+/// A parameter of a single limb: the common one, with the changes in `table`.
 Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, const std::vector<Parameter>& all) {
   const Parameter* const general = find_named(all, own.parameter);
   if (!general)
@@ -63,15 +62,13 @@ Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, cons
 void read_parameter_table(const ConfigValue& all, MechanismDraft& draft) {
   generic::Model& model = draft.model;
   for (const std::string& name : all.dotted_keys(true)) {
-    const ConfigValue table = *all.find(name);
-    if (const auto own = limb_parameter(name, table.place())) {
-      table.expect_table("a table { default = .., min = .., max = .., meaning = .. }")
-          .allow({"default", "min", "max", "meaning"});
+    const ConfigValue value = *all.find(name);
+    if (const auto own = limb_parameter(name, value.place())) {
+      const ConfigValue table = value.described_by(limb_parameter_keys());
       add_own_parameter(*own, own_parameter(table, *own, model.info.parameters), draft);
       continue;
     }
-    table.expect_table("a table { default = .., min = .., max = .., meaning = .. }")
-        .allow({"default", "min", "max", "meaning", "unit"});
+    const ConfigValue table = value.table();
     if (name == generic::kClearanceLimit)
       throw table.refusal(
           "clearance_min is the name of the limit of the links' clearance; call the parameter otherwise");
@@ -89,13 +86,11 @@ void read_parameter_table(const ConfigValue& all, MechanismDraft& draft) {
 }
 
 void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& asked, MechanismDraft& draft) {
-  const ConfigValue all = root.at("parameters", "a table [parameters]: what a design may choose");
-  all.expect_table("a table [parameters]");
+  const ConfigValue all = root.at("parameters", "a table [parameters]: what a design may choose").table();
   if (all.keys().empty()) throw all.error("at least one parameter");
   read_parameter_table(all, draft);
   if (draft.masses)
-    if (const auto more = draft.masses->find("parameters"))
-      read_parameter_table(more->expect_table("a table of parameters"), draft);
+    if (const auto more = draft.masses->find_table("parameters")) read_parameter_table(*more, draft);
   generic::Model& model = draft.model;
   for (const LimbParameter& own : asked) {
     const Parameter* const general = find_named(model.info.parameters, own.parameter);
@@ -110,13 +105,13 @@ void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& 
 
 void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  const ConfigValue all = platform.at("coordinates", "a table { x = \"along x\", phi = \"about z\", .. }");
-  all.expect_table("a table { x = \"along x\", phi = \"about z\", .. }");
+  const std::string expected = "a table { x = \"along x\", phi = \"about z\", .. }";
+  const ConfigValue all = platform.at("coordinates", expected).expect_table(expected).table();
   const std::size_t count = all.keys().size();
   if (count < 1 || count > kMaxCoordinates) throw all.error("1 to 6 coordinates");
   for (const std::string& name : all.keys()) {
     const ConfigValue value = *all.find(name);
-    const std::string& kind = value.word(kAxes);
+    const std::string& kind = value.word();
     const auto axis = static_cast<std::size_t>(kind.back() - 'x');
     const bool turns = kind.starts_with("about");
     const std::size_t i = model.inputs.coordinates++;
@@ -140,9 +135,8 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
 }
 
 void read_let(const ConfigValue& root, MechanismDraft& draft) {
-  for (const auto& all : {root.find("let"), draft.masses ? draft.masses->find("let") : std::nullopt}) {
+  for (const auto& all : {root.find_table("let"), draft.masses ? draft.masses->find_table("let") : std::nullopt}) {
     if (!all) continue;
-    all->expect_table("a table of formulas");
     draft.let.push_back(*all);
     for (const std::string& name : all->keys()) {
       const ConfigValue value = *all->find(name);
@@ -151,21 +145,19 @@ void read_let(const ConfigValue& root, MechanismDraft& draft) {
   }
 }
 
-/// [masses]: alternatives, each with parameters and formulas of its own. @param chosen  "": the first
+/// Selects one of [masses]: alternatives with parameters and formulas of their own. @param chosen  "": the first
 void choose_masses(const ConfigValue& root, const std::string& chosen, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  const auto all = root.find("masses");
+  const auto all = root.find_table("masses");
   if (!all) {
     model.mass_models = {"file"};
   } else {
-    all->expect_table("a table [masses] of alternatives, [masses.NAME] each");
     if (all->keys().empty()) throw all->error("at least one alternative [masses.NAME]");
     model.mass_models = all->keys();
-    for (const std::string& name : model.mass_models)
-      all->find(name)->expect_table("a table [masses.NAME]").allow({"parameters", "let"});
+    for (const std::string& name : model.mass_models) all->find_table(name);  // refuses wrong keys of all models
   }
   model.mass_model = chosen.empty() ? model.mass_models.front() : chosen;
-  if (all) draft.masses = all->at(model.mass_model, "an alternative of [masses]");
+  if (all) draft.masses = all->at(model.mass_model, "an alternative of [masses]").table();
 }
 
 void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
@@ -192,8 +184,7 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
     model.radius = draft.scope.of_design(*radius, "m", "characteristic_radius").node();
   if (!mixes_units(model.info.coordinates) && model.info.characteristic_length.empty())
     model.info.characteristic_length = "1";  // of no effect
-  if (const auto size = platform.find("size")) {
-    size->expect_table("a table { formula = .., unit = .., meaning = .. }").allow({"formula", "unit", "meaning"});
+  if (const auto size = platform.find_table("size")) {
     const std::string unit = si_unit(size->at("unit", "the size's unit: \"m^3\""));
     const ConfigValue formula = size->at("formula", "a formula of parameters");
     model.size = {draft.scope.of_design(formula, unit, "size").node(), unit, text_of(*size, "meaning")};
@@ -201,8 +192,8 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   read_platform_body(platform, draft);
 }
 
-/// Leaves the mechanism without a conditioning where it is undefined although there is a characteristic length.
-void forget_undefined_conditioning(generic::Model& model) {
+/// Removes the characteristic length if the conditioning is undefined for other reasons.
+void remove_undefined_conditioning(generic::Model& model) {
   const bool needs_radius = mixes_units(model.info.joints) && !model.radius;
   if (needs_radius || model.info.joints.size() < model.info.coordinates.size())
     model.info.characteristic_length.clear();
@@ -236,22 +227,17 @@ std::string si_unit(const ConfigValue& unit) {
 generic::Model read_mechanism_model(const std::string& text, const std::string& file_name,
                                     const std::vector<LimbParameter>& own, const std::string& mass_model) {
   const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
-  const ConfigValue root(document, file_name, "");
-  if (root.keys().empty())
+  if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file",
                       "a mechanism: [mechanism], [parameters], [platform], [[limb]]");
-  root.allow({"mechanism", "parameters", "masses", "platform", "survey", "modes", "let", "limb", "inputs", "quantity",
-              "limit", "margin", "design", "link", "body", "joint"});
+  const ConfigValue root = ConfigValue(document, file_name, "").described_by(mechanism_keys());
   MechanismDraft draft;
   read_names(root, draft);
   choose_masses(root, mass_model, draft);
   read_parameters(root, own, draft);
   draft.model.inputs.limits = 0;
   read_limits(root, draft);
-  const ConfigValue platform = root.at("platform", "a table [platform] with its coordinates");
-  platform.expect_table("a table [platform]")
-      .allow({"coordinates", "characteristic_length", "characteristic_radius", "conditioning_over", "size", "origin",
-              "mass", "centre", "inertia"});
+  const ConfigValue platform = root.at("platform", "a table [platform] with its coordinates").table();
   read_coordinates(platform, draft);
   read_modes(root, draft);
   read_inputs(root, draft);
@@ -266,7 +252,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   refuse_idle_parameters(draft);
   read_bodies(root, read_links(root, draft), draft);
   read_survey(root, draft);
-  forget_undefined_conditioning(draft.model);
+  remove_undefined_conditioning(draft.model);
   draft.scope.note_domains();
   list_modes(draft);
   refuse_changing_planes(draft);

@@ -1,4 +1,8 @@
-// A mechanism described by a file: parameters, freedoms, limbs in closed form or formulas, limits, links.
+// Reads mechanism files: parameters, degrees of freedom, limbs in closed form or as formulas, limits, links, masses.
+//
+// Reading TOML and building a mechanism are separate: the reader fills a generic::Model (engine/generic/model.hpp),
+// from which generic::make_mechanism() makes the mechanism. Code that builds a model itself needs no text; what the
+// reader adds for a limb in closed form is in engine/generic/limbs.
 #pragma once
 
 #include <memory>
@@ -9,23 +13,23 @@
 
 namespace pkm {
 
-/// A parameter that one limb has for itself, beside that of all: "arm2.l_b".
+/// A parameter of a single limb, besides the common one: "arm2.l_b".
 struct LimbParameter {
   std::string limb, parameter;
-  SourceLocation place = {};  ///< where it is asked for
+  SourceLocation place = {};  ///< where it is named
 
   std::string name() const { return limb + "." + parameter; }
 };
-/// Of names such as "arm2.l_b"; none for others.
+/// Splits a name such as "arm2.l_b"; std::nullopt for other names.
 std::optional<LimbParameter> limb_parameter(const std::string& name, const SourceLocation& place);
 
-/// A mechanism from its description. `file_name` is named in messages. Throws ConfigError.
-/// @param own  further parameters, of one limb each, behind the file's own; they have unit, range and default of that
-///             of all
+/// Reads a mechanism from the text of its file. `file_name` is named in messages. Throws ConfigError.
+/// @param own  further parameters of single limbs, appended to those of the file; they have unit, range and default of
+///             the common parameter
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
                                                      const std::vector<LimbParameter>& own = {});
 
-/// What was understood of a description, and what the mechanism can and cannot, with reasons: the text of
+/// How a mechanism file was interpreted, which analyses it supports, and why it does not support others: the text of
 /// `pkmopt check FILE`.
 std::string describe_mechanism(const Mechanism& mechanism);
 

@@ -1,4 +1,4 @@
-// The files of engine/config/mechanisms, which the build puts into the program.
+// The files of engine/config/mechanisms, which are compiled into the program.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace pkm {
 
-/// Names and texts.
+/// Names and texts of the built-in mechanisms.
 const std::vector<std::pair<std::string, std::string>>& mechanism_files();
 
 }  // namespace pkm

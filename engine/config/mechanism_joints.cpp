@@ -1,10 +1,10 @@
-// The joints of a mechanism's file, for the forces in them (engine/dynamics/newton_euler.hpp) and for the mobility of
-// the platform.
+// Bodies and joints of a mechanism file, for the forces in joints (engine/dynamics/newton_euler.hpp) and for the
+// mobility of the platform.
 //
-// What joints carry follows from the limbs:
+// The forces and couples that a joint transmits follow from the limb:
 //
 //   a crank's pivot       all forces and couples, the drive's about its axis among them
-//   a rod, a leg          ball joints at both ends: forces alone. Nothing spins it; what holds its spin carries nothing
+//   a rod, a leg          ball joints at both ends: forces only. Its spin is fixed by a constraint without reaction
 //   a pair of rods        two of them, side by side, with half the mass each
 //   `links`, `across`     revolutes along one axis: all couples but those about it. Where the platform turns about
 //   other
@@ -27,7 +27,7 @@ using generic::BodyNodes, generic::JointNodes, generic::SolidNodes;
 using limbs::Term, limbs::Vector3;
 using Nodes = std::array<expression::Node, 3>;
 
-/// Ends with a sentence where the file does not say enough.
+/// Thrown with a sentence if the file does not describe the joints completely.
 struct Unsaid {
   std::string why;
 };
@@ -36,9 +36,8 @@ class JointReader {
  public:
   explicit JointReader(MechanismDraft& draft) : draft_(draft), model_(draft.model) {}
 
-  /// The bodies and joints that the file describes, without masses.
+  /// Reads the bodies and joints that the file describes, without masses.
   generic::JointedBodies read(const std::vector<ConfigValue>& tables) {
-    for (const ConfigValue& table : tables) table.allow({"name", "bodies", "at", "about"});
     add_solid("platform", {.name = "platform", .point = nodes(draft_.origin), .with_platform = true});
     for (const BodyNodes& body : model_.bodies) {
       if (!body.part_of.empty() || is_of_limb(body.name) || body.name == "platform") continue;
@@ -49,7 +48,7 @@ class JointReader {
     for (const ConfigValue& table : tables) add_joint(table);
     return {solids_, joints_};
   }
-  /// The same with masses, for the forces in the joints.
+  /// Adds the masses, for the forces in the joints.
   generic::JointedBodies with_masses() {
     gather_bodies();
     refuse_loose();
@@ -59,7 +58,7 @@ class JointReader {
  private:
   Vector3 vector(const Nodes& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
 
-  /// @param body  of the model, or the platform: whose mass it has, or a share of it
+  /// @param body  body of the model, or the platform, whose mass it has, or a share of it
   std::size_t add_solid(const std::string& body, SolidNodes solid) {
     made_of_[body].push_back(solids_.size());
     solids_.push_back(std::move(solid));
@@ -79,8 +78,8 @@ class JointReader {
     return joint;
   }
 
-  /// A joint of a limb: a revolute about the limb's axis and those of `also`, or a ball that holds the spin about
-  /// `line`, if any.
+  /// A joint of a limb: a revolute about the limb's axis and those of `also`, or a ball joint that prevents the spin
+  /// about `line`, if given.
   JointNodes limb_joint(const NamedLimb& limb, const std::string& name, const Vector3& point, std::size_t on,
                         std::optional<std::size_t> from, const std::optional<Vector3>& line,
                         const std::vector<Vector3>& also = {}) const {
@@ -188,7 +187,7 @@ class JointReader {
   void gather_bodies() {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyNodes& body = model_.bodies[i];
-      if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;  // its drive's affair
+      if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;  // part of its drive
       std::string owner = body.part_of.empty() ? body.name : body.part_of;
       for (const NamedLimb& limb : draft_.limbs)
         for (const LimbPart& part : limb.parts)
@@ -202,7 +201,7 @@ class JointReader {
     }
   }
 
-  /// A body that no joint holds, and fewer unknowns than equations, which leave some motion to nobody.
+  /// Refuses bodies without a joint, and joints with fewer unknowns than there are equations, which leave motions free.
   void refuse_loose() {
     std::vector<bool> held(solids_.size(), false);
     std::size_t unknowns = 0;
@@ -222,7 +221,7 @@ class JointReader {
   }
   std::size_t couples_of(const JointNodes& joint) {
     if (joint.couples == JointNodes::Couples::along) return joint.axes.size();
-    std::vector<Vector3> free;  // directions about which it turns, of the default design
+    std::vector<Vector3> free;  // axes about which it rotates, for the default design
     for (const Nodes& axis : joint.axes)
       if (free.empty() || (free.size() < 2 && !parallel(free[0], vector(axis)))) free.push_back(vector(axis));
     return 3 - free.size();
@@ -236,13 +235,14 @@ class JointReader {
   generic::Model& model_;
   std::vector<SolidNodes> solids_;
   std::vector<JointNodes> joints_;
-  std::map<std::string, std::vector<std::size_t>> made_of_;  ///< solids that a body of the model is, or is part of
+  std::map<std::string, std::vector<std::size_t>>
+      made_of_;  ///< by body of the model: the solids that it consists of or belongs to
 };
 
 }  // namespace
 
 void add_joints(const ConfigValue& root, MechanismDraft& draft) {
-  const std::vector<ConfigValue> tables = tables_of(root, "joint");
+  const std::vector<ConfigValue> tables = root.tables("joint");
   generic::Model& model = draft.model;
   JointReader reader(draft);
   try {

@@ -1,4 +1,4 @@
-// A limb with a drive of closed form while it is read: its drive, its parts, what is drawn.
+// Reading of one limb: the drive in closed form, its parts, the links that are drawn.
 #pragma once
 
 #include <array>
@@ -21,43 +21,43 @@ struct LimbCopy {
   limbs::Rotation turn;  ///< of this copy
 
   limbs::Term length(const char* key, const char* expected) const;
-  /// Turned with the copy; in the platform's frame or the base's.
+  /// Reads a direction and rotates it with the copy. @param on_platform  it is given in the platform's frame
   limbs::Vector3 direction(const ConfigValue& value, bool on_platform = false) const;
-  /// The ends of `range`, which is there.
+  /// The ends of `range`, which must be present.
   std::array<limbs::Term, 2> range(const std::string& unit) const;
-  /// l_1 and l_2 of `links`, which are there.
+  /// l_1 and l_2 of `links`, which must be present.
   std::array<limbs::Term, 2> links() const;
 };
 
-/// What a drive comes to.
+/// A limb in closed form with its drive.
 struct DrivenLimb : limbs::Limb {
-  std::string form;                     ///< the joint, in words
+  std::string form;                     ///< formula of the joint coordinate
   std::optional<limbs::Vector3> e;      ///< along the slide, or the crank's axis
-  std::optional<limbs::Term> beyond{};  ///< how far from A, or from the slide, B can be
+  std::optional<limbs::Term> beyond{};  ///< maximum distance of B from A or from the slide
 };
 
 /// @param q  the joint variable
 DrivenLimb read_drive(const LimbCopy& copy, const limbs::Ends& at, const limbs::Term& q);
 
-/// A limb's bodies, as [[body]] names them.
+/// Names of the parts of a limb: its bodies, as [[body]] refers to them.
 std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::string& drive);
-/// The same with their ends. Adds the limb's arm.
+/// The parts with their ends. Adds the limb's arm to the model.
 std::vector<LimbPart> read_parts(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
-/// What is drawn, and keeps clear: where the limb has a `radius`.
+/// Adds the links that are drawn and tested for clearance, if the limb has a `radius`.
 void add_limb_links(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
-/// Where the platform's frame has to be for the limb to reach: a box about A, or about the rail.
+/// Adds a box about A, or about the rail, that contains the platform's frame whenever the limb can reach it.
 void add_reach(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 
 /// [[limb]] with drive = "formula": the joints are formulas of the pose.
 void read_formula_limb(const ConfigValue& table, const std::string& name, MechanismDraft& draft);
 
-/// The input of a new joint.
+/// Adds a joint and its input to the graph.
 limbs::Term add_joint_variable(const ConfigValue& table, const std::string& name, const std::string& unit,
                                MechanismDraft& draft);
-/// The two ends of a limb's `range`.
+/// Reads the two ends of a limb's `range`.
 std::array<limbs::Term, 2> read_range(const ConfigValue& range, const std::string& unit, const std::string& limb,
                                       MechanismDraft& draft);
-/// The limits of a joint, where its limb's table has a `range`.
+/// Adds the limits of a joint, if the table of its limb has a `range`.
 void add_range(const ConfigValue& table, const std::string& limb, const std::string& joint, const std::string& unit,
                const limbs::Term& q, MechanismDraft& draft);
 

@@ -1,4 +1,4 @@
-// [[limb]]: telescopes, sliders and cranks in closed form.
+// Reader of [[limb]]: telescopes, sliders and cranks in closed form.
 
 #include <cmath>
 
@@ -11,10 +11,10 @@ namespace {
 
 using limbs::Ends, limbs::Term, limbs::Vector3;
 
-/// The sign of a copy's branch. Quantities and margins know it as "arm1_branch".
+/// The sign of a copy's branch. Its name in formulas of quantities and margins is "arm1_branch".
 Term branch(const LimbCopy& copy) {
   const ConfigValue value = copy.table.at("branch", "\"+\" or \"-\"");
-  const Term sign = copy.draft.add_sign(value.word({"+", "-"})[0], true);
+  const Term sign = copy.draft.add_sign(value.word()[0], true);
   const std::string name = copy.name + "_branch";
   if (expression::may_be_name(name) && !copy.draft.scope.knows(name))
     copy.draft.scope.add(copy.table, name, sign.node());

@@ -1,4 +1,4 @@
-// [[limb]] with drive = "formula": joints that are formulas of the pose.
+// Reader of [[limb]] with drive = "formula": joints that are formulas of the pose.
 
 #include "engine/config/mechanism_limb.hpp"
 
@@ -44,16 +44,14 @@ void read_closures(const ConfigValue& list, const std::vector<JointVariable>& jo
 }  // namespace
 
 void read_formula_limb(const ConfigValue& table, const std::string& name, MechanismDraft& draft) {
-  const auto given = table.find("unit");
-  const std::string unit = given ? given->word({"m", "rad"}) : "m";
-  const auto joints = table.find("joints");
+  const std::string unit = table.word_at("unit");
+  const auto joints = table.find_table("joints");
   if (joints && table.has("joint")) throw joints->refusal("a limb has `joint` or `joints`, not both");
   std::vector<JointVariable> variables;
   if (!joints) {
     variables.push_back(read_joint(table, name, name,
                                    table.at("joint", "the joint's formula, or joints = { q1 = .., .. }"), unit, draft));
   } else {
-    joints->expect_table("a table { q1 = formula, .. }");
     if (joints->keys().empty()) throw joints->error("at least one joint");
     for (const std::string& joint : joints->keys())
       variables.push_back(read_joint(table, name, joint, *joints->find(joint), unit, draft));

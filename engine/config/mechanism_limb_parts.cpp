@@ -1,4 +1,4 @@
-// [[limb]]: the parts of a limb of closed form, the links that are drawn of it, and how far it reaches.
+// The parts of a limb in closed form, the links that are drawn, and its reach.
 
 #include "engine/config/mechanism_limb.hpp"
 

@@ -1,10 +1,12 @@
-// [[limb]]: copies, ends, ranges, angles of passive joints, and what a drive comes to as part of the mechanism.
+// Reader of [[limb]]: copies, ends, ranges, angles of passive joints.
 
 #include <algorithm>
 #include <cmath>
 
+#include "engine/config/mechanism_keys.hpp"
 #include "engine/config/mechanism_limb.hpp"
 #include "engine/config/tables.hpp"
+#include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
@@ -12,29 +14,32 @@ namespace {
 
 using limbs::Rotation, limbs::Term, limbs::Vector3;
 
-const std::vector<std::string> kDrives = {"telescope", "slider", "crank", "formula"};
-const std::vector<std::string> kOfAll = {"name", "drive", "range"};
+const std::vector<std::string> kParts = {"cylinder", "piston", "crank", "slider", "first_link", "second_link", "rod"};
 
-void allow_keys(const ConfigValue& table, const std::string& drive) {
-  std::vector<std::string> keys = kOfAll;
-  const auto also = [&keys](std::initializer_list<const char*> more) {
-    keys.insert(keys.end(), more.begin(), more.end());
+std::vector<std::string> names_of_drives() {
+  std::vector<std::string> words;
+  for (const TableVariant& variant : limb_keys().variants) words.push_back(variant.word);
+  return words;
+}
+
+/// The table of a limb, read by its description. Refuses keys of parts that the limb does not have.
+ConfigValue limb_table(const ConfigValue& table) {
+  const std::string& drive = table.choice("drive", names_of_drives());
+  if (const auto copies = table.find("copies"); copies && drive == "formula")
+    throw copies->refusal("a limb of formulas has no copies; it may have several joints");
+  const std::vector<std::string> parts = parts_of_limb(table, drive);
+  const auto is_absent = [&](const std::string& key) {
+    return std::ranges::any_of(kParts, [&](const std::string& part) {
+      return key.starts_with(part + "_") && std::ranges::find(parts, part) == parts.end();
+    });
   };
-  if (drive == "formula") {
-    if (const auto copies = table.find("copies"))
-      throw copies->refusal("a limb of formulas has no copies; it may have several joints");
-    also({"joints", "joint", "unit", "closures"});
-  } else {
-    also({"copies", "base", "platform", "end", "across", "across_in", "radius", "joint_base", "joint_platform",
-          "joint_name", "end_on"});
-    for (const std::string& part : parts_of_limb(table, drive)) {
-      const std::vector<std::string> of_mass = mass_keys(part);
-      keys.insert(keys.end(), of_mass.begin(), of_mass.end());
-    }
-  }
-  if (drive == "slider") also({"direction", "along", "rod", "links", "axis", "branch", "pair"});
-  if (drive == "crank") also({"axis", "zero", "crank", "rod", "branch", "pair"});
+  std::vector<std::string> keys = names_of(limb_keys().keys);
+  for (const TableVariant& variant : limb_keys().variants)
+    if (variant.word == drive)
+      for (const OptionSpec& key : variant.keys)
+        if (!is_absent(key.name)) keys.push_back(key.name);
   table.allow(keys);
+  return table.table();
 }
 
 void refuse_known(const ConfigValue& table, const std::string& name, const MechanismDraft& draft) {
@@ -43,21 +48,19 @@ void refuse_known(const ConfigValue& table, const std::string& name, const Mecha
       throw table.find("name")->refusal("there is already a limb called '" + name + "'");
 }
 
-/// How each copy is turned in its frames.
+/// The rotation of each copy.
 std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) {
   const auto number = [&draft](double x) { return Term(draft.model.graph, x); };
-  const auto copies = table.find("copies");
+  const auto copies = table.find_table("copies");
   if (!copies) return {limbs::rotation_about(2, number(0), number(1))};
-  copies->expect_table("a table { number = .., about = \"z\" }").allow({"number", "angles", "about"});
-  const auto about =
-      static_cast<std::size_t>(copies->at("about", "an axis, \"x\", \"y\" or \"z\"").word({"x", "y", "z"})[0] - 'x');
+  const auto about = static_cast<std::size_t>(copies->at("about", "an axis, \"x\", \"y\" or \"z\"").word()[0] - 'x');
   std::vector<double> angles;
   if (const auto list = copies->find("angles")) {
     if (const auto both = copies->find("number")) throw both->refusal("copies have a number or angles, not both");
-    for (const ConfigValue& angle : list->elements("a list of angles")) angles.push_back(angle.number("rad"));
+    for (const ConfigValue& angle : list->elements("a list of angles")) angles.push_back(angle.number());
     if (angles.empty()) throw list->error("at least one angle");
   } else {
-    const std::int64_t count = copies->at("number", "how many copies, 1 to 8").integer(1, 8);
+    const std::int64_t count = copies->at("number", "how many copies, 1 to 8").integer();
     for (std::int64_t i = 0; i < count; ++i)
       angles.push_back(2 * kPi * static_cast<double>(i) / static_cast<double>(count));
   }
@@ -72,10 +75,7 @@ std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) 
   return turns;
 }
 
-bool on_platform(const ConfigValue& table, const std::string& key) {
-  const auto in = table.find(key);
-  return in && in->word({"base", "platform"}) == "platform";
-}
+bool on_platform(const ConfigValue& table, const std::string& key) { return table.word_at(key) == "platform"; }
 
 limbs::Ends read_ends(const LimbCopy& copy) {
   const ConfigValue& table = copy.table;
@@ -101,13 +101,12 @@ limbs::Ends read_ends(const LimbCopy& copy) {
   return ends;
 }
 
-/// Angles of the rod with an axis, at its ends.
+/// Adds the angle between the rod and an axis at one end, and its limits.
 void add_passive_joint(const LimbCopy& copy, const char* key, const char* called, const Vector3& from,
                        const Vector3& to) {
-  const auto table = copy.table.find(key);
+  const auto table = copy.table.find_table(key);
   if (!table) return;
   MechanismDraft& draft = copy.draft;
-  table->expect_table("a table { axis = [..], min = .., max = .. }").allow({"axis", "in", "min", "max"});
   const Vector3 axis = copy.direction(table->at("axis", "an axis [x, y, z]"), on_platform(*table, "in"));
   const Vector3 rod = to - from;
   const Term angle = acos(dot(rod, axis) / limbs::length(rod));
@@ -123,12 +122,11 @@ void add_passive_joint(const LimbCopy& copy, const char* key, const char* called
   draft.scope.known_to_exist(angle.node());
 }
 
-/// From the rod to one of a pair that are side by side; none: there is one rod.
+/// Vector from the middle of a pair of rods to one of them; std::nullopt for a single rod.
 std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
-  const auto pair = copy.table.find("pair");
+  const auto pair = copy.table.find_table("pair");
   if (!pair) return {};
   const bool is_crank = copy.drive == "crank";
-  pair->expect_table("a table { spacing = .., along = [x, y, z] }").allow({"spacing", "along"});
   if (limb.revolute || !copy.table.has("rod"))
     throw pair->refusal("a pair is of rods with ball joints: of a `rod` without `across`");
   const auto along = pair->find("along");
@@ -141,7 +139,7 @@ std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   return side * (copy.draft.scope.positive(pair->at("spacing", "the rods' distance"), "m", copy.name) * 0.5);
 }
 
-/// As other sections name it, with what its joints are.
+/// The limb under the name that other tables use, with the axes of its joints.
 NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& driven) {
   const ConfigValue& table = copy.table;
   NamedLimb limb{.name = copy.name,
@@ -203,7 +201,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   add_reach(copy, at, limb);
 }
 
-/// @param number  of the copy, as its name ends; "": there are no copies
+/// @param number  suffix of the copy's name; "": there are no copies
 void read_copy(const LimbCopy& copy, const std::string& number) {
   refuse_known(copy.table, copy.name, copy.draft);
   const auto given = copy.table.find("joint_name");
@@ -213,10 +211,10 @@ void read_copy(const LimbCopy& copy, const std::string& number) {
   add_limb(copy, joint, at, read_drive(copy, at, q));
 }
 
-void read_limb(const ConfigValue& table, MechanismDraft& draft) {
+void read_limb(const ConfigValue& value, MechanismDraft& draft) {
+  const ConfigValue table = limb_table(value);
   const std::string name = table.at("name", "the limb's name").text("the limb's name");
-  const std::string drive = type_of(table, "drive", kDrives);
-  allow_keys(table, drive);
+  const std::string drive = table.at("drive").word();
   refuse_known(table, name, draft);
   if (drive == "formula")
     return read_as_limb(
@@ -233,7 +231,10 @@ void read_limb(const ConfigValue& table, MechanismDraft& draft) {
 }  // namespace
 
 void read_limbs(const ConfigValue& root, MechanismDraft& draft) {
-  const auto tables = tables_of(root, "limb");
+  const std::string expected = "a list of tables, each written [[limb]]";
+  const auto list = root.find("limb");
+  const auto tables = list ? list->elements(expected) : std::vector<ConfigValue>();
+  for (const ConfigValue& table : tables) table.expect_table(expected);
   if (tables.empty()) throw root.refusal("a mechanism needs [[limb]]s: what its joints are");
   for (const ConfigValue& table : tables) table.explained([&] { read_limb(table, draft); });
 }

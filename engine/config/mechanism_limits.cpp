@@ -1,4 +1,4 @@
-// [[limit]], [[margin]], [[design]]: what bounds a pose, a study or a design.
+// Readers of [[limit]], [[margin]] and [[design]]: thresholds of studies, constraints of poses and of designs.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
@@ -11,9 +11,7 @@ using limbs::Term;
 
 void read_limits(const ConfigValue& root, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  const auto tables = tables_of(root, "limit");
-  for (const ConfigValue& table : tables) {
-    table.allow({"name", "unit", "meaning", "inactive", "min", "max", "derived", "constraint"});
+  for (const ConfigValue& table : root.tables("limit")) {
     LimitInfo limit;
     limit.name = table.at("name", "the limit's name").text("the limit's name");
     const Parameter* const parameter = find_named(model.info.parameters, limit.name);
@@ -43,7 +41,7 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft) {
       limit.derivation = text_of(table, "derived");
     }
     if (table.has("meaning")) limit.meaning = text_of(table, "meaning");
-    if (const auto owner = table.find("constraint")) limit.group = owner->word({"interference", "singularity-margin"});
+    if (const auto owner = table.find("constraint")) limit.group = owner->word();
     const auto node = model.graph.input(model.inputs.limit(model.inputs.limits++), Inputs::kDesign);
     model.limit_parameters.push_back(
         parameter ? std::optional(static_cast<std::size_t>(parameter - model.info.parameters.data())) : std::nullopt);
@@ -65,8 +63,7 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
     const auto unit = table.find("unit");
     return unit ? si_unit(*unit) : "1";
   };
-  for (const ConfigValue& table : tables_of(root, "margin")) {
-    table.allow({"name", "formula", "unit", "shown", "shown_unit"});
+  for (const ConfigValue& table : root.tables("margin")) {
     const std::string name = name_of(table, model.margins), unit = unit_of(table);
     constexpr const char* kFormula = "a formula that is >= 0 where the pose is feasible, or a list of such formulas";
     const ConfigValue formula = table.at("formula", kFormula);
@@ -81,8 +78,7 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
     if (shown) reported.shown = draft.scope.formula(*shown, shown_unit ? si_unit(*shown_unit) : unit, name).node();
     if (shown || reported.count > 1) model.reported_margins.push_back(reported);
   }
-  for (const ConfigValue& table : tables_of(root, "design")) {
-    table.allow({"name", "formula", "unit", "meaning", "required"});
+  for (const ConfigValue& table : root.tables("design")) {
     if (model.tests.size() == kMaxDesignTests)
       throw table.refusal("a mechanism has at most " + std::to_string(kMaxDesignTests) + " tests of the design");
     const std::string name = name_of(table, model.tests), unit = unit_of(table);
@@ -90,7 +86,7 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
     if (name.find_first_not_of(kLetters) != std::string::npos)
       throw table.find("name")->error("a name of letters, digits, blanks, '-', '_' and '.'");
     const ConfigValue formula = table.at("formula", "a formula of parameters that is >= 0 where it holds");
-    if (const auto required = table.find("required"); required && required->flag()) {
+    if (table.flag_at("required")) {
       model.required.push_back({name, unit, draft.scope.of_design(formula, unit, name).node()});
       continue;
     }

@@ -1,4 +1,4 @@
-// [[link]]: what is drawn beside the limbs' own links; the clearance of all links.
+// Reader of [[link]]: links besides those of the limbs; the clearance of all links.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
@@ -23,14 +23,13 @@ Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismD
 
 std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft) {
   std::vector<LimbPart> links;
-  for (const ConfigValue& table : tables_of(root, "link")) {
-    table.allow({"name", "from", "to", "radius", "group", "clearance", "mass", "inertia"});
+  for (const ConfigValue& table : root.tables("link")) {
     const std::string& name = table.at("name", "the link's name").text("the link's name");
     const Vector3 from = read_point(table.at("from", "a point"), name, draft),
                   to = read_point(table.at("to", "a point"), name, draft);
     const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
     std::string part = kFramePart;
-    std::vector<std::string> in, copies;  // groups; `arm` is also each of its copies
+    std::vector<std::string> in, copies;  // groups; the name of a limb with copies stands for all of them
     if (const auto group = table.find("group")) {
       constexpr const char* kExpected = "a name or a list of names";
       const auto groups = group->is_list() ? group->elements(kExpected) : std::vector{*group};
@@ -43,14 +42,13 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
       part = in.front();
       in.insert(in.end(), copies.begin(), copies.end());
     }
-    const auto clearance = table.find("clearance");
     draft.model.links.push_back({.name = name,
                                  .part = part,
                                  .from = nodes(from),
                                  .to = nodes(to),
                                  .radius = radius.node(),
                                  .groups = in,
-                                 .has_clearance = !clearance || clearance->flag()});
+                                 .has_clearance = table.flag_at("clearance")});
     add_link_body(table, name, from, to, draft);
     links.push_back({.name = name, .from = from, .to = to, .line = to - from});
   }

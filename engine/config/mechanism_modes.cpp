@@ -1,4 +1,4 @@
-// [modes]: signs that formulas know, and the working modes that they make with the limbs' branches.
+// Reader of [modes]: signs in formulas, which together with the branches of the limbs select the working modes.
 
 #include <algorithm>
 
@@ -13,9 +13,9 @@ namespace {
 
 constexpr const char* kSigns = "[\"+\"], [\"-\"], [\"+\", \"-\"] or [\"-\", \"+\"], the default first";
 
-/// Reads how the names of modes call the values of a sign.
+/// Reads the names of the values of a sign.
 void read_names(const ConfigValue& table, SignChoice& choice) {
-  if (const auto branch = table.find("branch")) choice.is_branch = branch->flag();
+  choice.is_branch = table.flag_at("branch");
   const auto names = table.find("names");
   if (!names) return;
   constexpr const char* kNames = "as many different names as signs, of letters, digits, '-' and '_'";
@@ -35,18 +35,16 @@ void read_names(const ConfigValue& table, SignChoice& choice) {
 }  // namespace
 
 void read_modes(const ConfigValue& root, MechanismDraft& draft) {
-  const auto all = root.find("modes");
+  const auto all = root.find_table("modes");
   if (!all) return;
-  all->expect_table("a table [modes] of signs: e1 = [\"+\", \"-\"]");
   for (const std::string& name : all->keys()) {
-    const ConfigValue value = *all->find(name);
-    const bool is_named = value.is_table();
-    if (is_named) value.allow({"signs", "names", "branch"});
+    const bool is_named = all->find(name)->is_table();
+    const ConfigValue value = is_named ? *all->find_table(name) : *all->find(name);
     const ConfigValue list = is_named ? value.at("signs", kSigns) : value;
     const auto signs = list.elements(kSigns);
     if (signs.empty() || signs.size() > 2) throw list.error(kSigns);
-    const char first = signs[0].word({"+", "-"})[0];
-    if (signs.size() == 2 && signs[1].word({"+", "-"})[0] == first) throw list.error(kSigns);
+    const char first = signs[0].word()[0];
+    if (signs.size() == 2 && signs[1].word()[0] == first) throw list.error(kSigns);
     const Term sign = value.explained([&] { return draft.add_sign(first, signs.size() == 2); });
     draft.scope.add(value, name, sign.node());
     if (is_named) read_names(value, draft.sign_choices.back());

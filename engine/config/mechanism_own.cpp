@@ -1,4 +1,4 @@
-// Parameters that one limb has for itself: "arm2.l_b".
+// Parameters of single limbs: "arm2.l_b".
 
 #include <algorithm>
 

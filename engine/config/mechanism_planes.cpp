@@ -1,5 +1,6 @@
-// `across` of a limb: crank and rod stay in planes normal to it, so the component of B - A along it is the same at
-// every pose. Checked at random poses of the survey's box, for the default and for random designs.
+// Check of a limb's `across`: crank and rod stay in planes normal to it, so the component of B - A along it has to be
+// the same at every pose. It is evaluated at random poses in the box of [survey], for the default design and random
+// designs.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,7 @@ using expression::Node;
 using generic::Inputs;
 
 constexpr std::uint32_t kDesigns = 8, kPoses = 16;  // the first design is the default
-constexpr double kConstant = 1e-9;                  // greatest change that counts as rounding, relative to |B - A|
+constexpr double kConstant = 1e-9;                  // maximum change due to rounding, relative to |B - A|
 
 std::string length_text(double length) {
   std::array<char, 32> text;
@@ -24,7 +25,7 @@ std::string length_text(double length) {
   return text.data();
 }
 
-struct Span {
+struct Extent {
   double least = kUnbounded, greatest = -kUnbounded;
   void add(double x) {
     least = std::min(least, x);
@@ -32,7 +33,7 @@ struct Span {
   }
 };
 
-/// Random inputs of the graph: a design, and poses in the survey's box.
+/// Random inputs of the graph: a design, and poses in the box of [survey].
 class RandomPoses {
  public:
   RandomPoses(const generic::Model& model, std::uint32_t design)
@@ -53,7 +54,7 @@ class RandomPoses {
     }
   }
 
-  /// What the nodes are at the next pose.
+  /// Values of the nodes at the next pose.
   std::vector<double> next(const std::vector<Node>& nodes) {
     for (std::size_t i = 0; i < box_.size(); ++i)
       inputs_[model_.inputs.coordinate(i)] = between(box_[i][0], box_[i][1]);
@@ -88,7 +89,7 @@ void refuse_changing_planes(MechanismDraft& draft) {
   if (nodes.empty()) return;
   for (std::uint32_t design = 0; design < kDesigns; ++design) {
     RandomPoses poses(draft.model, design);
-    std::vector<Span> offsets(draft.in_planes.size()), sizes(draft.in_planes.size());
+    std::vector<Extent> offsets(draft.in_planes.size()), sizes(draft.in_planes.size());
     for (std::uint32_t k = 0; k < kPoses; ++k) {
       const std::vector<double> values = poses.next(nodes);
       for (std::size_t i = 0; i < offsets.size(); ++i) {

@@ -1,4 +1,4 @@
-// [inputs] and [[quantity]]: named formulas of the design, of the pose and of its motion.
+// Readers of [inputs] and [[quantity]]: named formulas of the design, the pose and its motion.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
@@ -11,11 +11,11 @@ namespace {
 using expression::Node;
 using generic::Inputs;
 
-/// Names that reports and formulas of studies have already.
+/// Names that the output and the formulas of studies use already.
 const std::vector<std::string> kTaken = {"conditioning", "dci",  "inertia_condition", "volume", "clearance",
                                          "det_Jq",       "det_G"};
 
-/// Something that moves: its value, rate and acceleration are inputs of the graph.
+/// A coordinate or an extra input: its value, rate and acceleration are inputs of the graph.
 struct Moving {
   std::string name;
   Node value, rate, acceleration;
@@ -39,14 +39,11 @@ std::vector<Moving> moving_inputs(generic::Model& model) {
 }  // namespace
 
 void read_inputs(const ConfigValue& root, MechanismDraft& draft) {
-  const auto all = root.find("inputs");
+  const auto all = root.find_table("inputs");
   if (!all) return;
   generic::Model& model = draft.model;
-  all->expect_table("a table [inputs] of what quantities depend on beside the pose");
   for (const std::string& name : all->keys()) {
-    const ConfigValue table = *all->find(name);
-    table.expect_table("a table { unit = \"rad\", default = 0, meaning = \"..\" }")
-        .allow({"unit", "default", "meaning"});
+    const ConfigValue table = *all->find_table(name);
     if (model.inputs.extras == Inputs::kMaxExtras)
       throw table.refusal("a mechanism has at most " + std::to_string(Inputs::kMaxExtras) + " inputs");
     const std::string unit = si_unit(table.at("unit", "the input's unit: \"rad\", \"m\", \"1\""));
@@ -57,7 +54,7 @@ void read_inputs(const ConfigValue& root, MechanismDraft& draft) {
 }
 
 void read_quantities(const ConfigValue& root, MechanismDraft& draft) {
-  const auto tables = tables_of(root, "quantity");
+  const auto tables = root.tables("quantity");
   if (tables.empty()) return;
   generic::Model& model = draft.model;
   const std::vector<Moving> moving = moving_inputs(model);
@@ -72,7 +69,6 @@ void read_quantities(const ConfigValue& root, MechanismDraft& draft) {
   for (const Moving& each : moving) add_rate(tables.front(), each.name, each.value);
   draft.scope.allow_motion(true);
   for (const ConfigValue& table : tables) {
-    table.allow({"name", "formula", "unit", "meaning"});
     const std::string name = new_name(table, "quantity", model.info.quantities, "the quantity's name");
     if (contains(kTaken, name)) throw table.find("name")->refusal("'" + name + "' is a name that every mechanism has");
     const auto given = table.find("unit");

@@ -26,6 +26,7 @@ void MechanismScope::replace(const std::string& name, Node node) { nodes_[names_
 bool MechanismScope::knows(const std::string& name) const { return names_.find(name).has_value(); }
 
 Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, const std::string& what) {
+  value.expect_formula(unit);
   if (!value.is_text()) return model_.term(model_.graph.number(value.number(unit)));
   const std::string& text = value.text("a number or a formula");
   if (const auto number = parse_quantity(text, unit)) return model_.term(model_.graph.number(*number));

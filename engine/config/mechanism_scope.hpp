@@ -1,4 +1,4 @@
-// The names that formulas of a mechanism's file know, and formulas as nodes of its graph.
+// Symbol table of the formulas of a mechanism file, and the formulas as nodes of its expression graph.
 #pragma once
 
 #include <algorithm>
@@ -16,43 +16,44 @@ class MechanismScope {
  public:
   explicit MechanismScope(generic::Model& model) : model_(model) {}
 
-  /// Refuses a name that a formula cannot hold, or that something has already.
+  /// Refuses a name that is invalid in formulas or in use.
   void add(const ConfigValue& at, const std::string& name, expression::Node node);
-  /// A later meaning of a name: a threshold in place of the parameter.
+  /// Gives a name another meaning: a threshold in place of the parameter.
   void replace(const std::string& name, expression::Node node);
-  /// What all names mean now, and back to it; names that have come since stay.
+  /// The meanings of all names, to be restored later; names that are added in between stay.
   const std::vector<expression::Node>& meanings() const { return nodes_; }
   void restore(const std::vector<expression::Node>& meanings) { std::ranges::copy(meanings, nodes_.begin()); }
   bool knows(const std::string& name) const;
   /// Whether formulas may depend on rates and on [inputs]: those of quantities.
   void allow_motion(bool allowed) { motion_allowed_ = allowed; }
 
-  /// A number, text with a unit of the dimension of `unit`, or a formula of the names known so far. Where it could be
-  /// undefined, that is noted as a margin called after `what`.
+  /// Reads a number, text with a unit of the dimension of `unit`, or a formula of the names defined so far. If it may
+  /// be undefined, this becomes a margin named after `what`.
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// The same of parameters alone.
+  /// Reads a formula of parameters only.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// The same, of what has to be positive: refuses a plain number that is not. Formulas may be so for some designs.
+  /// Reads a formula of parameters whose value has to be positive: refuses a number that is not. Formulas may violate
+  /// it for some designs.
   limbs::Term positive(const ConfigValue& value, const std::string& unit, const std::string& what,
                        bool may_vanish = false);
-  /// Three formulas, [x, y, z].
+  /// Reads three formulas, [x, y, z].
   limbs::Vector3 point(const ConfigValue& value, const std::string& what);
-  /// The same of parameters alone.
+  /// Reads three formulas of parameters only.
   limbs::Vector3 point_of_design(const ConfigValue& value, const std::string& what);
-  /// A direction of parameters alone, scaled to length 1.
+  /// Reads a direction, three formulas of parameters only, and normalises it.
   limbs::Vector3 direction(const ConfigValue& value, const std::string& what);
-  /// What a formula is for the default parameters at some pose, for what has to hold at every pose.
+  /// Value of a formula for the default parameters at a generic pose, to check what has to hold at every pose.
   double at_default(const limbs::Term& term) const;
-  /// Refuses a range that the default parameters turn round.
+  /// Refuses a range that is empty for the default parameters.
   void refuse_empty(const ConfigValue& range, const limbs::Term& from, const limbs::Term& to) const;
 
-  /// Roots and the like that a limb is made of: its own conditions say where they exist.
+  /// Marks the roots in `node` as defined: the constraints of the limb state where they exist.
   void known_to_exist(expression::Node node);
-  /// The margins of what is reachable from the model's joints and margins and could be undefined.
+  /// Adds margins for the operations in joints and margins of the model that may be undefined.
   void note_domains();
 
  private:
-  /// What a node is made of and has not been looked at.
+  /// The descendants of a node that have not been visited.
   std::vector<expression::Node> unseen(expression::Node root) const;
 
   void watch(expression::Node node, const std::string& what);

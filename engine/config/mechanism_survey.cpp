@@ -1,4 +1,4 @@
-// [survey]: which coordinates a survey sweeps, within which box, and where it holds the others.
+// Reader of [survey]: swept coordinates, search box, and default values of the others.
 
 #include <algorithm>
 
@@ -13,25 +13,21 @@ using limbs::Term;
 
 namespace {
 
-/// The number of a coordinate that a value names.
+/// Index of the coordinate that a value names.
 int coordinate_named(const ConfigValue& value, const MechanismInfo& info) {
   const std::string& name = value.word(names_of(info.coordinates));
   return static_cast<int>(find_named(info.coordinates, name) - info.coordinates.data());
 }
 
-}  // namespace
-
-namespace {
-
 /// Reads a table of ranges { x = [from, to] }, formulas of parameters, by coordinate.
 void read_ranges(const ConfigValue& survey, const char* key, MechanismDraft& draft,
                  std::vector<std::optional<std::array<expression::Node, 2>>>& ranges) {
-  const auto table = survey.find(key);
-  if (!table) return;
+  const auto value = survey.find(key);
+  if (!value) return;
   const auto& coordinates = draft.model.info.coordinates;
-  table->expect_table("a table { x = [from, to] }").allow(names_of(coordinates), "coordinate");
-  for (const std::string& name : table->keys()) {
-    const ConfigValue range = *table->find(name);
+  const ConfigValue table = value->table_of_names(names_of(coordinates));
+  for (const std::string& name : table.keys()) {
+    const ConfigValue range = *table.find(name);
     const auto i = static_cast<std::size_t>(find_named(coordinates, name) - coordinates.data());
     const auto ends = range.elements("[from, to]");
     if (ends.size() != 2) throw range.error("[from, to]");
@@ -52,9 +48,8 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
   model.default_values.resize(count);
   std::vector<int> swept, columns_along;
   for (std::size_t i = 0; i < std::min<std::size_t>(count, 3); ++i) swept.push_back(static_cast<int>(i));
-  const auto survey = root.find("survey");
+  const auto survey = root.find_table("survey");
   if (survey) {
-    survey->expect_table("a table [survey]").allow({"sweep", "hold", "box", "reach", "columns_along"});
     if (const auto sweep = survey->find("sweep")) {
       swept.clear();
       for (const ConfigValue& each : sweep->elements("one to three coordinates")) {
@@ -63,10 +58,10 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
       }
       if (swept.empty() || swept.size() > 3) throw sweep->error("one to three coordinates");
     }
-    if (const auto hold = survey->find("hold")) {
-      hold->expect_table("a table { phi = 0 }").allow(names_of(model.info.coordinates), "coordinate");
-      for (const std::string& name : hold->keys()) {
-        const ConfigValue value = *hold->find(name);
+    if (const auto given = survey->find("fixed")) {
+      const ConfigValue fixed = given->table_of_names(names_of(model.info.coordinates));
+      for (const std::string& name : fixed.keys()) {
+        const ConfigValue value = *fixed.find(name);
         const auto i =
             static_cast<std::size_t>(find_named(model.info.coordinates, name) - model.info.coordinates.data());
         model.default_values[i] = draft.scope.of_design(value, model.info.coordinates[i].unit, name).node();
@@ -79,7 +74,7 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         columns_along.push_back(coordinate_named(each, model.info));
     }
   }
-  // What the file leaves out: turns once around, places within the reach of all limbs that say theirs.
+  // Defaults: full rotations, and positions within the reach of all limbs whose reach is known.
   for (std::size_t i = 0; i < count; ++i) {
     if (!model.box[i] && model.rotation_axes[i]) model.box[i] = {model.graph.number(-kPi), model.graph.number(kPi)};
     if (!model.box[i])

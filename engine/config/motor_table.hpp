@@ -1,4 +1,4 @@
-// A table of motors in TOML: [[motor]] with name, continuous_torque, peak_torque, speed, rotor_inertia.
+// Reads motor files: [[motor]] with name, continuous_torque, peak_torque, speed, rotor_inertia.
 #pragma once
 
 #include <string>

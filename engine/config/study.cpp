@@ -4,7 +4,8 @@
 #include <filesystem>
 
 #include "engine/config/mechanism_file.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
+#include "engine/config/study_keys.hpp"
 #include "engine/config/text_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
@@ -15,17 +16,16 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kMostCellsOfACheck = 1'000'000;  // that are surveyed when a study is read
+constexpr std::int64_t kMaxCellsOfCheck = 1'000'000;  // larger grids are not evaluated when a study is read
 
 std::string stem(const std::string& file_name) { return std::filesystem::path(file_name).stem().string(); }
 
-void read_study_section(const ConfigValue& root, Study& study) {
+void read_study_table(const ConfigValue& root, Study& study) {
   study.name = stem(study.file_name);
-  const auto table = root.find("study");
+  const auto table = root.find_table("study");
   if (!table) return;
-  table->expect_table("a table [study]").allow({"name", "seed", "output"});
   if (const auto name = table->find("name")) study.name = name->text("text");
-  if (const auto seed = table->find("seed")) study.seed = static_cast<std::uint64_t>(seed->integer(0));
+  if (const auto seed = table->find("seed")) study.seed = static_cast<std::uint64_t>(seed->integer());
   if (const auto output = table->find("output")) {
     study.output = output->text("a file name");
     if (study.output->empty() || study.output->find('\0') != std::string::npos) throw output->error("a file name");
@@ -33,16 +33,11 @@ void read_study_section(const ConfigValue& root, Study& study) {
 }
 
 /// [checkpoint] and [final]: one key each.
-void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
-  if (const auto table = root.find("checkpoint")) {
-    table->expect_table("a table [checkpoint]").allow({"every"});
-    draft.study.checkpoint_every = table->find_number("every", "s", 0);
-  }
-  if (const auto table = root.find("final")) {
-    table->expect_table("a table [final]").allow({"round"});
+void read_run_tables(const ConfigValue& root, StudyDraft& draft) {
+  if (const auto table = root.find_table("checkpoint")) draft.study.checkpoint_every = table->find_number("every");
+  if (const auto table = root.find_table("final")) {
     if (const auto round = table->find("round")) {
-      // A step with a unit makes sense where the variables share that unit. (A stage has made sure that there are
-      // some.)
+      // The step has the unit that all variables share, otherwise none. (The stages require variables.)
       const auto& variables = draft.parts.space.variables();
       std::string& unit = draft.study.round_unit = variables.front().unit;
       for (const auto& variable : variables)
@@ -53,7 +48,8 @@ void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
   }
 }
 
-/// A plane off the rail or a wrong unit in a box leaves no pose; a run would only tell at its end.
+/// Warns if the workspace is empty, for example because a plane is off the rail or a box has a wrong unit. Otherwise
+/// only the end of the run would show it.
 void warn_of_empty_workspace(Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
@@ -62,7 +58,7 @@ void warn_of_empty_workspace(Study& study) {
     std::int64_t cells = 1;
     for (const std::int64_t n : voxels->cells) cells *= n;  // at most 2^28
     for (const FixedCoordinate& fixed : plan.fixed) cells *= std::max<std::int64_t>(1, fixed.cells);
-    if (cells > kMostCellsOfACheck) return;
+    if (cells > kMaxCellsOfCheck) return;
   }
   std::vector<double> design = parts.parameters;
   std::string what = "the design";
@@ -98,7 +94,7 @@ void warn_of_empty_workspace(Study& study) {
                            (plan.box() ? " in the box" : "") + " is feasible");
 }
 
-/// A target beyond what the objective's values can be ends no stage.
+/// Warns if the target of a stage is outside the range of the objective, so that it is never reached.
 void warn_of_targets(Study& study) {
   const auto& objectives = study.problem->parts().objectives;
   for (std::size_t s = 0; objectives.size() == 1 && s < study.stages.size(); ++s) {
@@ -115,12 +111,6 @@ void warn_of_targets(Study& study) {
   }
 }
 
-/// Studies name a mechanism, descriptions give it a name; only these have a platform.
-bool describes_mechanism(const TomlValue& document) {
-  const TomlValue* const table = document.find("mechanism");
-  return document.find("platform") || (table && table->find("name") && !table->find("type") && !table->find("file"));
-}
-
 using FindDescription = std::function<SourceText(const ConfigValue& file)>;
 
 Study read_document(const TomlValue& document, const SourceText& source, const Catalogues& catalogues,
@@ -132,10 +122,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   if (describes_mechanism(document))
     throw ConfigError({file_name, 0, ""}, "the description of a mechanism",
                       "a study, which names such a file in [mechanism] file = \"..\"");
-  const ConfigValue root(document, file_name, "");
-  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
-              "report", "reference", "drive_train", "obstacle", "stage", "checkpoint", "final", "override"},
-             "section");
+  const ConfigValue root = ConfigValue(document, file_name, "").described_by(study_keys());
 
   StudyDraft draft{
       .catalogues = catalogues, .description = find_description, .study = {}, .parts = {}, .implied = implied};
@@ -145,7 +132,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   draft.changes.push_back(changes);
   for (const StudyChanges& each : draft.changes)
     std::ranges::copy(each.arguments(), std::back_inserter(draft.study.changes));
-  read_study_section(root, draft.study);
+  read_study_table(root, draft.study);
   read_mechanism(root, draft);
   read_drive_trains(root, draft);
   read_variables(root, draft);
@@ -161,7 +148,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   });
   read_references(root, draft);
   read_stages(root, draft);
-  read_run_sections(root, draft);
+  read_run_tables(root, draft);
   for (std::string& doubt : consistency_warnings(draft.study.problem->parts()))
     draft.study.warnings.push_back(std::move(doubt));
   warn_of_targets(draft.study);
@@ -169,7 +156,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   return std::move(draft.study);
 }
 
-/// The file of a mechanism, whose name is relative to the folder of the study that names it.
+/// Reads the mechanism file that a study names, relative to the folder of the study.
 SourceText load_description(const ConfigValue& file) {
   const std::string expected = "the name of a mechanism's file";
   const std::string& name = file.text(expected);
@@ -183,9 +170,9 @@ SourceText load_description(const ConfigValue& file) {
 
 std::string Study::output_file() const { return output ? *output : stem(file_name) + ".h5"; }
 
-void allow_options(const ConfigValue& table, std::vector<std::string> keys, const std::vector<OptionSpec>& specs) {
-  for (const auto& name : names_of(specs)) keys.push_back(name);
-  table.allow(keys);
+bool describes_mechanism(const TomlValue& document) {
+  const TomlValue* const table = document.find("mechanism");
+  return document.find("platform") || (table && table->find("name") && !table->find("type") && !table->find("file"));
 }
 
 std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std::string& unit) {

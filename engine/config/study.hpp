@@ -1,7 +1,7 @@
 // A study: the design problem and the chain of optimisers that a TOML file describes.
 //
-// Reading is strict. A key nobody knows, a value out of range, a threshold named twice or an optimiser that is asked
-// for more than it can do is a ConfigError before anything runs. The same reader serves a file on disk and the text
+// Reading is strict: an unknown key, a value out of range, a threshold that is set twice or an optimiser that does not
+// support the problem is a ConfigError before anything runs. The same reader serves a file on disk and the text
 // that a stored study carries, so a resumed study is built exactly like a new one. experiments/ holds examples.
 #pragma once
 
@@ -21,7 +21,9 @@
 
 namespace pkm {
 
-/// What a study may name.
+struct TomlValue;
+
+/// The names that a study may use.
 struct Catalogues {
   MechanismList mechanisms;
   std::vector<ObjectiveEntry> objectives;
@@ -37,7 +39,7 @@ struct Stage {
   std::vector<OptionSpec> specs;  ///< the entry's, completed for this study: units, and defaults as in `options`
 };
 
-/// An [[objective]], [[constraint]] or [[report]] as it was understood, for listings.
+/// An [[objective]], [[constraint]] or [[output]] with its defaults, for listings.
 struct StudyEntry {
   std::string type;
   std::string name;
@@ -50,15 +52,15 @@ struct StudyEntry {
 struct Reference {
   std::string name;
   std::vector<std::optional<double>> design;           ///< per variable; empty where the source gives no design
-  std::vector<std::pair<std::string, double>> values;  ///< objectives and reports by name
+  std::vector<std::pair<std::string, double>> values;  ///< objectives and outputs by name
   std::optional<double> seconds;                       ///< computing time
 };
 
 struct Study {
-  std::string text;                       ///< the TOML document, with what the command line changes
-  std::string file_name;                  ///< as it was called when it was read
-  std::vector<std::string> changes;       ///< "--set", "L0=2": what the command line changed, as it is in the text
-  std::optional<SourceText> description;  ///< the mechanism's, where [mechanism] names a file
+  std::string text;                       ///< the TOML document, with the changes by the command line
+  std::string file_name;                  ///< name of the file when it was read
+  std::vector<std::string> changes;       ///< changes by the command line, as in the text: "--set", "L0=2"
+  std::optional<SourceText> description;  ///< the mechanism file, if [mechanism] names one
   std::string name;                       ///< default: the file's stem
   std::uint64_t seed = 1;
   std::optional<std::string> output;
@@ -66,41 +68,44 @@ struct Study {
   std::shared_ptr<const DesignProblem> problem;
   std::optional<std::vector<double>> baseline;  ///< every parameter of the mechanism
   std::vector<Stage> stages;
-  std::optional<double> round;   ///< [final]: step [SI] to which the best design is rounded
-  std::string round_unit = "1";  ///< the unit that all variables share, else "1"
-  double exact_seconds = 10;     ///< [workspace] exact: what exact values may take in the end; 0: there are none
-  std::optional<double> checkpoint_every;  ///< [s]; none: adapts itself
+  std::optional<double> round;             ///< [final]: step [SI] to which the best design is rounded
+  std::string round_unit = "1";            ///< the unit that all variables share, else "1"
+  double exact_seconds = 10;               ///< [workspace] exact: time limit of the exact values; 0: none are computed
+  std::optional<double> checkpoint_every;  ///< [s]; std::nullopt: adaptive
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
-  std::vector<std::string> differences;    ///< of a study file: where its records differ from what its text gives
+  std::vector<std::string> differences;    ///< between the records and the text of a study file
 
   std::vector<Reference> references;
-  std::vector<NamedMotion> motions;             ///< [[motion]]: what objectives refer to by name
+  std::vector<NamedMotion> motions;             ///< [[motion]]s
   std::vector<std::string> unfollowed_motions;  ///< those with follow = false
 
-  std::vector<StudyEntry> objectives, constraints, reports;
-  std::vector<std::string> limit_origins;  ///< per limit of the mechanism: where it was set; "" when it was not
+  std::vector<StudyEntry> objectives, constraints, outputs;
+  std::vector<std::string> limit_origins;  ///< for each limit of the mechanism: where it is set; "": nowhere
 
   /// `output`, else the study file's stem + ".h5" in the current folder.
   std::string output_file() const;
 };
 
-/// Whether a study gets the constraints that follow from its motions. Those that earlier programs stored have none.
+/// Whether a study gets the constraints that its motions imply. Study files of earlier versions do not have them.
 enum class ImpliedConstraints { added, left_out };
 
-/// Builds a study from a TOML document. `file_name` is named in messages. Opens no file: where [mechanism] names one,
-/// `description` is what was in it. Throws ConfigError.
+/// Builds a study from a TOML document. `file_name` is named in messages. Opens no file: if [mechanism] names one,
+/// `description` is its text. Throws ConfigError.
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
                       const std::optional<SourceText>& description = {}, const StudyChanges& changes = {},
                       ImpliedConstraints implied = ImpliedConstraints::added);
 
-/// Reads the file at `path`, and the mechanism's that it may name, and builds its study. Throws ConfigError, also when
-/// a file cannot be read.
+/// Reads the file at `path`, and the mechanism file that it may name, and builds the study. Throws ConfigError, also
+/// when a file cannot be read.
 Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes = {});
 
-/// What a file holds that may be a study or the description of a mechanism.
+/// Whether a document is a mechanism file: these have a name in [mechanism], or a [platform].
+bool describes_mechanism(const TomlValue& document);
+
+/// Contents of a file that is a study or a mechanism file.
 using MechanismOrStudy = std::variant<std::shared_ptr<const Mechanism>, Study>;
 /// Reads the file at `path`, once. Throws ConfigError.
-/// @param changes  of a study; a mechanism has none
+/// @param changes  applied to a study
 MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues,
                                          const StudyChanges& changes = {});
 

@@ -1,11 +1,11 @@
-// [[override]]: what the command line changed in a study.
+// Reader and writer of [[override]]: changes of a study by the command line.
 
 #include "engine/config/study_changes.hpp"
 
 #include <array>
 
 #include "engine/config/assignments.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
@@ -50,9 +50,8 @@ std::vector<LimbParameter> limb_parameters(const StudyChanges& changes) {
 }
 
 void read_overrides(const ConfigValue& root, StudyDraft& draft) {
-  for (const ConfigValue& table : tables_of(root, "override")) {
+  for (const ConfigValue& table : root.tables("override")) {
     StudyChanges& changes = draft.changes.emplace_back();
-    table.allow({"set", "limit", "cells"});
     for (const auto& [key, lists] : kChanges)
       if (const auto words = table.find(key))
         for (const ConfigValue& each : words->elements("a list of texts, such as [\"L0=2\"]"))

@@ -1,5 +1,5 @@
-// What a command line changes in a study. It becomes part of the study's text, so that whoever reads the text, to go on
-// with a run or to report it, has what was run.
+// Changes of a study by the command line. They are appended to the text of the study, so that resuming and reporting a
+// run use the problem that was run.
 #pragma once
 
 #include <string>
@@ -11,18 +11,18 @@
 
 namespace pkm {
 
-/// In the command line's words: `name=value`, several separated by commas.
+/// Values of the command line's options: `name=value`, several separated by commas.
 struct StudyChanges {
   std::vector<std::string> set;    ///< fixed parameters
-  std::vector<std::string> limit;  ///< thresholds of a pose
-  std::vector<std::string> cells;  ///< of voxels; or one number, along every coordinate that has some
+  std::vector<std::string> limit;  ///< thresholds of poses
+  std::vector<std::string> cells;  ///< numbers of voxels; or one number for all coordinates
 
-  /// Parameters of one limb of a described mechanism, "arm2.l_b", that there have to be beside those that the study
-  /// names; no change of it.
+  /// Parameters of single limbs, "arm2.l_b", that the mechanism has to have besides those that the study names. They do
+  /// not change the study.
   std::vector<std::string> limb_parameters;
 
-  /// Values of parameters and bounds of variables that a study file records; they replace those that its text gives.
-  /// No change of the text.
+  /// Values of parameters and bounds of variables that a study file records; they replace those that its text gives,
+  /// without a change of the text.
   std::vector<std::pair<std::string, double>> recorded_parameters;
   std::vector<Variable> recorded_variables;
 
@@ -31,12 +31,12 @@ struct StudyChanges {
   std::vector<std::string> arguments() const;
 };
 
-/// The parameters of limbs that the changes name.
+/// The parameters of single limbs that the changes name.
 std::vector<LimbParameter> limb_parameters(const StudyChanges& changes);
 
-/// The text with an [[override]] behind it. Later ones prevail.
+/// The text with an [[override]] appended. Later ones take precedence.
 std::string with_changes(const std::string& text, const StudyChanges& changes);
-/// The text without the [[override]]s that with_changes() has put behind it.
+/// The text without the [[override]]s that with_changes() has appended.
 std::string without_changes(const std::string& text);
 
 }  // namespace pkm

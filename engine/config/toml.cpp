@@ -25,12 +25,13 @@ std::vector<std::string_view> split_lines(std::string_view text) {
 
 bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
 
-/// Where the code points of lines begin. Values are looked up line by line, so those of one line at a time are kept.
+/// Finds columns, which toml++ counts in code points, in the bytes of the text. Values are looked up line by line, so
+/// the positions of one line are cached.
 class Source {
  public:
   explicit Source(std::string_view text) : lines_(split_lines(text)) {}
 
-  /// What stands between two columns (1-based, in code points) of a row (1-based); "" where there is no such row.
+  /// The text between two columns (1-based, in code points) of a row (1-based); "" if there is no such row.
   std::string_view between(std::size_t row, std::size_t first, std::size_t last) {
     if (row == 0 || row > lines_.size()) return {};
     const std::string_view line = lines_[row - 1];
@@ -50,7 +51,8 @@ class Source {
   std::vector<std::size_t> begins_;
 };
 
-/// The source text of a value, shortened when long; a word when it spans lines or is the body below a [header].
+/// The source text of a value, abbreviated if it is long; a word if it has several lines or is the body below a
+/// [header].
 std::string quote(const toml::node& node, Source& source) {
   const auto& [begin, end, path] = node.source();
   const char* word = node.is_table() ? "a table" : node.is_array() ? "an array" : "text of several lines";
@@ -104,15 +106,16 @@ TomlValue convert(const toml::node& node, Source& source) {
   return value;
 }
 
-/// How deep a text nests tables and arrays: by its brackets, and by the parts of a key between them.
+/// Nesting depth of tables and arrays: by brackets, and by the parts of a key between them.
 struct Depth {
   std::size_t brackets = 0, parts = 0;
 };
 
-/// The line (1-based) where tables nest deeper than any study's, and the parser and all that walks its tree would run
-/// out of stack; 0: none does. Told from the text alone, up to what is no TOML, which the parser tells.
+/// The line (1-based) at which tables are nested more deeply than in any study, so that recursive functions, such as
+/// the parser, would run out of stack; 0 if there is none. It is found from the text alone, up to the first syntax
+/// error.
 int line_too_deep(std::string_view text) {
-  constexpr Depth kMost{32, 16};
+  constexpr Depth kMax{32, 16};
   Depth depth;
   int line = 1;
   const auto skip_string = [&text, &line](std::size_t begin) {  // the index of the string's last character
@@ -120,7 +123,7 @@ int line_too_deep(std::string_view text) {
     const bool long_one = text.substr(begin).starts_with(std::string(3, quote));
     for (std::size_t i = begin + (long_one ? 3 : 1); i < text.size(); ++i) {
       if (text[i] == '\n') {
-        if (!long_one) return i - 1;  // no TOML
+        if (!long_one) return i - 1;  // not TOML
         ++line;
       } else if (text[i] == '\\' && quote == '"') {
         i += i + 1 < text.size() && text[i + 1] != '\n';
@@ -140,9 +143,9 @@ int line_too_deep(std::string_view text) {
     } else if (c == '#') {
       while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
     } else if (c == '.') {
-      if (++depth.parts >= kMost.parts) return line;
+      if (++depth.parts >= kMax.parts) return line;
     } else if (c == '[' || c == '{') {
-      if (++depth.brackets > kMost.brackets) return line;
+      if (++depth.brackets > kMax.brackets) return line;
       depth.parts = 0;
     } else if (c == ']' || c == '}') {
       depth.brackets -= depth.brackets > 0;

@@ -1,7 +1,7 @@
-// A TOML document as a plain tree of values that know where they were written.
+// A TOML document as a tree of values with the lines where they were written.
 //
-// The parser is toml++; nothing of it leaves toml.cpp. Unlike toml++'s tables ours keep the order of the file, because
-// the order in which a study names its variables is the order in which they are stored and shown.
+// The parser is toml++, which is used in toml.cpp only. Unlike the tables of toml++, these keep the order of the file:
+// variables are stored and shown in the order in which the study names them.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct TomlValue {
 };
 
 /// Parses `text`. Throws ConfigError with the line for whatever TOML does not allow (duplicate keys, bytes that are not
-/// UTF-8, ...). `file` is named in messages, `expected` says there what it should be.
+/// UTF-8, ...). `file` and `expected`, what it should contain, are for messages.
 TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected = "a study in TOML");
 
 }  // namespace pkm

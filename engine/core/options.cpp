@@ -7,6 +7,13 @@
 
 namespace pkm {
 
+const OptionSpec* TableSpec::find(const std::string& name) const {
+  const OptionSpec* found = find_named(keys, name);
+  for (const TableVariant& variant : variants)
+    if (!found) found = find_named(variant.keys, name);
+  return found;
+}
+
 Options default_options(const std::vector<OptionSpec>& specs) {
   Options options;
   for (const auto& spec : specs)

@@ -1,5 +1,6 @@
-// Declarative description of the options of a catalogue entry (objective, constraint, optimiser): name, type, unit,
-// default value and range. It is used by the reader of study files, its error messages, `pkmopt list` and the
+// Declarative description of the keys of a TOML table: the options of a catalogue entry (objective, constraint,
+// optimiser) and the tables of studies and mechanism files. Each key has a name, type, unit, default value, range and
+// meaning. It is used by the readers of the files, their error messages, `pkmopt list`, `pkmopt schema` and the
 // documentation.
 #pragma once
 
@@ -21,7 +22,22 @@ using NamedSettings = std::map<std::string, Setting>;
 using OptionValue =
     std::variant<double, std::int64_t, bool, std::string, NamedNumbers, std::vector<NamedNumbers>, NamedSettings>;
 
-enum class OptionKind { number, integer, flag, word, named_numbers, list_of_numbers, named_settings };
+/// Options of catalogue entries are of the kinds up to named_settings; the keys of tables also of the others.
+enum class OptionKind {
+  number,
+  integer,
+  flag,
+  word,
+  named_numbers,
+  list_of_numbers,
+  named_settings,
+  formula,  ///< a number, text with a unit, or a formula
+  list,     ///< a list whose elements are described by `parts`
+  table,    ///< a table that is described by `table`
+  any_of    ///< one of the kinds that are described by `parts`
+};
+
+struct TableSpec;
 
 /// Placeholder for the unit of a number: the unit of the quantity that the entry computes (the value of a constraint)
 /// or works on (the objective of an optimiser). It depends on the study, so the reader of the study substitutes it.
@@ -45,6 +61,32 @@ struct OptionSpec {
   std::vector<std::pair<std::string, std::string>> fields =
       {};  ///< valid names and their units: of lists of numbers, and of named numbers if not empty
   FieldNames field_names = FieldNames::listed;  ///< FieldNames::objectives: a value is required for every objective
+
+  bool positive = false;               ///< numbers have to be > 0
+  std::size_t count = 0;               ///< number of elements of a list; 0: any
+  std::vector<OptionSpec> parts = {};  ///< of a list one, which describes its elements; of any_of the alternatives
+  const TableSpec* table = nullptr;    ///< of a table
+};
+
+/// The keys of a table for one value of TableSpec::choice.
+struct TableVariant {
+  std::string word, meaning;
+  std::vector<OptionSpec> keys;
+  std::vector<OptionSpec> named = {};  ///< as TableSpec::named
+};
+
+/// A TOML table: its keys, and those that it has for one value of its key `choice` only ("drive", "shape", "type").
+struct TableSpec {
+  std::string header;  ///< "[[region]]"; "" for inline tables
+  std::string meaning;
+  std::vector<OptionSpec> keys;
+  std::string choice = {};  ///< key that selects one of the variants; "": there are none
+  std::vector<TableVariant> variants = {};
+  std::vector<OptionSpec> named = {};  ///< at most one: describes the values of keys that are names of the user's
+  std::string noun = "key";            ///< what a key is, for messages: "coordinate", "parameter", "table"
+
+  /// The key called `name`, also of a variant; null if there is none.
+  const OptionSpec* find(const std::string& name) const;
 };
 
 /// Validated values of one entry's options, defaults included.

@@ -22,7 +22,7 @@ CsvTable evaluations(const StudyContents& contents) {
   add_headers(columns, "", problem.variables);
   add_headers(columns, "objective ", problem.objectives);
   add_headers(columns, "margin ", problem.margins);
-  add_headers(columns, "report ", problem.reports);
+  add_headers(columns, "output ", problem.reports);
   CsvTable table(columns);
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const EvaluationTable& rows = contents.stages[s].table;
@@ -101,11 +101,12 @@ CsvTable best(const StudyContents& contents) {
            [](const ParameterRecord& p) { return p.variable < 0 ? "parameter" : "variable"; });
   add_rows(problem.objectives, &DesignRecord::objectives, [](const auto&) { return "objective"; });
   add_rows(problem.margins, &DesignRecord::margins, [](const auto&) { return "margin"; });
-  add_rows(problem.reports, &DesignRecord::reports, [](const auto&) { return "report"; });
+  add_rows(problem.reports, &DesignRecord::reports, [](const auto&) { return "output"; });
   const auto add_bounds = [&](const char* name, double VolumeBounds::*end) {
-    if (std::ranges::none_of(designs, [](const auto& entry) { return entry.second.certain.has_value(); })) return;
+    if (std::ranges::none_of(designs, [](const auto& entry) { return entry.second.certified.has_value(); })) return;
     table.row("workspace", name, final->volume_unit);
-    for (const auto& [label, design] : designs) design.certain ? table.add((*design.certain).*end) : table.add_empty(1);
+    for (const auto& [label, design] : designs)
+      design.certified ? table.add((*design.certified).*end) : table.add_empty(1);
   };
   if (final) {
     table.row("workspace", "volume", final->volume_unit);

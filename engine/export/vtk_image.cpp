@@ -53,7 +53,7 @@ std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& inf
     file.array(Leaf{notes + "/" + name, meaning, {unit}}, std::vector{value}, {1});
   };
   for (std::size_t i = 0; i < workspace.fixed.size(); ++i)
-    number("held_" + workspace.fixed[i].name, workspace.fixed[i].unit, workspace.fixed_note[i],
+    number("fixed_" + workspace.fixed[i].name, workspace.fixed[i].unit, workspace.fixed_note[i],
            workspace.fixed[i].lower);
   number("volume", workspace.volume_unit, "volume of the feasible cells", workspace.volume);
   for (std::size_t i = 0; i < parameters.size(); ++i) {

@@ -46,7 +46,7 @@ struct ColumnOptions {
   std::array<int, 2> nodes{};  ///< nodes per subinterval and outer coordinate; 0: adaptive, from the tolerance
   std::optional<Box> box;      ///< restricts the workspace, if Columns::supports_box()
   /// Relative gap of certified bounds that the volume of a recorded design must satisfy; std::nullopt: not checked.
-  std::optional<double> certain = {};
+  std::optional<double> certified = {};
 };
 
 struct WorkspacePlan {

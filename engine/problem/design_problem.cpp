@@ -37,7 +37,7 @@ struct DesignProblem::Buffers {
 
 DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), used_(used_analyses(parts_)) {
   workspace_evaluators_.push_back(prepare_workspace(*parts_.mechanism, parts_.plan, parts_.request));
-  if (const ColumnOptions* const columns = parts_.plan.columns(); columns && columns->certain)
+  if (const ColumnOptions* const columns = parts_.plan.columns(); columns && columns->certified)
     parts_.mechanism->bounds()->require_bounds(parts_.plan);
   for (const Region& region : parts_.regions)
     workspace_evaluators_.push_back(prepare_workspace(*parts_.mechanism, region.plan, region.request));

@@ -53,9 +53,11 @@ inline Json reasons_json(const std::vector<Reason>& reasons) {
   return list;
 }
 /// { finding, sentence, reasons }; null if there is no diagnosis.
-inline Json diagnosis_json(const std::optional<Diagnosis>& verdict) {
-  if (!verdict) return Json();
-  return {{"finding", verdict->finding}, {"sentence", verdict->sentence}, {"reasons", reasons_json(verdict->reasons)}};
+inline Json diagnosis_json(const std::optional<Diagnosis>& diagnosis) {
+  if (!diagnosis) return Json();
+  return {{"finding", diagnosis->finding},
+          {"sentence", diagnosis->sentence},
+          {"reasons", reasons_json(diagnosis->reasons)}};
 }
 
 }  // namespace pkm

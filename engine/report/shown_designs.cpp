@@ -83,7 +83,7 @@ bool uses_masses(const Study& study) {
   if (dynamics->mass_model() != dynamics->mass_models().front() || parts.request.needs_inertia() ||
       std::ranges::any_of(parts.regions, [](const Region& region) { return region.request.needs_inertia(); }))
     return true;
-  for (const auto* const entries : {&study.objectives, &study.constraints, &study.reports})
+  for (const auto* const entries : {&study.objectives, &study.constraints, &study.outputs})
     if (std::ranges::any_of(*entries, [](const StudyEntry& entry) { return entry.type.starts_with("peak-"); }))
       return true;
   const auto& infos = parts.mechanism->info().parameters;

@@ -59,7 +59,7 @@ std::vector<std::string> contradicted(const StudyContents& contents) {
   std::vector<std::string> sentences;
   if (!contents.final) return sentences;
   const auto add = [&sentences](const std::string& name, const std::optional<DesignRecord>& design) {
-    if (design && design->certain && design->status == Status::failed)
+    if (design && design->certified && design->status == Status::failed)
       sentences.push_back("the " + name + " fails: " + design->reason);
   };
   add("best design", contents.final->best);

@@ -66,7 +66,7 @@ DesignTable design_table(const StudyContents& contents, const std::vector<Refere
   add_all("objective", problem.objectives, &DesignRecord::objectives);
   add_all("output", problem.reports, &DesignRecord::reports);
   add_all("constraint", problem.margins, &DesignRecord::margins);
-  const auto is_certified = [](const DesignTable::Column& column) { return column.record->certain.has_value(); };
+  const auto is_certified = [](const DesignTable::Column& column) { return column.record->certified.has_value(); };
   if (std::ranges::none_of(table.columns, is_certified)) return table;
   const std::string& unit = contents.final->volume_unit;
   const auto add_volume = [&](const char* name, const char* meaning, const auto& value) {
@@ -75,7 +75,7 @@ DesignTable design_table(const StudyContents& contents, const std::vector<Refere
   };
   const auto bound = [](double VolumeBounds::*end) {
     return [end](const DesignRecord& r) -> std::optional<double> {
-      return r.certain ? std::optional((*r.certain).*end) : std::nullopt;
+      return r.certified ? std::optional((*r.certified).*end) : std::nullopt;
     };
   };
   add_volume("volume", "by cylindrical decomposition (method columns)", [](const DesignRecord& r) { return r.volume; });

@@ -30,13 +30,13 @@ void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord
   if (record.status == Status::failed) return;
   DesignReport r = problem.report(record.parameters);
   try {
-    record.certain = verify_volume(problem, r, gap, stop_requested);
+    record.certified = verify_volume(problem, r, gap, stop_requested);
     check_stop();  // bounds of an interrupted computation are discarded
   } catch (const std::invalid_argument& reason) {
     r.status = Status::failed;
     r.reason = reason.what();
   } catch (const Stopped&) {
-    record.certain.reset();
+    record.certified.reset();
     throw;
   }
   if (r.status != Status::failed) return;

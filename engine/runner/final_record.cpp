@@ -165,14 +165,14 @@ void complete_final_record(const Study& study, StudyContents& contents,
     begin("map of the best design's workspace");
     f.map = map_record(parts, f.best->parameters);
   }
-  if (const ColumnOptions* const columns = parts.plan.columns(); columns && columns->certain) {
-    const double requested = *columns->certain;
+  if (const ColumnOptions* const columns = parts.plan.columns(); columns && columns->certified) {
+    const double requested = *columns->certified;
     for (const auto& [name, design] :
          {std::pair("baseline", &f.baseline), {"best design", &f.best}, {"rounded design", &f.rounded}}) {
       if (!*design) continue;
       begin("certified bounds of the " + std::string(name));
       add_certified_bounds(problem, requested, **design);
-      if (const auto& bounds = (*design)->certain; bounds && bounds->gap() > requested)
+      if (const auto& bounds = (*design)->certified; bounds && bounds->gap() > requested)
         contents.notes.push_back(kWideBounds + std::string(name) + " have the gap " + shortest(bounds->gap()) +
                                  ", requested " + shortest(requested) + ": " + std::to_string(bounds->boxes) +
                                  " boxes");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/config/upgrade.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
@@ -160,8 +161,11 @@ Study study_of(const StudyContents& contents, const Catalogues& catalogues, cons
     throw StorageError(inconsistent + "the text, or the mechanism file, was changed after the study was started");
   const auto implied =
       contents.algorithms >= kFirstWithImpliedConstraints ? ImpliedConstraints::added : ImpliedConstraints::left_out;
+  std::optional<SourceText> description = contents.description;
+  if (description) description->text = upgraded(description->text, TextKind::mechanism).text;
+  const std::string text = upgraded(contents.toml, TextKind::study).text;
   const auto read = [&](const StudyChanges& with) {
-    return read_study_toml(contents.toml, contents.toml_file, catalogues, contents.description, with, implied);
+    return read_study_toml(text, contents.toml_file, catalogues, description, with, implied);
   };
   Study study = read(changes);
   if (const Unsupported difference = conflict_with_text(study, contents))

@@ -4,6 +4,7 @@
 
 #include "engine/config/study_changes.hpp"
 #include "engine/config/text_file.hpp"
+#include "engine/config/upgrade.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/ranks.hpp"
@@ -29,7 +30,8 @@ std::string next_line(const std::string& text, std::size_t& at) {
 /// Ends all ranks if a study or mechanism file exists on this host with contents other than those that rank 0 has read,
 /// because the user then probably assumes that this rank uses its own file.
 void expect_same_files(const StudyContents& contents) {
-  const auto compare = [](const std::string& file, const std::string& text) {
+  const auto compare = [](const std::string& file, const std::string& recorded, TextKind kind) {
+    const std::string text = upgraded(recorded, kind).text;
     std::string local;
     try {
       local = read_text_file(file, "a text");
@@ -40,8 +42,8 @@ void expect_same_files(const StudyContents& contents) {
       ranks::abort_all_ranks(file + ": differs from the file read on rank 0 (" + ranks::host(0) +
                              "); all ranks must see the same files");
   };
-  compare(contents.toml_file, contents.toml);
-  if (contents.description) compare(contents.description->file_name, contents.description->text);
+  compare(contents.toml_file, contents.toml, TextKind::study);
+  if (contents.description) compare(contents.description->file_name, contents.description->text, TextKind::mechanism);
 }
 
 /// Executes the run that a message of rank 0 describes.

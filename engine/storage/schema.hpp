@@ -253,10 +253,10 @@ void describe_design(Archive& archive, const std::string& group, const char* des
   archive.attribute(group, "feasible_cells", design.feasible_cells);
   archive.attribute(group, "cell_volume", design.cell_volume);
   archive.attribute(group, "touches_box", design.touches_box);
-  if (const std::string bounds = group + "/certain"; optional_item(archive, bounds, design.certain)) {
+  if (const std::string bounds = group + "/certain"; optional_item(archive, bounds, design.certified)) {
     archive.group(bounds, "Certified bounds of the volume");
-    archive.attribute(bounds, "lower", design.certain->lower);
-    archive.attribute(bounds, "upper", design.certain->upper);
+    archive.attribute(bounds, "lower", design.certified->lower);
+    archive.attribute(bounds, "upper", design.certified->upper);
   }
   matrix(archive, group + "/parameter", "All parameters of the mechanism", problem.parameters, design.parameters);
   matrix(archive, group + "/objective", "Objectives; NaN: not computed", problem.objectives, design.objectives);

@@ -136,7 +136,7 @@ struct DesignRecord {
   std::int64_t feasible_cells = 0;
   double cell_volume = 0;
   bool touches_box = false;
-  std::optional<VolumeBounds> certain = {};  ///< certified bounds of the volume, if requested; only lower and upper
+  std::optional<VolumeBounds> certified = {};  ///< certified bounds of the volume, if requested; only lower and upper
 };
 
 /// The voxel map of the best design's workspace, with names and units of its axes.

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/config/sweep_section.hpp"
+#include "engine/config/swept_coordinates.hpp"
 #include "engine/core/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "experiments/app/print.hpp"

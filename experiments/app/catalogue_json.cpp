@@ -111,7 +111,7 @@ Json other_parameters_json(const Mechanism& mechanism) {
 Json sweep_json(const MechanismInfo& info, const Sweep& sweep, bool has_columns) {
   return {{"swept", coordinate_names(info, sweep.swept)},
           {"columns_along", has_columns ? Json(coordinate_names(info, {sweep.column})[0]) : Json()},
-          {"held", coordinate_names(info, sweep.fixed)},
+          {"fixed", coordinate_names(info, sweep.fixed)},
           {"volume_unit", unit_of_product(info, sweep.swept)}};
 }
 
@@ -196,7 +196,7 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   json["other_sweeps"] = Json::array();
   for (std::size_t k = 1; k < info.sweeps.size(); ++k) {
     const Json sweep = sweep_json(info, info.sweeps[k], has_columns);
-    Json other = {{"held", sweep["held"]}};
+    Json other = {{"fixed", sweep["fixed"]}};
     other.update(sweep);
     json["other_sweeps"].push_back(other);
   }

@@ -50,7 +50,7 @@ Json workspace_json(const MechanismInfo& info, const WorkspacePlan& plan) {
   if (const ColumnOptions* columns = plan.columns()) {
     const bool fixed = columns->nodes[0] > 0;
     json["tolerance"] = fixed ? Json() : Json(columns->tolerance);
-    json["certain"] = json_or_null(columns->certain);
+    json["certified"] = json_or_null(columns->certified);
     json["nodes"] = nullptr;  // chosen from the tolerance
     std::size_t node = 0;
     for (std::size_t k = 0; k < swept.size(); ++k)
@@ -119,7 +119,7 @@ Json study_json(const Study& study) {
   json["obstacles"] = obstacles_json(parts.plan.limits.obstacles);
   json["objectives"] = entries_json(study.objectives);
   json["constraints"] = entries_json(study.constraints);
-  json["reports"] = entries_json(study.reports);
+  json["outputs"] = entries_json(study.outputs);
   json["stages"] = list_json(study.stages, [](const Stage& stage) -> Json {
     return {{"optimiser", stage.entry->name}, {"options", options_json(stage.options)}};
   });
@@ -129,7 +129,7 @@ Json study_json(const Study& study) {
 
 Json probe_json(const Probe& probe) {
   return {
-      {"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"verdict", diagnosis_json(probe.diagnosis)}};
+      {"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"diagnosis", diagnosis_json(probe.diagnosis)}};
 }
 
 /// Contradictions are omitted: they are printed before.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "engine/config/renamed_keys.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/printable.hpp"
 #include "engine/core/unit.hpp"
@@ -16,7 +17,7 @@ constexpr std::size_t kMaxMessageLength = 1000;  // bytes; messages of CLI11 are
 /// Options whose value is a list of name=value.
 const std::vector<std::string> kLists = {"--set",          "--limit",  "--at",          "--joints",        "--velocity",
                                          "--acceleration", "--input",  "--speeds",      "--accelerations", "--near",
-                                         "--forces",       "--wrench", "--held",        "--cut",           "--cells",
+                                         "--forces",       "--wrench", "--fixed",       "--cut",           "--cells",
                                          "--box",          "--least",  "--joint-error", "--tolerance"};
 
 /// Repeats the option before each element of a list: "--set a=1 b=2" becomes "--set a=1 --set b=2".
@@ -65,6 +66,8 @@ ConfigError unexpected_argument(const CLI::App& app, const std::string& command)
                        "no further argument (see '" + program + " " + command + " --help')");
   const auto known = option_names(app);
   const std::string name = word.substr(0, word.find('='));
+  if (const std::string present = present_option(name); std::ranges::find(known, present) != known.end())
+    return ConfigError({"", 0, command}, "the option " + name + " is now called " + present);
   return ConfigError({"", 0, command}, "the unknown option '" + name + "'", "one of " + join(known),
                      nearest_name(name, known));
 }

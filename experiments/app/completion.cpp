@@ -20,6 +20,7 @@ struct PossibleValues {
 PossibleValues values_of(const std::string& command, const std::string& type, const Session& session) {
   if (type == "KIND" && command == "new") return {{"mechanism", "study"}, ""};
   if (type == "KIND") return {{"mechanisms", "objectives", "constraints", "optimisers"}, ""};
+  if (type == "FORMAT") return {{"study", "mechanism", "motion", "motors"}, ""};
   if (type == "SET") return {{kInstructionSets.begin(), kInstructionSets.end()}, ""};
   if (type == "SHELL") return {shells(), ""};
   if (type.starts_with("FILE") && !type.ends_with(".toml")) return {{}, "*"};

@@ -19,7 +19,7 @@ constexpr std::int64_t kDefaultCells = 40;  // along each axis, for mechanisms w
 
 struct EvaluateArguments : DesignArguments, SensitivityArguments {
   int threads = 0;
-  std::string certain;
+  std::string certified;
 };
 
 /// The problem of a mechanism without a study: all objectives that support the mechanism and the workspace method, with
@@ -89,7 +89,7 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
 /// @param holds  the computed volume lies within the bounds
 void report_bounds(const VolumeBounds& bounds, double requested_gap, bool holds, const std::string& unit,
                    Printout& out) {
-  out.json["certain"] = {
+  out.json["certified"] = {
       {"lower", bounds.lower}, {"upper", bounds.upper}, {"unit", unit}, {"gap", bounds.gap()}, {"holds_volume", holds}};
   out.add_table("certified bounds on the volume",
                 {{"at least", number(bounds.lower, unit)},
@@ -103,7 +103,7 @@ VolumeBounds certified_bounds(const DesignProblem& problem, DesignReport& report
   try {
     return verify_volume(problem, report, gap, [] { return StopRequest::signal() != 0; });
   } catch (const std::invalid_argument& reason) {
-    throw ConfigError({"", 0, "--certain"}, reason.what());
+    throw ConfigError({"", 0, "--certified"}, reason.what());
   }
 }
 
@@ -122,12 +122,12 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   const auto problem =
       target.study ? target.study->problem : default_problem(target, catalogues, arguments.changes.cells);
   const ColumnOptions* const columns = problem->parts().plan.columns();
-  std::optional<double> gap = columns ? columns->certain : std::nullopt;
-  if (!arguments.certain.empty()) {
-    gap = parse_gap(arguments.certain, "--certain");
-    require_capability(target.mechanism->bounds(), "--certain", "formulas for interval arithmetic", target.info());
+  std::optional<double> gap = columns ? columns->certified : std::nullopt;
+  if (!arguments.certified.empty()) {
+    gap = parse_gap(arguments.certified, "--certified");
+    require_capability(target.mechanism->bounds(), "--certified", "formulas for interval arithmetic", target.info());
     if (!columns)
-      throw ConfigError({"", 0, "--certain"}, "voxels", "workspace.method = \"columns\", whose volume it checks");
+      throw ConfigError({"", 0, "--certified"}, "voxels", "workspace.method = \"columns\", whose volume it checks");
   }
   DesignReport report;
   std::optional<VolumeBounds> bounds;
@@ -162,7 +162,7 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
       [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; });
   report_values("constraints", "constraints (margins, satisfied if >= 0)", problem->margins(), report.margins,
                 [](const MarginInfo&, double margin) { return margin >= 0 ? "satisfied" : "violated"; });
-  report_values("reports", "reports", problem->reports(), report.reports, no_remark);
+  report_values("outputs", "outputs", problem->reports(), report.reports, no_remark);
   if (report.reason.empty())
     with_team(arguments.threads, [&] { report_sensitivities(*problem, report, arguments, out); });
   out.json["feasible"] = report.status == Status::feasible;
@@ -185,7 +185,7 @@ void add_evaluate(CLI::App& app, Session& session) {
         return evaluate(session.catalogues, target, given, out);
       });
   add_cells_option(command, arguments.changes.cells, "Voxels along each swept coordinate, instead of the study's");
-  add_option(command, "--certain GAP", arguments.certain,
+  add_option(command, "--certified GAP", arguments.certified,
              "Check the exact volume against guaranteed bounds with this relative gap (see certify)");
   add_sensitivity_options(command, arguments);
   add_threads(command, arguments.threads);

@@ -57,7 +57,7 @@ Json row_json(const ProblemRecord& problem, const EvaluationTable& table, std::s
   return {{"design", values_by_name(problem.variables, table.design(row))},
           {"objectives", values_by_name(problem.objectives, table.objective_row(row))},
           {"constraints", values_by_name(problem.margins, table.margin_row(row))},
-          {"reports", values_by_name(problem.reports, table.output_row(row))}};
+          {"outputs", values_by_name(problem.reports, table.output_row(row))}};
 }
 
 Json front_json(const ProblemRecord& problem, const StageRecord& stage) {

@@ -61,6 +61,8 @@ constexpr Command kCommands[] = {{"run", add_run, true},
                                  {"export", add_export},
                                  {"list", add_list},
                                  {"new", add_new},
+                                 {"schema", add_schema},
+                                 {"upgrade", add_upgrade},
                                  {"completion", add_completion},
                                  {"manual", add_manual}};
 

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <limits>
 
+#include "engine/config/upgrade.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/results/comparison.hpp"
 #include "engine/runner/records.hpp"
@@ -41,10 +42,12 @@ std::string changes_of(const Study& study) { return study.changes.empty() ? "no 
 
 /// Why a study file does not contain the study to be run; empty if it does.
 Unsupported refuse_different_study(const StudyContents& contents, const Study& study, const Catalogues& catalogues) {
-  if (contents.toml != study.text && without_changes(contents.toml) == without_changes(study.text))
+  const std::string text = upgraded(contents.toml, TextKind::study).text;
+  if (text != study.text && without_changes(text) == without_changes(study.text))
     return "the study with " + changes_of(study_of(contents, catalogues)) + ", not with " + changes_of(study);
-  if (contents.toml != study.text) return "a study whose text differs from " + study.file_name;
-  if (study.description && contents.description && contents.description->text != study.description->text)
+  if (text != study.text) return "a study whose text differs from " + study.file_name;
+  if (study.description && contents.description &&
+      upgraded(contents.description->text, TextKind::mechanism).text != study.description->text)
     return "a study whose mechanism file differs from " + study.description->file_name;
   if (contents.seed != study.seed)
     return "the study with seed " + std::to_string(contents.seed) + ", not " + std::to_string(study.seed);

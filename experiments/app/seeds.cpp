@@ -72,7 +72,7 @@ struct SeedTable {
     const auto value = pareto ? evolved_hypervolume(study, contents) : objective(final.best);
     for (const std::string& sentence : contradicted(contents))
       errors.push_back("seed " + std::to_string(contents.seed) + ": " + sentence);
-    const bool fails = final.best && final.best->certain && final.best->status == Status::failed;
+    const bool fails = final.best && final.best->certified && final.best->status == Status::failed;
     const std::string best_text = feasible ? keep(value, best)
                                   : fails  ? "outside certified bounds"
                                            : "nothing feasible";

@@ -7,7 +7,7 @@
 namespace pkm {
 
 Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists) {
-  const SourceLocation place{"", 0, "--held"};
+  const SourceLocation place{"", 0, "--fixed"};
   const auto values = parse_assignments(lists, place.key, assignable_axes(info.coordinates));
   std::vector<int> known;
   bool several = false;
@@ -53,7 +53,7 @@ void add_cuts(Slices& slices, const WorkspacePlan& plan, const MechanismInfo& in
   for (const std::string& name : assigned_names(lists))
     if (find_named(info.coordinates, name) && !find_named(axes, name))
       throw ConfigError({"", 0, "--cut"}, "the coordinate '" + name + "', which is fixed",
-                        "one that is swept, " + join(names_of(axes)), "--held " + name + "=..");
+                        "one that is swept, " + join(names_of(axes)), "--fixed " + name + "=..");
   const auto values = parse_assignments(lists, "--cut", assignable_axes(axes));
   for (std::size_t i = 0; i < swept.size(); ++i)
     if (values[i]) slices[swept[i]] = *values[i];

@@ -11,11 +11,11 @@
 
 namespace pkm {
 
-/// Fixes the coordinates named by --held at their values. Those that no sweep of the mechanism keeps fixed become
+/// Fixes the coordinates named by --fixed at their values. Those that no sweep of the mechanism keeps fixed become
 /// slices. If the sweep of the plan can fix the others, the coordinates that the plan has fixed stay fixed. Otherwise
 /// another sweep is selected, and fixed coordinates and method are reset, because box and cells belong to other axes.
 /// Throws ConfigError.
-/// @param lists  of --held: name=value
+/// @param lists  of --fixed: name=value
 /// @return the slices
 Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists);
 

@@ -113,7 +113,7 @@ Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
   const auto point = [&](std::int64_t row) {
     const auto r = static_cast<std::size_t>(row);
     Json json = row_json(problem, stage.table, r);
-    json.erase("reports");
+    json.erase("outputs");
     json["feasible"] = stage.table.status[r] == Status::feasible;
     return json;
   };

@@ -49,7 +49,7 @@ std::string rounded_remarks(const StudyContents& contents, const DesignRecord& r
   return (rounded.status == Status::feasible ? ", but " : ": ") + join(remarks, "; ");
 }
 
-Json certain_json(const VolumeBounds& bounds) {
+Json certified_json(const VolumeBounds& bounds) {
   return {{"lower", bounds.lower}, {"upper", bounds.upper}, {"gap", bounds.gap()}};
 }
 
@@ -60,10 +60,10 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
   Json object = {{"design", design},
                  {"objectives", values_by_name(problem.objectives, record.objectives)},
                  {"constraints", values_by_name(problem.margins, record.margins)},
-                 {"reports", values_by_name(problem.reports, record.reports)},
+                 {"outputs", values_by_name(problem.reports, record.reports)},
                  {"status", words(record.status)},
                  {"volume", record.volume}};
-  if (record.certain) object["certain"] = certain_json(*record.certain);
+  if (record.certified) object["certified"] = certified_json(*record.certified);
   if (!record.reason.empty()) object["reason"] = record.reason;
   return object;
 }
@@ -128,7 +128,7 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   }
   const std::vector<std::string> errors = contradicted(contents);
   for (const std::string& sentence : errors) out << sentence << '\n';
-  if (final.best->status == Status::failed && final.best->certain)
+  if (final.best->status == Status::failed && final.best->certified)
     out << "do not use the values of the best design\n";
   else if (final.best->status == Status::failed)
     out << "no design could be evaluated: " << final.best->reason << '\n';
@@ -175,7 +175,7 @@ Json summary_json(const StudyContents& contents, const std::optional<Diagnosis>&
   object["reproducible"] = contents.reproducible();
   object["notes"] = contents.notes;
   object["stop"] = contents.stages.empty() ? "" : contents.stages.back().stop;
-  object["verdict"] = diagnosis_json(diagnosis);
+  object["diagnosis"] = diagnosis_json(diagnosis);
   object["failures"] = failures_json(failures);
   object["best"] = nullptr;
   if (contents.best.row >= 0) {
@@ -185,9 +185,9 @@ Json summary_json(const StudyContents& contents, const std::optional<Diagnosis>&
     object["best"].update({{"status", words(stage.table.status[row])},
                            {"stage", contents.best.stage + 1},
                            {"generation", stage.generations.generation_of_rows(stage.table.size())[row]}});
-    if (contents.final && contents.final->best && contents.final->best->certain) {
+    if (contents.final && contents.final->best && contents.final->best->certified) {
       const DesignRecord& best = *contents.final->best;
-      object["best"].update({{"volume", best.volume}, {"certain", certain_json(*best.certain)}});
+      object["best"].update({{"volume", best.volume}, {"certified", certified_json(*best.certified)}});
       if (best.status == Status::failed)
         object["best"].update({{"status", words(best.status)}, {"reason", best.reason}});
     }

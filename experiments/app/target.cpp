@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/config/assignments.hpp"
-#include "engine/config/motion_section.hpp"
+#include "engine/config/motion_table.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"

@@ -78,11 +78,11 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
   if (target.study) out.head.push_back({"study", target.study->name});
   out.add("design", target.words);
   json["parameters"] = values_by_name(target.info().parameters, target.parameters);
-  json["held"] = Json::array();
+  json["fixed"] = Json::array();
   for (std::size_t i = 0; i < workspace.fixed.size(); ++i) {
     const auto& [coordinate, name, unit, value, upper, cells] = workspace.fixed[i];
     const std::string& why = workspace.fixed_note[i];
-    json["held"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
+    json["fixed"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
     out.head.push_back({name, position(value, unit), why});
     if (const std::string note = large_angle_note({{name, unit}}, {&value, 1}); !note.empty())
       out.head.push_back({"note", note});
@@ -195,7 +195,7 @@ void add_workspace(CLI::App& app, Session& session) {
       "Example: pkmopt workspace 4ppa-2par --cut theta=20deg -o slice.svg",
       workspace);
   add_grid_options(command, arguments, kPictureCells);
-  add_list_option(command, "--held", arguments.fixed,
+  add_list_option(command, "--fixed", arguments.fixed,
                   "Coordinates to fix at a value; default: those of the study, else at the design's default");
   add_list_option(command, "--cut", arguments.cut, "Swept coordinates to slice at a value");
   add_option(command, "--mode MODE", arguments.mode, "Working mode of the coupling indices; default: the first");

@@ -205,7 +205,7 @@ def picture(program):
         motion = Path(folder, "motion.toml")
         motion.write_text(MOTION)
         trajectory = table(program, folder, "trajectory", FILE, "--motion", motion, "--samples", str(SAMPLES))
-        cells = table(program, folder, "workspace", FILE, "--held", "y=0", "--box", "x=-0.45:0.45,z=-0.72:-0.2",
+        cells = table(program, folder, "workspace", FILE, "--fixed", "y=0", "--box", "x=-0.45:0.45,z=-0.72:-0.2",
                         "--cells", "x=360,z=208")  # fmt: skip
         surface = surface_behind(program, folder)
     tool_path = np.stack([trajectory["x"], trajectory["y"], trajectory["z"]], axis=1)

@@ -9,9 +9,9 @@ folder=$(mktemp -d)
 trap 'rm -rf -- "$folder"' EXIT
 
 "$program" workspace 4ppa-2par --cells x=96,z=96,theta=96 --vtk "$folder/1.vtkhdf" >/dev/null
-"$program" workspace "$here/../3crr-r-cru/rod-lengths.toml" --held phi=30deg --cells x=96,y=96,z=96 \
+"$program" workspace "$here/../3crr-r-cru/rod-lengths.toml" --fixed phi=30deg --cells x=96,y=96,z=96 \
   --vtk "$folder/2.vtkhdf" >/dev/null
-"$program" workspace "$here/../quadrupteron/coupling.toml" --held phi=30deg --cells x=96,y=96,z=96 \
+"$program" workspace "$here/../quadrupteron/coupling.toml" --fixed phi=30deg --cells x=96,y=96,z=96 \
   --vtk "$folder/3.vtkhdf" >/dev/null
 "$program" workspace 2t1r-p-hybrid --cells x=96,z=96,beta=96 --vtk "$folder/4.vtkhdf" >/dev/null
 xvfb-run --auto-servernum /usr/bin/python3 "$here/workspaces.py" "$here/workspaces.png" \

@@ -22,7 +22,7 @@ method = "voxels"
 cells = { x = 10, z = 10, theta = 10 }
 [[objective]]
 type = "workspace-ratio"
-[[report]]
+[[output]]
 type = "workspace-volume"
 [[constraint]]
 type = "rail-length"

@@ -29,7 +29,7 @@ for (const [kind, values] of [
   ["variable", shown.best.design],
   ["objective", shown.best.objectives],
   ["constraint", shown.best.constraints],
-  ["output", shown.best.reports],
+  ["output", shown.best.outputs],
 ])
   for (const [key, value] of Object.entries(values)) {
     assert.equal(inTable(kind, key), value, key);

@@ -56,7 +56,7 @@ def commands():
         Command("run, seeds", ["run", "ga.toml", "--seeds", "20", "--output", "seeds.h5"]),
         Command("check", ["check", "slow-evaluations.toml"], endless=True),
         Command("evaluate", ["evaluate", "comb.toml", "--set", "w=0.01mm"], endless=True),
-        Command("evaluate, certified bounds", ["evaluate", robot, "--certain", "1e-3"], endless=True),
+        Command("evaluate, certified bounds", ["evaluate", robot, "--certified", "1e-3"], endless=True),
         Command("certify", ["certify", robot, "--gap", "1e-4", "--proof", "p.proof", "--force"], file="p.proof",
                 endless=True),
         Command("certify, box", ["certify", gough, "--box", "x=-0.2:0.2,y=-0.2:0.2,z=0.8:1.2"], endless=True),

@@ -55,21 +55,21 @@ TEST_F(Certify, RejectsInvalidArguments) {
 
 TEST_F(Certify, BoundsHoldTheExactVolumesOfTheBuiltInMechanisms) {
   for (const char* mechanism : {"4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"}) {
-    const auto found = run({"evaluate", mechanism, "--certain", "5e-2", "--json"});
+    const auto found = run({"evaluate", mechanism, "--certified", "5e-2", "--json"});
     ASSERT_EQ(found.exit_code, 0) << mechanism << found.err;
-    EXPECT_EQ(found.json()["certain"]["holds_volume"], true) << mechanism;
-    EXPECT_LE(found.json()["certain"]["gap"], 5e-2) << mechanism;
+    EXPECT_EQ(found.json()["certified"]["holds_volume"], true) << mechanism;
+    EXPECT_LE(found.json()["certified"]["gap"], 5e-2) << mechanism;
   }
 }
 
 TEST_F(Certify, EvaluateChecksItsVolumeAgainstTheBounds) {
-  const auto found = run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "1e-2", "--json"});
+  const auto found = run({"evaluate", kMechanisms + "five-bar.toml", "--certified", "1e-2", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
   const auto printed = found.json();
-  EXPECT_EQ(printed["certain"]["holds_volume"], true);
-  EXPECT_LE(printed["certain"]["gap"], 1e-2);
-  EXPECT_LE(printed["certain"]["lower"], printed["workspace"]["volume"]);
-  EXPECT_GE(printed["certain"]["upper"], printed["workspace"]["volume"]);
+  EXPECT_EQ(printed["certified"]["holds_volume"], true);
+  EXPECT_LE(printed["certified"]["gap"], 1e-2);
+  EXPECT_LE(printed["certified"]["lower"], printed["workspace"]["volume"]);
+  EXPECT_GE(printed["certified"]["upper"], printed["workspace"]["volume"]);
   std::ofstream(folder_.path() + "/voxels.toml") << "[mechanism]\nfile = \"" << kMechanisms << R"(five-bar.toml"
 [variables]
 l_a = { min = "100 mm", max = "300 mm" }
@@ -80,8 +80,8 @@ type = "workspace-volume"
 [[stage]]
 optimiser = "ga"
 )";
-  EXPECT_THAT(run({"evaluate", "voxels.toml", "--certain", "1e-2"}).err, HasSubstr("whose volume it checks"));
-  EXPECT_THAT(run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "2"}).err, HasSubstr("between 0 and 2"));
+  EXPECT_THAT(run({"evaluate", "voxels.toml", "--certified", "1e-2"}).err, HasSubstr("whose volume it checks"));
+  EXPECT_THAT(run({"evaluate", kMechanisms + "five-bar.toml", "--certified", "2"}).err, HasSubstr("between 0 and 2"));
 }
 
 TEST_F(Certify, CertifiesBoxesOfPoses) {
@@ -166,7 +166,7 @@ class CertifiedVolumes : public Certify {
   void SetUp() override {
     folder_.write("s.toml", "[mechanism]\nfile = \"" + kMechanisms +
                                 "five-bar.toml\"\n[variables]\nl_a = { min = 0.2, max = 0.4 }\nl_b = { min = 0.25, max "
-                                "= 0.5 }\n[baseline]\nl_a = 0.25\nl_b = 0.35\n[workspace]\ncertain = "
+                                "= 0.5 }\n[baseline]\nl_a = 0.25\nl_b = 0.35\n[workspace]\ncertified = "
                                 "1e-3\n[[objective]]\ntype = \"workspace-ratio\"\n[[stage]]\noptimiser = "
                                 "\"ga\"\npopulation = 6\ngenerations = 4\n[final]\nround = \"10 mm\"\n");
   }
@@ -181,9 +181,9 @@ TEST_F(CertifiedVolumes, ArePrintedByRunShowAndExport) {
   const auto shown = run({"show", "s.h5", "--json"}).json();
   for (const char* design : {"best", "rounded", "baseline"}) {
     const auto& printed = shown[design];
-    EXPECT_LE(printed["certain"]["lower"], printed["volume"]) << design;
-    EXPECT_GE(printed["certain"]["upper"], printed["volume"]) << design;
-    EXPECT_LE(printed["certain"]["gap"], 1e-3) << design;
+    EXPECT_LE(printed["certified"]["lower"], printed["volume"]) << design;
+    EXPECT_GE(printed["certified"]["upper"], printed["volume"]) << design;
+    EXPECT_LE(printed["certified"]["gap"], 1e-3) << design;
   }
   ASSERT_EQ(run({"export", "s.h5", "--csv", "tables"}).exit_code, 0);
   std::ostringstream table;
@@ -199,11 +199,11 @@ TEST_F(CertifiedVolumes, ArePrintedByRunShowAndExport) {
 TEST_F(CertifiedVolumes, AreCheckedByEvaluate) {
   const auto found = run({"evaluate", "s.toml", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_EQ(found.json()["certain"]["holds_volume"], true);
-  EXPECT_LE(found.json()["certain"]["gap"], 1e-3);
-  EXPECT_LE(run({"evaluate", "s.toml", "--certain", "1e-4", "--json"}).json()["certain"]["gap"], 1e-4);
+  EXPECT_EQ(found.json()["certified"]["holds_volume"], true);
+  EXPECT_LE(found.json()["certified"]["gap"], 1e-3);
+  EXPECT_LE(run({"evaluate", "s.toml", "--certified", "1e-4", "--json"}).json()["certified"]["gap"], 1e-4);
   EXPECT_THAT(run({"check", "s.toml"}).out, HasSubstr("within bounds of the gap 0.001"));
-  EXPECT_EQ(run({"check", "s.toml", "--json"}).json()["workspace"]["certain"], 1e-3);
+  EXPECT_EQ(run({"check", "s.toml", "--json"}).json()["workspace"]["certified"], 1e-3);
 }
 
 TEST_F(Certify, ProofsAreAccepted) {

@@ -40,7 +40,7 @@ TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
-       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certain, "
+       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certified, "
        "--sensitivity, --tolerance, --threads, --instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
@@ -254,6 +254,24 @@ TEST(CliList, CatalogueMdIsUpToDate) {
   file << std::ifstream(std::filesystem::path(PKM_EXPERIMENTS) / "catalogue.md").rdbuf();
   EXPECT_EQ(pkmopt({"list", "--markdown"}).out, file.str()) << "pkmopt list --markdown > experiments/catalogue.md";
   EXPECT_EQ(pkmopt({"list", "objectives", "--markdown"}).exit_code, 2);
+}
+
+TEST(CliSchema, KeysMdIsUpToDate) {
+  std::ostringstream file;
+  file << std::ifstream(std::filesystem::path(PKM_EXPERIMENTS) / "keys.md").rdbuf();
+  EXPECT_EQ(pkmopt({"schema", "--markdown"}).out, file.str()) << "pkmopt schema --markdown > experiments/keys.md";
+}
+
+TEST(CliSchema, KindsAreTheStudyAndThreeOthers) {
+  const auto study = pkmopt({"schema"});
+  EXPECT_EQ(study.out, pkmopt({"schema", "study"}).out);
+  EXPECT_EQ(study.json()["$schema"], "http://json-schema.org/draft-07/schema#");
+  EXPECT_EQ(pkmopt({"schema", "mechanism"}).json()["title"], "Mechanism file of pkmopt");
+  EXPECT_EQ(pkmopt({"schema", "motion"}).json()["title"], "Motion file of pkmopt");
+  EXPECT_EQ(pkmopt({"schema", "motors"}).json()["title"], "Motor file of pkmopt");
+  const auto wrong = pkmopt({"schema", "mechansim"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean 'mechanism'?"));
 }
 
 }  // namespace

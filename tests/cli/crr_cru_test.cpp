@@ -78,15 +78,15 @@ TEST(CliCrrCru, PrintsOnlyValuesThatExist) {
   const json info = pkmopt({"list", "mechanisms", "3crr-r-cru", "--json"}).json();
   EXPECT_EQ(info["modes"].size(), 16u);
   EXPECT_EQ(info["default_mode"], "-,-,+,-");
-  EXPECT_EQ(info["held"], json::array({"phi"}));
+  EXPECT_EQ(info["fixed"], json::array({"phi"}));
   EXPECT_EQ(info["columns_along"], "z");
   const json& others = info["other_sweeps"];
   EXPECT_EQ(others.size(), 13u) << "every set of coordinates but the default one and all four";
   for (const json& sweep : others) {
-    EXPECT_EQ(sweep["held"].size() + sweep["swept"].size(), 4u);
+    EXPECT_EQ(sweep["fixed"].size() + sweep["swept"].size(), 4u);
     EXPECT_THAT(sweep["swept"], ::testing::Contains(sweep["columns_along"]));
   }
-  EXPECT_EQ(others[2]["held"], json::array({"x"}));
+  EXPECT_EQ(others[2]["fixed"], json::array({"x"}));
   EXPECT_EQ(others[2]["columns_along"], "z");
   EXPECT_THAT(pkmopt({"list", "mechanisms", "3crr-r-cru"}).out, HasSubstr("other_sweeps"));
 }

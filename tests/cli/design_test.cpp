@@ -45,11 +45,11 @@ TEST(CliEvaluate, PrintsTheViolatedConstraint) {
   const StudyFolder folder;
   const auto file =
       folder.write("shape.toml", study_with("[[constraint]]\ntype = \"workspace-shape\"\n[[constraint]]\n"
-                                            "type = \"rail-length\"\n[[report]]\ntype = \"conditioning\""));
+                                            "type = \"rail-length\"\n[[output]]\ntype = \"conditioning\""));
   const auto good = pkmopt({"evaluate", file, "--json"});
   EXPECT_EQ(good.exit_code, 0);
   EXPECT_EQ(good.json()["feasible"], true);
-  EXPECT_EQ(keys(good.json()["reports"]), std::vector<std::string>{"conditioning"});
+  EXPECT_EQ(keys(good.json()["outputs"]), std::vector<std::string>{"conditioning"});
 
   const auto bad = pkmopt({"evaluate", file, "--set", "l_d=0.45", "--json"});
   EXPECT_EQ(bad.exit_code, 0);
@@ -64,7 +64,7 @@ TEST(CliEvaluate, PrintsTheViolatedConstraint) {
 TEST(CliEvaluate, HasTheDocumentedKeysAndUnits) {
   const json found = pkmopt({"evaluate", "4ppa-2par", "--json"}).json();
   EXPECT_EQ(keys(found), (std::vector<std::string>{"constraints", "facts", "feasible", "mechanism", "objectives",
-                                                   "parameters", "reports", "workspace"}));
+                                                   "outputs", "parameters", "workspace"}));
   EXPECT_EQ(found["mechanism"], "4ppa-2par");
   EXPECT_EQ(found["facts"]["shape_type_at_theta_0"], 4);
   EXPECT_EQ(keys(found["objectives"]),

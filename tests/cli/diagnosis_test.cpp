@@ -37,8 +37,8 @@ TEST(CliDiagnosis, ARunThatFindsNothingIsExplainedWithExitCode4) {
   EXPECT_EQ(shown.exit_code, 0) << "show itself has succeeded";
   EXPECT_THAT(shown.out, HasSubstr(diagnosis));
   const auto printed = pkmopt({"show", "s.h5", "--json"}, folder.path()).json();
-  EXPECT_EQ(printed["verdict"]["finding"], "nothing feasible");
-  EXPECT_EQ(printed["verdict"]["reasons"][0]["names"][0], "conditioning");
+  EXPECT_EQ(printed["diagnosis"]["finding"], "nothing feasible");
+  EXPECT_EQ(printed["diagnosis"]["reasons"][0]["names"][0], "conditioning");
   const auto resumed = pkmopt({"resume", "s.h5"}, folder.path());
   EXPECT_EQ(resumed.exit_code, 4);
   EXPECT_THAT(resumed.out, HasSubstr(diagnosis));
@@ -118,7 +118,7 @@ TEST(CliDiagnosis, NoneIfADesignIsFeasible) {
   const auto run = pkmopt({"run", "s.toml"}, folder.path());
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, Not(HasSubstr("diagnosis")));
-  EXPECT_TRUE(pkmopt({"show", "s.h5", "--json"}, folder.path()).json().at("verdict").is_null());
+  EXPECT_TRUE(pkmopt({"show", "s.h5", "--json"}, folder.path()).json().at("diagnosis").is_null());
 }
 
 TEST(CliDiagnosis, CheckFindsContradictionsAndEvaluatesSampleDesigns) {
@@ -146,7 +146,7 @@ TEST(CliDiagnosis, CheckFindsContradictionsAndEvaluatesSampleDesigns) {
   const auto tried = pkmopt({"check", "good.toml", "--json"}, folder.path()).json();
   EXPECT_EQ(tried["probe"]["designs"], 64);
   EXPECT_EQ(tried["probe"]["feasible"], 64);
-  EXPECT_TRUE(tried["probe"]["verdict"].is_null());
+  EXPECT_TRUE(tried["probe"]["diagnosis"].is_null());
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ TEST_F(ExportProgram, WorkspaceAndEvaluateAgree) {
   EXPECT_EQ(workspace["design"], "the baseline with a=0.25");
   EXPECT_EQ(workspace["axes"][2]["name"], "theta");
   EXPECT_EQ(workspace["axes"][2]["cells"], 16);
-  EXPECT_EQ(workspace["held"][0]["value"], 1.25);
+  EXPECT_EQ(workspace["fixed"][0]["value"], 1.25);
   EXPECT_GT(workspace["fields"]["conditioning"]["greatest"].get<double>(), 0.1);
   EXPECT_LT(workspace["fields"]["margin"]["least"].get<double>(), 0);
   ASSERT_EQ(run({"workspace", "study.toml"}), 0) << output_;
@@ -152,19 +152,19 @@ TEST_F(ExportProgram, RoundingErrorsInTheExtentArePrintedAsZero) {
 }
 
 TEST_F(ExportProgram, AnotherCoordinateCanBeFixed) {
-  ASSERT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=200mm", "--cells", "x=8,y=8,phi=9", "--box",
+  ASSERT_EQ(run({"workspace", "3crr-r-cru", "--fixed", "z=200mm", "--cells", "x=8,y=8,phi=9", "--box",
                  "x=0:0.3,y=0.1:0.4,phi=-30deg:30deg", "--json"}),
             0)
       << output_;
   const Json workspace = Json::parse(output_);
-  EXPECT_EQ(workspace["held"][0]["name"], "z");
-  EXPECT_EQ(workspace["held"][0]["value"], 0.2);
+  EXPECT_EQ(workspace["fixed"][0]["name"], "z");
+  EXPECT_EQ(workspace["fixed"][0]["value"], 0.2);
   EXPECT_EQ(workspace["unit"], "m^2 rad");
   EXPECT_EQ(workspace["axes"][2]["unit"], "rad");
   EXPECT_EQ(workspace["touches_box"], true);
-  ASSERT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=0.2,x=0.1", "--cells", "8", "--json"}), 0) << output_;
+  ASSERT_EQ(run({"workspace", "3crr-r-cru", "--fixed", "z=0.2,x=0.1", "--cells", "8", "--json"}), 0) << output_;
   EXPECT_EQ(Json::parse(output_)["unit"], "m rad");
-  EXPECT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=0.2,x=0.1,y=0.1,phi=0"}), 2);
+  EXPECT_EQ(run({"workspace", "3crr-r-cru", "--fixed", "z=0.2,x=0.1,y=0.1,phi=0"}), 2);
   EXPECT_THAT(output_, HasSubstr("expected coordinates that can be fixed together, with their values"));
   EXPECT_EQ(run({"workspace", "4ppa-2par", "--cells", "x=1000,z=1000,theta=1000"}), 2);
   EXPECT_THAT(output_, HasSubstr("--cells: found 1e+09 cells; expected at most 1e+07"));
@@ -216,7 +216,7 @@ TEST_F(ExportProgram, AStudyWithColumnsIsExportedWithinItsBox) {
   EXPECT_EQ(workspace["axes"][1]["lower"], 0.1);
   EXPECT_EQ(workspace["axes"][1]["upper"], 0.3);
   EXPECT_EQ(workspace["cells"], 48 * 48 * 48);
-  EXPECT_NEAR(workspace["held"][0]["value"].get<double>(), 0.174532925199433, 1e-12);
+  EXPECT_NEAR(workspace["fixed"][0]["value"].get<double>(), 0.174532925199433, 1e-12);
   EXPECT_NEAR(workspace["volume"].get<double>() / study.final->best->volume, 1, 0.02);
   ASSERT_EQ(run({"export", "study.h5", "--stl", "."}), 0) << output_;
   EXPECT_NEAR(volume_of(slurp("3crr-r-cru-best.stl")) / study.final->best->volume, 1, 0.02);

@@ -44,7 +44,7 @@ name = "width"
 expression = "volume / b"
 unit = "m rad"
 min = "400 mm rad"
-[[report]]
+[[output]]
 type = "expression"
 name = "squared"
 expression = "volume^2"
@@ -93,7 +93,7 @@ TEST(CliExpression, EvaluateShowsFormulasAndTheirValues) {
   EXPECT_EQ(found["objectives"]["ratio"], volume / (M_PI * 0.8 * (0.6 + 0.55)));
   EXPECT_EQ(found["constraints"]["shape"], 0.55 - std::sqrt(0.6 * 0.6 + 0.8 * 0.8) / 2);
   EXPECT_EQ(found["constraints"]["width"], volume / 0.8 - 0.4);
-  EXPECT_EQ(found["reports"]["squared"], volume * volume);
+  EXPECT_EQ(found["outputs"]["squared"], volume * volume);
   const auto text = pkmopt({"evaluate", file});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_THAT(text.out, HasSubstr("l_d - sqrt(l_u^2 + (b - a*cos_theta_min)^2)/2 >= 0 m\n"));

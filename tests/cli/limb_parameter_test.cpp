@@ -70,7 +70,7 @@ TEST_F(LimbParameter, DefaultsToTheParameterOfAllLimbs) {
                                               contents.problem.parameters.data())],
             0.53);
   std::ofstream(path("formula.toml")) << study(
-      "[variables]\narm2.l_b = { min = 0.4, max = 0.6 }\n[[report]]\ntype = \"expression\"\nname = \"rod\"\nexpression "
+      "[variables]\narm2.l_b = { min = 0.4, max = 0.6 }\n[[output]]\ntype = \"expression\"\nname = \"rod\"\nexpression "
       "= \"l_b\"\n"
       "[[constraint]]\ntype = \"linear\"\ncoefficients = { \"arm2.l_b\" = 1 }\nbound = 0.55\n");
   EXPECT_EQ(run({"check", "formula.toml"}), 0) << output_;

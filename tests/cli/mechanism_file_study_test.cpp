@@ -34,7 +34,7 @@ method = "voxels"
 cells = { x = 10, y = 10, z = 10 }
 [[objective]]
 type = "workspace-ratio"
-[[report]]
+[[output]]
 type = "conditioning"
 [[stage]]
 optimiser = "ga"

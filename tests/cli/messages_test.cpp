@@ -114,7 +114,7 @@ unit = "m"
 type = "linear"
 coefficients = { a = 1 }
 bound = 0.5
-[[report]]
+[[output]]
 type = "conditioning"
 statistic = "mean"
 [[reference]]

@@ -166,7 +166,7 @@ TEST_F(ParetoFrontProgram, RefusesIncompatibleSettings) {
     return refusal(text);
   };
   std::string one = good;
-  replace(one, "[[objective]]\ntype = \"conditioning\"", "[[report]]\ntype = \"conditioning\"");
+  replace(one, "[[objective]]\ntype = \"conditioning\"", "[[output]]\ntype = \"conditioning\"");
   replace(one, "reference", "# reference");
   EXPECT_THAT(refusal(one),
               HasSubstr("the optimiser nsga2 needs 2 objectives, but the study has one (workspace-ratio)"));

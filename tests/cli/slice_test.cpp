@@ -84,14 +84,14 @@ TEST_F(CliSlice, PictureHasAxesUnitsAndArea) {
 }
 
 TEST_F(CliSlice, FixingACoordinateMoreIsASlice) {
-  const json fixed = workspace({"4ppa-2par", "--held", "y=1.25,theta=20deg", "--cells", "20", "--csv", "held.csv"});
+  const json fixed = workspace({"4ppa-2par", "--fixed", "y=1.25,theta=20deg", "--cells", "20", "--csv", "fixed.csv"});
   const json cut = workspace({"4ppa-2par", "--cut", "theta=20deg", "--cells", "20", "--csv", "cut.csv"});
   EXPECT_EQ(fixed["volume"], cut["volume"]);
-  EXPECT_EQ(fixed["held"][1]["name"], "theta");
-  EXPECT_EQ(workspace({"4ppa-2par", "--held", "theta=20deg", "--cells", "8"})["unit"], "m^3") << "y is swept, too";
-  EXPECT_EQ(workspace({"4ppa-2par", "--cells", "8"})["held"].size(), 1u);
-  EXPECT_EQ(workspace({PKM_EXPERIMENTS "/mechanisms/five-bar.toml", "--cells", "8"})["held"], json::array());
-  EXPECT_EQ(text("held.csv"), text("cut.csv"));
+  EXPECT_EQ(fixed["fixed"][1]["name"], "theta");
+  EXPECT_EQ(workspace({"4ppa-2par", "--fixed", "theta=20deg", "--cells", "8"})["unit"], "m^3") << "y is swept, too";
+  EXPECT_EQ(workspace({"4ppa-2par", "--cells", "8"})["fixed"].size(), 1u);
+  EXPECT_EQ(workspace({PKM_EXPERIMENTS "/mechanisms/five-bar.toml", "--cells", "8"})["fixed"], json::array());
+  EXPECT_EQ(text("fixed.csv"), text("cut.csv"));
 }
 
 TEST_F(CliSlice, BoxKeepsRangesThatItDoesNotName) {
@@ -121,7 +121,7 @@ TEST_F(CliSlice, OnlyPlanarWorkspacesAreDrawn) {
   EXPECT_EQ(
       refusal({"4ppa-2par", "--cut", "y=1"}),
       "pkmopt: --cut: found the coordinate 'y', which is fixed; expected one that is swept, x, z, theta; did you mean "
-      "'--held y=..'?\n");
+      "'--fixed y=..'?\n");
 }
 
 // The mode is checked before the workspace is evaluated, and the outputs are checked before the mode.

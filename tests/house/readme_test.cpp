@@ -1,4 +1,4 @@
-// Files and commands named in README.md must exist, and experiments/README.md must document all keys of a study.
+// Files and commands named in README.md must exist.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <set>
 #include <sstream>
 
 namespace pkm::house {
@@ -65,33 +64,6 @@ TEST(Readme, NamedFilesExistAndCommandsAreExecutable) {
     EXPECT_THAT(names, Contains(command));
     EXPECT_EQ(access((root / command).c_str(), X_OK), 0) << command << " cannot be executed";
   }
-}
-
-/// The keys that the reader of study files looks up by name.
-std::set<std::string> keys_read(const fs::path& folder) {
-  static const std::regex lookup(R"re((?:find|at|has|tables_of\(root,|type_of\(\w+,) ?\(?"([a-z][a-z_]*)")re");
-  std::set<std::string> keys;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().find("section") == std::string::npos) continue;
-    std::ostringstream text;
-    text << std::ifstream(entry.path()).rdbuf();
-    const std::string source = text.str();
-    for (std::sregex_iterator it(source.begin(), source.end(), lookup), end; it != end; ++it) keys.insert((*it)[1]);
-  }
-  return keys;
-}
-
-TEST(Readme, OfTheExperimentsDocumentsEveryKeyOfAStudy) {
-  const fs::path root = PKM_ROOT;
-  std::ostringstream file;
-  file << std::ifstream(root / "experiments" / "README.md").rdbuf();
-  const std::string text = file.str();
-  const auto keys = keys_read(root / "engine" / "config");
-  EXPECT_GT(keys.size(), 30u);
-  std::vector<std::string> undocumented;
-  for (const std::string& key : keys)
-    if (!std::regex_search(text, std::regex("[`\\[ ]" + key + "[`\\], =]"))) undocumented.push_back(key);
-  EXPECT_THAT(undocumented, IsEmpty());
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Fuzzer of motions. Input: the text of a motion. It is parsed for every mechanism and sampled at both ends and in the
 // middle.
 #include "engine/config/built_in_mechanisms.hpp"
-#include "engine/config/motion_section.hpp"
+#include "engine/config/motion_table.hpp"
 #include "engine/core/error.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"
 
@@ -9,8 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace pkm;
   const std::string text(reinterpret_cast<const char*>(data), size);
   for (const auto& mechanism : all_mechanisms()) try {
-      const TomlValue document = parse_toml(text, "motion.toml");
-      const auto motion = read_motion(ConfigValue(document, "motion.toml", ""), motion_names(*mechanism));
+      const auto motion = read_motion_toml(text, "motion.toml", motion_names(*mechanism));
       fuzz::expect(motion->duration() > 0, "a motion takes time");
       fuzz::expect(sample(*motion, 3).size() == 3, "as many samples as requested");
       is_periodic(*motion, mechanism->info().coordinates);

@@ -176,5 +176,5 @@ class Mechanism:
         return int(np.count_nonzero(self.feasible(pose, mode))), spans, tight
 
     def default_held(self, swept):
-        hold = self.file["survey"].get("hold", {})
-        return {n: float(formula(hold.get(n, 0), self.p)) for n in self.coordinates if n not in swept}
+        fixed = self.file["survey"].get("fixed", {})
+        return {n: float(formula(fixed.get(n, 0), self.p)) for n in self.coordinates if n not in swept}

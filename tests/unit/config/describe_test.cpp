@@ -38,7 +38,7 @@ objectives
 
 constraints: none
 
-reports: none
+outputs: none
 
 stages
   1. ga: evolves
@@ -89,7 +89,7 @@ constraints
     coefficients  { a = 1, b = -1 }
     bound         0 m
 
-reports
+outputs
   shape: dimensionless
     length     0.12 m
     count      5        (default)

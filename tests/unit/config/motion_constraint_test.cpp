@@ -55,7 +55,7 @@ std::vector<std::string> margins(const Study& of) { return names_of(of.problem->
 TEST(MotionConstraint, StudiesHaveItForEveryMotionThatTheirEntriesName) {
   EXPECT_THAT(margins(study(kWorkspaceVolume)), IsEmpty());
   EXPECT_THAT(margins(study(kForce)), ElementsAre("motion-cycle"));
-  EXPECT_THAT(margins(study(kWorkspaceVolume + entry("report", "peak-power", "motion = \"cycle\""))),
+  EXPECT_THAT(margins(study(kWorkspaceVolume + entry("output", "peak-power", "motion = \"cycle\""))),
               ElementsAre("motion-cycle"));
   const Study bounded =
       study(kForce + entry("constraint", "peak-power", "motion = \"cycle\"\nmax = 100\nsamples = 401"));
@@ -63,7 +63,7 @@ TEST(MotionConstraint, StudiesHaveItForEveryMotionThatTheirEntriesName) {
   EXPECT_THAT(bounded.problem->margins()[1].meaning, HasSubstr("along the motion cycle, over 401 samples"));
   EXPECT_THAT(describe(bounded),
               HasSubstr("motion-cycle (motion): margin >= 0, in m, because of peak-force and peak-power"));
-  const std::string other_mode = entry("report", "peak-force", "name = \"up\"\nmotion = \"cycle\"\nmode = \"+,+,+,+\"");
+  const std::string other_mode = entry("output", "peak-force", "name = \"up\"\nmotion = \"cycle\"\nmode = \"+,+,+,+\"");
   EXPECT_EQ(margins(study(kForce + other_mode)).size(), 2u) << "one per working mode";
 }
 
@@ -90,15 +90,15 @@ TEST(MotionConstraint, StudiesStoredByEarlierProgramsHaveNone) {
   EXPECT_THAT(margins(study_of(contents, all_catalogues())), IsEmpty());
 }
 
-/// The linear Delta by columns, along a motion, with certain bounds.
-Study certain_study(const std::string& to) {
+/// The linear Delta by columns, along a motion, with certified bounds.
+Study certified_study(const std::string& to) {
   return read_study_toml(R"([mechanism]
 file = "linear-delta.toml"
 [variables]
 l = { min = 0.4, max = 0.6 }
 [workspace]
 method = "columns"
-certain = 0.3
+certified = 0.3
 [[motion]]
 name = "across"
 type = "points"
@@ -133,12 +133,12 @@ FinalRecord end_of(const Study& of, StudyContents& contents) {
 
 TEST(MotionConstraint, FinalDesignsAreCertifiedBetweenTheSamples) {
   StudyContents contents;
-  const FinalRecord kept = end_of(certain_study("{ x = 0.1 }"), contents);
+  const FinalRecord kept = end_of(certified_study("{ x = 0.1 }"), contents);
   EXPECT_EQ(kept.best->status, Status::feasible);
   EXPECT_THAT(contents.notes, ::testing::Contains("along the motion across the best design satisfies every limit of a "
                                                   "pose at every instant (certified)"));
   // out of reach and back: neither sample is there
-  const Study out = certain_study("{ x = 1 }, { x = 0 }");
+  const Study out = certified_study("{ x = 1 }, { x = 0 }");
   EXPECT_GE(out.problem->report(out.problem->parts().parameters).margins[0], 0);
   const FinalRecord left = end_of(out, contents);
   EXPECT_EQ(left.best->status, Status::failed);

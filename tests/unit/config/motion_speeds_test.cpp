@@ -31,7 +31,7 @@ type = "points"
 points = [{ x = -0.1, y = 0, z = 0 }, { x = 0.1, y = 0.05, speed = 0.5 }]
 )";
 std::string report(const std::string& type, const std::string& more = "") {
-  return "[[report]]\ntype = \"" + type + "\"\nmotion = \"across\"\n" + more;
+  return "[[output]]\ntype = \"" + type + "\"\nmotion = \"across\"\n" + more;
 }
 
 Study delta(bool masses, const std::string& more) {

@@ -20,7 +20,7 @@ TEST(ProblemErrors, Workspace) {
            "s.toml:4: workspace.method: found \"voxel\"; expected one of columns, voxels; did you mean 'voxels'?"},
           {"metod = \"voxels\"",
            "s.toml:4: workspace.metod: found an unknown key; expected one of method, tolerance, nodes, cells, box, "
-           "sweep, y, limits, certain, exact; did you mean 'method'?"},
+           "sweep, limits, certified, exact, y; did you mean 'method'?"},
           {"tolerance = 1", "s.toml:4: workspace.tolerance: found 1; expected a number in [1e-13, 0.1]"},
           {"tolerance = \"1e-8 m\"",
            "s.toml:4: workspace.tolerance: found \"1e-8 m\"; expected a number, or text such as \"5 %\""},
@@ -46,7 +46,7 @@ TEST(ProblemErrors, Workspace) {
            "of "
            "memory per cell)"},
           {"method = \"voxels\"\ncells = 32",
-           "s.toml:5: workspace.cells: found 32; expected a table of cell numbers for x, z, theta"},
+           "s.toml:5: workspace.cells: found 32; expected a table { x = .., z = .., theta = .. }"},
           {"method = \"voxels\"\ncells = { x = 1, y = 1, theta = 1 }",
            "s.toml:5: workspace.cells.y: found an unknown coordinate; expected one of x, z, theta; did you mean 'x'?"},
           {"method = \"voxels\"\ny = \"integrated\"\ncells = { x = 1, z = 1, theta = 1 }",
@@ -75,7 +75,7 @@ TEST(ProblemErrors, Workspace) {
            "mean 'gap_min'?"},
           {"limits = { angle_max = \"90 deg\" }",
            "s.toml:4: workspace.limits.angle_max: found \"90 deg\"; expected a number in [0, 1.5] rad"},
-          {"limits = 3", "s.toml:4: workspace.limits: found 3; expected a table of limits, { name = threshold, ... }"},
+          {"limits = 3", "s.toml:4: workspace.limits: found 3; expected a table { gap_min = .., angle_max = .. }"},
       });
   EXPECT_EQ(message_of(kVolume + kStage +
                        "[workspace]\nmethod = \"voxels\"\ny = \"integrated\"\n"
@@ -128,10 +128,10 @@ TEST(ProblemErrors, Objectives) {
            "s.toml:7: objective[1].weights: found 3; expected a table of numbers, { name = number, ... }"},
           {"[[objective]]\ntype = \"shape\"\nweights = { a = 2 }",
            "s.toml:7: objective[1].weights.a: found 2; expected a number in [0, 1]"},
-          {"[[objective]]\ntype = \"shape\"\nlength = 1\n[[report]]\ntype = \"shape\"\nlength = 2",
-           "s.toml:8: report[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
-          {"[[report]]\ntype = \"volume\"\ndirection = \"minimise\"",
-           "s.toml:7: report[1].direction: found an unknown key; expected one of type, name, region; did you mean "
+          {"[[objective]]\ntype = \"shape\"\nlength = 1\n[[output]]\ntype = \"shape\"\nlength = 2",
+           "s.toml:8: output[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
+          {"[[output]]\ntype = \"volume\"\ndirection = \"minimise\"",
+           "s.toml:7: output[1].direction: found an unknown key; expected one of type, name, region; did you mean "
            "'region'?"},
       });
 }
@@ -236,7 +236,7 @@ TEST(ProblemErrors, References) {
       {{"[[reference]]\nseconds = 1",
         "s.toml:7: reference[1].name: found nothing; expected where the result was published"},
        {"[[reference]]\nname = \"p\"\nvalues = { volumme = 1 }",
-        "s.toml:9: reference[1].values.volumme: found an unknown objective or report; expected one of volume; "
+        "s.toml:9: reference[1].values.volumme: found an unknown objective or output; expected one of volume; "
         "did you mean 'volume'?"},
        {"[[reference]]\nname = \"p\"\nvalues = { volume = \"1 m\" }",
         "s.toml:9: reference[1].values.volume: found \"1 m\"; expected a number in m^2 rad, or text with a unit made "

@@ -22,8 +22,8 @@ std::string task_complaint(const std::string& more) { return real_complaint(with
 
 TEST(Regions, AreSurveysOfTheirOwn) {
   const Study study = read_task(
-      "[[objective]]\ntype = \"dci\"\nregion = \"task\"\n[[report]]\ntype = \"workspace-volume\"\nregion = \"task\"\n"
-      "[[report]]\ntype = \"workspace-volume\"\nname = \"all\"\n[[constraint]]\ntype = \"task-workspace\"\n"
+      "[[objective]]\ntype = \"dci\"\nregion = \"task\"\n[[output]]\ntype = \"workspace-volume\"\nregion = \"task\"\n"
+      "[[output]]\ntype = \"workspace-volume\"\nname = \"all\"\n[[constraint]]\ntype = \"task-workspace\"\n"
       "region = \"task\"\nmargin = \"5 mm\"\n");
   const DesignReport report = study.problem->report(study.problem->parts().parameters);
   EXPECT_EQ(report.status, Status::feasible) << report.reason;

@@ -1,4 +1,4 @@
-// Two studies of the made-up machine: the smallest and one that uses every section.
+// Two studies of the made-up machine: the smallest and one that uses every table.
 #pragma once
 
 #include <string>
@@ -45,7 +45,7 @@ min = "500000 mm^2 rad"
 type = "linear"
 coefficients = { a = 1, b = -1 }
 bound = 0
-[[report]]
+[[output]]
 type = "shape"
 length = "120 mm"
 statistic = "min"

@@ -1,4 +1,4 @@
-// Documents, sections, parameters and files that are wrong.
+// Documents, tables, parameters and files that are wrong.
 
 #include <chrono>
 #include <fstream>
@@ -33,8 +33,8 @@ TEST(StudyErrors, Document) {
            "s.toml:1: found text that is not TOML (Error while parsing table header: expected ']', saw '\\n'); "
            "expected a study in TOML"},
           {"[mechansim]\ntype = \"slider\"\n",
-           "s.toml:1: mechansim: found an unknown section; expected one of study, mechanism, variables, baseline, "
-           "workspace, region, motion, objective, constraint, report, reference, drive_train, obstacle, stage, "
+           "s.toml:1: mechansim: found an unknown table; expected one of study, mechanism, variables, baseline, "
+           "workspace, region, motion, objective, constraint, output, reference, drive_train, obstacle, stage, "
            "checkpoint, "
            "final, override; did you mean 'mechanism'?"},
           {"[study]\nname = \"x\"\n",
@@ -66,7 +66,7 @@ TEST(StudyErrors, TablesNestedTooDeeply) {
   for (const std::string quote : {"\"", "'", "\"\"\"", "\'\'\'"})
     EXPECT_EQ(message_of("study = " + quote + dots + brackets + quote + " # " + dots + brackets + "\n").substr(0, 24),
               "s.toml:1: study: found " + quote.substr(0, 1));
-  EXPECT_EQ(message_of("[" + parts(16, "a") + "]\n").substr(0, 37), "s.toml:1: a: found an unknown section");
+  EXPECT_EQ(message_of("[" + parts(16, "a") + "]\n").substr(0, 37), "s.toml:1: a: found an unknown table");
 }
 
 TEST(StudyErrors, LongLinesTakeNoTime) {
@@ -163,8 +163,7 @@ TEST(StudyErrors, MechanismAndParameters) {
           {"parameters = { a = [1,\n 2] }",
            "s.toml:3: mechanism.parameters.a: found an array; expected a number in m, or text with a unit made of um, "
            "mm, cm, dm, m, km, in"},
-          {"parameters = [1]",
-           "s.toml:3: mechanism.parameters: found [1]; expected a table of parameters, { name = value, ... }"},
+          {"parameters = [1]", "s.toml:3: mechanism.parameters: found [1]; expected a table { parameter = .. }"},
           {"parameters = { a = 0 }", "s.toml:1: mechanism: the half width a must be > 0"},
       });
 }
@@ -176,7 +175,7 @@ TEST(StudyErrors, VariablesAndBaseline) {
           {"[variables]\nc = { min = 0, max = 1 }",
            "s.toml:5: variables.c: found an unknown parameter; expected one of a, b, tilt, mass; did you mean 'a'?"},
           {"[variables]\na = 0.5",
-           "s.toml:5: variables.a: found 0.5; expected a table { min = .., max = .., step = .. (if discrete) }"},
+           "s.toml:5: variables.a: found 0.5; expected a table { min = .., max = .., step = .. }"},
           {"[variables]\na = { min = 0.1 }", "s.toml:5: variables.a.max: found nothing; expected a number in [0, 2] m"},
           {"[variables]\na = { mni = 0.1, max = 1 }",
            "s.toml:5: variables.a.mni: found an unknown key; expected one of min, max, step"},

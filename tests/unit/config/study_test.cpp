@@ -167,7 +167,7 @@ TEST(Study, ReadsObjectivesConstraintsReports) {
   ASSERT_EQ(parts.reports.size(), 1U);
   EXPECT_TRUE(parts.request.has(kConditioning));
   EXPECT_EQ(parts.request.characteristic_length, 0.12);
-  const Options& options = study.reports[0].options;
+  const Options& options = study.outputs[0].options;
   EXPECT_EQ(options.word("statistic"), "min");
   EXPECT_EQ(options.integer("count"), 5);
   EXPECT_FALSE(options.flag("exact"));
@@ -193,7 +193,7 @@ TEST(Study, ReadsStagesInOrder) {
 
 TEST(Study, TwoEntriesWithTheSameLengthShareOneSurvey) {
   const Study study = read_right(kSmallest +
-                                 "[[report]]\ntype = \"shape\"\nlength = 1\n[[report]]\ntype = \"shape\"\nname = "
+                                 "[[output]]\ntype = \"shape\"\nlength = 1\n[[output]]\ntype = \"shape\"\nname = "
                                  "\"worst\"\nlength = 1\nstatistic = \"min\"\n");
   EXPECT_EQ(study.problem->parts().request.characteristic_length, 1);
 }

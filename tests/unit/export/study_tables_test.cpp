@@ -41,7 +41,7 @@ TEST(StudyTables, EvaluationsAreCompleteWithFullPrecision) {
   ASSERT_EQ(lines.size(), 1 + 12 + 0 + 6u);
   EXPECT_EQ(lines[0], (std::vector<std::string>{"stage", "evaluation", "generation", "status", "a [m]", "b [m]",
                                                 "objective workspace-ratio [rad/m]", "margin workspace-shape [m]",
-                                                "margin rail-length [m]", "report conditioning"}));
+                                                "margin rail-length [m]", "output conditioning"}));
   std::size_t line = 1;
   for (std::size_t s = 0; s < study.stages.size(); ++s) {
     const EvaluationTable& table = study.stages[s].table;

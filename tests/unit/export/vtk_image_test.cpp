@@ -59,7 +59,8 @@ TEST(VtkImage, H5pyReadsUnitsAndMetadata) {
   const std::string read =
       "import h5py; f = h5py.File('" + folder / "image.vtkhdf" +
       "'); p = f['VTKHDF/PointData']; print(p['margin'].shape, p['margin'].attrs['unit'], f['VTKHDF'].attrs['Type'], "
-      "f['pkmopt/axes'].asstr()[:].tolist(), f['pkmopt/held_y'][0], f['pkmopt/volume'][0], f['pkmopt/parameter_a'][0], "
+      "f['pkmopt/axes'].asstr()[:].tolist(), f['pkmopt/fixed_y'][0], f['pkmopt/volume'][0], "
+      "f['pkmopt/parameter_a'][0], "
       "f['VTKHDF'].attrs['description'])";
   EXPECT_EQ(test::output_of("/usr/bin/python3 -c \"" + read + "\""),
             "(4, 3, 2) m b'ImageData' ['x [m]', 'z [m]', 'theta [rad]'] 1.25 0.75 0.25 made up\n");

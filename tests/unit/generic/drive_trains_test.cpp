@@ -209,9 +209,9 @@ Study read_study(const std::string& more) {
 TEST(DriveTrainStudy, ObjectivesAreThoseOfTheTrajectory) {
   std::string text = kDrives;
   for (const char* statistic : {"peak", "rms"})
-    text += "[[report]]\ntype = \"motor-torque\"\nname = \"" + std::string(statistic) +
+    text += "[[output]]\ntype = \"motor-torque\"\nname = \"" + std::string(statistic) +
             "\"\nmotion = \"cycle\"\nstatistic = \"" + statistic + "\"\n";
-  text += "[[report]]\ntype = \"motor-speed\"\nmotion = \"cycle\"\njoint = \"2\"\n";
+  text += "[[output]]\ntype = \"motor-speed\"\nmotion = \"cycle\"\njoint = \"2\"\n";
   const Study study = read_study(text);
   const DesignReport report = study.problem->report(study.problem->parts().parameters);
   const Mechanism& mechanism = *study.problem->parts().mechanism;
@@ -228,7 +228,7 @@ TEST(DriveTrainStudy, ObjectivesAreThoseOfTheTrajectory) {
 TEST(DriveTrainStudy, PeakAndRmsOfMotorTorqueHaveTheirOwnNames) {
   const std::string torque = "type = \"motor-torque\"\nmotion = \"cycle\"\n", rms = "statistic = \"rms\"\n";
   const Study study =
-      read_study(kDrives + "[[report]]\n" + torque + "[[report]]\n" + torque + rms + "[[constraint]]\n" + torque +
+      read_study(kDrives + "[[output]]\n" + torque + "[[output]]\n" + torque + rms + "[[constraint]]\n" + torque +
                  "max = 5\n[[constraint]]\n" + torque + rms + "max = 2\n");
   EXPECT_THAT(names_of(study.problem->reports()), ::testing::ElementsAre("motor-torque", "motor-torque-rms"));
   EXPECT_THAT(names_of(study.problem->margins()),

@@ -53,7 +53,7 @@ TEST(Contradictions, FixedCoordinatesOutOfReach) {
   EXPECT_THAT(found("[workspace]\ny = 2.5\n"), IsEmpty());
   const std::string region =
       "[[region]]\nname = \"r\"\nmethod = \"voxels\"\ny = [-1, 1]\n"
-      "[[report]]\ntype = \"workspace-volume\"\nregion = \"r\"\n";
+      "[[output]]\ntype = \"workspace-volume\"\nregion = \"r\"\n";
   EXPECT_THAT(found(region), IsEmpty());
   EXPECT_THAT(study(region).warnings,
               ElementsAre("region r.y = -1 m is out of reach; designs within the bounds reach 0 .. 2.5 m"));

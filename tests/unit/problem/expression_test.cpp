@@ -191,7 +191,7 @@ TEST(Expression, DemandsTheFieldsThatItUses) {
   const auto request = [](const std::string& more) {
     return read(kMechanism + "[[objective]]\ntype = \"workspace-volume\"\n" + kStage + more).problem->parts().request;
   };
-  const std::string report = "[[report]]\ntype = \"expression\"\n",
+  const std::string report = "[[output]]\ntype = \"expression\"\n",
                     constraint = "[[constraint]]\ntype = \"expression\"\n";
   EXPECT_FALSE(request(report + "expression = \"volume\"\n").has(kConditioning));
   EXPECT_TRUE(request(report + "expression = \"conditioning_mean\"\n").has(kConditioning));
@@ -205,7 +205,7 @@ TEST(Expression, DemandsTheFieldsThatItUses) {
 TEST(Expression, CharacteristicLengthActsAsInTheBuiltInEntry) {
   const Study study = read(kMechanism + kStage +
                            "[[objective]]\ntype = \"conditioning\"\ncharacteristic_length = 0.3\n"
-                           "[[report]]\ntype = \"expression\"\nexpression = \"conditioning_mean\"\n"
+                           "[[output]]\ntype = \"expression\"\nexpression = \"conditioning_mean\"\n"
                            "characteristic_length = 0.3\n");
   const DesignReport report = study.problem->report(study.problem->parts().parameters);
   EXPECT_GT(report.objectives[0], 0);

@@ -120,16 +120,16 @@ class CertifiedStudy : public ::testing::Test {
 
 TEST_F(CertifiedStudy, RecordsBoundsOfTheFinalDesignsOnly) {
   Progress silent;
-  const StudyContents made = run_study(study("certain = 0.05"), file(), false, {}, silent).contents;
+  const StudyContents made = run_study(study("certified = 0.05"), file(), false, {}, silent).contents;
   EXPECT_EQ(mechanism_->calls, 3) << "best, rounded, baseline";
   const StudyContents stored = read_study(file());
   for (const auto* design : {&stored.final->best, &stored.final->rounded, &stored.final->baseline}) {
-    ASSERT_TRUE((*design)->certain);
+    ASSERT_TRUE((*design)->certified);
     EXPECT_EQ((*design)->status, Status::feasible);
-    EXPECT_LT((*design)->certain->lower, (*design)->volume);
-    EXPECT_GT((*design)->certain->upper, (*design)->volume);
+    EXPECT_LT((*design)->certified->lower, (*design)->volume);
+    EXPECT_GT((*design)->certified->upper, (*design)->volume);
   }
-  EXPECT_EQ(stored.final->best->certain->lower, made.final->best->certain->lower);
+  EXPECT_EQ(stored.final->best->certified->lower, made.final->best->certified->lower);
   EXPECT_EQ(contradicted(stored), std::vector<std::string>());
   EXPECT_TRUE(stored.notes.empty());
   std::vector<std::string> lines;
@@ -140,14 +140,14 @@ TEST_F(CertifiedStudy, RecordsBoundsOfTheFinalDesignsOnly) {
   mechanism_->calls = 0;
   run_study(study(""), file(), true, {}, silent);
   EXPECT_EQ(mechanism_->calls, 0);
-  EXPECT_FALSE(read_study(file()).final->best->certain);
+  EXPECT_FALSE(read_study(file()).final->best->certified);
 }
 
 TEST_F(CertifiedStudy, AVolumeOutsideItsBoundsIsAFailure) {
   mechanism_->lower = 1.02;
   mechanism_->upper = 1.03;
   Progress silent;
-  const StudyContents found = run_study(study("certain = true"), file(), false, {}, silent).contents;
+  const StudyContents found = run_study(study("certified = true"), file(), false, {}, silent).contents;
   for (const auto* design : {&found.final->best, &found.final->rounded, &found.final->baseline}) {
     EXPECT_EQ((*design)->status, Status::failed);
     EXPECT_THAT((*design)->reason, HasSubstr("lies outside its certified bounds"));
@@ -158,20 +158,20 @@ TEST_F(CertifiedStudy, AVolumeOutsideItsBoundsIsAFailure) {
                           StartsWith("the rounded design"), StartsWith("the baseline")));
   mechanism_->lower = 0.97;
   mechanism_->upper = 0.98;
-  const StudyContents again = run_study(study("certain = true"), file(), true, {}, silent).contents;
+  const StudyContents again = run_study(study("certified = true"), file(), true, {}, silent).contents;
   EXPECT_THAT(again.final->best->reason, HasSubstr("infeasible poses were included"));
 }
 
 TEST_F(CertifiedStudy, NotesAGapLargerThanRequested) {
   Progress silent;
-  const StudyContents found = run_study(study("certain = 1e-3"), file(), false, {}, silent).contents;
+  const StudyContents found = run_study(study("certified = 1e-3"), file(), false, {}, silent).contents;
   ASSERT_EQ(found.notes.size(), 3u);
   EXPECT_THAT(found.notes[1], StartsWith("certified bounds of the best design have the gap 0.0"));
   EXPECT_THAT(found.notes[1], HasSubstr("requested 0.001"));
 }
 
 TEST_F(CertifiedStudy, EqualsTheUninterruptedStudyAfterAnInterruptionOfTheBounds) {
-  const Study s = study("certain = true");
+  const Study s = study("certified = true");
   Progress silent;
   run_study(s, folder_ + "/reference.h5", false, {}, silent);
   mechanism_->interrupts = true;
@@ -180,7 +180,7 @@ TEST_F(CertifiedStudy, EqualsTheUninterruptedStudyAfterAnInterruptionOfTheBounds
   EXPECT_EQ(read_study(file()).state, StudyState::interrupted);
   const StudyContents interrupted = read_study(file());
   ASSERT_TRUE(interrupted.final && interrupted.final->best);  // results are stored before the bounds are computed
-  EXPECT_FALSE(interrupted.final->best->certain || interrupted.final->baseline->certain);
+  EXPECT_FALSE(interrupted.final->best->certified || interrupted.final->baseline->certified);
   mechanism_->interrupts = false;
   LockedStudy locked(file());
   EXPECT_EQ(resume_study(locked, catalogues(), {}, {}, silent).stopped, "");
@@ -197,19 +197,20 @@ TEST_F(CertifiedStudy, IsRejectedIfThereAreNoBounds) {
     return "accepted";
   };
   const std::string expected = "; expected true, false, or the gap of the bounds: a number between 0 and 2";
-  EXPECT_EQ(message_of("certain = false"), "accepted");
-  EXPECT_EQ(message_of("certain = 2"), "s.toml:8: workspace.certain: found 2" + expected);
-  EXPECT_EQ(message_of("certain = 0"), "s.toml:8: workspace.certain: found 0" + expected);
-  EXPECT_EQ(message_of("certain = \"yes\""), "s.toml:8: workspace.certain: found \"yes\"" + expected);
-  EXPECT_EQ(message_of("certain = [0.1]"), "s.toml:8: workspace.certain: found [0.1]" + expected);
-  EXPECT_THAT(message_of("method = \"voxels\"\ncertain = true"),
-              HasSubstr("workspace.certain: this key belongs to method = \"columns\", but the study's method is"));
-  EXPECT_THAT(message_of("certain = true\ny = \"integrated\""), HasSubstr("workspace: bounds are of one value of y"));
-  EXPECT_THAT(message_of("certian = true"), HasSubstr("certain"));
+  EXPECT_EQ(message_of("certified = false"), "accepted");
+  EXPECT_EQ(message_of("certified = 2"), "s.toml:8: workspace.certified: found 2" + expected);
+  EXPECT_EQ(message_of("certified = 0"), "s.toml:8: workspace.certified: found 0" + expected);
+  EXPECT_EQ(message_of("certified = \"yes\""), "s.toml:8: workspace.certified: found \"yes\"" + expected);
+  EXPECT_EQ(message_of("certified = [0.1]"), "s.toml:8: workspace.certified: found [0.1]" + expected);
+  EXPECT_THAT(message_of("method = \"voxels\"\ncertified = true"),
+              HasSubstr("workspace.certified: this key belongs to method = \"columns\", but the study's method is"));
+  EXPECT_THAT(message_of("certified = true\ny = \"integrated\""), HasSubstr("workspace: bounds are of one value of y"));
+  EXPECT_THAT(message_of("certifed = true"), HasSubstr("certified"));
   mechanism_->has_bounds = false;
-  EXPECT_EQ(message_of("certain = true"),
-            "s.toml:8: workspace.certain: certain bounds are of mechanisms from files, whose formulas can be computed "
-            "over intervals; 4ppa-2par is written in C++");
+  EXPECT_EQ(
+      message_of("certified = true"),
+      "s.toml:8: workspace.certified: certified bounds are of mechanisms from files, whose formulas can be computed "
+      "over intervals; 4ppa-2par is written in C++");
 }
 
 }  // namespace

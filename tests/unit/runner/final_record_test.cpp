@@ -22,7 +22,7 @@ Study study(const std::string& a_bounds, const std::string& b_bounds, const std:
   return read(
       "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = " + a_bounds + "\nb = " + b_bounds +
       "\n[workspace]\nmethod = \"voxels\"\ncells = { x = 8, z = 8, theta = 8 }\n[[objective]]\ntype = "
-      "\"workspace-volume\"\n[[report]]\ntype = \"conditioning\"\n[[stage]]\noptimiser = \"ga\"\n[final]\nround "
+      "\"workspace-volume\"\n[[output]]\ntype = \"conditioning\"\n[[stage]]\noptimiser = \"ga\"\n[final]\nround "
       "= " +
       round + "\n");
 }
@@ -137,7 +137,7 @@ TEST(FinalRecord, ABoxAroundAllReachablePosesChangesNoExactValue) {
 TEST(FinalRecord, ExactValuesOfRegionsOnVoxelsAreNaN) {
   const Result found =
       study_in_box("4ppa-2par", "b", "",
-                   "[[report]]\ntype = \"conditioning\"\nregion = \"task\"\n[[region]]\nname = \"task\"\nmethod = "
+                   "[[output]]\ntype = \"conditioning\"\nregion = \"task\"\n[[region]]\nname = \"task\"\nmethod = "
                    "\"voxels\"\nbox = { x = [0.4, 0.5], z = [-0.9, -0.8], theta = [-0.1, 0.1] }\n");
   EXPECT_GT(found.final.best->reports[0], 0);
   EXPECT_GT(found.final.best_exact->objectives[0], 0);

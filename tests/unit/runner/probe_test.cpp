@@ -33,7 +33,7 @@ TEST(Probe, EvaluatesFewerDesignsIfOneIsExpensive) {
   const auto size = [](const std::string& workspace, const std::string& more = "") {
     return probe_size(*study(workspace, more).problem);
   };
-  const std::string conditioning = "[[report]]\ntype = \"conditioning\"\n";
+  const std::string conditioning = "[[output]]\ntype = \"conditioning\"\n";
   EXPECT_EQ(size("method = \"voxels\"\n"), 64u) << "the grid of the paper";
   EXPECT_EQ(size("method = \"voxels\"\n", conditioning), 7u) << "65280 cells with a pose quantity each";
   EXPECT_EQ(size("method = \"voxels\"\ncells = { x = 200, z = 200, theta = 100 }\n", conditioning), 4u);

@@ -33,7 +33,7 @@ method = "voxels"
 cells = { x = 12, z = 14, theta = 16 }
 [[objective]]
 type = "workspace-ratio"
-[[report]]
+[[output]]
 type = "conditioning"
 [[constraint]]
 type = "workspace-volume"

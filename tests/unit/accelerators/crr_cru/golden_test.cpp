@@ -48,7 +48,7 @@ TEST(CrrCruGolden, RatesOfEveryCase) {
                        ->influence(design_of(entry), pose_of(entry["X"]), mode_name(mode_of(entry["sigma"])));
     ASSERT_TRUE(q);
     const AxisVector<double> v = vector_of(entry["Xd"]), speed = q->G * v,
-                             acceleration = accelerations<double, 0>(*q, v, vector_of(entry["Xdd"]));
+                             acceleration = accelerations(*q, v, vector_of(entry["Xdd"]));
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_NEAR(speed[i], entry["qd"][i].get<double>(), kRoundoff * 10);
       EXPECT_NEAR(acceleration[i], entry["qdd"][i].get<double>(), kRoundoff * 100);

@@ -122,11 +122,11 @@ TEST(HybridGolden, InfluenceCoefficientsBothWays) {
       expect_matrix_near(back.H[i], entry["H_fwd"][i], "H_fwd", 10 * kNear);
     }
     const AxisVector<double> V = vector_of(entry["V"]), A = vector_of(entry["A"]);
-    const AxisVector<double> speeds = found->G * V, drives = accelerations<double, 0>(*found, V, A);
+    const AxisVector<double> speeds = found->G * V, drives = accelerations(*found, V, A);
     expect_all_near(speeds, entry["qd"], "qd");
     expect_all_near(drives, entry["qdd"], "qdd");
     expect_all_near(back.G * speeds, entry["V_back"], "V");
-    expect_all_near(accelerations<double, 0>(back, speeds, drives), entry["A_back"], "A", 10 * kNear);
+    expect_all_near(accelerations(back, speeds, drives), entry["A_back"], "A", 10 * kNear);
     const PoseReport report = inspect(entry, entry["wm"]);
     expect_near(*report.det_G, entry["det_Jx"], "det Jx");
     expect_near(*report.det_Jq, entry["det_Jq"], "det Jq");

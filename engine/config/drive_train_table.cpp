@@ -1,15 +1,13 @@
-// [[drive_train]] of a study.
+// Reader of [[drive_train]].
 
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr double kLeastEfficiency = 1e-3;
-
-/// Refuses what has an effect on forces only, where there are none.
+/// Refuses keys that affect forces only, if the mechanism has no dynamics.
 void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
   if (!no_forces) return;
   for (const char* const key : {"rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"})
@@ -21,16 +19,16 @@ void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
 DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
   const bool turns = joint.turns();
   DriveTrain train;
-  if (const auto gear = table.find("gear")) train.ratio = gear->positive("1");
+  train.ratio = table.number_at("gear");
   const auto lead = table.find("lead");
   if (turns && lead) throw lead->refusal("the joint " + joint.name + " turns; a lead is that of a sliding joint");
   if (!turns) {
     const ConfigValue way = table.at("lead", "how far " + joint.name + " goes in a turn of its screw: \"10 mm\"");
-    train.ratio *= 2 * kPi / way.positive("m");
+    train.ratio *= 2 * kPi / way.number();
   }
-  train.rotor = table.find_number("rotor_inertia", "kg m^2", 0).value_or(0);
-  train.shaft = table.find_number("shaft_inertia", "kg m^2", 0).value_or(0);
-  train.efficiency = table.find_number("efficiency", "1", kLeastEfficiency, 1).value_or(1);
+  train.rotor = table.number_at("rotor_inertia");
+  train.shaft = table.number_at("shaft_inertia");
+  train.efficiency = table.number_at("efficiency");
   train.coulomb = table.find_number("coulomb", turns ? "N m" : "N", 0).value_or(0);
   train.viscous = table.find_number("viscous", turns ? "N m s/rad" : "N s/m", 0).value_or(0);
   if (const auto slow = table.find("slow_speed")) train.slow = slow->positive(turns ? "rad/s" : "m/s");
@@ -40,7 +38,7 @@ DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
 }  // namespace
 
 void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
-  const std::vector<ConfigValue> tables = tables_of(root, "drive_train");
+  const std::vector<ConfigValue> tables = root.tables("drive_train");
   if (tables.empty()) return;
   const auto& joints = draft.info().joints;
   const Unsupported no_forces = why_no_joint_forces(*draft.parts.mechanism);
@@ -48,8 +46,6 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
   for (const AxisInfo& joint : joints) names.push_back(joint.name);
   std::vector<std::optional<DriveTrain>> trains(joints.size());
   for (const ConfigValue& table : tables) {
-    table.allow(
-        {"joint", "gear", "lead", "rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"});
     expect_forces(table, no_forces);
     const ConfigValue value = table.at("joint", "a joint, or \"all\"");
     const std::string& joint = value.word(names);

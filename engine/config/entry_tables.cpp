@@ -1,9 +1,11 @@
-// [[objective]], [[constraint]], [[report]]: entries of the catalogues become named quantities of the problem.
+// Readers of [[objective]], [[constraint]] and [[output]]: entries of the catalogues as named quantities of the
+// problem.
 
 #include <algorithm>
 #include <map>
 
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
+#include "engine/config/study_keys.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/design_test.hpp"
 #include "engine/problem/motion_options.hpp"
@@ -28,14 +30,24 @@ std::string entry_name(const ConfigValue& table, const std::string& type, const 
   return name;
 }
 
+/// The tables [[name]], whose keys depend on their types.
+std::vector<ConfigValue> tables_in(const ConfigValue& root, const std::string& name) {
+  const auto list = root.find(name);
+  if (!list) return {};
+  const std::string expected = "a list of tables, each written [[" + name + "]]";
+  auto tables = list->elements(expected);
+  for (const auto& table : tables) table.expect_table(expected);
+  return tables;
+}
+
 /// The name of an objective that the study does not name: peak and RMS of one kind are two quantities.
 std::string default_name(const ObjectiveEntry& entry, const Options& options) {
   const bool rms = options.has("statistic") && options.word("statistic") == "rms";
   return entry.name + (rms ? "-rms" : "");
 }
 
-/// Adds what an entry needs to the demands of those before it. All samples of a survey share one characteristic length
-/// and one working mode.
+/// Adds the request of an entry to that of the previous ones. All samples of a workspace analysis have one
+/// characteristic length and one working mode.
 void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest& request) {
   if (own.needs_jacobian()) {
     if (request.needs_jacobian() && own.characteristic_length != request.characteristic_length)
@@ -51,7 +63,7 @@ void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest
   for (const PoseQuantity* const quantity : own.fields) request.add(*quantity);
 }
 
-/// The survey that an entry reads: 0 the workspace's, k that of the k-th region, which `region = ".."` names.
+/// Index of the workspace analysis that an entry uses: 0 for the workspace, k for the k-th region.
 std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, const StudyDraft& draft) {
   const auto named = table.find("region");
   if (!named) return 0;
@@ -62,14 +74,13 @@ std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, c
   return static_cast<std::size_t>(std::ranges::find(names, named->word(names)) - names.begin()) + 1;
 }
 
-/// Refuses an entry that the mechanism cannot serve.
+/// Refuses an entry that the mechanism does not support.
 template <class Entry>
 void expect_served(const ConfigValue& table, const Entry& entry, const StudyDraft& draft) {
   if (const Unsupported reason = entry.refusal(*draft.parts.mechanism)) throw table.find("type")->refusal(*reason);
 }
 
-/// What an [[objective]], [[constraint]] or [[report]] made from an entry of the catalogue of objectives has in common.
-/// It is listed in `entries`, without its role.
+/// Makes a quantity from an entry of the catalogue of objectives, and appends it to `entries`, without its role.
 NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, std::vector<StudyEntry>& entries,
                              StudyDraft& draft) {
   const Options options = read_options(table, entry.options);
@@ -95,29 +106,26 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
   });
 }
 
-/// [[objective]], or a [[report]].
-void read_objective(const ConfigValue& table, StudyDraft& draft, bool optimised) {
+/// Reads an [[objective]] or an [[output]].
+void read_objective(const ConfigValue& value, StudyDraft& draft, bool optimised) {
   const auto& catalogue = draft.catalogues.objectives;
-  const ObjectiveEntry& entry = *find_named(catalogue, type_of(table, "type", names_of(catalogue)));
-  std::vector<std::string> keys = {"type", "name", "region"};
-  if (optimised) keys.insert(keys.begin() + 2, "direction");
-  allow_options(table, keys, entry.options);
-  auto& entries = optimised ? draft.study.objectives : draft.study.reports;
+  const ObjectiveEntry& entry = *find_named(catalogue, value.choice("type", names_of(catalogue)));
+  const ConfigValue table = value.table(entry.options);
+  auto& entries = optimised ? draft.study.objectives : draft.study.outputs;
   NamedQuantity made = make_objective(table, entry, entries, draft);
   std::string role = in_unit(made.unit);
   if (optimised) {
     if (const auto direction = table.find("direction"))
-      made.direction =
-          direction->word({"minimise", "maximise"}) == "maximise" ? Direction::maximise : Direction::minimise;
+      made.direction = direction->word() == "maximise" ? Direction::maximise : Direction::minimise;
     role = (made.direction == Direction::maximise ? "maximise, " : "minimise, ") + role;
   }
   entries.back().role = role;
   (optimised ? draft.parts.objectives : draft.parts.reports).push_back(std::move(made));
 }
 
-/// An objective as a constraint: its value has a least or a greatest allowed value.
-void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entry, StudyDraft& draft) {
-  allow_options(table, {"type", "name", "min", "max", "region"}, entry.options);
+/// Reads an objective as a constraint: with a minimum or maximum of its value.
+void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entry, StudyDraft& draft) {
+  const ConfigValue table = value.described_by(bounded_objective_keys(), entry.options);
   const auto least = table.find("min"), greatest = table.find("max");
   if (!least && !greatest)
     throw table.refusal("the objective " + entry.name + " becomes a constraint by min = .. or max = ..; give one");
@@ -129,14 +137,14 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
   const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
   made.meaning = "margin of " + role + ": " + made.meaning;
   draft.study.constraints.back().role = role;
-  // Those that read no survey come first: they may save it.
+  // Constraints without a workspace analysis come first: the analysis is skipped if they are violated.
   (entry.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
-/// A constraint that gives a margin, of the design alone or of its survey.
-void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
+/// Reads a constraint with a margin, of the design alone or of its workspace analysis.
+void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& entry, StudyDraft& draft) {
   auto specs = entry.options(draft.info());
-  allow_options(table, {"type", "name"}, specs);
+  const ConfigValue table = value.described_by(margin_constraint_keys(), specs);
   expect_served(table, entry, draft);
   // The margin's unit may follow from some options and be that of others, which are read after it is known.
   auto first = specs;
@@ -163,7 +171,7 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
   (made.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
-/// "motion-cycle" for a motion called cycle; letters that names of constraints cannot have are dashes.
+/// "motion-cycle" for a motion called cycle; characters that are invalid in names of constraints become dashes.
 std::string implied_name(const std::string& motion, const std::vector<StudyEntry>& before) {
   std::string name = std::string(kMotionConstraint) + "-" + motion;
   for (char& letter : name)
@@ -172,20 +180,20 @@ std::string implied_name(const std::string& motion, const std::vector<StudyEntry
   return name;
 }
 
-/// Adds the constraint that a motion keeps every limit of a pose: once per motion that entries name, and per working
-/// mode; not where the study has it already or does not want it.
+/// Adds the constraint that a motion satisfies every limit of poses: one for each motion that entries use, and each
+/// working mode, unless the study has the constraint already or the motion has follow = false.
 void add_motion_constraints(StudyDraft& draft) {
   const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, kMotionConstraint);
   if (!entry || draft.implied == ImpliedConstraints::left_out) return;
   struct Use {
-    std::int64_t samples = 0;  ///< the most that an entry looks at
+    std::int64_t samples = 0;  ///< maximum over the entries
     std::vector<std::string> names;
   };
   Study& study = draft.study;
   for (const NamedMotion& named : study.motions) {
     std::map<std::string, Use> by_mode;
     bool is_stated = contains(study.unfollowed_motions, named.name);
-    for (const auto* const list : {&study.objectives, &study.constraints, &study.reports})
+    for (const auto* const list : {&study.objectives, &study.constraints, &study.outputs})
       for (const StudyEntry& user : *list) {
         if (!user.options.has("motion") || user.options.word("motion") != named.name) continue;
         is_stated = is_stated || user.type == kMotionConstraint;
@@ -215,10 +223,10 @@ void add_motion_constraints(StudyDraft& draft) {
   }
 }
 
-void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
+void read_pose_constraint(const ConfigValue& value, const ConstraintEntry& entry, StudyDraft& draft) {
   const MechanismInfo& info = draft.info();
   const auto specs = entry.options(info);
-  allow_options(table, {"type"}, specs);
+  const ConfigValue table = value.described_by(pose_constraint_keys(), specs);
   expect_served(table, entry, draft);
   const Options options = read_options(table, specs);
   LimitSpec& all = draft.parts.plan.limits;
@@ -246,8 +254,8 @@ void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_leve
   std::vector<std::string> names = names_of(entries);
   for (const auto& name : names_of(draft.catalogues.objectives))
     if (!contains(names, name)) names.push_back(name);
-  for (const auto& table : tables_of(root, "constraint")) {
-    const std::string& type = type_of(table, "type", names);
+  for (const auto& table : tables_in(root, "constraint")) {
+    const std::string& type = table.choice("type", names);
     const ConstraintEntry* const entry = find_named(entries, type);
     if ((entry && entry->pose_level()) != pose_level) continue;
     if (pose_level)
@@ -259,7 +267,7 @@ void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_leve
   }
 }
 
-/// A threshold that is called like a parameter takes its place, so such a parameter may not vary beside it.
+/// A threshold replaces the parameter of the same name, so this parameter must not be a variable.
 void check_thresholds(const ConfigValue& root, const StudyDraft& draft) {
   const auto variables = root.find("variables");
   if (!variables) return;
@@ -279,9 +287,9 @@ void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
 }
 
 void read_quantities(const ConfigValue& root, StudyDraft& draft) {
-  for (const auto& table : tables_of(root, "objective")) read_objective(table, draft, true);
+  for (const auto& table : tables_in(root, "objective")) read_objective(table, draft, true);
   read_constraints(root, draft, false);
-  for (const auto& table : tables_of(root, "report")) read_objective(table, draft, false);
+  for (const auto& table : tables_in(root, "output")) read_objective(table, draft, false);
   add_motion_constraints(draft);
 }
 

@@ -1,27 +1,25 @@
-// [workspace]: how a design's workspace is surveyed, and the short form of its limits.
+// Reader of [workspace] and [[region]]: method and extent of a workspace analysis, and the short form of limits.
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/config/assignments.hpp"
-#include "engine/config/sections.hpp"
-#include "engine/config/sweep_section.hpp"
+#include "engine/config/study_draft.hpp"
+#include "engine/config/study_keys.hpp"
+#include "engine/config/swept_coordinates.hpp"
 #include "engine/math/portable.hpp"
 
 namespace pkm {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid: the one of the 4PPa-2PaR paper
-constexpr std::int64_t kHeldCells = 32;  // and its default where the fixed coordinate is integrated over
-constexpr std::int64_t kMostCellsPerAxis = 1 << 20;
-constexpr std::int64_t kMostCells = std::int64_t{1} << 28;  // a voxel map takes a byte per cell
-constexpr double kFinestTolerance = 1e-13, kCoarsestTolerance = 0.1;
-constexpr std::int64_t kMostNodes = 200;
-constexpr double kUsualGap = 1e-2;  // of certain = true
+constexpr std::int64_t kIntegratedCells = 32;                   // default along a coordinate that is integrated over
+constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;       // a voxel map takes a byte per cell
+constexpr double kDefaultGap = 1e-2;                            // gap of certified = true
 
 bool integrated(const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; }
 
-/// The coordinates that have cells: the swept ones, then those that are integrated over.
+/// Names of the coordinates with cells: the swept ones, then those that are integrated over.
 std::vector<std::string> names_with_cells(const MechanismInfo& info, const WorkspacePlan& plan) {
   std::vector<std::string> names = coordinate_names(info, sweep_of(info, plan).swept);
   for (const FixedCoordinate& fixed : plan.fixed)
@@ -29,7 +27,7 @@ std::vector<std::string> names_with_cells(const MechanismInfo& info, const Works
   return names;
 }
 
-/// Sets the cells of a plan of voxels, each number being cells_of(name). Returns their product along what is swept.
+/// Sets the cells of a plan of voxels to cells_of(name). @return the product along the swept coordinates
 template <class CellsOf>
 std::int64_t set_cells(const MechanismInfo& info, WorkspacePlan& plan, const CellsOf& cells_of) {
   const std::vector<int>& swept = sweep_of(info, plan).swept;
@@ -42,18 +40,16 @@ std::int64_t set_cells(const MechanismInfo& info, WorkspacePlan& plan, const Cel
 }
 
 const std::string kFewerCells =
-    "at most " + std::to_string(kMostCells) + " (a voxel map takes a byte of memory per cell)";
+    "at most " + std::to_string(kMaxCells) + " (a voxel map takes a byte of memory per cell)";
 
 void read_cells(const ConfigValue& table, const MechanismInfo& info, WorkspacePlan& plan) {
-  const std::vector<std::string> known = names_with_cells(info, plan);
-  table.expect_table("a table of cell numbers for " + join(known)).allow(known, "coordinate");
-  const std::int64_t all = set_cells(info, plan, [&table](const std::string& name) {
-    return table.at(name, "a number of cells").integer(1, kMostCellsPerAxis);
-  });
-  if (all > kMostCells) throw table.error_of(std::to_string(all) + " cells", kFewerCells);
+  const ConfigValue cells = table.table_of_names(names_with_cells(info, plan));
+  const std::int64_t all = set_cells(
+      info, plan, [&cells](const std::string& name) { return cells.at(name, "a number of cells").integer(); });
+  if (all > kMaxCells) throw table.error_of(std::to_string(all) + " cells", kFewerCells);
 }
 
-/// --cells, of the workspace alone: regions keep theirs.
+/// Applies --cells to the workspace; regions keep their cells.
 void override_cells(StudyDraft& draft) {
   WorkspacePlan& plan = draft.parts.plan;
   for (const StudyChanges& changes : draft.changes) {
@@ -67,13 +63,13 @@ void override_cells(StudyDraft& draft) {
     const std::int64_t all = set_cells(draft.info(), plan, [&](const std::string& name) {
       return cells[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
     });
-    if (all > kMostCells) throw ConfigError(place, std::to_string(all) + " cells", kFewerCells);
+    if (all > kMaxCells) throw ConfigError(place, std::to_string(all) + " cells", kFewerCells);
   }
 }
 
-Box read_box(const ConfigValue& table, const MechanismInfo& info, const std::vector<int>& swept) {
+Box read_box(const ConfigValue& given, const MechanismInfo& info, const std::vector<int>& swept) {
   const std::vector<std::string> known = coordinate_names(info, swept);
-  table.expect_table("a table of ranges [from, to] for " + join(known)).allow(known, "coordinate");
+  const ConfigValue table = given.table_of_names(known);
   Box box;
   box.fill({0, 1});
   for (std::size_t k = 0; k < swept.size(); ++k) {
@@ -91,29 +87,30 @@ Box read_box(const ConfigValue& table, const MechanismInfo& info, const std::vec
   return box;
 }
 
-void read_nodes(const ConfigValue& table, const MechanismInfo& info, const Sweep& sweep, ColumnOptions& columns) {
+void read_nodes(const ConfigValue& given, const MechanismInfo& info, const Sweep& sweep, ColumnOptions& columns) {
   std::vector<int> others = sweep.swept;
   std::erase(others, sweep.column);
   const std::vector<std::string> names = coordinate_names(info, others);
-  table.expect_table("a table of node numbers for " + join(names)).allow(names, "coordinate");
+  const ConfigValue table = given.table_of_names(names);
   for (std::size_t k = 0; k < names.size(); ++k)
-    columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer(1, kMostNodes));
+    columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer());
 }
 
-/// certain = true, or a gap.
-std::optional<double> read_certain(const ConfigValue& value, const Mechanism& mechanism) {
+/// Reads certified = true, or a gap.
+std::optional<double> read_certified(const ConfigValue& value, const Mechanism& mechanism) {
   const std::string expected = "true, false, or the gap of the bounds: a number between 0 and 2";
   if (value.is_flag() && !value.flag()) return {};
   if (value.is_text() || value.is_list() || value.is_table()) throw value.error(expected);
-  const double gap = value.is_flag() ? kUsualGap : value.number("1");
+  const double gap = value.is_flag() ? kDefaultGap : value.number("1");
   if (!(gap > 0 && gap < 2)) throw value.error(expected);
   if (!mechanism.bounds())
-    throw value.refusal("certain bounds are of mechanisms from files, whose formulas can be computed over intervals; " +
-                        mechanism.info().name + " is written in C++");
+    throw value.refusal(
+        "certified bounds are of mechanisms from files, whose formulas can be computed over intervals; " +
+        mechanism.info().name + " is written in C++");
   return gap;
 }
 
-/// exact = false, true or a time [s]; 0: false.
+/// Reads exact = false, true or a time [s]. @return 0 for false
 double read_exact(const ConfigValue& value, const Mechanism& mechanism, double usual) {
   if (value.is_flag() && !value.flag()) return 0;
   const std::string expected = "true, false, or the time that exact values may take: a time > 0 s, such as \"10 s\"";
@@ -126,9 +123,9 @@ double read_exact(const ConfigValue& value, const Mechanism& mechanism, double u
   return seconds;
 }
 
-void read_limits(const ConfigValue& table, StudyDraft& draft) {
+void read_limits(const ConfigValue& given, StudyDraft& draft) {
   const auto& known = draft.info().limits;
-  table.expect_table("a table of limits, { name = threshold, ... }").allow(pkm::names_of(known), "limit");
+  const ConfigValue table = given.table_of_names(pkm::names_of(known));
   for (std::size_t i = 0; i < known.size(); ++i)
     if (const auto value = table.find(known[i].name)) {
       draft.parts.plan.limits.given[i] = value->number(known[i].unit, known[i].lower, known[i].upper);
@@ -136,12 +133,9 @@ void read_limits(const ConfigValue& table, StudyDraft& draft) {
     }
 }
 
-/// Refuses keys that are neither those of a survey, which [workspace] and [[region]] share, nor `own`.
-void allow_survey(const ConfigValue& table, const MechanismInfo& info, const std::vector<std::string>& own) {
-  std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box", "sweep"};
-  for (const int coordinate : holdable(info)) keys.push_back(axis_of(info, coordinate).name);
-  keys.insert(keys.end(), own.begin(), own.end());
-  table.allow(keys);
+/// Names of the coordinates that an analysis can fix: keys of [workspace] and [[region]].
+std::vector<std::string> fixable_coordinates(const MechanismInfo& info) {
+  return coordinate_names(info, fixable(info));
 }
 
 ConfigError of_other_method(const ConfigValue& key, const WorkspacePlan& plan) {
@@ -153,25 +147,24 @@ ConfigError of_other_method(const ConfigValue& key, const WorkspacePlan& plan) {
 void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_region, WorkspacePlan& plan) {
   const MechanismInfo& info = mechanism.info();
   const bool columns_support_box = mechanism.columns() && mechanism.columns()->supports_box();
-  if (const auto method = table.find("method"); method && method->word({"columns", "voxels"}) == "voxels")
-    plan.method = VoxelOptions{};
+  if (table.word_at("method") == "voxels") plan.method = VoxelOptions{};
   for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
     const bool of_voxels = key == "cells" || key == "box", of_both = key == "box" && columns_support_box;
     if (!of_both && of_voxels != (plan.voxels() != nullptr) && table.has(key))
       throw of_other_method(*table.find(key), plan);
   }
   const auto tolerance = table.find("tolerance"), nodes = table.find("nodes");
-  const double relative = tolerance ? tolerance->number("1", kFinestTolerance, kCoarsestTolerance) : 0;
+  const double relative = table.number_at("tolerance");
   if (tolerance && nodes)
     throw nodes->refusal("either tolerance (" + tolerance->line() + ") or nodes set the accuracy; give one of them");
   if (const auto list = table.find("sweep")) read_sweep(*list, info, plan);
-  read_held_coordinates(table, info, of_region, plan);  // decides which are swept, where the study does not say
+  read_fixed_coordinates(table, info, of_region, plan);  // decides which are swept, where the study does not say
   const Sweep& sweep = sweep_of(info, plan);
   if (auto* const columns = std::get_if<ColumnOptions>(&plan.method)) {
     if (tolerance) columns->tolerance = relative;
     if (nodes) read_nodes(*nodes, info, sweep, *columns);
   } else {
-    set_usual(info, plan);
+    set_defaults(info, plan);
     if (const auto cells = table.find("cells")) read_cells(*cells, info, plan);
   }
   if (const auto given = table.find("box"))
@@ -180,7 +173,7 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
 
 }  // namespace
 
-void set_usual(const MechanismInfo& info, WorkspacePlan& plan) {
+void set_defaults(const MechanismInfo& info, WorkspacePlan& plan) {
   if (plan.columns()) {
     plan.method = ColumnOptions();
     return;
@@ -189,7 +182,7 @@ void set_usual(const MechanismInfo& info, WorkspacePlan& plan) {
   std::copy_n(kPaperCells.begin(), sweep_of(info, plan).swept.size(), voxels.cells.begin());
   plan.method = voxels;
   for (FixedCoordinate& fixed : plan.fixed)
-    if (integrated(fixed)) fixed.cells = kHeldCells;
+    if (integrated(fixed)) fixed.cells = kIntegratedCells;
 }
 
 void read_workspace(const ConfigValue& root, StudyDraft& draft) {
@@ -197,13 +190,12 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   WorkspacePlan& plan = draft.parts.plan;
   plan.limits = no_limits(info);
   draft.study.limit_origins.resize(info.limits.size());
-  if (const auto table = root.find("workspace")) {
-    allow_survey(table->expect_table("a table [workspace]"), info, {"limits", "certain", "exact"});
+  if (const auto table = root.find_table("workspace", named_keys(workspace_keys(), fixable_coordinates(info)))) {
     read_survey(*table, *draft.parts.mechanism, false, plan);
-    if (const auto certain = table->find("certain")) {
+    if (const auto certified = table->find("certified")) {
       auto* const columns = std::get_if<ColumnOptions>(&plan.method);
-      if (!columns) throw of_other_method(*certain, plan);
-      columns->certain = read_certain(*certain, *draft.parts.mechanism);
+      if (!columns) throw of_other_method(*certified, plan);
+      columns->certified = read_certified(*certified, *draft.parts.mechanism);
     }
     if (const auto exact = table->find("exact")) {
       if (!plan.voxels()) throw of_other_method(*exact, plan);
@@ -215,8 +207,7 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
 }
 
 void read_regions(const ConfigValue& root, StudyDraft& draft) {
-  for (const auto& table : tables_of(root, "region")) {
-    allow_survey(table, draft.info(), {"name"});
+  for (const auto& table : root.tables("region", named_keys(region_keys(), fixable_coordinates(draft.info())))) {
     Region region;
     region.name = new_name(table, "region", draft.parts.regions, "the region's name");
     region.plan.limits = draft.parts.plan.limits;

@@ -1,5 +1,5 @@
 // MOTION.toml and [[motion]]: what is read, and the messages verbatim.
-#include "engine/config/motion_section.hpp"
+#include "engine/config/motion_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,7 @@ namespace {
 const MotionNames kNames = {{{"x", "m"}, {"y", "m"}, {"z", "m"}, {"phi", "rad"}}};
 
 std::shared_ptr<const Motion> read(const std::string& text, const MotionNames& names = kNames) {
-  const TomlValue document = parse_toml(text, "m.toml");
-  return read_motion(ConfigValue(document, "m.toml", ""), names);
+  return read_motion_toml(text, "m.toml", names);
 }
 
 std::string complaint(const std::string& text, const MotionNames& names = kNames) {
@@ -91,7 +90,7 @@ TEST(MotionSection, Messages) {
       {pick + "reach_tim = 0.4",
        "m.toml:9: reach_tim: found an unknown key; expected one of type, x, y, z, phi, lift, reach, lift_time, "
        "reach_time, overlap, direction, turn, wait, cycle, law; did you mean 'reach_time'?"},
-      {pick, "m.toml:1: reach_time: found nothing; expected a number > 0 s"},
+      {pick, "m.toml:1: reach_time: found nothing; expected a number > 0 s (duration of the move sideways)"},
       {pick + "reach_time = 0", "m.toml:9: reach_time: found 0; expected a number > 0 s"},
       {pick + "reach_time = \"40 mm\"",
        "m.toml:9: reach_time: found \"40 mm\"; expected a number in s, or text with a unit made of us, ms, s, min, h"},
@@ -120,9 +119,10 @@ TEST(MotionSection, Messages) {
       {points + "{ x = 1, time = 1, acceleration = 3 }]",
        "m.toml:2: points[2].time: the time follows from the peak acceleration; give one of them"},
       {points + "{ xx = 1, time = 1 }]",
-       "m.toml:2: points[2].xx: found an unknown key; expected one of x, y, z, phi, wait, time, acceleration, "
-       "angular_acceleration, speed, angular_speed; did you mean 'x'?"},
-      {"type = \"formulas\"\nx = 1", "m.toml:1: duration: found nothing; expected a number > 0 s"},
+       "m.toml:2: points[2].xx: found an unknown key; expected one of wait, time, acceleration, "
+       "angular_acceleration, speed, angular_speed, x, y, z, phi; did you mean 'x'?"},
+      {"type = \"formulas\"\nx = 1",
+       "m.toml:1: duration: found nothing; expected a number > 0 s (duration of the motion)"},
       {"type = \"formulas\"\nduration = 1\nx = 1\ny = 1\nz = 1",
        "m.toml:1: phi: found nothing; expected a formula of the time t [s], such as \"0.1*sin(2*pi*t)\", or a number "
        "in "

@@ -1,50 +1,44 @@
-// [[obstacle]] of a study.
+// Reader of [[obstacle]].
 
 #include <algorithm>
 
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
 #include "engine/core/catalogue.hpp"
 
 namespace pkm {
 namespace {
 
-/// [x, y, z], each number by `read`.
-template <class Read>
-Point3<double> three(const ConfigValue& list, const std::string& expected, const Read& read) {
+/// Three numbers [x, y, z].
+Point3<double> read_triple(const ConfigValue& table, const std::string& key, const std::string& expected) {
+  const ConfigValue list = table.at(key, expected);
   const std::vector<ConfigValue> elements = list.elements(expected);
   if (elements.size() != 3) throw list.error(expected);
-  return {read(elements[0]), read(elements[1]), read(elements[2])};
+  return {elements[0].number(), elements[1].number(), elements[2].number()};
 }
 
 Point3<double> point(const ConfigValue& table, const std::string& key) {
-  const std::string expected = "a point [x, y, z] in the base's frame";
-  return three(table.at(key, expected), expected, [](const ConfigValue& value) { return value.number("m"); });
+  return read_triple(table, key, "a point [x, y, z] in the base's frame");
 }
 
 Obstacle read_obstacle(const ConfigValue& table, const Obstacles& others) {
-  const std::string& shape = type_of(table, "shape", {"box", "sphere", "capsule"});
+  const std::string& shape = table.at("shape").word();
   const auto named = [&] { return new_name(table, "[[obstacle]]", others, "a name, for messages and pictures"); };
-  const auto radius = [&] { return table.at("radius", "its radius").positive("m"); };
+  const auto radius = [&] { return table.at("radius", "its radius").number(); };
   if (shape == "box") {
-    table.allow({"name", "shape", "centre", "size"});
-    const std::string expected = "its sizes [along x, along y, along z]";
-    Point3<double> half =
-        three(table.at("size", expected), expected, [](const ConfigValue& value) { return value.positive("m") / 2; });
-    return {named(), SolidBox{point(table, "centre"), half}};
+    const Point3<double> size = read_triple(table, "size", "its sizes [along x, along y, along z]");
+    return {named(), SolidBox{point(table, "centre"), {size[0] / 2, size[1] / 2, size[2] / 2}}};
   }
   if (shape == "sphere") {
-    table.allow({"name", "shape", "centre", "radius"});
     const Point3<double> centre = point(table, "centre");
     return {named(), Capsule<double>{{centre, centre}, radius()}};
   }
-  table.allow({"name", "shape", "from", "to", "radius"});
   return {named(), Capsule<double>{{point(table, "from"), point(table, "to")}, radius()}};
 }
 
 }  // namespace
 
 void read_obstacles(const ConfigValue& root, StudyDraft& draft) {
-  const std::vector<ConfigValue> tables = tables_of(root, "obstacle");
+  const std::vector<ConfigValue> tables = root.tables("obstacle");
   if (tables.empty()) return;
   const MechanismInfo& info = draft.info();
   WorkspacePlan& plan = draft.parts.plan;

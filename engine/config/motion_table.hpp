@@ -1,4 +1,4 @@
-// A motion as users write it: MOTION.toml, or a table [[motion]] of a study.
+// Reads motions: motion files. (Studies have tables [[motion]]: study_draft.hpp.)
 #pragma once
 
 #include <memory>
@@ -17,11 +17,9 @@ struct MotionNames {
 };
 MotionNames motion_names(const Mechanism& mechanism);
 
-/// Reads one motion.
-/// @param more_keys  keys of the table that the caller reads
-/// Throws ConfigError.
-std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const MotionNames& names,
-                                          const std::vector<std::string>& more_keys = {});
+/// Reads the text of a motion file. `file_name` is named in messages. Throws ConfigError.
+std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const std::string& file_name,
+                                               const MotionNames& names);
 
 /// Reads the file at `path`, which is one motion. Throws ConfigError, also when the file cannot be read.
 std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const MotionNames& names);

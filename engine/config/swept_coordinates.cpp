@@ -1,4 +1,4 @@
-#include "engine/config/sweep_section.hpp"
+#include "engine/config/swept_coordinates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 /// ["x", "y"]
 std::string quoted_list(const std::vector<std::string>& names) { return "[\"" + join(names, "\", \"") + "\"]"; }
 
-/// The key of a coordinate that is not swept: "middle", "integrated" or a number.
+/// Reads the value of a fixed coordinate: "middle", "integrated" or a number.
 FixedCoordinate read_fixed(const ConfigValue& value, const MechanismInfo& info, int coordinate, bool integrates) {
   using Kind = FixedCoordinate::Kind;
   const AxisInfo& axis = axis_of(info, coordinate);
@@ -37,7 +37,7 @@ FixedCoordinate read_fixed(const ConfigValue& value, const MechanismInfo& info, 
   return {.coordinate = coordinate, .kind = Kind::value, .value = number};
 }
 
-/// A list of values of a fixed coordinate.
+/// Reads a list of values of a fixed coordinate.
 FixedCoordinate read_fixed_values(const ConfigValue& list, const MechanismInfo& info, int coordinate, bool integrates) {
   const std::string expected = "a list of values of " + axis_of(info, coordinate).name;
   FixedCoordinate fixed{.coordinate = coordinate, .kind = FixedCoordinate::Kind::listed};
@@ -47,8 +47,8 @@ FixedCoordinate read_fixed_values(const ConfigValue& list, const MechanismInfo& 
   return fixed;
 }
 
-/// Whether the sweep holds all of these coordinates.
-bool holds(const Sweep& sweep, const std::vector<int>& coordinates) {
+/// Whether the sweep fixes all of these coordinates.
+bool fixes(const Sweep& sweep, const std::vector<int>& coordinates) {
   return std::ranges::all_of(coordinates, [&](int c) { return contains(sweep.fixed, c); });
 }
 
@@ -65,7 +65,7 @@ std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::
   return names;
 }
 
-std::vector<int> holdable(const MechanismInfo& info) {
+std::vector<int> fixable(const MechanismInfo& info) {
   std::vector<int> coordinates;
   for (const Sweep& sweep : info.sweeps)
     for (const int coordinate : sweep.fixed)
@@ -92,17 +92,17 @@ void read_sweep(const ConfigValue& list, const MechanismInfo& info, WorkspacePla
   throw list.error("what the mechanism " + info.name + " has a survey of: " + join(offered, " or "));
 }
 
-void read_held_coordinates(const ConfigValue& table, const MechanismInfo& info, bool of_region, WorkspacePlan& plan) {
+void read_fixed_coordinates(const ConfigValue& table, const MechanismInfo& info, bool of_region, WorkspacePlan& plan) {
   std::vector<int> named;
-  for (const int coordinate : holdable(info)) {
+  for (const int coordinate : fixable(info)) {
     const auto value = table.find(axis_of(info, coordinate).name);
     if (!value) continue;
     named.push_back(coordinate);
     if (contains(plan.swept, coordinate))
       throw value->refusal("the coordinate " + axis_of(info, coordinate).name + " is swept (" +
-                           table.find("sweep")->line() + "); it cannot be held, too");
-    if (std::ranges::none_of(info.sweeps, [&](const Sweep& sweep) { return holds(sweep, named); }))
-      throw value->refusal("a survey holds one coordinate and sweeps the others, but both " +
+                           table.find("sweep")->line() + "); it cannot be fixed, too");
+    if (std::ranges::none_of(info.sweeps, [&](const Sweep& sweep) { return fixes(sweep, named); }))
+      throw value->refusal("the analysis fixes one coordinate and sweeps the others, but both " +
                            axis_of(info, named.front()).name + " and " + axis_of(info, coordinate).name + " are given");
     const bool integrates = std::ranges::any_of(
         info.sweeps, [&](const Sweep& sweep) { return sweep.integrates && contains(sweep.fixed, coordinate); });

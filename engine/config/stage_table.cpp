@@ -1,12 +1,12 @@
-// [[stage]]: optimisers with their options, checked against what the problem asks of them.
+// Reader of [[stage]]: optimisers with their options. Checks that they support the problem.
 
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
 namespace {
 
-/// Names what the optimiser can do and what the study asks for.
+/// Why the optimiser does not support the problem; empty if it does.
 Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, const DesignProblem& problem) {
   const ProblemParts& parts = problem.parts();
   const Capabilities can = entry.capabilities(options);
@@ -32,7 +32,7 @@ Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, cons
   return {};
 }
 
-/// What an option has that the study does not give, beside the others as they are.
+/// The default of an option, given the other options.
 std::optional<OptionValue> default_of(const std::string& name, const OptimiserEntry& entry, const Options& options,
                                       const DesignSpace& space) {
   Options others;
@@ -43,7 +43,7 @@ std::optional<OptionValue> default_of(const std::string& name, const OptimiserEn
   return found == others.values().end() ? std::nullopt : std::optional(found->second);
 }
 
-/// The designs that a stage is to start from lie in the space that it searches.
+/// Refuses initial designs outside the bounds of the variables.
 void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpace& space) {
   for (const OptionSpec& spec : stage.specs) {
     if (spec.field_names != FieldNames::variables || !table.has(spec.name)) continue;
@@ -61,11 +61,14 @@ void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpa
 
 void read_stages(const ConfigValue& root, StudyDraft& draft) {
   const auto names = names_of(draft.catalogues.optimisers);
-  const auto tables = tables_of(root, "stage");
+  const auto list = root.find("stage");
+  const std::string expected = "a list of tables, each written [[stage]]";
+  const auto tables = list ? list->elements(expected) : std::vector<ConfigValue>();
   if (tables.empty()) root.at("stage", "at least one [[stage]] with optimiser = one of " + join(names));
-  for (const auto& table : tables) {
-    const OptimiserEntry& entry = *find_named(draft.catalogues.optimisers, type_of(table, "optimiser", names));
-    allow_options(table, {"optimiser"}, entry.options);
+  for (const auto& each : tables) {
+    const OptimiserEntry& entry =
+        *find_named(draft.catalogues.optimisers, each.expect_table(expected).choice("optimiser", names));
+    const ConfigValue table = each.table(entry.options);
     // The unit of the objective that an optimiser works on; of several there is no one unit.
     const auto& objectives = draft.parts.objectives;
     auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");

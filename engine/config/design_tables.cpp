@@ -1,16 +1,16 @@
-// [mechanism], [variables], [baseline]: which machine, what of it varies, what it is compared with.
+// Readers of [mechanism], [variables] and [baseline]: mechanism, parameters that vary, design to compare with.
 
 #include <algorithm>
 
 #include "engine/config/assignments.hpp"
 #include "engine/config/mechanism_file.hpp"
-#include "engine/config/sections.hpp"
+#include "engine/config/study_draft.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
 namespace {
 
-/// The names in a table, which has to know them all.
+/// The parameters that a table names. Refuses unknown names and names that occur twice.
 std::vector<std::string> parameters_in(const ConfigValue& table, bool of_tables, const std::vector<Parameter>& known) {
   std::vector<std::string> keys = table.dotted_keys(of_tables);
   const std::vector<std::string> names = names_of(known);
@@ -23,7 +23,7 @@ std::vector<std::string> parameters_in(const ConfigValue& table, bool of_tables,
   return keys;
 }
 
-/// Parameters of one limb that the study names, or the command line.
+/// Collects the parameters of single limbs that the study or the command line names.
 void find_limb_parameters(const ConfigValue& root, StudyDraft& draft) {
   std::vector<LimbParameter>& all = draft.limb_parameters;
   const auto add = [&all](const LimbParameter& own) {
@@ -39,7 +39,7 @@ void find_limb_parameters(const ConfigValue& root, StudyDraft& draft) {
   for (const StudyChanges& changes : draft.changes) std::ranges::for_each(limb_parameters(changes), add);
 }
 
-/// Own parameters of limbs that `given` does not have are what that of all is.
+/// Sets the parameters of single limbs that are not given to the values of the common parameters.
 template <class Given>
 void follow(const StudyDraft& draft, const Given& given, std::vector<double>& values) {
   const auto& known = draft.info().parameters;
@@ -50,18 +50,16 @@ void follow(const StudyDraft& draft, const Given& given, std::vector<double>& va
     if (!given(own.name())) values[number(own.name())] = values[number(own.parameter)];
 }
 
-/// Overwrites the parameters that `table` names.
+/// Overwrites the values of the parameters that `table` names.
 void read_parameters(const ConfigValue& table, const std::vector<Parameter>& known, std::vector<double>& values) {
-  table.expect_table("a table of parameters, { name = value, ... }");
   for (const auto& key : parameters_in(table, false, known)) {
     const Parameter& p = *find_named(known, key);
     values[static_cast<std::size_t>(&p - known.data())] = table.find(key)->number(p.unit, p.lower, p.upper);
   }
 }
 
-Variable read_variable(const ConfigValue& table, const Parameter& parameter) {
-  table.expect_table("a table { min = .., max = .., step = .. (if discrete) }");
-  table.allow({"min", "max", "step"});
+Variable read_variable(const ConfigValue& value, const Parameter& parameter) {
+  const ConfigValue table = value.table();
   const auto bound = [&](const char* key) {
     return table.at(key, range_text("a number", parameter.lower, parameter.upper, parameter.unit))
         .number(parameter.unit, parameter.lower, parameter.upper);
@@ -78,7 +76,7 @@ Variable read_variable(const ConfigValue& table, const Parameter& parameter) {
   return variable;
 }
 
-/// The variable as a study file records it, where this is one.
+/// The variable as a study file records it; `of_text` if there is no record.
 Variable recorded_variable(const StudyDraft& draft, const Variable& of_text, const Parameter& parameter) {
   for (const StudyChanges& changes : draft.changes)
     if (const Variable* const recorded = find_named(changes.recorded_variables, of_text.name)) {
@@ -109,8 +107,7 @@ std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDr
   std::vector<std::string> names;
   for (const auto& mechanism : draft.catalogues.mechanisms) names.push_back(mechanism.name());
   const std::string either = "type = one of " + join(names) + ", or file = the name of a mechanism's file";
-  const ConfigValue table = root.at("mechanism", "a table [mechanism] with " + either);
-  table.expect_table("a table [mechanism]").allow({"type", "file", "masses", "parameters"});
+  const ConfigValue table = root.at("mechanism", "a table [mechanism] with " + either).table();
   const auto type = table.find("type"), file = table.find("file");
   if (type && file)
     throw file->refusal("the mechanism is also given by mechanism.type (" + type->line() +
@@ -129,7 +126,7 @@ std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDr
 
 void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
   draft.parts.mechanism = find_mechanism(root, draft);
-  const ConfigValue table = *root.find("mechanism");
+  const ConfigValue table = *root.find_table("mechanism");
   if (const auto masses = table.find("masses")) {
     const Dynamics* const dynamics = draft.parts.mechanism->dynamics();
     if (!dynamics) throw masses->refusal("the mechanism " + draft.info().name + " has no masses");
@@ -137,7 +134,7 @@ void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
   }
 
   for (const auto& parameter : draft.info().parameters) draft.parts.parameters.push_back(parameter.nominal);
-  const auto fixed = table.find("parameters");
+  const auto fixed = table.find_table("parameters");
   if (fixed) read_parameters(*fixed, draft.info().parameters, draft.parts.parameters);
   override_parameters(root, draft);
   const auto given = [&](const std::string& name) {
@@ -155,8 +152,7 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
   const ConfigValue mechanism = *root.find("mechanism");
   std::vector<Variable> variables;
   std::vector<double> nominal = draft.parts.parameters;
-  if (const auto table = root.find("variables")) {
-    table->expect_table("a table [variables]");
+  if (const auto table = root.find_table("variables")) {
     const auto fixed = mechanism.find("parameters");
     for (const auto& key : parameters_in(*table, true, known)) {
       const ConfigValue entry = *table->find(key);
@@ -175,7 +171,7 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
 }
 
 void read_baseline(const ConfigValue& root, StudyDraft& draft) {
-  const auto table = root.find("baseline");
+  const auto table = root.find_table("baseline");
   if (!table) return;
   std::vector<double> values = draft.parts.parameters;
   read_parameters(*table, draft.info().parameters, values);

@@ -1,0 +1,164 @@
+// Keys of [[limb]].
+
+#include <algorithm>
+
+#include "engine/config/key_specs.hpp"
+#include "engine/config/mechanism_keys.hpp"
+
+namespace pkm {
+namespace {
+
+using Keys = std::vector<OptionSpec>;
+
+bool has_length(const std::string& part) { return part == "crank" || part == "rod" || part.ends_with("_link"); }
+bool is_telescopic(const std::string& part) { return part == "cylinder" || part == "piston"; }
+
+OptionSpec frame_key(const std::string& name, const std::string& of) {
+  return {.name = name,
+          .kind = OptionKind::word,
+          .initial = "base",
+          .choices = {"base", "platform"},
+          .meaning = "frame in which `" + of + "` is given"};
+}
+
+OptionSpec passive_joint_key(const std::string& name, const std::string& end) {
+  static const TableSpec spec = {
+      .meaning = "angle between the axis and the rod",
+      .keys = {required(direction_key("axis", "axis [x, y, z]")), frame_key("in", "axis"),
+               formula_key("min", "rad", "minimum angle"), formula_key("max", "rad", "maximum angle")}};
+  return table_key(name, spec, "limits of the passive joint at the " + end + " end of the rod");
+}
+
+OptionSpec pair_key() {
+  static const TableSpec spec = {
+      .meaning = "pair of parallel rods",
+      .keys = {
+          required(formula_key("spacing", "m", "distance of the rods")),
+          direction_key("along",
+                        "sliders, required: direction from one rod to the other; of cranks it is the crank's axis")}};
+  return table_key("pair", spec, "the rod is a pair of parallel rods with ball joints");
+}
+
+OptionSpec branch_key() {
+  return {.name = "branch",
+          .kind = OptionKind::word,
+          .choices = {"+", "-"},
+          .meaning = "solution of the limb in the default working mode"};
+}
+
+/// Keys of limbs in closed form.
+Keys geometry_keys() {
+  static const TableSpec copies = {.meaning = "rotated copies of the limb",
+                                   .keys = {{.name = "number",
+                                             .kind = OptionKind::integer,
+                                             .lower = 1,
+                                             .upper = 8,
+                                             .meaning = "number of copies, equally spaced"},
+                                            {.name = "angles",
+                                             .kind = OptionKind::list,
+                                             .unit = "rad",
+                                             .meaning = "angles of the copies, instead of `number`",
+                                             .parts = {{.unit = "rad"}}},
+                                            {.name = "about",
+                                             .kind = OptionKind::word,
+                                             .required = true,
+                                             .choices = {"x", "y", "z"},
+                                             .meaning = "axis of rotation"}}};
+  return {
+      table_key("copies", copies, "the limb is copied, rotated about an axis: arm1, arm2, .."),
+      required(point_key("base", "base point A [x, y, z]")),
+      point_key("platform", "platform's point B [x, y, z] in the platform's frame"),
+      point_key("end", "end point B in the base's frame, instead of `platform`; formulas of the pose are possible"),
+      direction_key("across", "normal of the plane in which the limb's links move: its joints are revolutes about it"),
+      frame_key("across_in", "across"),
+      formula_key("radius", "m", "radius of the links, for pictures and clearance"),
+      passive_joint_key("joint_base", "base"),
+      passive_joint_key("joint_platform", "platform"),
+      text_key("joint_name", "name of the joint; default: the limb's"),
+      text_key("end_on", "body that carries the limb's `end`: \"platform\" or the name of a [[body]]")};
+}
+
+Keys all(std::initializer_list<Keys> lists) {
+  Keys keys;
+  for (const Keys& list : lists) keys.insert(keys.end(), list.begin(), list.end());
+  return keys;
+}
+
+std::vector<TableVariant> drives() {
+  const OptionSpec rod = formula_key("rod", "m", "length of the rod");
+  const Keys slider = {direction_key("direction", "direction of the slide"),
+                       direction_key("along", "direction of the slide, for a limb with `links`"),
+                       rod,
+                       formulas_key("links", "m", 2, "lengths [l_1, l_2] of two links in the plane normal to `along`"),
+                       direction_key("axis", "axis about which `branch` counts the angle of `links`; default: `along`"),
+                       branch_key(),
+                       pair_key()};
+  const Keys crank = {required(direction_key("axis", "axis of the crank's pivot")),
+                      required(direction_key("zero", "direction of the crank at joint value 0")),
+                      required(formula_key("crank", "m", "length of the crank")),
+                      required(rod),
+                      required(branch_key()),
+                      pair_key()};
+  static const TableSpec joints = {
+      .meaning = "joints with their formulas",
+      .keys = {},
+      .named = {formula_key("", kUnitOfEntry, "joint coordinate as a formula of the pose")},
+      .noun = "joint"};
+  const Keys formulas = {
+      table_key("joints", joints, "several joints: formulas of the pose"),
+      formula_key("joint", kUnitOfEntry, "one joint: formula of the pose"),
+      {.name = "unit",
+       .kind = OptionKind::word,
+       .initial = "m",
+       .choices = {"m", "rad"},
+       .meaning = "unit of the joints"},
+      formulas_key("closures", "1", 0, "loop-closure equations in the pose and the joints' names, one for each joint")};
+  return {{"telescope", "leg of variable length", all({geometry_keys(), mass_keys("cylinder"), mass_keys("piston")})},
+          {"slider", "slide on a rail, alone or with a rod or two links",
+           all({geometry_keys(), mass_keys("slider"), mass_keys("rod"), mass_keys("first_link"),
+                mass_keys("second_link"), slider})},
+          {"crank", "crank with a rod", all({geometry_keys(), mass_keys("crank"), mass_keys("rod"), crank})},
+          {"formula", "joints given by formulas", formulas}};
+}
+
+}  // namespace
+
+std::vector<OptionSpec> mass_keys(const std::string& part) {
+  static const TableSpec section = {.meaning = "tube or rod of some material",
+                                    .keys = {required(formula_key("density", "kg/m^3", "density of the material")),
+                                             required(formula_key("outer", "m", "outer diameter")),
+                                             formula_key("inner", "m", "inner diameter; default: 0")}};
+  std::string shown = part;
+  std::ranges::replace(shown, '_', ' ');
+  Keys keys = {formula_key(part + "_mass", "kg", "mass of the " + shown)};
+  if (part != "slider")
+    keys.push_back(formula_key(part + "_inertia", "kg m^2",
+                               "inertia of the " + shown + " about its centre of mass, across its axis; default: " +
+                                   (is_telescopic(part) ? "0" : "that of a thin rod")));
+  if (has_length(part)) {
+    keys.push_back(formula_key(part + "_mass_per_length", "kg/m", "mass of the " + shown + " per length"));
+    keys.push_back(table_key(part + "_section", section, "cross-section and material of the " + shown));
+  }
+  if (is_telescopic(part))
+    keys.push_back(formula_key(part + "_centre", "m",
+                               std::string("distance of its centre of mass from ") + (part == "cylinder" ? "A" : "B")));
+  return keys;
+}
+
+const TableSpec& limb_keys() {
+  static const TableSpec spec = {
+      .header = "[[limb]]",
+      .meaning = "a limb, its joint and its links",
+      .keys = {required(text_key("name", "name of the limb, and of its joint")),
+               {.name = "drive",
+                .kind = OptionKind::word,
+                .required = true,
+                .choices = {"telescope", "slider", "crank", "formula"},
+                .meaning = "kind of the actuated joint"},
+               formulas_key("range", kUnitOfEntry, 2, "range [minimum, maximum] of the joint")},
+      .choice = "drive",
+      .variants = drives()};
+  return spec;
+}
+
+}  // namespace pkm

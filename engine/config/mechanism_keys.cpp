@@ -1,0 +1,297 @@
+#include "engine/config/mechanism_keys.hpp"
+
+#include "engine/config/key_specs.hpp"
+
+namespace pkm {
+namespace {
+
+OptionSpec meaning_key() { return text_key("meaning", "one line of text"); }
+OptionSpec unit_key(const std::string& meaning = "product of SI units; default: \"1\"") {
+  return text_key("unit", meaning);
+}
+OptionSpec number_key(const std::string& name, const std::string& meaning) {
+  return {.name = name, .unit = kUnitOfEntry, .meaning = meaning};
+}
+
+const TableSpec& name_table() {
+  static const TableSpec spec = {
+      .header = "[mechanism]",
+      .meaning = "name and origin",
+      .keys = {required(text_key("name", "name of letters, digits, '-' and '_'")),
+               text_key("title", "what it is, in one line"), text_key("source", "where it was published")}};
+  return spec;
+}
+
+const TableSpec& parameter_table() {
+  static const TableSpec spec = {
+      .meaning = "a parameter",
+      .keys = {required(number_key("default", "default value; its unit is that of the parameter")),
+               required(number_key("min", "minimum allowed value")),
+               required(number_key("max", "maximum allowed value")), meaning_key(),
+               unit_key("product of SI units, if the default has none")}};
+  return spec;
+}
+
+/// @param header  "[parameters]"; "" in [masses.NAME]
+TableSpec parameters_table(const std::string& header) {
+  static const TableSpec limb = {.meaning = "parameters of this limb alone",
+                                 .keys = {},
+                                 .named = {table_key("", limb_parameter_keys())},
+                                 .noun = "parameter"};
+  return {.header = header,
+          .meaning = "dimensions, masses and other numbers that a design may choose",
+          .keys = {},
+          .named = {{.kind = OptionKind::any_of,
+                     .meaning = "a parameter; a table of a limb's name has parameters of this limb alone",
+                     .parts = {table_key("", parameter_table()), table_key("", limb)}}},
+          .noun = "parameter"};
+}
+
+/// @param header  "[let]"; "" in [masses.NAME]
+TableSpec let_table(const std::string& header) {
+  return {.header = header,
+          .meaning = "named formulas, in their order",
+          .keys = {},
+          .named = {formula_key("", "1", "formula of the names defined above it, in SI")},
+          .noun = "name"};
+}
+
+const TableSpec& masses_table() {
+  static const TableSpec parameters = parameters_table(""), let = let_table("");
+  static const TableSpec model = {.meaning = "a mass model",
+                                  .keys = {table_key("parameters", parameters, "parameters of this mass model"),
+                                           table_key("let", let, "formulas of this mass model")}};
+  static const TableSpec spec = {.header = "[masses]",
+                                 .meaning = "alternative mass models, [masses.NAME] each; the first is the default",
+                                 .keys = {},
+                                 .named = {table_key("", model)},
+                                 .noun = "mass model"};
+  return spec;
+}
+
+const TableSpec& platform_table() {
+  static const TableSpec coordinates = {
+      .meaning = "coordinates of the platform",
+      .keys = {},
+      .named = {{.kind = OptionKind::word,
+                 .choices = {"along x", "along y", "along z", "about x", "about y", "about z"},
+                 .meaning = "direction of the translation or axis of the rotation, in the moving frame"}},
+      .noun = "coordinate"};
+  static const TableSpec size = {.meaning = "size of the mechanism",
+                                 .keys = {required(formula_key("formula", kUnitOfEntry, "formula of parameters")),
+                                          required(unit_key("unit of the size: \"m^3\"")), meaning_key()}};
+  static const TableSpec spec = {
+      .header = "[platform]",
+      .meaning = "the moving platform and the coordinates of its pose",
+      .keys = {
+          required(table_key("coordinates", coordinates,
+                             "1 to 6 coordinates; rotations about the axes of the moving frame, in their order")),
+          formula_key("characteristic_length", "m",
+                      "length that makes rotations comparable with translations in the conditioning"),
+          formula_key("characteristic_radius", "m", "radius that makes revolute drives comparable with prismatic ones"),
+          texts_key("conditioning_over", "coordinates that the conditioning includes; default: all"),
+          table_key("size", size, "size by which `workspace-ratio` divides the volume"),
+          point_key("origin", "origin of the platform's frame, if coordinates depend on others"),
+          formula_key("mass", "kg", "mass of the platform"),
+          point_key("centre", "centre of mass of the platform, where wrenches act; default: the origin"),
+          formulas_key("inertia", "kg m^2", 3,
+                       "principal moments of inertia about the centre of mass, along the platform's axes")}};
+  return spec;
+}
+
+const TableSpec& survey_table() {
+  static const TableSpec fixed = {.meaning = "default values of coordinates",
+                                  .keys = {},
+                                  .named = {formula_key("", kUnitOfEntry, "value, or formula of parameters")},
+                                  .noun = "coordinate"};
+  static const TableSpec ranges = {
+      .meaning = "ranges of coordinates",
+      .keys = {},
+      .named = {formulas_key("", kUnitOfEntry, 2, "range [from, to], formulas of parameters")},
+      .noun = "coordinate"};
+  static const TableSpec spec = {
+      .header = "[survey]",
+      .meaning = "default workspace analysis",
+      .keys = {texts_key("sweep", "swept coordinates, one to three; default: the first three"),
+               table_key("fixed", fixed,
+                         "default values of coordinates, for analyses that fix them; default: the middle of the box"),
+               table_key("box", ranges, "search box; default: the reach of the limbs, and a full rotation"),
+               table_key("reach", ranges, "ranges that contain every pose the mechanism can reach"),
+               texts_key("columns_along", "coordinates along which columns run, the preferred one first")}};
+  return spec;
+}
+
+const TableSpec& modes_table() {
+  const OptionSpec signs = {.name = "signs",
+                            .kind = OptionKind::list,
+                            .required = true,
+                            .meaning = "the possible signs, the default first",
+                            .parts = {{.kind = OptionKind::word, .choices = {"+", "-"}}}};
+  static const TableSpec sign = {
+      .meaning = "a sign with names",
+      .keys = {signs,
+               texts_key("names", "names of the signs in the names of working modes"),
+               {.name = "branch",
+                .kind = OptionKind::flag,
+                .initial = false,
+                .meaning = "the sign is selected by --branch; at most one sign has this key"}}};
+  static const TableSpec spec = {.header = "[modes]",
+                                 .meaning = "signs, +1 or -1 in formulas, which select working modes",
+                                 .keys = {},
+                                 .named = {{.kind = OptionKind::any_of,
+                                            .meaning = "the possible signs, the default first",
+                                            .parts = {signs, table_key("", sign)}}},
+                                 .noun = "sign"};
+  return spec;
+}
+
+const TableSpec& inputs_table() {
+  static const TableSpec input = {
+      .meaning = "an input",
+      .keys = {required(unit_key("unit of the input: \"rad\", \"m\", \"1\"")),
+               number_key("default", "default value; 0 if it is not given"), meaning_key()}};
+  static const TableSpec spec = {.header = "[inputs]",
+                                 .meaning = "variables besides the pose, on which quantities depend",
+                                 .keys = {},
+                                 .named = {table_key("", input)},
+                                 .noun = "input"};
+  return spec;
+}
+
+const TableSpec& quantity_table() {
+  static const TableSpec spec = {
+      .header = "[[quantity]]",
+      .meaning = "value of the design, the pose or the motion that is reported",
+      .keys = {required(text_key("name", "name of the quantity")),
+               required(formula_key("formula", kUnitOfEntry, "formula; NAME_rate is the derivative of NAME by time")),
+               unit_key(), meaning_key()}};
+  return spec;
+}
+
+const TableSpec& limit_table() {
+  static const TableSpec spec = {
+      .header = "[[limit]]",
+      .meaning =
+          "threshold of a constraint of poses that studies may set; with the name of a parameter, it replaces it",
+      .keys = {required(text_key("name", "name of the limit")),
+               unit_key("unit of the limit: \"m\", \"rad\", \"1\""),
+               meaning_key(),
+               number_key("inactive", "value that restricts nothing"),
+               number_key("min", "minimum threshold"),
+               number_key("max", "maximum threshold"),
+               formula_key("derived", kUnitOfEntry, "threshold that follows from the parameters"),
+               {.name = "constraint",
+                .kind = OptionKind::word,
+                .choices = {"interference", "singularity-margin"},
+                .meaning = "constraint that sets this limit"}}};
+  return spec;
+}
+
+const TableSpec& margin_table() {
+  const OptionSpec formula_or_list = {
+      .name = "formula",
+      .kind = OptionKind::any_of,
+      .unit = kUnitOfEntry,
+      .required = true,
+      .meaning = "a formula that is >= 0 where the pose is feasible, or a list of such formulas",
+      .parts = {formula_key("", kUnitOfEntry, ""), formulas_key("", kUnitOfEntry, 0, "")}};
+  static const TableSpec spec = {
+      .header = "[[margin]]",
+      .meaning = "constraint of poses",
+      .keys = {required(text_key("name", "name of the margin")), formula_or_list, unit_key(),
+               formula_key("shown", kUnitOfEntry,
+                           "formula with which `pose` reports the margin; default: the minimum of the list"),
+               text_key("shown_unit", "unit of `shown`; default: `unit`")}};
+  return spec;
+}
+
+const TableSpec& design_table() {
+  static const TableSpec spec = {
+      .header = "[[design]]",
+      .meaning = "constraint of the design, which studies can use",
+      .keys = {required(text_key("name", "name of the constraint")),
+               required(formula_key("formula", kUnitOfEntry,
+                                    "formula of parameters that is >= 0 if the constraint is satisfied")),
+               unit_key(),
+               meaning_key(),
+               {.name = "required",
+                .kind = OptionKind::flag,
+                .initial = false,
+                .meaning = "the constraint always applies: designs that violate it are rejected"}}};
+  return spec;
+}
+
+const TableSpec& link_table() {
+  static const TableSpec spec = {
+      .header = "[[link]]",
+      .meaning = "link besides those of the limbs, drawn and tested for clearance",
+      .keys = {
+          required(text_key("name", "name of the link")),
+          place_key("from", "one end"),
+          place_key("to", "other end"),
+          required(formula_key("radius", "m", "radius of the link")),
+          {.name = "group",
+           .kind = OptionKind::any_of,
+           .meaning =
+               "name or names of the groups of links with which it is not tested for clearance: limbs, \"platform\"",
+           .parts = {{.kind = OptionKind::word}, texts_key("", "")}},
+          {.name = "clearance", .kind = OptionKind::flag, .initial = true, .meaning = "false: the link is drawn only"},
+          formula_key("mass", "kg", "mass of the link"),
+          formula_key("inertia", "kg m^2", "inertia about the centre of mass, across the link")}};
+  return spec;
+}
+
+const TableSpec& body_table() {
+  static const TableSpec spec = {
+      .header = "[[body]]",
+      .meaning = "body with a mass, besides limbs, links and platform",
+      .keys = {
+          required(text_key("name", "name of the body")), place_key("centre", "centre of mass"),
+          required(formula_key("mass", "kg", "mass of the body")),
+          formulas_key("inertia", "kg m^2", 3, "principal moments of inertia about the centre of mass"),
+          text_key("rotation", "body with which it rotates: \"platform\", a link, or a limb's part (\"arm1.rod\")")}};
+  return spec;
+}
+
+const TableSpec& joint_table() {
+  static const TableSpec spec = {.header = "[[joint]]",
+                                 .meaning = "revolute joint of two bodies, for the forces in joints",
+                                 .keys = {required(text_key("name", "name of the joint")),
+                                          {.name = "bodies",
+                                           .kind = OptionKind::list,
+                                           .required = true,
+                                           .meaning = "the two bodies that it joins",
+                                           .count = 2,
+                                           .parts = {{.kind = OptionKind::word}}},
+                                          place_key("at", "a point of its axis"),
+                                          required(direction_key("about", "its axis [x, y, z] in the base's frame"))}};
+  return spec;
+}
+
+}  // namespace
+
+const TableSpec& limb_parameter_keys() {
+  static const TableSpec spec = {
+      .meaning = "a parameter of this limb alone; unit, range and default that are not given are those of all limbs",
+      .keys = {number_key("default", "default value"), number_key("min", "minimum allowed value"),
+               number_key("max", "maximum allowed value"), meaning_key()}};
+  return spec;
+}
+
+const TableSpec& mechanism_keys() {
+  static const TableSpec parameters = parameters_table("[parameters]"), let = let_table("[let]");
+  static const TableSpec spec = {
+      .header = "",
+      .meaning = "mechanism file of pkmopt",
+      .keys = {required(table_key("mechanism", name_table())), required(table_key("parameters", parameters)),
+               table_key("masses", masses_table()), required(table_key("platform", platform_table())),
+               table_key("survey", survey_table()), table_key("modes", modes_table()), table_key("let", let),
+               required(tables_key("limb", limb_keys())), table_key("inputs", inputs_table()),
+               tables_key("quantity", quantity_table()), tables_key("limit", limit_table()),
+               tables_key("margin", margin_table()), tables_key("design", design_table()),
+               tables_key("link", link_table()), tables_key("body", body_table()), tables_key("joint", joint_table())},
+      .noun = "table"};
+  return spec;
+}
+
+}  // namespace pkm

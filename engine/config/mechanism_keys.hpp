@@ -1,0 +1,22 @@
+// The tables and keys of mechanism files: descriptions for the reader, the JSON Schema and the reference of keys.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/core/options.hpp"
+
+namespace pkm {
+
+/// The tables of a mechanism file, as keys of the document.
+const TableSpec& mechanism_keys();
+
+/// Keys of a parameter of a single limb: "arm2.l_b = { .. }".
+const TableSpec& limb_parameter_keys();
+
+/// Keys of a [[limb]].
+const TableSpec& limb_keys();
+/// Keys of a limb's table with the mass of one of its parts: "rod_mass", ..
+std::vector<OptionSpec> mass_keys(const std::string& part);
+
+}  // namespace pkm

@@ -1,0 +1,28 @@
+// Table of the keys and options that were renamed before the first release. The refusals of old names, `pkmopt
+// upgrade` and the reading of texts in old study files use it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pkm {
+
+/// The kinds of TOML files that `pkmopt` reads and whose keys were renamed.
+enum class TextKind { study, mechanism };
+
+struct RenamedKey {
+  TextKind kind;
+  std::vector<std::string> path;  ///< table and old name: {"workspace", "certain"}; {"report"} for [[report]]
+  std::string name;               ///< present name
+};
+std::span<const RenamedKey> renamed_keys();
+
+/// The present name of the key with the path "workspace.certain"; "" if it was not renamed.
+std::string present_name(std::string_view path);
+
+/// The present name of an option such as "--held"; "" if it was not renamed.
+std::string present_option(std::string_view option);
+
+}  // namespace pkm

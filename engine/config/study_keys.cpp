@@ -1,0 +1,289 @@
+#include "engine/config/study_keys.hpp"
+
+#include "engine/config/key_specs.hpp"
+
+namespace pkm {
+namespace {
+
+/// { name = number }: values of parameters; of the parameter of one limb, arm2.l_b, in a table arm2.
+const TableSpec& parameter_values() {
+  static const TableSpec limb = {.meaning = "parameters of this limb alone",
+                                 .keys = {},
+                                 .named = {{.unit = kUnitOfEntry, .meaning = "value of the parameter"}},
+                                 .noun = "parameter"};
+  static const TableSpec all = {
+      .meaning = "parameters with their values",
+      .keys = {},
+      .named = {{.kind = OptionKind::any_of,
+                 .unit = kUnitOfEntry,
+                 .meaning = "value of the parameter",
+                 .parts = {{.unit = kUnitOfEntry}, {.kind = OptionKind::table, .table = &limb}}}},
+      .noun = "parameter"};
+  return all;
+}
+
+const TableSpec& study_table() {
+  static const TableSpec spec = {
+      .header = "[study]",
+      .meaning = "name, seed and study file",
+      .keys = {{.name = "name",
+                .kind = OptionKind::word,
+                .meaning = "name that is displayed and stored; default: the stem of the file name"},
+               {.name = "seed",
+                .kind = OptionKind::integer,
+                .initial = std::int64_t{1},
+                .lower = 0,
+                .meaning = "seed of all random numbers"},
+               {.name = "output",
+                .kind = OptionKind::word,
+                .meaning = "study file; default: the stem of the file name + .h5 in the current folder"}}};
+  return spec;
+}
+
+const TableSpec& mechanism_table() {
+  static const TableSpec spec = {
+      .header = "[mechanism]",
+      .meaning = "the robot, by `type` or by `file`",
+      .keys = {
+          {.name = "type",
+           .kind = OptionKind::word,
+           .meaning = "built-in mechanism: a name of `pkmopt list mechanisms`"},
+          {.name = "file", .kind = OptionKind::word, .meaning = "mechanism file, relative to the study's folder"},
+          {.name = "masses",
+           .kind = OptionKind::word,
+           .meaning = "mass model, one of the mechanism's `mass_models`; default: the first"},
+          table_key("parameters", parameter_values(), "fixed parameters; the others have the mechanism's defaults")}};
+  return spec;
+}
+
+const TableSpec& variables_table() {
+  static const TableSpec variable = {
+      .meaning = "bounds of a variable",
+      .keys = {{.name = "min", .unit = kUnitOfEntry, .required = true, .meaning = "lower bound"},
+               {.name = "max", .unit = kUnitOfEntry, .required = true, .meaning = "upper bound"},
+               {.name = "step",
+                .unit = kUnitOfEntry,
+                .meaning = "makes the variable discrete: min + k step",
+                .positive = true}}};
+  static const TableSpec limb = {
+      .meaning = "variables of this limb alone",
+      .keys = {},
+      .named = {{.kind = OptionKind::table, .meaning = "bounds of the parameter", .table = &variable}},
+      .noun = "parameter"};
+  static const TableSpec spec = {.header = "[variables]",
+                                 .meaning = "parameters that the optimisers may change",
+                                 .keys = {},
+                                 .named = {{.kind = OptionKind::any_of,
+                                            .meaning = "bounds of the parameter",
+                                            .parts = {{.kind = OptionKind::table, .table = &variable},
+                                                      {.kind = OptionKind::table, .table = &limb}}}},
+                                 .noun = "parameter"};
+  return spec;
+}
+
+const TableSpec& baseline_table() {
+  static const TableSpec spec = [] {
+    TableSpec values = parameter_values();
+    values.header = "[baseline]";
+    values.meaning = "design to compare with; it may lie outside the bounds";
+    return values;
+  }();
+  return spec;
+}
+
+OptionSpec type_key(const std::string& catalogue) {
+  return {.name = "type",
+          .kind = OptionKind::word,
+          .required = true,
+          .meaning = "a name of `pkmopt list " + catalogue + "`"};
+}
+OptionSpec name_key() {
+  return {
+      .name = "name", .kind = OptionKind::word, .meaning = "name, needed if a type is used twice; default: the type"};
+}
+OptionSpec region_key() {
+  return {.name = "region",
+          .kind = OptionKind::word,
+          .meaning = "name of the [[region]] to evaluate instead of the workspace"};
+}
+
+const TableSpec& objective_table() {
+  static const TableSpec spec = {.header = "[[objective]]",
+                                 .meaning = "value to be optimised; its further keys are the options of its type",
+                                 .keys = {type_key("objectives"),
+                                          name_key(),
+                                          {.name = "direction",
+                                           .kind = OptionKind::word,
+                                           .choices = {"minimise", "maximise"},
+                                           .meaning = "default: the objective's own"},
+                                          region_key()}};
+  return spec;
+}
+
+const TableSpec& constraint_table() {
+  static const TableSpec spec = {
+      .header = "[[constraint]]",
+      .meaning = "requirement; its further keys are the options of its type",
+      .keys = {{.name = "type",
+                .kind = OptionKind::word,
+                .required = true,
+                .meaning = "a name of `pkmopt list constraints`, or an objective with `min` or `max`"},
+               name_key()}};
+  return spec;
+}
+
+const TableSpec& output_table() {
+  static const TableSpec spec = {
+      .header = "[[output]]",
+      .meaning = "value that is computed and stored, but not optimised; otherwise as an objective",
+      .keys = {type_key("objectives"), name_key(), region_key()}};
+  return spec;
+}
+
+const TableSpec& reference_table() {
+  static const TableSpec design = {.meaning = "values of the variables",
+                                   .keys = {},
+                                   .named = {{.unit = kUnitOfEntry, .meaning = "value of the variable"}},
+                                   .noun = "variable"};
+  static const TableSpec values = {.meaning = "values of objectives and outputs",
+                                   .keys = {},
+                                   .named = {{.unit = kUnitOfEntry, .meaning = "published value"}},
+                                   .noun = "objective or output"};
+  static const TableSpec spec = {
+      .header = "[[reference]]",
+      .meaning = "published result for comparison",
+      .keys = {
+          {.name = "name", .kind = OptionKind::word, .required = true, .meaning = "where the result was published"},
+          table_key("design", design, "published design, by variables"),
+          table_key("values", values, "published values of objectives and outputs, by name"),
+          {.name = "seconds", .unit = "s", .lower = 0, .meaning = "published computing time"}}};
+  return spec;
+}
+
+const TableSpec& obstacle_table() {
+  const auto point = [](const std::string& name, const std::string& meaning) -> OptionSpec {
+    return {.name = name,
+            .kind = OptionKind::list,
+            .unit = "m",
+            .required = true,
+            .meaning = meaning,
+            .count = 3,
+            .parts = {{.unit = "m"}}};
+  };
+  const OptionSpec radius = {.name = "radius", .unit = "m", .required = true, .meaning = "radius", .positive = true};
+  static const TableSpec spec = {
+      .header = "[[obstacle]]",
+      .meaning = "body fixed in the base, from which links keep the clearance",
+      .keys =
+          {{.name = "name", .kind = OptionKind::word, .required = true, .meaning = "name, for messages and pictures"},
+           {.name = "shape",
+            .kind = OptionKind::word,
+            .required = true,
+            .choices = {"box", "sphere", "capsule"},
+            .meaning = "shape of the body"}},
+      .choice = "shape",
+      .variants = {
+          {"box",
+           "a box along the axes of the base",
+           {point("centre", "centre of the box [x, y, z]"),
+            {.name = "size",
+             .kind = OptionKind::list,
+             .unit = "m",
+             .required = true,
+             .meaning = "sizes [along x, along y, along z]",
+             .count = 3,
+             .parts = {{.unit = "m", .positive = true}}}}},
+          {"sphere", "a sphere", {point("centre", "centre of the sphere [x, y, z]"), radius}},
+          {"capsule",
+           "a cylinder with hemispherical ends: a post or a pipe",
+           {point("from", "one end of the axis [x, y, z]"), point("to", "other end of the axis [x, y, z]"), radius}}}};
+  return spec;
+}
+
+const TableSpec& stage_table() {
+  static const TableSpec spec = {
+      .header = "[[stage]]",
+      .meaning = "optimiser; its further keys are the options of the optimiser. Stages run one after the other",
+      .keys = {{.name = "optimiser",
+                .kind = OptionKind::word,
+                .required = true,
+                .meaning = "a name of `pkmopt list optimisers`"}}};
+  return spec;
+}
+
+const TableSpec& checkpoint_table() {
+  static const TableSpec spec = {
+      .header = "[checkpoint]",
+      .meaning = "writing of the study file during the run",
+      .keys = {
+          {.name = "every",
+           .unit = "s",
+           .lower = 0,
+           .meaning =
+               "time between checkpoints; default: adaptive, at most 2 % of the run time; 0: after each generation"}}};
+  return spec;
+}
+
+const TableSpec& final_table() {
+  static const TableSpec spec = {
+      .header = "[final]",
+      .meaning = "what follows the last stage",
+      .keys = {{.name = "round",
+                .unit = kUnitOfEntry,
+                .meaning = "the best design is rounded to multiples of this step and evaluated again",
+                .positive = true}}};
+  return spec;
+}
+
+const TableSpec& override_table() {
+  const auto texts = [](const std::string& name, const std::string& meaning) -> OptionSpec {
+    return {.name = name, .kind = OptionKind::list, .meaning = meaning, .parts = {{.kind = OptionKind::word}}};
+  };
+  static const TableSpec spec = {
+      .header = "[[override]]",
+      .meaning = "changes by the command line, appended to the text in the study file",
+      .keys = {texts("set", "values of the option --set"), texts("limit", "values of the option --limit"),
+               texts("cells", "values of the option --cells")}};
+  return spec;
+}
+
+}  // namespace
+
+const TableSpec& study_keys() {
+  static const TableSpec spec = {
+      .header = "",
+      .meaning = "study of pkmopt",
+      .keys = {table_key("study", study_table()), required(table_key("mechanism", mechanism_table())),
+               table_key("variables", variables_table()), table_key("baseline", baseline_table()),
+               table_key("workspace", workspace_keys()), tables_key("region", region_keys()),
+               tables_key("motion", motion_keys()), tables_key("objective", objective_table()),
+               tables_key("constraint", constraint_table()), tables_key("output", output_table()),
+               tables_key("reference", reference_table()), tables_key("drive_train", drive_train_keys()),
+               tables_key("obstacle", obstacle_table()), required(tables_key("stage", stage_table())),
+               table_key("checkpoint", checkpoint_table()), table_key("final", final_table()),
+               tables_key("override", override_table())},
+      .noun = "table"};
+  return spec;
+}
+
+const TableSpec& pose_constraint_keys() {
+  static const TableSpec spec = {
+      .header = "[[constraint]]", .meaning = "constraint of poses", .keys = {constraint_table().keys[0]}};
+  return spec;
+}
+
+const TableSpec& margin_constraint_keys() { return constraint_table(); }
+
+const TableSpec& bounded_objective_keys() {
+  static const TableSpec spec = {
+      .header = "[[constraint]]",
+      .meaning = "objective with a bound",
+      .keys = {constraint_table().keys[0],
+               name_key(),
+               {.name = "min", .unit = kUnitOfEntry, .meaning = "minimum allowed value of the objective"},
+               {.name = "max", .unit = kUnitOfEntry, .meaning = "maximum allowed value of the objective"},
+               region_key()}};
+  return spec;
+}
+
+}  // namespace pkm

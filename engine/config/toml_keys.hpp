@@ -1,0 +1,23 @@
+// Lexical scanner for the keys of a TOML text with their positions, so that a key can be replaced without any other
+// change of the text. toml++ gives the positions of values and of the first header of an array of tables only.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pkm {
+
+/// One part of a key as it is written: `b` of `a.b = 1`, of `[a.b]`, or of `a = { b = 1 }`.
+struct TomlKey {
+  std::vector<std::string> path;    ///< the tables that contain it, then its own name; lists have no index
+  std::size_t begin = 0, size = 0;  ///< bytes of the name in the text, without quotes
+  int line = 0;                     ///< 1-based
+};
+
+/// All keys of a text in their order. Text that is not TOML gives meaningless keys, but no error. Escape sequences in
+/// quoted keys are not decoded.
+std::vector<TomlKey> find_toml_keys(std::string_view text);
+
+}  // namespace pkm

@@ -1,0 +1,30 @@
+// Replaces old names of keys in the text of a study or of a mechanism file by the present ones (renamed_keys.hpp). All
+// other text stays as it is, with comments and layout.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/config/renamed_keys.hpp"
+
+namespace pkm {
+
+struct ReplacedKey {
+  int line = 0;          ///< 1-based
+  std::string old_path;  ///< "workspace.certain"
+  std::string name;      ///< "certified"
+};
+
+struct UpgradedText {
+  std::string text;
+  std::vector<ReplacedKey> replaced;  ///< in the order of the text; empty: `text` is unchanged
+};
+
+/// Upgrades any text. Text that is not TOML is possibly changed in a meaningless way, but remains not TOML.
+UpgradedText upgraded(const std::string& text, TextKind kind);
+
+/// Upgrades the text of a file on disk, whose kind is recognised from its contents. Throws ConfigError if the text is
+/// not TOML, or if a table contains both the old and the present name of a key.
+UpgradedText upgraded_file(const std::string& text, const std::string& file_name);
+
+}  // namespace pkm
