@@ -38,7 +38,7 @@ struct Rule {
   std::function<Interval(const Interval& x, const Interval& y, const Interval& z)> value;
   std::function<Interval(const Interval& f, const Interval& x, const Interval& y, const Interval& dx,
                          const Interval& dy)>
-      derivative;  ///< empty: not supported
+      derivative;
 };
 
 inline const std::map<std::string, Rule>& rules() {
@@ -54,13 +54,19 @@ inline const std::map<std::string, Rule>& rules() {
        {[](I x, I y, I) { return x / y; }, [](I f, I, I y, I dx, I dy) { return over(minus(dx, times(f, dy)), y); }}},
       {"^",
        {[](I x, I y, I) { return pow(x, y); },
-        [](I f, I x, I y, I dx, I dy) {
-          return times(f, plus(is(dy, 0) ? dy : times(dy, log(x)), over(times(y, dx), x)));
+        [one](I f, I x, I y, I dx, I dy) {
+          const Interval by_base = is(dx, 0) ? dx : times(times(y, pow(x, minus(y, one))), dx);
+          return plus(by_base, is(dy, 0) ? dy : times(f, times(dy, log(x))));
         }}},
       {"negative", {[](I x, I, I) { return -x; }, [](I, I, I, I dx, I) { return -dx; }}},
       {"sqrt",
        {[](I x, I, I) { return sqrt(x); }, [](I f, I, I, I dx, I) { return over(dx, times(f, Interval(2.0))); }}},
-      {"abs", {[](I x, I, I) { return magnitude(x); }, [](I, I x, I, I dx, I) { return times(sign(x), dx); }}},
+      {"abs",
+       {[](I x, I, I) { return magnitude(x); },
+        // x or -x on the whole box, even if it is 0 at an end
+        [](I, I x, I, I dx, I) { return x.lower >= 0   ? dx
+                                        : x.upper <= 0 ? -dx
+                                                       : times(sign(x), dx); }}},
       {"sign", {[](I x, I, I) { return sign(x); }, zero}},
       {"min",
        {[](I x, I y, I) { return min(x, y); },
@@ -84,7 +90,9 @@ inline const std::map<std::string, Rule>& rules() {
       {"tanh", {[](I x, I, I) { return tanh(x); }, [one](I f, I, I, I dx, I) { return times(one - square(f), dx); }}},
       {"exp", {[](I x, I, I) { return exp(x); }, [](I f, I, I, I dx, I) { return times(f, dx); }}},
       {"log", {[](I x, I, I) { return log(x); }, [](I, I x, I, I dx, I) { return over(dx, x); }}},
-      {"log10", {[](I x, I, I) { return log10(x); }, {}}},
+      {"log10",
+       {[](I x, I, I) { return log10(x); },
+        [](I, I x, I, I dx, I) { return over(dx, times(x, log(Interval(10.0)))); }}},
       {"turn", {[](I x, I, I) { return wrapped(x); }, [](I, I, I, I dx, I) { return dx; }}},
       {"<", {[](I x, I y, I) { return less(x, y); }, zero}},
       {"<=", {[](I x, I y, I) { return less_or_equal(x, y); }, zero}},
@@ -131,8 +139,7 @@ class Evaluation {
   Known differentiate(const std::vector<Interval>& inputs, std::size_t axes, Jet& jet) {
     value(inputs);
     for (std::size_t i = 0; i < steps_.size(); ++i)
-      for (std::size_t axis = 0; axis < axes; ++axis)
-        if (!find_derivative(i, axis)) return Known::nothing;
+      for (std::size_t axis = 0; axis < axes; ++axis) jets_[i].by[axis] = derivative_of(i, axis);
     jet = jets_.back();
     const auto is_known = [&jet](std::size_t axis) { return jet.by[axis].is_defined() && !jet.by[axis].is_empty(); };
     if (!jet.value.is_continuous() || !is_known(axes - 1)) return Known::nothing;
@@ -156,21 +163,17 @@ class Evaluation {
     const Interval& x = jets_[step.from[0]].value;
     return step.is_square ? square(x) : step.rule->value(x, jets_[step.from[1]].value, jets_[step.from[2]].value);
   }
-  /// Derivative of step i by an axis, from those of its arguments. @return false if it is not supported
-  bool find_derivative(std::size_t i, std::size_t axis) {
+  /// Derivative of step i by an axis, from those of its arguments.
+  Interval derivative_of(std::size_t i, std::size_t axis) const {
     const Step& step = steps_[i];
-    Interval& d = jets_[i].by[axis];
-    d = Interval(step.input == static_cast<std::int32_t>(axis) ? 1.0 : 0.0);
-    if (!step.rule) return true;
+    if (!step.rule) return Interval(step.input == static_cast<std::int32_t>(axis) ? 1.0 : 0.0);
     const Jet &x = jets_[step.from[0]], &y = jets_[step.from[1]], &z = jets_[step.from[2]];
     bool is_constant = true;
     for (std::size_t k = 0; k < step.count; ++k) is_constant = is_constant && is(jets_[step.from[k]].by[axis], 0);
-    if (is_constant) return true;
-    if (!step.rule->derivative) return false;
+    if (is_constant) return Interval(0.0);
+    if (step.is_choice) return choose(x.value, y.by[axis], z.by[axis]);
     const Interval dy = step.count > 1 ? y.by[axis] : Interval(0.0);
-    d = step.is_choice ? choose(x.value, y.by[axis], z.by[axis])
-                       : step.rule->derivative(jets_[i].value, x.value, y.value, x.by[axis], dy);
-    return true;
+    return step.rule->derivative(jets_[i].value, x.value, y.value, x.by[axis], dy);
   }
 
   std::vector<Step> steps_;

@@ -94,10 +94,12 @@ void Column::find_high_degree_roots(std::span<const double> registers, double fr
   for (Signs rest = high_degree_; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
     const Quartic c = in_range(coefficients_of(plan_.surfaces[k], registers), from, to);
-    bool is = c[0] - c[1] + c[2] - c[3] + c[4] >= 0;
-    if (is) signs |= bit(k);
     std::array<double, 8> places{};
     const std::size_t count = sign_changes(c, places);
+    // not at the lower end, where rounding may give it another sign than sign_changes() starts with
+    const double first = 0.5 * (count > 0 ? places[0] - 1 : 0);
+    bool is = c[0] + first * (c[1] + first * (c[2] + first * (c[3] + first * c[4]))) >= 0;
+    if (is) signs |= bit(k);
     for (std::size_t i = 0; i < count; ++i, is = !is)
       scratch.high_degree.emplace_back(from + 0.5 * (to - from) * (places[i] + 1), label_of(k, is));
   }

@@ -22,7 +22,7 @@ double bracketed_root_of(std::span<const double> c, double low, double high, dou
       f = f * x + c[i];
     }
     if (f == 0) return x;
-    ((f > 0) == (at_low > 0) ? low : high) = x;
+    ((f < 0) == (at_low < 0) ? low : high) = x;  // an end at which it is 0 counts as positive
     double next = x - f / slope;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     if (std::fabs(next - x) <= 2e-16) return next;
@@ -97,6 +97,7 @@ std::size_t find_roots(std::span<const double> coefficients, bool touches, std::
   std::array<double, 8> turns{};
   const std::size_t turn_count = find_roots(std::span(slope).first(degree), touches, turns);
   double low = -1, at_low = value(coefficients, low);
+  if (touches && at_low == 0) keep(low);
   for (std::size_t i = 0; i <= turn_count; ++i) {
     const double high = i < turn_count ? turns[i] : 1, at_high = value(coefficients, high);
     if ((at_low < 0) != (at_high < 0))
