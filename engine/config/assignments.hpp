@@ -26,7 +26,7 @@ std::vector<Assignable> assignable_limits(const MechanismInfo& info);
 /// Coordinates or joints as assignable names.
 /// @param per  "s" for rates, "s^2" for accelerations
 std::vector<Assignable> assignable_axes(const std::vector<AxisInfo>& axes, const std::string& per = "");
-/// Rates of the coordinates, then of the mechanism's inputs.
+/// The rates that can be assigned: those of the coordinates, then those of the mechanism's inputs.
 std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::string& per);
 /// Forces of the joints, under the names of the joints.
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);

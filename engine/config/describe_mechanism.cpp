@@ -19,7 +19,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kNominalCells = 16;  ///< per swept coordinate, of the grid that is searched for a nominal pose
+constexpr std::int64_t kNominalCells = 16;  // grid cells per swept coordinate, to find a nominal pose
 
 std::string names_text(const std::vector<std::string>& names, std::size_t most = 8) {
   const std::vector<std::string> first(names.begin(),

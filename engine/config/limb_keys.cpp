@@ -74,7 +74,7 @@ Keys geometry_keys() {
       formula_key("radius", "m", "radius of the links, for pictures and clearance"),
       passive_joint_key("joint_base", "base"),
       passive_joint_key("joint_platform", "platform"),
-      text_key("joint_name", "name of the joint; default: the limb's"),
+      text_key("joint_name", "name of the joint; default: name of the limb"),
       text_key("end_on", "body that carries the limb's `end`: \"platform\" or the name of a [[body]]")};
 }
 
@@ -105,7 +105,7 @@ std::vector<TableVariant> drives() {
       .named = {formula_key("", kUnitOfEntry, "joint coordinate as a formula of the pose")},
       .noun = "joint"};
   const Keys formulas = {
-      table_key("joints", joints, "several joints: formulas of the pose"),
+      table_key("joints", joints, "for several joints: list of formulas in terms of the pose"),
       formula_key("joint", kUnitOfEntry, "one joint: formula of the pose"),
       {.name = "unit",
        .kind = OptionKind::word,

@@ -85,7 +85,7 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
     constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_. ";
     if (name.find_first_not_of(kLetters) != std::string::npos)
       throw table.find("name")->error("a name of letters, digits, blanks, '-', '_' and '.'");
-    const ConfigValue formula = table.at("formula", "a formula of parameters that is >= 0 where it holds");
+    const ConfigValue formula = table.at("formula", "a formula of parameters that is >= 0 if satisfied");
     if (table.flag_at("required")) {
       model.required.push_back({name, unit, draft.scope.of_design(formula, unit, name).node()});
       continue;

@@ -102,7 +102,7 @@ class Mechanism {
     return {};
   }
 
-  // Abilities; null if the mechanism does not have them.
+  // Optional abilities; null if the mechanism does not support them.
   virtual const Voxels* voxels() const { return nullptr; }  ///< faster than testing every cell
   virtual const Columns* columns() const { return nullptr; }
   virtual std::string why_no_columns() const { return ""; }  ///< "": unspecified

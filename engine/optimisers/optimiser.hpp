@@ -44,7 +44,8 @@ struct Generation {
   const std::vector<std::int64_t>* population;  ///< rows of the current population
   std::int64_t best_row = -1;                   ///< best row (several objectives: compromise solution); -1: none yet
   const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: outcomes of the finished starts
-  /// Solvers: returns the evaluations and outcomes of starts that are not yet merged into the table, for a checkpoint.
+  /// For solvers only: returns the evaluations and outcomes of starts that are not yet merged into the table, for a
+  /// checkpoint.
   std::function<std::vector<UnmergedStart>()> ahead = {};
   /// Maximum number of evaluations still to be made; nullopt: the stage's limit less the evaluations made.
   std::optional<std::int64_t> left = {};

@@ -42,7 +42,7 @@ class RemainingTime {
   std::optional<double> update(std::size_t stage, std::int64_t left, std::int64_t made, double seconds);
 
  private:
-  /// Number of evaluations at a time of this run.
+  /// Number of evaluations that this run has completed at a given time.
   struct Sample {
     double seconds;
     std::int64_t made;

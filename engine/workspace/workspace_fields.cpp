@@ -210,7 +210,7 @@ Pose<double> WorkspaceFields::pose(std::size_t cell) const {
 
 Pose<double> WorkspaceFields::pose(const std::array<double, 3>& at) const {
   Pose<double> all(axes.size() + fixed.size());
-  for (const WorkspaceAxis& fixed : fixed) all[static_cast<std::size_t>(fixed.coordinate)] = fixed.lower;
+  for (const WorkspaceAxis& axis : fixed) all[static_cast<std::size_t>(axis.coordinate)] = axis.lower;
   for (std::size_t i = 0; i < axes.size(); ++i) all[static_cast<std::size_t>(axes[i].coordinate)] = at[i];
   return all;
 }

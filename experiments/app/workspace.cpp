@@ -197,7 +197,7 @@ void add_workspace(CLI::App& app, Session& session) {
   add_grid_options(command, arguments, kPictureCells);
   add_list_option(command, "--fixed", arguments.fixed,
                   "Coordinates to fix at a value; default: those of the study, else at the design's default");
-  add_list_option(command, "--cut", arguments.cut, "Swept coordinates to slice at a value");
+  add_list_option(command, "--cut", arguments.cut, "Values of swept coordinates at which the workspace is sliced");
   add_option(command, "--mode MODE", arguments.mode, "Working mode of the coupling indices; default: the first");
   add_workspace_outputs(command, arguments);
   add_option(command, "--csv FILE", arguments.csv, "Write a row per cell to this file");

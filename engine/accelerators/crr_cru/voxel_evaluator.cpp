@@ -68,7 +68,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
                     buffers.shared};
     for (std::size_t k = 0, axis = 0; k < 4; ++k)
       if (static_cast<int>(k) != fixed.coordinate) s.swept[axis++] = k;
-    if (s.over_phi || fill(s, s.fixed, buffers.shared)) s.pieces = static_cast<std::size_t>(grid.cells[s.axes.outer]);
+    if (s.over_phi || fill(s, s.fixed, buffers.shared)) s.blocks = static_cast<std::size_t>(grid.cells[s.axes.outer]);
     return s;
   }
 
@@ -130,7 +130,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   template <class Visit>
   void visit_cells(const GriddedSlices& s, Buffers& buffers, const Visit& visit) const {
     VoxelWorker& worker = buffers.per_worker[0];
-    for (std::size_t piece = 0; piece < s.pieces; ++piece)
+    for (std::size_t piece = 0; piece < s.blocks; ++piece)
       if (const CellsAtPhi* const at = cells_of(s, piece, worker))
         visit_runs(s, *at, static_cast<std::int64_t>(piece), worker.row,
                    [&](const CellRun& run) { for_each_cell(run, visit); });

@@ -29,7 +29,7 @@ class ClearanceTest {
   /// @param min_clearance  required of all pairs [m]
   ClearanceTest(const Geometry<double>& g, double min_clearance);
 
-  /// Minimum of h that keeps the sliders of each rail clear [m]; infinite if no pose is clear.
+  /// Smallest h at which the two sliders of each rail do not collide [m]; infinite if they collide at every pose.
   double h_min() const { return h_min_; }
   /// Minimum of sin(beta) that keeps lower bars and platform clear.
   double sin_beta_min() const { return sin_beta_min_; }
