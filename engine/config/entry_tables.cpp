@@ -51,12 +51,12 @@ std::string default_name(const ObjectiveEntry& entry, const Options& options) {
 void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest& request) {
   if (own.needs_jacobian()) {
     if (request.needs_jacobian() && own.characteristic_length != request.characteristic_length)
-      throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
+      throw table.refusal("conditioning is requested with two different characteristic lengths; a study has one");
     request.characteristic_length = own.characteristic_length;
   }
   if (own.needs_inertia()) {
     if (request.needs_inertia() && own.mode != request.mode)
-      throw table.refusal("the inertia is asked for in two different working modes, " + request.mode + " and " +
+      throw table.refusal("the inertia is requested in two different working modes, " + request.mode + " and " +
                           own.mode + "; a survey has one (name another [[region]] for the other)");
     request.mode = own.mode;
   }

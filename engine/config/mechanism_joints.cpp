@@ -203,15 +203,15 @@ class JointReader {
 
   /// Refuses bodies without a joint, and joints with fewer unknowns than there are equations, which leave motions free.
   void refuse_loose() {
-    std::vector<bool> held(solids_.size(), false);
+    std::vector<bool> has_joint(solids_.size(), false);
     std::size_t unknowns = 0;
     for (const JointNodes& joint : joints_) {
-      held[joint.on] = true;
-      if (joint.from) held[*joint.from] = true;
+      has_joint[joint.on] = true;
+      if (joint.from) has_joint[*joint.from] = true;
       unknowns += 3 + couples_of(joint);
     }
     for (std::size_t i = 0; i < solids_.size(); ++i)
-      if (!held[i])
+      if (!has_joint[i])
         throw Unsaid{"no joint holds the body " + solids_[i].name +
                      "; rotation = \"platform\" makes a body part of the platform, [[joint]] joins two"};
     if (const std::size_t equations = 6 * solids_.size(); unknowns < equations)

@@ -149,8 +149,8 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   read_references(root, draft);
   read_stages(root, draft);
   read_run_tables(root, draft);
-  for (std::string& doubt : consistency_warnings(draft.study.problem->parts()))
-    draft.study.warnings.push_back(std::move(doubt));
+  for (std::string& warning : consistency_warnings(draft.study.problem->parts()))
+    draft.study.warnings.push_back(std::move(warning));
   warn_of_targets(draft.study);
   warn_of_empty_workspace(draft.study);
   return std::move(draft.study);

@@ -12,7 +12,7 @@ namespace pkm {
 
 std::string read_text_file(const std::string& path, const std::string& expected) {
   constexpr std::size_t kLargestFile = std::size_t{16} << 20;  // bytes
-  std::error_code unreadable;                                  // is told below, by the attempt to open
+  std::error_code unreadable;                                  // reported below, when the file cannot be opened
   if (std::filesystem::is_directory(path, unreadable)) throw ConfigError({path, 0, ""}, "a folder", expected);
   errno = 0;
   std::ifstream file(path, std::ios::binary);

@@ -226,10 +226,10 @@ class GenericMechanism final : public Mechanism,
   template <class S>
   void find_tests(std::span<const S> parameters, const LimitSpec& limits, std::span<S> margins) const {
     const std::size_t inputs = e_.model.inputs.count();
-    with_scratch<S>(inputs + e_.tests.registers(), [&](std::span<S> room) {
-      e_.fill_inputs<S>(parameters, limits, 0, room.first(inputs));
-      const std::span<S> registers = room.subspan(inputs);
-      e_.tests.run_all<S>(room.first(inputs), registers);
+    with_scratch<S>(inputs + e_.tests.registers(), [&](std::span<S> memory) {
+      e_.fill_inputs<S>(parameters, limits, 0, memory.first(inputs));
+      const std::span<S> registers = memory.subspan(inputs);
+      e_.tests.run_all<S>(memory.first(inputs), registers);
       for (std::size_t i = 0; i < margins.size(); ++i) margins[i] = registers[e_.tests.outputs()[i]];
     });
   }

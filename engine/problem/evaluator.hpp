@@ -16,8 +16,8 @@ class Evaluator {
   virtual ~Evaluator() = default;
 
   /// Evaluates rows [first, table.size()), whose designs are set. The results do not depend on the distribution of the
-  /// rows. An exception in one design marks its row failed, except std::bad_alloc and Stopped, which are rethrown.
-  /// After Stopped, the table ends before the first incomplete row.
+  /// rows. DesignError makes the row of a design a failed one; other exceptions are rethrown. After
+  /// Stopped, the table ends before the first incomplete row.
   virtual void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) = 0;
 };
 

@@ -75,16 +75,16 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
           parts.mechanism->bounds()->motion(design.parameters, parts.plan.limits, along.mode, *along.motion,
                                             {.max_boxes = kMaxMotionBoxes, .stop = [] { return stop_requested(); }});
       check_stop();
-      const PropertyResult& verdict = found.feasible;
-      const std::string when = verdict.time ? "t = " + with_unit(*verdict.time, "s") : "";
-      if (verdict.kind == Kind::holds)
+      const PropertyResult& result = found.feasible;
+      const std::string when = result.time ? "t = " + with_unit(*result.time, "s") : "";
+      if (result.kind == Kind::holds)
         notes.push_back(begin + "satisfies every limit of a pose at every instant (certified)");
-      else if (verdict.kind == Kind::undecided)
-        notes.push_back(begin + "may violate " + verdict.detail + " near " + when + ": undecided");
+      else if (result.kind == Kind::undecided)
+        notes.push_back(begin + "may violate " + result.detail + " near " + when + ": undecided");
       else {
         design.status = Status::failed;
         design.reason =
-            kAlong + along.name + ", " + verdict.detail + " is violated at " + when + ", between its samples";
+            kAlong + along.name + ", " + result.detail + " is violated at " + when + ", between its samples";
       }
     } catch (const std::invalid_argument& reason) {
       notes.push_back(begin + "cannot be certified: " + reason.what());

@@ -76,32 +76,32 @@ struct PosesClaim {
 /// Adds the result of one proof to the output.
 /// @param region  "box" or "motion"
 /// @return the error message; "" if the property is proven
-std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, const PropertyResult& verdict,
+std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, const PropertyResult& result,
                          const std::string& region, Printout& out) {
   using Kind = PropertyResult::Kind;
   static const std::map<Kind, std::string> kinds = {
       {Kind::holds, "yes"}, {Kind::fails, "no"}, {Kind::undecided, "undecided"}, {Kind::not_examined, "not examined"}};
-  out.json[claim.key] = {{"verdict", kinds.at(verdict.kind)},
-                         {"what", text_or_null(verdict.detail)},
-                         {"pose", axes_json(info.coordinates, verdict.pose)}};
-  if (region == "motion") out.json[claim.key]["time"] = json_or_null(verdict.time);
-  const std::string where = !verdict.pose ? ""
-                                          : (verdict.time ? "t = " + number(*verdict.time, "s") + ", " : "") +
-                                                axes_text(info.coordinates, *verdict.pose);
+  out.json[claim.key] = {{"verdict", kinds.at(result.kind)},
+                         {"what", text_or_null(result.detail)},
+                         {"pose", axes_json(info.coordinates, result.pose)}};
+  if (region == "motion") out.json[claim.key]["time"] = json_or_null(result.time);
+  const std::string where = !result.pose ? ""
+                                         : (result.time ? "t = " + number(*result.time, "s") + ", " : "") +
+                                               axes_text(info.coordinates, *result.pose);
   const bool singular = claim.key == "regular";
-  switch (verdict.kind) {
+  switch (result.kind) {
     case Kind::holds:
       out.head.push_back({claim.key, claim.if_holds});
       return "";
     case Kind::fails:
-      out.head.push_back({claim.key, singular ? "no, singular at " + where + ": " + verdict.detail
-                                              : "not everywhere: " + verdict.detail + " is violated at " + where});
+      out.head.push_back({claim.key, singular ? "no, singular at " + where + ": " + result.detail
+                                              : "not everywhere: " + result.detail + " is violated at " + where});
       return "the " + region + " is not " + claim.property + " everywhere";
     case Kind::undecided:
-      out.head.push_back({claim.key, "undecided: " + verdict.detail + ", near " + where});
+      out.head.push_back({claim.key, "undecided: " + result.detail + ", near " + where});
       return "the " + region + " has poses that could not be decided";
     default:
-      out.head.push_back({claim.key, "not examined, because " + verdict.detail});
+      out.head.push_back({claim.key, "not examined, because " + result.detail});
       return "singularities were not examined";
   }
 }

@@ -22,22 +22,23 @@ void resume(const ResumeArguments& arguments, Session& session) {
   expect_study_file(arguments.file, "run", session);
   RunOptions options = run_options(arguments.common, session);
   const auto& extension = arguments.extension;
-  LockedStudy held(arguments.file);
-  if (!extension.generations && !extension.evaluations && held.contents.state == StudyState::finished) {
-    const Study study = study_to_continue(held.contents, arguments.file, session.catalogues);
-    const auto diagnosis = diagnose(held.contents, study.problem.get());
+  LockedStudy locked(arguments.file);
+  if (!extension.generations && !extension.evaluations && locked.contents.state == StudyState::finished) {
+    const Study study = study_to_continue(locked.contents, arguments.file, session.catalogues);
+    const auto diagnosis = diagnose(locked.contents, study.problem.get());
     if (!arguments.common.quiet)
-      std::cout << summary_text(held.contents, study, diagnosis)
+      std::cout << summary_text(locked.contents, study, diagnosis)
                 << "the study is finished; --generations or --evaluations extend its last stage\n";
     report_diagnosis(diagnosis, arguments.common, session);
     return;
   }
   if (!arguments.common.quiet) {
     const StopScope stop([] { return StopRequest::signal() != 0; });
-    options.cost = measured_cost(study_to_continue(held.contents, arguments.file, session.catalogues), session);
+    options.cost = measured_cost(study_to_continue(locked.contents, arguments.file, session.catalogues), session);
   }
   const auto progress = make_progress(arguments.common);
-  const RunEnd end = execute_run([&] { return resume_study(held, session.catalogues, extension, options, *progress); });
+  const RunEnd end =
+      execute_run([&] { return resume_study(locked, session.catalogues, extension, options, *progress); });
   progress->finish();
   print_run_end(end, study_of(end.outcome.contents, session.catalogues), arguments.file, arguments.common, session);
 }

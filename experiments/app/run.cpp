@@ -95,15 +95,15 @@ bool exists(const std::string& file) {
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
                    const RunOptions& options, Session& session, Progress& progress) {
   if (!arguments.resume || !exists(output)) return run_study(study, output, arguments.force, options, progress);
-  LockedStudy held(output);
-  if (const Unsupported reason = refuse_different_study(held.contents, study, session.catalogues))
+  LockedStudy locked(output);
+  if (const Unsupported reason = refuse_different_study(locked.contents, study, session.catalogues))
     throw StorageError(output + " holds " + *reason + "; continue it with '" + session.program + " resume " +
                        quoted(file_argument(output)) + "', or overwrite it with --force");
-  if (held.contents.state == StudyState::finished) {
-    study_to_continue(held.contents, output, session.catalogues);
-    return {.contents = std::move(held.contents)};
+  if (locked.contents.state == StudyState::finished) {
+    study_to_continue(locked.contents, output, session.catalogues);
+    return {.contents = std::move(locked.contents)};
   }
-  return resume_study(held, session.catalogues, {}, options, progress);
+  return resume_study(locked, session.catalogues, {}, options, progress);
 }
 
 void add_run(CLI::App& app, Session& session) {

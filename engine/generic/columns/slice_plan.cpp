@@ -102,7 +102,7 @@ class Planner {
 
   SlicePlan finish() {
     if (surface_nodes_.size() > kMaxSurfaces)
-      plan_.why_not = "its sections have more than " + std::to_string(kMaxSurfaces) + " surfaces";
+      plan_.why_not = "its slices have more than " + std::to_string(kMaxSurfaces) + " surfaces";
     if (!plan_.why_not.empty()) return std::move(plan_);
     std::erase_if(plan_.formula.any, [&](Signs one_of) { return (one_of & plan_.formula.all) != 0; });
     std::vector<Groups> groups{~Groups{0}};

@@ -140,7 +140,7 @@ std::optional<std::vector<double>> project_onto_active_constraints(const std::ve
   return moved;
 }
 
-Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> slopes,
+Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> derivatives,
                       double scale) {
   const DesignSpace& space = problem.space();
   const std::size_t n = space.dimension(), width = 1 + n, objectives = problem.objectives().size();
@@ -149,16 +149,16 @@ Optimality optimality(const Problem& problem, std::span<const double> design, st
   std::vector<double> u, gradient, margins, margin_jacobian;
   for (std::size_t i = 0; i < n; ++i) {
     u.push_back(space.to_unit(i, design[i]));
-    gradient.push_back(sign * slopes[1 + i] * range(i));
+    gradient.push_back(sign * derivatives[1 + i] * range(i));
   }
   for (std::size_t m = 0; m < problem.margins().size(); ++m) {
-    const double* derivatives = &slopes[(objectives + m) * width];
-    margins.push_back(derivatives[0]);
-    for (std::size_t i = 0; i < n; ++i) margin_jacobian.push_back(derivatives[1 + i] * range(i));
+    const double* of_margin = &derivatives[(objectives + m) * width];
+    margins.push_back(of_margin[0]);
+    for (std::size_t i = 0; i < n; ++i) margin_jacobian.push_back(of_margin[1 + i] * range(i));
   }
   Optimality result = evaluate_kkt(u, gradient, margins, margin_jacobian);
   for (ActiveBound& bound : result.bounds) bound.multiplier /= range(bound.variable);
-  scale = std::max(scale, std::fabs(slopes[0]));
+  scale = std::max(scale, std::fabs(derivatives[0]));
   if (scale > 0) result.optimality /= scale;
   return result;
 }

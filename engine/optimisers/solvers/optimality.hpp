@@ -48,10 +48,10 @@ Optimality evaluate_kkt(std::span<const double> u, std::span<const double> gradi
 
 /// Evaluates the KKT conditions of an evaluated design, for the first objective. Multipliers are per physical unit of a
 /// variable; the residual is relative to max(size, |f|).
-/// @param design  values of the variables
-/// @param slopes  values and derivatives, laid out as described at EvaluationShape::derivatives
-/// @param size    magnitude of the objective, for objectives that vanish at the optimum
-Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> slopes,
+/// @param design       values of the variables
+/// @param derivatives  values and derivatives, laid out as described at EvaluationShape::derivatives
+/// @param size         magnitude of the objective, for objectives that vanish at the optimum
+Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> derivatives,
                       double size = 0);
 
 /// Projects a point of the unit cube onto the linearised active constraints (minimum-norm Newton step). Coordinates on

@@ -55,7 +55,7 @@ TEST(ExpressionErrors, Objectives) {
       {"expression = \"conditioning_min\"\nsharpness = 0",
        "s.toml:10: objective[1].sharpness: found 0; expected a number in [1, 1e+06]"},
       {"expression = \"conditioning_mean\"\ncharacteristic_length = 0.1\n[[output]]\ntype = \"conditioning\"",
-       "s.toml:11: output[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
+       "s.toml:11: output[1]: conditioning is requested with two different characteristic lengths; a study has one"},
       {"expression = \"a\"\nmin = 1",
        "s.toml:10: objective[1].min: found an unknown key; expected one of type, name, "
        "direction, region, expression, unit, characteristic_length, sharpness"},
@@ -91,7 +91,7 @@ TEST(ExpressionErrors, Constraints) {
       {"expression = \"a\"\n[[constraint]]\ntype = \"expression\"\nexpression = \"b\"",
        "s.toml:12: constraint[2]: there is already one called 'expression'; tell them apart with name = \"...\""},
       {"expression = \"conditioning_min\"\ncharacteristic_length = 0.1\n[[output]]\ntype = \"conditioning\"",
-       "s.toml:13: output[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
+       "s.toml:13: output[1]: conditioning is requested with two different characteristic lengths; a study has one"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(entry_complaint(head + text), message) << text;
 }

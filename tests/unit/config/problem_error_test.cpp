@@ -129,7 +129,7 @@ TEST(ProblemErrors, Objectives) {
           {"[[objective]]\ntype = \"shape\"\nweights = { a = 2 }",
            "s.toml:7: objective[1].weights.a: found 2; expected a number in [0, 1]"},
           {"[[objective]]\ntype = \"shape\"\nlength = 1\n[[output]]\ntype = \"shape\"\nlength = 2",
-           "s.toml:8: output[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
+           "s.toml:8: output[1]: conditioning is requested with two different characteristic lengths; a study has one"},
           {"[[output]]\ntype = \"volume\"\ndirection = \"minimise\"",
            "s.toml:7: output[1].direction: found an unknown key; expected one of type, name, region; did you mean "
            "'region'?"},
