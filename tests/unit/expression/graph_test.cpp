@@ -12,12 +12,12 @@ namespace pkm::expression {
 namespace {
 
 const std::vector<std::string> kSymbols = {"a", "b", "x"};
-constexpr Groups kDesign = 1, kX = 2;
+constexpr Groups kParameters = 1, kCoordinate = 2;
 
 /// A graph with the inputs a and b in the group of the design, and x in another one.
 struct TestGraph {
   Graph graph;
-  std::vector<Node> inputs = {graph.input(0, kDesign), graph.input(1, kDesign), graph.input(2, kX)};
+  std::vector<Node> inputs = {graph.input(0, kParameters), graph.input(1, kParameters), graph.input(2, kCoordinate)};
 
   Node read(const std::string& text) { return read_formula(graph, text, kSymbols, inputs); }
 };
@@ -39,8 +39,8 @@ TEST(Graph, FoldsConstantsAndExpandsIntegerPowers) {
 
 TEST(Graph, RecordsTheGroupsThatANodeDependsOn) {
   TestGraph c;
-  EXPECT_EQ(c.graph[c.read("a*b + 1")].groups, kDesign);
-  EXPECT_EQ(c.graph[c.read("x < 2 ? a : 1")].groups, kDesign | kX);
+  EXPECT_EQ(c.graph[c.read("a*b + 1")].groups, kParameters);
+  EXPECT_EQ(c.graph[c.read("x < 2 ? a : 1")].groups, kParameters | kCoordinate);
   EXPECT_EQ(c.graph[c.read("3")].groups, 0u);
 }
 
@@ -55,7 +55,7 @@ TEST(Graph, TermsAreSimplified) {
 TEST(Program, EvaluatesEachNodeInTheOutermostPossibleStage) {
   TestGraph c;
   const Node outputs[] = {c.read("sqrt(a) + b"), c.read("(sqrt(a) + b)*x")};
-  const Groups stages[] = {kDesign, kX};
+  const Groups stages[] = {kParameters, kCoordinate};
   const Program program(c.graph, outputs, stages);
   EXPECT_EQ(program.stages()[0].steps.size(), 2u);
   EXPECT_EQ(program.stages()[1].steps.size(), 1u);
@@ -87,7 +87,7 @@ TEST(BatchStage, HasTheSameBitsAsSingleValues) {
   TestGraph c;
   const Node outputs[] = {c.read("sqrt(a - x*x)/(b + x) - abs(x)"), c.read("min(x, a*x, b/x)"),
                           c.read("max(sin(x), -x) + (x < 0.5 ? a : cos(b*x))")};
-  const Groups stages[] = {kDesign, kX};
+  const Groups stages[] = {kParameters, kCoordinate};
   const Program program(c.graph, outputs, stages);
   const BatchStage rows(program, 1, program.outputs());
   std::vector<double> registers(program.registers()), row(rows.slots() * kRow);

@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr Groups kParameters = 1, kCoordinate = 2;
+constexpr Groups kSizes = 1, kUnknown = 2;
 
 /// Values of the inputs a, b, c and z.
 using Point = std::array<double, 4>;
@@ -25,8 +25,8 @@ using Point = std::array<double, 4>;
 /// Formulas in a, b, c, which do not depend on the coordinate z, and z.
 struct ClauseGraph {
   Graph graph;
-  std::vector<Node> inputs = {graph.input(0, kParameters), graph.input(1, kParameters), graph.input(2, kParameters),
-                              graph.input(3, kCoordinate)};
+  std::vector<Node> inputs = {graph.input(0, kSizes), graph.input(1, kSizes), graph.input(2, kSizes),
+                              graph.input(3, kUnknown)};
 
   Node read(const std::string& text) { return read_formula(graph, text, {{"a", "b", "c", "z"}}, inputs); }
   std::vector<double> values(const std::vector<Node>& nodes, const Point& point) const {
@@ -43,7 +43,7 @@ struct ClauseGraph {
 class NormalForm {
  public:
   NormalForm(const std::string& constraint, std::size_t degree, bool squares)
-      : f_(graph_.read(constraint)), clauses_(polynomial_clauses(graph_.graph, f_, kCoordinate, degree, squares)) {}
+      : f_(graph_.read(constraint)), clauses_(polynomial_clauses(graph_.graph, f_, kUnknown, degree, squares)) {}
 
   explicit operator bool() const { return clauses_.has_value(); }
   const std::vector<Clause>& clauses() const { return *clauses_; }
@@ -63,7 +63,7 @@ class NormalForm {
     });
   }
   bool depends_on_z(const Polynomial& p) const {
-    return std::ranges::any_of(p.c, [&](Node node) { return (graph_.graph[node].groups & kCoordinate) != 0; });
+    return std::ranges::any_of(p.c, [&](Node node) { return (graph_.graph[node].groups & kUnknown) != 0; });
   }
 
  private:
@@ -75,13 +75,13 @@ class NormalForm {
 TEST(Polynomial, HasTheCoefficientsOfTheExpandedFormula) {
   ClauseGraph g;
   // (z^2 - 2 a z + a^2) (b z + 1) = a^2 + (a^2 b - 2 a) z + (1 - 2 a b) z^2 + b z^3
-  const auto cubic = polynomial(g.graph, g.read("(z - a)^2*(b*z + 1)"), kCoordinate);
+  const auto cubic = polynomial(g.graph, g.read("(z - a)^2*(b*z + 1)"), kUnknown);
   ASSERT_TRUE(cubic);
   EXPECT_THAT(g.values(*cubic, {2, 3, 0, 0}), ElementsAre(4, 8, -11, 3));
-  const auto root_squared = polynomial(g.graph, g.read("sqrt(z + a)^2 - z"), kCoordinate);
+  const auto root_squared = polynomial(g.graph, g.read("sqrt(z + a)^2 - z"), kUnknown);
   ASSERT_TRUE(root_squared);
   EXPECT_THAT(g.values(*root_squared, {7, 0, 0, 0}), ElementsAre(7));
-  const auto constant = polynomial(g.graph, g.read("sin(a)/b"), kCoordinate);
+  const auto constant = polynomial(g.graph, g.read("sin(a)/b"), kUnknown);
   ASSERT_TRUE(constant);
   EXPECT_EQ(constant->size(), 1u);
 }
@@ -89,7 +89,7 @@ TEST(Polynomial, HasTheCoefficientsOfTheExpandedFormula) {
 TEST(Polynomial, IsRefusedForOtherFormulas) {
   for (const char* const text : {"z^5", "sqrt(z)", "sin(z)", "a/z", "abs(z)", "sqrt(z)*sqrt(z + 1)"}) {
     ClauseGraph g;
-    EXPECT_FALSE(polynomial(g.graph, g.read(text), kCoordinate)) << text;
+    EXPECT_FALSE(polynomial(g.graph, g.read(text), kUnknown)) << text;
   }
 }
 
@@ -98,7 +98,7 @@ TEST(Polynomial, VisitsSharedSubexpressionsOnce) {
   ClauseGraph g;
   Term sum(g.graph, g.inputs[3]);
   for (int i = 0; i < 60; ++i) sum = sum + sum;
-  const auto found = polynomial(g.graph, sum.node(), kCoordinate);
+  const auto found = polynomial(g.graph, sum.node(), kUnknown);
   ASSERT_TRUE(found);
   EXPECT_THAT(g.values(*found, {}), ElementsAre(0, std::ldexp(1, 60)));
 }

@@ -274,8 +274,8 @@ TEST(RigorousBounds, FindASingularityBetweenTwoSignsOfTheDeterminant) {
   EXPECT_EQ(regular(0.1, 0.9).kind, Kind::holds);
   const PropertyResult across = regular(-0.1, 0.9);
   EXPECT_EQ(across.kind, Kind::fails);
-  EXPECT_THAT(across.what, ::testing::HasSubstr("parallel"));
-  EXPECT_NEAR((*across.where)[1], 0, 1e-12);
+  EXPECT_THAT(across.detail, ::testing::HasSubstr("parallel"));
+  EXPECT_NEAR((*across.pose)[1], 0, 1e-12);
   const auto along = [&](double from, double to) {
     return legs->bounds()
         ->motion(defaults(legs->info()), no_limits(legs->info()), "", *straight({0.4, from}, {0.6, to}),

@@ -7,17 +7,16 @@ namespace pkm::bounds {
 namespace {
 
 TEST(ProofTree, WritesBoxesDepthFirstAndTheLowerHalfFirst) {
-  using Kind = Step::Kind;
   ProofTree tree;
   tree.resize(1);
-  tree.record(0, {{Kind::satisfied, 2}, {Kind::open}});
+  tree.record(0, {{Step::Kind::satisfied, 2}, {Step::Kind::open}});
   tree.resize(3);
   tree.bisect(0, 1, 1);
   tree.resize(5);
   tree.bisect(2, 0, 3);  // numbers of nodes follow the rounds of the search, not the order of the text
-  tree.record(1, {{Kind::split, 0, 5, 9}, {Kind::violated, 3}, {Kind::one_root, 0, 0, 0, 7}});
-  tree.record(3, {{Kind::contracted, 4, 5, 6, 7}});
-  tree.record(4, {{Kind::violated, 0}});
+  tree.record(1, {{Step::Kind::split, 0, 5, 9}, {Step::Kind::violated, 3}, {Step::Kind::one_root, 0, 0, 0, 7}});
+  tree.record(3, {{Step::Kind::contracted, 4, 5, 6, 7}});
+  tree.record(4, {{Step::Kind::violated, 0}});
   std::string text = "boxes\n";
   tree.append_to(text);
   EXPECT_EQ(text, "boxes\nh2 n/1\ns5 9 x3 r7 .\n/0\nt4 5 6 7 .\nx0 .\n");
