@@ -8,6 +8,7 @@
 
 #include "engine/config/key_specs.hpp"
 #include "engine/config/mechanism_keys.hpp"
+#include "engine/config/renamed_keys.hpp"
 #include "engine/config/study_keys.hpp"
 #include "engine/core/catalogue.hpp"
 
@@ -159,6 +160,11 @@ Json schema_of(const TableSpec& table) {
 std::string text_of(const std::string& title, const TableSpec& root) {
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
   schema.update(schema_of(root));
+  // Old names are invalid even where a table has keys with arbitrary names, such as coordinates.
+  for (const auto& [kind, path, name] : renamed_keys())
+    if (path.size() == 2 && schema["properties"].contains(path[0]))
+      schema["properties"][path[0]]["properties"][path[1]] = {{"not", Json::object()},
+                                                              {"description", "renamed to " + name}};
   return schema.dump(1) + "\n";
 }
 

@@ -30,10 +30,10 @@ class ConfigError : public std::runtime_error {
 };
 
 /// A design that cannot be evaluated, for example because a mass is not positive; what() is one sentence that says why.
-/// Problem::evaluate() turns it into a failed design. Every other exception ends the run.
-class DesignError : public std::runtime_error {
+/// Evaluators turn it into a failed design; every other exception ends the run.
+class DesignError : public std::invalid_argument {
  public:
-  using std::runtime_error::runtime_error;
+  using std::invalid_argument::invalid_argument;
 };
 
 /// A study file that cannot be read, written or locked, or whose content is invalid. what() is one sentence with the

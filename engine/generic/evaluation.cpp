@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/core/error.hpp"
+
 namespace pkm::generic {
 namespace {
 
@@ -145,8 +147,8 @@ std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> p
 std::array<double, 2> Evaluation::required_range(std::span<const double> parameters, const LimitSpec& limits,
                                                  std::size_t mode, std::size_t coordinate) const {
   if (const auto known = range(parameters, limits, mode, coordinate)) return *known;
-  throw std::invalid_argument("mechanism " + model.info.name + " has no [survey] box for " +
-                              model.info.coordinates[coordinate].name + "; give a box");
+  throw DesignError("mechanism " + model.info.name + " has no [survey] box for " +
+                    model.info.coordinates[coordinate].name + "; give a box");
 }
 
 Box Evaluation::search_box(std::span<const double> parameters, const WorkspacePlan& plan, std::size_t mode,

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/workspace/grid_evaluator.hpp"
 #include "engine/workspace/pose_quantities.hpp"
@@ -95,7 +96,7 @@ class CellwiseVoxels final : public GridEvaluator<CellwiseVoxels> {
   }
 
   [[noreturn]] void throw_no_ranges() const {
-    throw std::invalid_argument("mechanism " + mechanism_.info().name + " has no default box; give a box");
+    throw DesignError("mechanism " + mechanism_.info().name + " has no default box; give a box");
   }
   /// A box that contains the workspace: that of the mechanism's own voxels, otherwise its ranges.
   Box box_of(std::span<const double> parameters, const Sweep& sweep,

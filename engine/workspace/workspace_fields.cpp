@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine/core/error.hpp"
 #include "engine/core/team.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
@@ -248,7 +249,7 @@ double PoseMargin::operator()(const Pose<double>& pose, Scratch& scratch) const 
 WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters,
                                  const WorkspacePlan& plan, const std::string& mode) {
   const MechanismInfo& info = mechanism.info();
-  if (const Unsupported reason = mechanism.refuse(parameters)) throw std::invalid_argument(*reason);
+  if (const Unsupported reason = mechanism.refuse(parameters)) throw DesignError(*reason);
   const WorkspacePlan picture = visualisation_plan(info, plan, {kPictureCells, kPictureCells, kPictureCells});
   const Sweep& sweep = sweep_of(info, picture);
   const VoxelMap map = voxel_map(mechanism, parameters, picture);

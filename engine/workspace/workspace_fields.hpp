@@ -87,7 +87,7 @@ class PoseMargin {
 };
 
 /// Evaluates the fields of one design, in parallel on the caller's threads; the result does not depend on their number.
-/// Throws std::invalid_argument if the parameters describe no mechanism.
+/// Throws DesignError if a parameter is outside its range.
 /// @param parameters  all parameters of the mechanism, SI
 /// @param plan        as in the study, but a plan of columns is replaced by kPictureCells voxels per axis, and an
 ///                    integrated coordinate is fixed at its default value

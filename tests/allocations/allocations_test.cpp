@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <new>
 #include <set>
 
@@ -48,8 +50,11 @@ std::vector<std::string> experiments() {
   const std::set<std::string> excluded = {"motions", "mechanisms", "motors", "obstacles"};  // folders
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
-    const bool is_excluded = excluded.contains(entry.path().parent_path().filename().string());
-    if (entry.path().extension() == ".toml" && !is_excluded) paths.push_back(entry.path());
+    if (entry.path().extension() != ".toml" || excluded.contains(entry.path().parent_path().filename().string()))
+      continue;
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (text.find("type = \"peak-") == std::string::npos) paths.push_back(entry.path());
   }
   std::ranges::sort(paths);
   return paths;

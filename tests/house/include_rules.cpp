@@ -28,7 +28,7 @@ const std::vector<Library> kLibraries = {
     {"omp.h", {"engine/core"}},
     {"mpi.h", {"engine/core"}},
     {"Ip", {"engine/optimisers"}},
-    {"nlohmann/", {"engine/report", "experiments/app"}},
+    {"nlohmann/", {"engine/config", "engine/report", "experiments/app"}},
     {"CLI/", {"experiments/app"}},
     {"zlib.h", {"engine/export"}},
 };

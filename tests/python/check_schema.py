@@ -83,6 +83,8 @@ def keys_of(schema, path):
     if "items" in schema:
         yield from keys_of(schema["items"], path)
     for key, inner in schema.get("properties", {}).items():
+        if inner.get("not") == {}:  # an old name
+            continue
         yield (*path, key)
         yield from keys_of(inner, (*path, key))
     if isinstance(schema.get("additionalProperties"), dict):

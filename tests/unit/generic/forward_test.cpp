@@ -100,7 +100,7 @@ TEST(ForwardOfFiles, HasMirrorImagesInAPlane) {
   std::string text =
       "[mechanism]\nname = \"lines\"\n[parameters]\nb = { default = \"1 m\", min = 0, max = \"9 m\" }\n[platform]\n"
       "coordinates = { x = \"along x\", y = \"along y\", phi = \"about z\" }\ncharacteristic_length = \"b\"\n"
-      "[survey]\nhold = { phi = 0 }\nsweep = [\"x\", \"y\"]\nbox = { x = [0.2, 0.4], y = [0.5, 0.7], phi = [-0.1, "
+      "[survey]\nfixed = { phi = 0 }\nsweep = [\"x\", \"y\"]\nbox = { x = [0.2, 0.4], y = [0.5, 0.7], phi = [-0.1, "
       "0.1] }\n";
   for (const std::string leg : {"0, 0.1, -0.2", "1, 0.3, 0.1", "2, 0.5, 0.2"})
     text += "[[limb]]\nname = \"leg" + leg.substr(0, 1) + "\"\ndrive = \"telescope\"\nbase = [\"" + leg.substr(3, 3) +

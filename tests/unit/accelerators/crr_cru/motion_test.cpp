@@ -212,7 +212,7 @@ TEST(CrrCruMotion, ADesignThatCannotFollowFailsWithAReason) {
   EXPECT_EQ(report.status, Status::failed);
   EXPECT_TRUE(std::isnan(report.objectives[0]));
   EXPECT_THAT(report.reason, HasSubstr("peak-force: the motion pick leaves the reach of the mechanism at t = "));
-  EXPECT_THAT(report.reason, HasSubstr("limb1 reaches"));
+  EXPECT_THAT(report.reason, HasSubstr("limb1 cannot reach"));
   EvaluationTable table(problem.shape(Detail::derivatives));
   table.extend(1);
   std::ranges::copy(p, table.design(0).begin());
