@@ -65,11 +65,13 @@ TEST(ConfigValue, ReadsTypeRangeAndDefaultFromTheDescription) {
   const auto length = [](const ConfigValue& table) { EXPECT_EQ(table.number_at("length"), 0.5); };
   EXPECT_EQ(reading_message(kBoxText, length), "accepted");
   EXPECT_EQ(reading_message(kBoxText + "length = \"500 mm\"", length), "accepted");
-  EXPECT_EQ(reading_message(kBoxText + "length = 0", length), "f.toml:2: length: found 0; expected a number > 0 m and <= 2 m");
+  EXPECT_EQ(reading_message(kBoxText + "length = 0", length),
+            "f.toml:2: length: found 0; expected a number > 0 m and <= 2 m");
   EXPECT_THAT(reading_message(kBoxText + "length = 3", length),
               ::testing::HasSubstr("found 3; expected a number <= 2 m"));
   const auto count = [](const ConfigValue& table) { table.at("count").integer(); };
-  EXPECT_EQ(reading_message(kBoxText, count), "f.toml:1: count: found nothing; expected an integer in [1, 9] (how many)");
+  EXPECT_EQ(reading_message(kBoxText, count),
+            "f.toml:1: count: found nothing; expected an integer in [1, 9] (how many)");
   EXPECT_EQ(reading_message(kBoxText + "count = 10", count),
             "f.toml:2: count: found 10; expected an integer in [1, 9]");
   const auto inner = [](const ConfigValue& table) { EXPECT_FALSE(table.find_table("inner")->flag_at("q")); };
