@@ -14,7 +14,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kMax = std::numeric_limits<double>::max();
+constexpr double kLargestDouble = std::numeric_limits<double>::max();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Interval, BoundsAreWidenedToTheNextDouble) {
@@ -25,12 +25,12 @@ TEST(Interval, BoundsAreWidenedToTheNextDouble) {
     EXPECT_EQ(next_up(x), std::nextafter(x, kInfinity));
     EXPECT_EQ(next_down(x), std::nextafter(x, -kInfinity));
   }
-  for (const double x : {0.0, -0.0, 5e-324, -5e-324, kMax, -kMax}) {
+  for (const double x : {0.0, -0.0, 5e-324, -5e-324, kLargestDouble, -kLargestDouble}) {
     EXPECT_EQ(next_up(x), std::nextafter(x, kInfinity));
     EXPECT_EQ(next_down(x), std::nextafter(x, -kInfinity));
   }
-  EXPECT_EQ(next_down(kInfinity), kMax);  // an overflow came from a finite number
-  EXPECT_EQ(next_up(-kInfinity), -kMax);
+  EXPECT_EQ(next_down(kInfinity), kLargestDouble);  // an overflow came from a finite number
+  EXPECT_EQ(next_up(-kInfinity), -kLargestDouble);
   EXPECT_EQ(next_up(kInfinity), kInfinity);
 }
 
@@ -43,10 +43,10 @@ TEST(Interval, IsExactIfNothingIsRounded) {
 }
 
 TEST(Interval, OverflowKeepsValidBounds) {
-  const Interval large(1e308, kMax), sum = large + large, product = large * large;
-  EXPECT_EQ(sum.lower, kMax);
+  const Interval large(1e308, kLargestDouble), sum = large + large, product = large * large;
+  EXPECT_EQ(sum.lower, kLargestDouble);
   EXPECT_EQ(sum.upper, kInfinity);
-  EXPECT_EQ(product.lower, kMax);
+  EXPECT_EQ(product.lower, kLargestDouble);
   EXPECT_FALSE((sum - sum).is_empty());
   EXPECT_TRUE((sum - sum).holds(0));
   EXPECT_TRUE((Interval(1) / sum).holds(0));
