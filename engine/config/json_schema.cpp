@@ -162,7 +162,7 @@ std::string text_of(const std::string& title, const TableSpec& root) {
   schema.update(schema_of(root));
   // Old names are invalid even where a table has keys with arbitrary names, such as coordinates.
   for (const auto& [kind, path, name] : renamed_keys())
-    if (path.size() == 2 && schema["properties"].contains(path[0]))
+    if (path.size() == 2 && schema.contains("properties") && schema["properties"].contains(path[0]))
       schema["properties"][path[0]]["properties"][path[1]] = {{"not", Json::object()},
                                                               {"description", "renamed to " + name}};
   return schema.dump(1) + "\n";
