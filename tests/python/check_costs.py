@@ -76,13 +76,17 @@ def main():
     print("%-24s %8s  CPU seconds     for twice as many  ratio  limit" % ("command", "entries"))
     with tempfile.TemporaryDirectory() as folder:
         for name, make, n, limit, command in cases:
-            seconds = []
+            paths = []
             for count in (n, 2 * n):
-                path = os.path.join(folder, "input.toml" if command[0] == program else "input.proof")
-                with open(path, "w", encoding="utf-8") as file:
+                paths.append(os.path.join(folder, "%d.%s" % (count, "toml" if command[0] == program else "proof")))
+                with open(paths[-1], "w", encoding="utf-8") as file:
                     file.write(make(count))
-                seconds.append(cpu_seconds([*command, path], folder))
-            ratio = seconds[1] / max(seconds[0], 1e-3)
+            seconds = [float("inf")] * 2
+            for _ in range(3):  # other work on the machine may disturb a measurement
+                seconds = [min(old, cpu_seconds([*command, path], folder)) for old, path in zip(seconds, paths)]
+                ratio = seconds[1] / max(seconds[0], 1e-3)
+                if ratio <= limit:
+                    break
             failed = failed or ratio > limit
             print("%-24s %8d  %11.3f  %20.3f  %5.1f  %5.1f" % (name, n, *seconds, ratio, limit), flush=True)
     return 1 if failed else 0
