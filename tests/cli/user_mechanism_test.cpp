@@ -27,9 +27,10 @@ TEST(UserMechanism, RedundantDrivesHaveNoUniqueForces) {
   const struct {
     std::vector<std::string> arguments;
     std::string lacks;
-  } cases[] = {{{"coupling", "three-ropes"}, "it has no coupling indices"},
-               {{"dynamics", "three-ropes", "--at", at}, "its dynamics are undefined"},
-               {{"simulate", "three-ropes", "--at", at, "--duration", "1s", "--step", "1ms"}, "it cannot be simulated"}};
+  } cases[] = {
+      {{"coupling", "three-ropes"}, "it has no coupling indices"},
+      {{"dynamics", "three-ropes", "--at", at}, "its dynamics are undefined"},
+      {{"simulate", "three-ropes", "--at", at, "--duration", "1s", "--step", "1ms"}, "it cannot be simulated"}};
   for (const auto& [arguments, lacks] : cases) {
     SCOPED_TRACE(arguments[0]);
     const auto [exit_code, message] = run(arguments);
