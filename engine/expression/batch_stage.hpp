@@ -62,7 +62,8 @@ class BatchStage {
   BatchStage(const Program& program, std::size_t stage, std::span<const std::uint32_t> retained);
 
   std::size_t slots() const { return slots_; }
-  /// Location of a retained register or an input of the stage (a row), or of a register of an earlier stage (a number).
+  /// Where the value of a register is found: in a row with one value per pose if it is an input or a retained register
+  /// of this stage; as a single number if an earlier stage has computed it.
   Operand operand(std::uint32_t program_register) const { return operands_[program_register]; }
   /// Slots of the stage's inputs, which the caller fills before run().
   const std::vector<std::uint32_t>& inputs() const { return inputs_; }

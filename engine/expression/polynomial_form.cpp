@@ -237,7 +237,7 @@ class NormalForm {
 
   bool is_independent(const Term& x) const { return (graph_[x.node()].groups & z_) == 0; }
 
-  /// Y - u^2, where Y does not depend on z.
+  /// The polynomial Y - u^2, where Y does not depend on z, and u may.
   struct SquareBound {
     Term Y, u;
   };

@@ -114,7 +114,7 @@ std::vector<std::size_t> modes_of_closures(const Model& model) {
   return modes;
 }
 
-/// Start poses: a Kronecker sequence in the search box of the file, which begins at the centre.
+/// Start poses in the search box of the mechanism file: the centre, then a Kronecker sequence.
 class StartPoses {
  public:
   StartPoses(const Evaluation& e, std::span<const double> parameters) {

@@ -185,7 +185,7 @@ Interval less(const Interval& x, const Interval& y);
 Interval less_or_equal(const Interval& x, const Interval& y);
 Interval equal(const Interval& x, const Interval& y);
 Interval truth(const Interval& x);
-/// x where the condition is not 0, and y elsewhere; the hull of both if that differs between the arguments.
+/// x if the condition does not contain 0, y if it is 0; otherwise the hull of both.
 Interval choose(const Interval& condition, const Interval& x, const Interval& y);
 
 /// Intersection of two enclosures of the same quantity; the stronger decoration holds.

@@ -581,7 +581,10 @@ def mutate_head(lines, draw):
 
 
 def mutate_volume(line, draw):
-    low, high = (float(w) for w in line.split()[1:3])
+    try:
+        low, high = (float(w) for w in line.split()[1:3])
+    except ValueError:  # an earlier mutation left no numbers
+        return line
     gap = high - low
     low, high = draw.choice([(low + draw.random() * gap, high), (low, high - draw.random() * gap),
                              (high, high + gap), (0, low * draw.random()), (low - gap, high + gap),

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kY = 1;  ///< number of the coordinate y, which is fixed
 
-/// The plane y of an analysis, by default the middle one [m].
+/// The y coordinate of the plane of an analysis [m]; by default the middle of the range of y.
 template <class S>
 S plane(const Geometry<S>& g, const FixedCoordinate& y) {
   return y.kind == FixedCoordinate::Kind::value ? S(y.value) : S(g.L0 * 0.5);
