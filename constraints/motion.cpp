@@ -27,7 +27,7 @@ std::unique_ptr<const Quantity> minimum_along(const EntryContext& context) {
         const std::vector<Dual4>& margins = margins_of(design, along);
         return margins.empty() ? Dual4(kUnlimited) : soft_minimum(margins, sharpness);
       },
-      no_margin_derivatives(context.mechanism, kMotionConstraint));
+      no_margin_derivatives(context.mechanism, along.limits, kMotionConstraint));
 }
 
 }  // namespace

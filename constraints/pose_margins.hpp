@@ -59,8 +59,9 @@ inline std::string unit_of_minimum(const EntryContext& context) {
 }
 
 /// Empty if the minimum has derivatives, else the reason why not.
-inline Unsupported no_margin_derivatives(const Mechanism& mechanism, const std::string& constraint) {
-  if (mechanism.pose_margins()) return {};
+inline Unsupported no_margin_derivatives(const Mechanism& mechanism, const LimitSpec& limits,
+                                         const std::string& constraint) {
+  if (mechanism.pose_margins()) return mechanism.pose_margins()->why_no_derivatives(limits);
   return "the margins of constraint " + constraint + " have none for mechanism " + mechanism.info().name;
 }
 

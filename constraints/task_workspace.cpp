@@ -65,7 +65,7 @@ std::unique_ptr<const Quantity> make_task_workspace(const EntryContext& context)
       [of, required, sharpness](const DesignView<Dual4>& design) {
         return Dual4(soft_minimum(margins_of(design, of), sharpness) - required);
       },
-      no_margin_derivatives(context.mechanism, "task-workspace"));
+      no_margin_derivatives(context.mechanism, of.limits, "task-workspace"));
 }
 
 }  // namespace

@@ -7,7 +7,8 @@ namespace pkm {
 
 ObjectiveEntry workspace_volume();
 ObjectiveEntry workspace_ratio();
-std::vector<ObjectiveEntry> pose_objectives();  ///< statistics of all pose quantities
+std::vector<ObjectiveEntry> pose_objectives();  ///< statistics of the built-in pose quantities
+ObjectiveEntry quantity_objective();            ///< any statistic of any pose quantity
 std::vector<ObjectiveEntry> peak_objectives();  ///< maximum forces, power, speeds, .. along a motion
 ObjectiveEntry expression_objective();
 

@@ -113,6 +113,7 @@ class ConfigValue {
   /// Throws std::logic_error if the description of this value is not a formula of this unit.
   void expect_formula(std::string_view unit) const { spec_as({OptionKind::formula}, unit); }
 
+  const TomlValue& toml() const { return *value_; }
   SourceLocation place() const { return {file_, value_->line, path_}; }
   /// "line 12", for a message about another place.
   std::string line() const { return "line " + std::to_string(value_->line); }

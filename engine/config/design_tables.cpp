@@ -3,8 +3,11 @@
 #include <algorithm>
 
 #include "engine/config/assignments.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
+#include "engine/config/mechanism_draft.hpp"
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/study_draft.hpp"
+#include "engine/config/study_keys.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
@@ -102,6 +105,18 @@ void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& war
   }
 }
 
+/// The study's document, with shared ownership, if it adds quantities or their limits to its mechanism; otherwise null.
+StudyAdditions additions_of(const ConfigValue& root, const StudyDraft& draft) {
+  if (!root.has("quantity") && !limits_of_quantities(root)) return nullptr;
+  struct Document {
+    TomlValue toml;
+    ConfigValue root;
+  };
+  const auto document = std::make_shared<Document>(Document{root.toml(), root});
+  document->root = ConfigValue(document->toml, draft.study.file_name, "").described_by(study_keys());
+  return {document, &document->root};
+}
+
 /// The mechanism that `type` or `file` names.
 std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDraft& draft) {
   std::vector<std::string> names;
@@ -109,17 +124,19 @@ std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDr
   const std::string either = "type = one of " + join(names) + ", or file = the name of a mechanism's file";
   const ConfigValue table = root.at("mechanism", "a table [mechanism] with " + either).table();
   const auto type = table.find("type"), file = table.find("file");
+  const StudyAdditions additions = additions_of(root, draft);
   if (type && file)
     throw file->refusal("the mechanism is also given by mechanism.type (" + type->line() +
                         "); it is either built in or described by a file");
   if (type) {
     const std::string& name = type->word(names);
+    if (additions) return type->explained([&] { return built_in_mechanism(name, additions); });
     return std::ranges::find(draft.catalogues.mechanisms, name, &MechanismEntry::name)->get();
   }
   if (!file) throw table.error_of("neither type nor file", either);
   const SourceText& description = draft.study.description.emplace(draft.description(*file));
   find_limb_parameters(root, draft);
-  return read_mechanism_toml(description.text, description.file_name, draft.limb_parameters);
+  return read_mechanism_toml(description.text, description.file_name, draft.limb_parameters, additions);
 }
 
 }  // namespace

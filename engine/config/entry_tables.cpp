@@ -40,8 +40,10 @@ std::vector<ConfigValue> tables_in(const ConfigValue& root, const std::string& n
   return tables;
 }
 
-/// The name of an objective that the study does not name: peak and RMS of one kind are two quantities.
+/// The name of an objective that the study does not name: "LTI-min" for a statistic of a quantity; peak and RMS of one
+/// kind are two quantities.
 std::string default_name(const ObjectiveEntry& entry, const Options& options) {
+  if (options.has("quantity")) return options.word("quantity") + "-" + options.word("statistic");
   const bool rms = options.has("statistic") && options.word("statistic") == "rms";
   return entry.name + (rms ? "-rms" : "");
 }

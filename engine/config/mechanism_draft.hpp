@@ -92,7 +92,8 @@ struct MechanismDraft {
 
 /// Reads the model of a mechanism file. @param mass_model  one of its alternatives; "": the first
 generic::Model read_mechanism_model(const std::string& text, const std::string& file_name,
-                                    const std::vector<LimbParameter>& own, const std::string& mass_model);
+                                    const std::vector<LimbParameter>& own, const std::string& mass_model,
+                                    const StudyAdditions& study = nullptr);
 
 /// The text under a key; "" if the key is absent.
 std::string text_of(const ConfigValue& table, const std::string& key);
@@ -110,8 +111,17 @@ void refuse_idle_parameters(const MechanismDraft& draft);
 void read_limits(const ConfigValue& root, MechanismDraft& draft);
 /// [inputs]: variables besides the pose, on which quantities, and formulas of [let] that they use, may depend.
 void read_inputs(const ConfigValue& root, MechanismDraft& draft);
-/// [[quantity]]. Its formulas may also use "NAME_rate", the derivative of a coordinate, an input or a quantity by time.
-void read_quantities(const ConfigValue& root, MechanismDraft& draft);
+/// [[quantity]] of the file, and of a study unless it is null. Their formulas may also use "NAME_rate", the time
+/// derivative of a coordinate, an input or a quantity.
+void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
+/// The limits of quantities in a study, as a table; std::nullopt if it has none.
+std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
+/// Adds a threshold for each limit of a quantity in the study, [workspace] limits = { NAME = { min = .. } }. It is
+/// called directly after read_limits(), because the positions of all later inputs of the graph depend on the number of
+/// limits.
+void read_quantity_limits(const ConfigValue& study, MechanismDraft& draft);
+/// Adds the margins of these limits.
+void add_quantity_margins(const ConfigValue& study, MechanismDraft& draft);
 /// [modes]
 void read_modes(const ConfigValue& root, MechanismDraft& draft);
 /// [[limb]]: joints, loop-closure equations, constraints, ranges, angles, links, bodies.

@@ -208,6 +208,8 @@ std::string common_margin_unit(const generic::Model& model) {
       if (unit && *unit != condition.unit) return "";
       unit = condition.unit;
     }
+  for (const generic::ReportLimit& limit : model.report_limits)
+    if (unit && *unit != limit.quantity->unit) return "";
   return unit.value_or("");
 }
 
@@ -225,7 +227,8 @@ std::string si_unit(const ConfigValue& unit) {
 }
 
 generic::Model read_mechanism_model(const std::string& text, const std::string& file_name,
-                                    const std::vector<LimbParameter>& own, const std::string& mass_model) {
+                                    const std::vector<LimbParameter>& own, const std::string& mass_model,
+                                    const StudyAdditions& study) {
   const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file",
@@ -237,6 +240,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   read_parameters(root, own, draft);
   draft.model.inputs.limits = 0;
   read_limits(root, draft);
+  if (study) read_quantity_limits(*study, draft);
   const ConfigValue platform = root.at("platform", "a table [platform] with its coordinates").table();
   read_coordinates(platform, draft);
   read_modes(root, draft);
@@ -246,8 +250,9 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   draft.scope.allow_motion(false);
   read_platform(platform, draft);
   read_limbs(root, draft);
-  read_quantities(root, draft);
+  read_quantities(root, study.get(), draft);
   read_margins(root, draft);
+  if (study) add_quantity_margins(*study, draft);
   refuse_idle_signs(root, draft);
   refuse_idle_parameters(draft);
   read_bodies(root, read_links(root, draft), draft);
@@ -265,18 +270,20 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
 namespace {
 
 std::shared_ptr<const Mechanism> build(const std::string& text, const std::string& file_name,
-                                       const std::vector<LimbParameter>& own, const std::string& mass_model) {
-  generic::Model model = read_mechanism_model(text, file_name, own, mass_model);
+                                       const std::vector<LimbParameter>& own, const std::string& mass_model,
+                                       const StudyAdditions& study) {
+  generic::Model model = read_mechanism_model(text, file_name, own, mass_model, study);
   if (model.mass_models.size() > 1)
-    model.with_masses = [=](const std::string& name) { return build(text, file_name, own, name); };
+    model.with_masses = [=](const std::string& name) { return build(text, file_name, own, name, study); };
   return generic::make_mechanism(std::move(model));
 }
 
 }  // namespace
 
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
-                                                     const std::vector<LimbParameter>& own) {
-  return build(text, file_name, own, "");
+                                                     const std::vector<LimbParameter>& own,
+                                                     const StudyAdditions& study) {
+  return build(text, file_name, own, "", study);
 }
 
 }  // namespace pkm

@@ -13,6 +13,8 @@
 
 namespace pkm {
 
+class ConfigValue;
+
 /// A parameter of a single limb, besides the common one: "arm2.l_b".
 struct LimbParameter {
   std::string limb, parameter;
@@ -23,11 +25,16 @@ struct LimbParameter {
 /// Splits a name such as "arm2.l_b"; std::nullopt for other names.
 std::optional<LimbParameter> limb_parameter(const std::string& name, const SourceLocation& place);
 
+/// The document of a study, whose tables [[quantity]] and limits of quantities are added to its mechanism; null:
+/// nothing is added.
+using StudyAdditions = std::shared_ptr<const ConfigValue>;
+
 /// Reads a mechanism from the text of its file. `file_name` is named in messages. Throws ConfigError.
 /// @param own  further parameters of single limbs, appended to those of the file; they have unit, range and default of
 ///             the common parameter
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
-                                                     const std::vector<LimbParameter>& own = {});
+                                                     const std::vector<LimbParameter>& own = {},
+                                                     const StudyAdditions& study = nullptr);
 
 /// How a mechanism file was interpreted, which analyses it supports, and why it does not support others: the text of
 /// `pkmopt check FILE`.

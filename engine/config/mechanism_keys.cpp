@@ -158,16 +158,6 @@ const TableSpec& inputs_table() {
   return spec;
 }
 
-const TableSpec& quantity_table() {
-  static const TableSpec spec = {
-      .header = "[[quantity]]",
-      .meaning = "value of the design, the pose or the motion that is reported",
-      .keys = {required(text_key("name", "name of the quantity")),
-               required(formula_key("formula", kUnitOfEntry, "formula; NAME_rate is the derivative of NAME by time")),
-               unit_key(), meaning_key()}};
-  return spec;
-}
-
 const TableSpec& limit_table() {
   static const TableSpec spec = {
       .header = "[[limit]]",
@@ -270,6 +260,16 @@ const TableSpec& joint_table() {
 
 }  // namespace
 
+const TableSpec& quantity_keys() {
+  static const TableSpec spec = {
+      .header = "[[quantity]]",
+      .meaning = "named formula: a value of the design, the pose or the motion",
+      .keys = {required(text_key("name", "name of the quantity")),
+               required(formula_key("formula", kUnitOfEntry, "formula; NAME_rate is the derivative of NAME by time")),
+               unit_key(), meaning_key()}};
+  return spec;
+}
+
 const TableSpec& limb_parameter_keys() {
   static const TableSpec spec = {
       .meaning = "a parameter of this limb alone; unit, range and default that are not given are those of all limbs",
@@ -287,7 +287,7 @@ const TableSpec& mechanism_keys() {
                table_key("masses", masses_table()), required(table_key("platform", platform_table())),
                table_key("survey", survey_table()), table_key("modes", modes_table()), table_key("let", let),
                required(tables_key("limb", limb_keys())), table_key("inputs", inputs_table()),
-               tables_key("quantity", quantity_table()), tables_key("limit", limit_table()),
+               tables_key("quantity", quantity_keys()), tables_key("limit", limit_table()),
                tables_key("margin", margin_table()), tables_key("design", design_table()),
                tables_key("link", link_table()), tables_key("body", body_table()), tables_key("joint", joint_table())},
       .noun = "table"};

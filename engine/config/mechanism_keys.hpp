@@ -11,6 +11,8 @@ namespace pkm {
 /// The tables of a mechanism file, as keys of the document.
 const TableSpec& mechanism_keys();
 
+/// Keys of a [[quantity]] of a mechanism file or a study.
+const TableSpec& quantity_keys();
 /// Keys of a parameter of a single limb: "arm2.l_b = { .. }".
 const TableSpec& limb_parameter_keys();
 

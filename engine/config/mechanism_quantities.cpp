@@ -1,9 +1,11 @@
-// Readers of [inputs] and [[quantity]]: named formulas of the design, the pose and its motion.
+// Readers of [inputs] and [[quantity]], named formulas of the design, the pose and its motion, and of their limits in a
+// study.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/expression/derivative.hpp"
+#include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm {
 namespace {
@@ -11,9 +13,11 @@ namespace {
 using expression::Node;
 using generic::Inputs;
 
-/// Names that the output and the formulas of studies use already.
-const std::vector<std::string> kTaken = {"conditioning", "dci",  "inertia_condition", "volume", "clearance",
-                                         "det_Jq",       "det_G"};
+/// Names that the output, fields of workspaces and formulas of studies use already.
+const std::vector<std::string> kTaken = {"conditioning", "dci",    "dci_worst", "inertia_condition", "volume",
+                                         "clearance",    "det_Jq", "det_G",     "feasible",          "margin"};
+
+constexpr double kNoLimit = 1e30;  // threshold that no value of a quantity violates, in any unit
 
 /// A coordinate or an extra input: its value, rate and acceleration are inputs of the graph.
 struct Moving {
@@ -36,7 +40,46 @@ std::vector<Moving> moving_inputs(generic::Model& model) {
   return all;
 }
 
+std::string limit_name(const std::string& quantity, const std::string& side) { return quantity + "_" + side; }
+
+/// Calls visit(name, side, value) for the sides "min" and "max" of each limit of a quantity in a study.
+template <class Visit>
+void visit_quantity_limits(const ConfigValue& study, const MechanismInfo& info, const Visit& visit) {
+  const auto limits = limits_of_quantities(study);
+  if (!limits) return;
+  for (const std::string& name : limits->keys()) {
+    const ConfigValue sides = *limits->find(name);
+    if (!sides.is_table() || find_named(info.limits, name)) continue;
+    for (const std::string& side : sides.keys())
+      if (side == "min" || side == "max") visit(name, side, *sides.find(side));
+  }
+}
+
+/// value - threshold of a minimum, else threshold - value. A minimum or maximum stays outermost, so that the polynomial
+/// normal form takes it apart: min(a, b) - t = min(a - t, b - t).
+/// @param most  number of minima and maxima that are moved outwards
+Node margin_of(expression::Graph& graph, Node value, Node threshold, bool is_minimum, int& most) {
+  const expression::Entry entry = graph[value];
+  const auto is = [&](expression::Code code) { return entry.operation && entry.operation->code == code; };
+  const bool is_min = is(expression::Code::min);
+  if ((is_min || is(expression::Code::max)) && most-- > 0) {
+    const Node first = margin_of(graph, entry.arguments[0], threshold, is_minimum, most),
+               second = margin_of(graph, entry.arguments[1], threshold, is_minimum, most);
+    return graph.apply(expression::operation(is_min == is_minimum ? "min" : "max"), std::array{first, second});
+  }
+  const limbs::Term left(graph, is_minimum ? value : threshold), right(graph, is_minimum ? threshold : value);
+  return (left - right).node();
+}
+
 }  // namespace
+
+std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study) {
+  const auto workspace = study.find("workspace");
+  if (!workspace || !workspace->is_table()) return {};
+  const auto limits = workspace->find("limits");
+  const auto is_quantity = [&](const std::string& name) { return limits->find(name)->is_table(); };
+  return limits && limits->is_table() && std::ranges::any_of(limits->keys(), is_quantity) ? limits : std::nullopt;
+}
 
 void read_inputs(const ConfigValue& root, MechanismDraft& draft) {
   const auto all = root.find_table("inputs");
@@ -53,8 +96,9 @@ void read_inputs(const ConfigValue& root, MechanismDraft& draft) {
   }
 }
 
-void read_quantities(const ConfigValue& root, MechanismDraft& draft) {
-  const auto tables = root.tables("quantity");
+void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft) {
+  auto tables = root.tables("quantity");
+  if (study) std::ranges::copy(study->tables("quantity"), std::back_inserter(tables));
   if (tables.empty()) return;
   generic::Model& model = draft.model;
   const std::vector<Moving> moving = moving_inputs(model);
@@ -77,14 +121,63 @@ void read_quantities(const ConfigValue& root, MechanismDraft& draft) {
     const expression::Groups groups = model.graph[node].groups;
     draft.scope.add(table, name, node);
     add_rate(table, name, node);
+    const bool of_design = (groups & ~Inputs::kDesign) == 0, of_rates = (groups & Inputs::kRates) != 0;
+    const std::string meaning = text_of(table, "meaning");
+    const auto of_pose =
+        of_design || of_rates ? nullptr : formula_quantity(name, unit, meaning, model.quantities.size());
     model.quantities.push_back(node);
     model.info.quantities.push_back({.name = name,
                                      .unit = unit,
-                                     .meaning = text_of(table, "meaning"),
-                                     .of_design = (groups & ~Inputs::kDesign) == 0,
-                                     .of_motion = (groups & (Inputs::kExtras | Inputs::kRates)) != 0});
+                                     .meaning = meaning,
+                                     .of_design = of_design,
+                                     .of_motion = of_rates || (groups & Inputs::kExtras) != 0,
+                                     .of_pose = of_pose});
   }
   draft.scope.allow_motion(false);
+}
+
+void read_quantity_limits(const ConfigValue& study, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  visit_quantity_limits(
+      study, model.info, [&](const std::string& name, const std::string& side, const ConfigValue& at) {
+        const std::string limit = limit_name(name, side);
+        const double none = side == "min" ? -kNoLimit : kNoLimit;
+        const Node threshold = model.graph.input(model.inputs.limit(model.inputs.limits++), Inputs::kDesign);
+        draft.scope.add(at, limit, threshold);
+        model.info.limits.push_back({.name = limit,
+                                     .unit = "1",
+                                     .inactive = none,
+                                     .lower = -kNoLimit,
+                                     .upper = kNoLimit,
+                                     .group = kQuantityLimit,
+                                     .derivation = "",
+                                     .meaning = side == "min" ? "minimum of " + name : "maximum of " + name});
+        model.limit_parameters.emplace_back();
+        model.derived.emplace_back();
+      });
+}
+
+void add_quantity_margins(const ConfigValue& study, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  visit_quantity_limits(
+      study, model.info, [&](const std::string& name, const std::string& side, const ConfigValue& at) {
+        const PoseQuantity* const quantity = at.explained([&] { return &pose_quantity_called(model.info, name); });
+        if (quantity->needs_inertia())
+          throw at.refusal(name + " is a quantity of the inertia, which cannot restrict a workspace; use it as a " +
+                           "constraint on a statistic, or limit a [[quantity]] with a formula");
+        const auto limit = std::ranges::find(model.info.limits, limit_name(name, side), &LimitInfo::name);
+        limit->unit = quantity->unit;
+        const auto i = static_cast<std::size_t>(limit - model.info.limits.begin());
+        if (!quantity->formula) {
+          model.report_limits.push_back({quantity, i, side == "min"});
+          return;
+        }
+        const Node value = model.quantities[*quantity->formula];
+        const Node threshold = model.graph.input(model.inputs.limit(i), Inputs::kDesign);
+        int most = 100;
+        model.margins.push_back(
+            {limit->name, quantity->unit, margin_of(model.graph, value, threshold, side == "min", most)});
+      });
 }
 
 }  // namespace pkm

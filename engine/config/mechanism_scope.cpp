@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/expression/formula_lexer.hpp"
 #include "engine/expression/formula_parser.hpp"
@@ -131,13 +132,17 @@ void MechanismScope::watch(Node root, const std::string& what) {
 }
 
 void MechanismScope::note_domains() {
-  std::vector<Node> used = model_.joints;
-  for (const generic::Result& margin : model_.margins) used.push_back(margin.node);
-  const std::vector<Node> reachable = model_.graph.reachable(used);
+  std::vector<Node> used = model_.joints, limited;
+  for (const generic::Result& margin : model_.margins) {
+    const LimitInfo* const limit = find_named(model_.info.limits, margin.name);
+    (limit && limit->group == kQuantityLimit ? limited : used).push_back(margin.node);
+  }
+  const std::vector<Node> reachable = model_.graph.reachable(used), of_limits = model_.graph.reachable(limited);
   std::vector<std::vector<Node>> of_joints;
   for (const Node& joint : model_.joints) of_joints.push_back(model_.graph.reachable({&joint, 1}));
   for (const auto& [node, what, name] : watched_) {
-    if (!std::ranges::binary_search(reachable, node)) continue;
+    const bool is_needed = std::ranges::binary_search(reachable, node);
+    if (!is_needed && !std::ranges::binary_search(of_limits, node)) continue;
     std::string consequence = what + " has no real value";
     for (std::size_t i = of_joints.size(); i-- > 0;)
       if (std::ranges::binary_search(of_joints[i], node))
@@ -145,7 +150,9 @@ void MechanismScope::note_domains() {
     const expression::Entry entry = model_.graph[node];
     const Term argument = model_.term(entry.arguments[0]), one(model_.graph, 1.0);
     const bool of_circle = entry.operation->name == "asin" || entry.operation->name == "acos";
-    model_.domains.push_back({name, "", (of_circle ? one - abs(argument) : argument).node(), consequence});
+    // A limited quantity may be undefined at a pose that can be assembled.
+    (is_needed ? model_.domains : model_.margins)
+        .push_back({name, "", (of_circle ? one - abs(argument) : argument).node(), consequence});
   }
 }
 

@@ -1,6 +1,7 @@
 #include "engine/config/study_keys.hpp"
 
 #include "engine/config/key_specs.hpp"
+#include "engine/config/mechanism_keys.hpp"
 
 namespace pkm {
 namespace {
@@ -259,9 +260,9 @@ const TableSpec& study_keys() {
                tables_key("motion", motion_keys()), tables_key("objective", objective_table()),
                tables_key("constraint", constraint_table()), tables_key("output", output_table()),
                tables_key("reference", reference_table()), tables_key("drive_train", drive_train_keys()),
-               tables_key("obstacle", obstacle_table()), required(tables_key("stage", stage_table())),
-               table_key("checkpoint", checkpoint_table()), table_key("final", final_table()),
-               tables_key("override", override_table())},
+               tables_key("obstacle", obstacle_table()), tables_key("quantity", quantity_keys()),
+               required(tables_key("stage", stage_table())), table_key("checkpoint", checkpoint_table()),
+               table_key("final", final_table()), tables_key("override", override_table())},
       .noun = "table"};
   return spec;
 }

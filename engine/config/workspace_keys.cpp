@@ -63,10 +63,18 @@ OptionSpec fixed_coordinate() {
 }  // namespace
 
 const TableSpec& workspace_keys() {
-  static const TableSpec limits = {.meaning = "thresholds",
-                                   .keys = {},
-                                   .named = {{.unit = kUnitOfEntry, .meaning = "threshold of a constraint of poses"}},
-                                   .noun = "limit"};
+  static const TableSpec sides = {
+      .meaning = "minimum and maximum of a quantity",
+      .keys = {{.name = "min", .unit = kUnitOfEntry, .meaning = "minimum allowed value of the quantity"},
+               {.name = "max", .unit = kUnitOfEntry, .meaning = "maximum allowed value of the quantity"}}};
+  static const TableSpec limits = {
+      .meaning = "thresholds of constraints of poses, and of quantities",
+      .keys = {},
+      .named = {{.kind = OptionKind::any_of,
+                 .unit = kUnitOfEntry,
+                 .meaning = "threshold of a constraint of poses; minimum and maximum of a quantity",
+                 .parts = {{.unit = kUnitOfEntry}, {.kind = OptionKind::table, .table = &sides}}}},
+      .noun = "limit"};
   static const TableSpec spec = [] {
     TableSpec table = {.header = "[workspace]",
                        .meaning = "method and extent of the workspace analysis",

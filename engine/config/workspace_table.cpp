@@ -8,6 +8,8 @@
 #include "engine/config/study_keys.hpp"
 #include "engine/config/swept_coordinates.hpp"
 #include "engine/math/portable.hpp"
+#include "engine/mechanism/availability.hpp"
+#include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm {
 namespace {
@@ -123,14 +125,33 @@ double read_exact(const ConfigValue& value, const Mechanism& mechanism, double u
   return seconds;
 }
 
+/// limits = { NAME = threshold, QUANTITY = { min = threshold, max = threshold } }
 void read_limits(const ConfigValue& given, StudyDraft& draft) {
   const auto& known = draft.info().limits;
-  const ConfigValue table = given.table_of_names(pkm::names_of(known));
-  for (std::size_t i = 0; i < known.size(); ++i)
-    if (const auto value = table.find(known[i].name)) {
-      draft.parts.plan.limits.given[i] = value->number(known[i].unit, known[i].lower, known[i].upper);
-      draft.study.limit_origins[i] = "workspace.limits (" + value->line() + ")";
+  std::vector<std::string> names;
+  for (const LimitInfo& limit : known)
+    if (limit.group != kQuantityLimit) names.push_back(limit.name);
+  for (const PoseQuantity* const quantity : pose_quantities(draft.info()))
+    if (!quantity->needs_inertia()) names.emplace_back(quantity->name);
+  const ConfigValue table = given.table_of_names(names);
+  const auto read = [&](const std::string& limit, const ConfigValue& value) {
+    const auto i = static_cast<std::size_t>(find_named(known, limit) - known.data());
+    draft.parts.plan.limits.given[i] = value.number(known[i].unit, known[i].lower, known[i].upper);
+    draft.study.limit_origins[i] = "workspace.limits (" + value.line() + ")";
+  };
+  for (const std::string& name : table.keys()) {
+    const ConfigValue value = *table.find(name);
+    if (find_named(known, name)) {
+      read(name, value);
+      continue;
     }
+    const std::string expected = "a table { min = .., max = .. }, since " + name + " is a quantity";
+    const ConfigValue sides = value.expect_table(expected).table();
+    if (sides.keys().empty()) throw value.error(expected);
+    if (const Unsupported reason = why_unavailable(*draft.parts.mechanism, pose_quantity_called(draft.info(), name)))
+      throw value.refusal(*reason);
+    for (const std::string& side : sides.keys()) read(name + "_" + side, *sides.find(side));
+  }
 }
 
 /// Names of the coordinates that an analysis can fix: keys of [workspace] and [[region]].

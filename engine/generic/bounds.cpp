@@ -7,6 +7,7 @@
 #include "engine/expression/derivative.hpp"
 #include "engine/generic/clearance.hpp"
 #include "engine/generic/interval_constraints.hpp"
+#include "engine/generic/report_limits.hpp"
 #include "engine/workspace/bounds/pose_box.hpp"
 #include "engine/workspace/bounds/proof.hpp"
 
@@ -15,10 +16,11 @@ namespace {
 
 using bounds::Ranges;
 
-void refuse_clearance_of_boxes(const Model& model, const LimitSpec& limits) {
+void refuse_limits_of_boxes(const Model& model, const LimitSpec& limits) {
   refuse_clearance(model, limits,
                    "has no certified bounds with a clearance limit (clearance_min), because the distance of two links "
                    "is not given by a formula; use voxels, or remove the limit");
+  refuse_report_limits(model, limits, "certified bounds");
 }
 
 /// The graph's inputs for a design and the fixed coordinates.
@@ -36,7 +38,7 @@ std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e,
 }  // namespace
 
 void require_bounds(const Model& model, const WorkspacePlan& plan) {
-  refuse_clearance_of_boxes(model, plan.limits);
+  refuse_limits_of_boxes(model, plan.limits);
   for (const int coordinate : sweep_of(model.info, plan).fixed) {
     const FixedCoordinate fixed = how_fixed(plan, coordinate);
     const bool integrated = fixed.kind == FixedCoordinate::Kind::integrated;
@@ -115,6 +117,8 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
     statement.input_names[e.model.inputs.limit(i)] = "limit " + info.limits[i].name;
   for (std::size_t i = 0; i < info.coordinates.size(); ++i)
     statement.input_names[e.model.inputs.coordinate(i)] = info.coordinates[i].name;
+  for (std::size_t i = 0; i < info.inputs.size(); ++i)
+    statement.input_names[e.model.inputs.extra(i)] = info.inputs[i].name;
   *options.proof = bounds::proof_text(statement, found, tree);
   return found;
 }
@@ -159,7 +163,7 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
 /// The graph's inputs for a design; coordinates are set to 0.
 std::vector<Interval> inputs_of(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
                                 std::size_t mode) {
-  refuse_clearance_of_boxes(e.model, limits);
+  refuse_limits_of_boxes(e.model, limits);
   const std::vector<Interval> design(parameters.begin(), parameters.end());
   std::vector<Interval> inputs(e.model.inputs.count());
   e.fill_inputs<Interval>(design, limits, mode, inputs);

@@ -8,6 +8,7 @@
 #include "engine/generic/clearance.hpp"
 #include "engine/generic/conditioning.hpp"
 #include "engine/generic/eigen_matrix.hpp"
+#include "engine/generic/report_limits.hpp"
 #include "engine/geometry/singular.hpp"
 #include "engine/math/satisfied.hpp"
 
@@ -138,6 +139,7 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   report.assembles = report.reason.empty();
   const std::vector<double> shown = outputs_of(e.reported, inputs);
   const auto quantities = shown.end() - std::ssize(model.quantities);
+  report.quantities.assign(quantities, shown.end());
   const NamedValues listed = reported_margins(model, margins, shown.begin());
   report.margins.insert(report.margins.end(), listed.begin(), listed.end());
   if (!report.assembles) return report;
@@ -145,10 +147,14 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   if (const auto margin = first_violated(margins); margin != margins.end())
     report.reason = margin->first + " is violated";
   if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles)) add_clearance(model, *nearest, limits, report);
-  report.feasible = report.reason.empty();
 
   std::ranges::copy(*report.joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
   add_jacobians(e, parameters, pose, inputs, report);
+  visit_report_margins(model, limits, report, [&](const std::string& name, double margin) {
+    report.margins.emplace_back(name, margin);
+    if (report.reason.empty() && !is_satisfied(margin)) report.reason = name + " is violated";
+  });
+  report.feasible = report.reason.empty();
   report.T = twist_at(e, inputs);
   return report;
 }

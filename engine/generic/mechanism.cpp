@@ -14,6 +14,7 @@
 #include "engine/generic/mobility.hpp"
 #include "engine/generic/newton_euler.hpp"
 #include "engine/generic/pose_margins.hpp"
+#include "engine/generic/report_limits.hpp"
 #include "engine/generic/voxels.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
 
@@ -104,6 +105,12 @@ class GenericMechanism final : public Mechanism,
   friend PoseMarginsDispatch<GenericMechanism>;
 
   std::string margin_unit() const override { return e_.model.margin_unit; }
+  Unsupported why_no_derivatives(const LimitSpec& limits) const override {
+    const PoseQuantity* const limited = first_report_limit(e_.model, limits);
+    if (!limited) return {};
+    return "margins under a limit of " + std::string(limited->name) +
+           " have none, because it is not given by a formula";
+  }
   template <class S>
   void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,
                     std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) const {
@@ -133,9 +140,26 @@ class GenericMechanism final : public Mechanism,
 
   std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
                                                 const FieldRequest& request) const override {
-    if (accelerators_.voxels && accelerators_.voxels->serves(plan, voxels, request))
-      return accelerators_.voxels->prepare(plan, voxels, request);
+    if (const auto of_file = accelerated_plan(plan, request);
+        accelerators_.voxels && of_file && accelerators_.voxels->serves(*of_file, voxels, request))
+      return accelerators_.voxels->prepare(*of_file, voxels, request);
     return prepare_voxels(*this, e_, plan, voxels, request, accelerated_box(plan, request));
+  }
+  /// The plan without the limits of quantities, which accelerators do not have.
+  WorkspacePlan without_quantities(WorkspacePlan plan) const {
+    for (std::size_t i = info().limits.size(); i-- > 0;)
+      if (info().limits[i].group == kQuantityLimit) {
+        plan.limits.given.erase(plan.limits.given.begin() + static_cast<std::ptrdiff_t>(i));
+        plan.limits.derived.erase(plan.limits.derived.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    return plan;
+  }
+  /// The plan for accelerators; std::nullopt if it limits quantities or evaluates formulas.
+  std::optional<WorkspacePlan> accelerated_plan(const WorkspacePlan& plan, const FieldRequest& request) const {
+    if (request.has_formulas()) return {};
+    for (std::size_t i = 0; i < info().limits.size(); ++i)
+      if (info().limits[i].group == kQuantityLimit && plan.limits.given[i]) return {};
+    return without_quantities(plan);
   }
   /// The search box of the accelerator's voxels, so that the generic engine counts the same cells; null if there is no
   /// accelerator.
@@ -144,13 +168,15 @@ class GenericMechanism final : public Mechanism,
     unlimited.limits = no_limits(info());
     const VoxelOptions no_box;
     const FieldRequest of_mode{.mode = request.mode};
-    if (!accelerators_.voxels || !accelerators_.voxels->serves(unlimited, no_box, of_mode)) return {};
+    if (!accelerators_.voxels || !accelerators_.voxels->serves(without_quantities(unlimited), no_box, of_mode))
+      return {};
     for (std::size_t i = 0; i < unlimited.limits.given.size(); ++i)
       if (i != e_.model.clearance_limit) {
         unlimited.limits.given[i] = plan.limits.given[i];
         unlimited.limits.derived[i] = plan.limits.derived[i];
       }
-    const std::shared_ptr<const VoxelEvaluator> voxels = accelerators_.voxels->prepare(unlimited, no_box, of_mode);
+    const std::shared_ptr<const VoxelEvaluator> voxels =
+        accelerators_.voxels->prepare(without_quantities(unlimited), no_box, of_mode);
     return [voxels](std::span<const double> parameters) {
       const VoxelMap map = voxels->map(parameters);
       Box box;
@@ -162,8 +188,9 @@ class GenericMechanism final : public Mechanism,
   bool supports_obstacles() const override { return true; }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                     const FieldRequest& request) const override {
-    if (accelerators_.columns && accelerators_.columns->serves(plan, columns, request))
-      return accelerators_.columns->prepare(plan, columns, request);
+    if (const auto of_file = accelerated_plan(plan, request);
+        accelerators_.columns && of_file && accelerators_.columns->serves(*of_file, columns, request))
+      return accelerators_.columns->prepare(*of_file, columns, request);
     return prepare_columns(*this, e_, plan, columns, request);
   }
   bool supports_box() const override { return true; }

@@ -61,6 +61,13 @@ struct JointRange {
   Node from{}, to{};
 };
 
+/// A limit of a pose quantity that is not given by a formula.
+struct ReportLimit {
+  const PoseQuantity* quantity;
+  std::size_t limit;  ///< index among MechanismInfo::limits
+  bool is_minimum;    ///< false: the threshold is the maximum
+};
+
 /// Name of the limit on the clearance of links.
 inline constexpr const char* kClearanceLimit = "clearance_min";
 
@@ -196,7 +203,8 @@ struct Model {
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
   std::vector<Node> quantities;  ///< in the order of MechanismInfo::quantities
-  std::vector<Result> angles;    ///< of passive joints
+  std::vector<ReportLimit> report_limits;
+  std::vector<Result> angles;  ///< of passive joints
 
   // platform frame
   std::array<Node, 3> origin;

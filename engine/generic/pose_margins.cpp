@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "engine/generic/clearance.hpp"
+#include "engine/generic/kinematics.hpp"
+#include "engine/generic/report_limits.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -22,6 +24,7 @@ void append_margins(const Evaluation& e, std::span<const S> parameters, std::siz
   const auto& outputs = e.constraints.outputs();
   const std::size_t joints = model.inputs.joints, constraints = model.domains.size() + model.margins.size();
   const std::optional<double> clearance_limit = clearance_of(model, limits);
+  const bool has_report_limits = first_report_limit(model, limits) != nullptr;
   auto& [inputs, registers] = scratch.get<MarginScratch<S>>();
   inputs.resize(model.inputs.count());
   e.fill_inputs<S>(parameters, limits, mode, inputs);
@@ -46,6 +49,11 @@ void append_margins(const Evaluation& e, std::span<const S> parameters, std::siz
     if (assembles && clearance_limit)
       if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles))
         add(S(nearest->clearance - *clearance_limit));
+    if constexpr (std::is_same_v<S, double>) {
+      if (assembles && has_report_limits)
+        visit_report_margins(model, limits, inspect_pose(e, parameters, pose, mode, limits),
+                             [&](const std::string&, double margin) { add(margin); });
+    }
     if (!(assembles && all_finite) && !one_is_negative) margins.push_back(S(-1.0));
   }
 }

@@ -10,6 +10,9 @@
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/inertia_batch.hpp"
 #include "engine/generic/kinematics.hpp"
+#include "engine/generic/report_limits.hpp"
+#include "engine/generic/sample_formulas.hpp"
+#include "engine/math/satisfied.hpp"
 #include "engine/workspace/cell_runs.hpp"
 #include "engine/workspace/grid_evaluator.hpp"
 #include "engine/workspace/pose_quantities.hpp"
@@ -35,8 +38,11 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
     if (request.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, request.rotors);
+    if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, sweep_.swept, mode_);
     if (const auto limit = clearance_of(evaluation.model, plan.limits))
       clearance_.emplace(evaluation, sweep_.swept, mode_, *limit, plan.limits.obstacles);
+    for (const ReportLimit& each : evaluation.model.report_limits)
+      if (plan.limits.given[each.limit]) limited_.push_back(each.quantity);
   }
 
  private:
@@ -46,6 +52,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     std::vector<double> inputs;
     CellScratch cells;
     InertiaScratch inertia;
+    std::vector<double> formulas;
     ClearanceScratch clearance;
     std::array<std::size_t, expression::kRow> waiting;  ///< indices of the bits of the cells in the clearance batch
   };
@@ -81,7 +88,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   void find(const GriddedSlices& slices, std::size_t number, std::size_t slice, WorkerScratch& scratch,
             WorkspaceResult<double>& to) const {
     prepare(slices.common, number, scratch);
-    const CellTally tally = find_cells(slices.grid, slice, request_.needs_samples(), scratch);
+    const CellTally tally = find_cells(slices, slice, request_.needs_samples(), scratch);
     to.feasible_cells += tally.cells;
     to.touches_box = to.touches_box || tally.touches_box;
     if (request_.needs_samples()) add_slice(slices.parameters, slices.grid, slice, slices.cell_volume, scratch, to);
@@ -92,7 +99,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     prepare(slices.common, 0, scratch);
     const auto [count, columns, cells] = test_.shape(slices.grid);
     for (std::size_t slice = 0; slice < count; ++slice) {
-      find_cells(slices.grid, slice, true, scratch);
+      find_cells(slices, slice, true, scratch);
       for_each_cell(scratch.cells, columns, cells,
                     [&](std::size_t j, std::size_t k) { visit(test_.cell(slice, j, k)); });
     }
@@ -108,6 +115,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     });
     test_.start(scratch.inputs, scratch.cells);
     if (inertia_) inertia_->start(scratch.inputs, scratch.inertia);
+    if (formulas_) formulas_->start(scratch.inputs, scratch.formulas);
     if (clearance_) clearance_->start(scratch.inputs, scratch.clearance);
   }
   /// The graph's inputs with the fixed coordinates.
@@ -137,10 +145,23 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     return pose;
   }
 
-  /// Finds the feasible cells of a slice, including clearance. @param want_bits  whether to compute scratch.cells.bits
-  CellTally find_cells(const VoxelGrid& grid, std::size_t slice, bool want_bits, WorkerScratch& scratch) const {
-    if (!clearance_) return test_.test(grid, slice, want_bits, scratch.cells);
+  /// Finds the feasible cells of a slice under all limits. @param want_bits  whether to compute scratch.cells.bits
+  CellTally find_cells(const GriddedSlices& slices, std::size_t slice, bool want_bits, WorkerScratch& scratch) const {
+    const VoxelGrid& grid = slices.grid;
+    if (!clearance_ && limited_.empty()) return test_.test(grid, slice, want_bits, scratch.cells);
     test_.test(grid, slice, true, scratch.cells);
+    if (clearance_) clear_near_links(grid, slice, scratch);
+    if (!limited_.empty()) clear_beyond_limits(slices, slice, scratch);
+    const std::array<std::size_t, 3> shape = test_.shape(grid);
+    CellTally tally;
+    for_each_cell(scratch.cells, shape[1], shape[2], [&](std::size_t j, std::size_t k) {
+      ++tally.cells;
+      tally.touches_box = tally.touches_box || k == 0 || k + 1 == shape[2] || test_.at_side(grid, slice, j);
+    });
+    return tally;
+  }
+  /// Clears the bits of the cells in which links are too near to each other.
+  void clear_near_links(const VoxelGrid& grid, std::size_t slice, WorkerScratch& scratch) const {
     const std::array<std::size_t, 3> shape = test_.shape(grid);
     const std::size_t columns = shape[1], cells = shape[2], length = CellTest::words(cells) * 64;
     std::vector<std::uint64_t>& bits = scratch.cells.bits;
@@ -155,12 +176,30 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
       if (clearance_->add(pose_of(grid, test_.cell(slice, j, k), scratch), scratch.clearance)) test_batch();
     });
     test_batch();
-    CellTally tally;
-    for_each_cell(scratch.cells, columns, cells, [&](std::size_t j, std::size_t k) {
-      ++tally.cells;
-      tally.touches_box = tally.touches_box || k == 0 || k + 1 == cells || test_.at_side(grid, slice, j);
+  }
+  /// Clears the bits of the cells that violate a limit of a quantity that is not given by a formula.
+  void clear_beyond_limits(const GriddedSlices& slices, std::size_t slice, WorkerScratch& scratch) const {
+    const std::array<std::size_t, 3> shape = test_.shape(slices.grid);
+    const std::size_t length = CellTest::words(shape[2]) * 64;
+    for_each_cell(scratch.cells, shape[1], shape[2], [&](std::size_t j, std::size_t k) {
+      check_stop();
+      const PoseReport report =
+          report_at(slices.parameters, pose_of(slices.grid, test_.cell(slice, j, k), scratch), scratch, limited_);
+      bool satisfied = true;
+      visit_report_margins(e_.model, plan_.limits, report,
+                           [&](const std::string&, double margin) { satisfied = satisfied && is_satisfied(margin); });
+      const std::size_t bit = j * length + k;
+      if (!satisfied) scratch.cells.bits[bit / 64] &= ~(std::uint64_t{1} << bit % 64);
     });
-    return tally;
+  }
+  /// Inspects a feasible pose as far as the quantities need it. Writes the coordinates of the pose to scratch.inputs.
+  PoseReport report_at(std::span<const double> parameters, const Pose<double>& pose, WorkerScratch& scratch,
+                       const std::vector<const PoseQuantity*>& quantities) const {
+    std::ranges::copy(pose, scratch.inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+    const bool needs_jacobian_only = std::ranges::all_of(
+        quantities, [](const PoseQuantity* q) { return q == &kConditioning || !q->needs_report(); });
+    return needs_jacobian_only ? inspect_sample(e_, parameters, pose, scratch.inputs)
+                               : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
   }
 
   /// Appends the samples of a slice to the survey.
@@ -179,14 +218,9 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     to.weight.push_back(weight);
     if (request_.poses) to.pose.push_back(pose);
     if (inertia_) inertia_->add(pose, scratch.inertia, to);
+    if (formulas_) formulas_->add(pose, scratch.formulas, to);
     if (!request_.needs_jacobian()) return;
-    std::vector<double>& inputs = scratch.inputs;
-    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
-    const PoseReport report =
-        std::ranges::all_of(request_.fields,
-                            [](const PoseQuantity* q) { return q == &kConditioning || q->needs_inertia(); })
-            ? inspect_sample(e_, parameters, pose, inputs)
-            : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
+    const PoseReport report = report_at(parameters, pose, scratch, request_.fields);
     add_report(report, e_.model.inputs.joints, to);
   }
 
@@ -199,8 +233,10 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   std::size_t mode_;
   BoxOfDesign default_box_;
   CellTest test_;
-  std::optional<InertiaBatch> inertia_;      ///< if fields of inertia are requested
-  std::optional<ClearanceBatch> clearance_;  ///< if there is a clearance limit
+  std::optional<InertiaBatch> inertia_;       ///< if fields of inertia are requested
+  std::optional<SampleFormulas> formulas_;    ///< if formulas are requested
+  std::optional<ClearanceBatch> clearance_;   ///< if there is a clearance limit
+  std::vector<const PoseQuantity*> limited_;  ///< quantities of Model::report_limits in force
 };
 
 }  // namespace

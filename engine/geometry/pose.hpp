@@ -53,6 +53,8 @@ struct PoseReport {
   NamedValues indices;                 ///< singularity indices specific to the mechanism
   NamedValues angles;                  ///< angles [rad] and lengths [m] specific to the mechanism
   NamedValues margins;                 ///< pose-level constraint values; >= 0: satisfied
+  std::vector<double> quantities =
+      {};  ///< of MechanismInfo::quantities, inputs at their defaults, at rest; NaN: undefined
 };
 
 /// One solution of the forward kinematics.

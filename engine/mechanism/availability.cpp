@@ -25,6 +25,7 @@ Unsupported why_no_conditioning(const MechanismInfo& info) {
 }
 
 Unsupported why_unavailable(const Mechanism& mechanism, const PoseQuantity& quantity) {
+  if (quantity.formula) return {};
   return quantity.needs_inertia() ? why_no_joint_forces(mechanism) : why_no_conditioning(mechanism.info());
 }
 

@@ -19,6 +19,9 @@
 
 namespace pkm {
 
+/// LimitInfo::group of limits of pose quantities, which a study adds: "LTI_min".
+inline constexpr const char* kQuantityLimit = "quantity";
+
 /// Description of a limit: the threshold of a constraint of poses.
 struct LimitInfo {
   std::string name;  ///< "beta_max"
@@ -27,7 +30,8 @@ struct LimitInfo {
                         ///< nominal value; unless a threshold is given, the design's parameter is the threshold
   double lower = 0;     ///< range of thresholds that a study may give
   double upper = 0;
-  std::string group;       ///< the constraint that owns it: "interference", "singularity-margin" or "clearance"
+  std::string group;       ///< the constraint that owns it: "interference", "singularity-margin" or "clearance"; or
+                           ///< kQuantityLimit
   std::string derivation;  ///< formula of the threshold from the parameters; "" if there is none
   std::string meaning;
 };
@@ -51,6 +55,9 @@ struct QuantityInfo {
   std::string name, unit, meaning;
   bool of_design = false;  ///< depends on parameters and limits alone
   bool of_motion = false;  ///< depends on inputs or on time derivatives
+  /// The pose quantity of workspace analyses, with inputs at their default values; null if the quantity depends on the
+  /// design alone, or on time derivatives.
+  std::shared_ptr<const PoseQuantity> of_pose = nullptr;
 };
 
 struct MechanismInfo {

@@ -81,7 +81,7 @@ inline FixedCoordinate how_fixed(const WorkspacePlan& plan, int coordinate) {
 struct FieldRequest {
   std::vector<const PoseQuantity*> fields;
   bool poses = false;                           ///< also store poses; columns may omit them if no field needs inertia
-  std::optional<double> characteristic_length;  ///< for fields without inertia [m]; std::nullopt: the mechanism's
+  std::optional<double> characteristic_length;  ///< for fields that need a Jacobian [m]; std::nullopt: the mechanism's
   std::string mode;                             ///< working mode for fields of inertia; "": the mechanism's default
   std::vector<double> rotors;                   ///< by joint: reflected inertia of drive trains; empty: none
 
@@ -90,8 +90,11 @@ struct FieldRequest {
     if (!has(quantity)) fields.push_back(&quantity);
   }
   bool needs_inertia() const { return std::ranges::any_of(fields, &PoseQuantity::needs_inertia); }
-  bool needs_jacobian() const { return !std::ranges::all_of(fields, &PoseQuantity::needs_inertia); }
+  bool needs_jacobian() const { return std::ranges::any_of(fields, &PoseQuantity::needs_report); }
+  bool has_formulas() const { return std::ranges::any_of(fields, is_formula); }
   bool needs_samples() const { return poses || !fields.empty(); }
+
+  static bool is_formula(const PoseQuantity* quantity) { return quantity->formula.has_value(); }
 };
 
 }  // namespace pkm

@@ -1,9 +1,13 @@
 // Definition of a per-pose quantity: a number of each pose, or of each joint at each pose. Workspace analyses,
-// objectives, names in expressions, plots and exports are derived from the definition. The list of all quantities is in
-// engine/workspace/pose_quantities.hpp.
+// objectives, names in expressions, limits, plots and exports are derived from the definition. Built-in quantities are
+// listed in engine/workspace/pose_quantities.hpp; formulas of mechanism files and studies are quantities, too
+// (QuantityInfo).
 #pragma once
 
 #include <array>
+#include <memory>
+#include <optional>
+#include <string>
 #include <tuple>
 
 #include "engine/geometry/pose.hpp"
@@ -55,14 +59,29 @@ struct PoseQuantity {
   Worst worst;                ///< which extreme value of a workspace is bad; objectives improve it
   double value_if_undefined;  ///< for poses where the value is not finite, and for workspaces without poses
   bool per_joint = false;
-  std::array<NamedStatistic, 2> results = {};  ///< an entry without a statistic is unused
-  // Function that computes the values at a pose, one or one per joint: exactly one of the following is set.
+  std::array<NamedStatistic, 4> results = {};  ///< an entry without a statistic is unused
+  // Source of the values at a pose, one or one per joint: exactly one of the following is set.
   void (*from_report)(const PoseReport&, double* values) = nullptr;  ///< from inverse kinematics: J, margins, ...
   InertiaFunction from_inertia = {};                                 ///< from the joint-space inertia M_q
+  std::optional<std::size_t> formula = {};                           ///< index among MechanismInfo::quantities
 
-  /// @return true if it needs dynamics and a working mode; otherwise it is computed from a PoseReport and may depend on
-  /// a characteristic length
-  bool needs_inertia() const { return !from_report; }
+  /// @return true if it needs dynamics and a working mode
+  bool needs_inertia() const { return !from_report && !formula; }
+  /// @return true if it needs a Jacobian and may depend on a characteristic length
+  bool needs_report() const { return from_report != nullptr; }
+  /// Evaluates a quantity that does not need inertia.
+  void evaluate(const PoseReport& report, double* values) const {
+    if (formula)
+      *values = report.quantities[*formula];
+    else
+      from_report(report, values);
+  }
 };
+
+/// Makes the pose quantity of a formula. Its range is unlimited, and it is undefined (NaN) for a workspace without
+/// poses.
+/// @param index  among MechanismInfo::quantities
+std::shared_ptr<const PoseQuantity> formula_quantity(const std::string& name, const std::string& unit,
+                                                     const std::string& meaning, std::size_t index);
 
 }  // namespace pkm

@@ -33,7 +33,7 @@ bool has_word(const std::string& formula, const std::string& word) {
 /// analysis that the mechanism does not support.
 const std::string& formula_text(const EntryContext& context) {
   const std::string& formula = context.options.word("expression");
-  for (const AnalysisResult& result : analysis_results()) {
+  for (const AnalysisResult& result : analysis_results(context.mechanism.info())) {
     if (!result.quantity || !has_word(formula, result.name)) continue;
     if (const Unsupported reason = why_unavailable(context.mechanism, *result.quantity))
       throw std::invalid_argument("the formula \"" + formula + "\" uses " + result.name + ", but " + *reason);
@@ -55,17 +55,14 @@ S AnalysisResult::value(const WorkspaceResult<S>& workspace, double sharpness, S
 template double AnalysisResult::value(const WorkspaceResult<double>&, double, Scratch&) const;
 template Dual4 AnalysisResult::value(const WorkspaceResult<Dual4>&, double, Scratch&) const;
 
-const std::vector<AnalysisResult>& analysis_results() {
-  static const std::vector<AnalysisResult> list = [] {
-    std::vector<AnalysisResult> all = {{"volume", "measure of the feasible poses over the swept coordinates"}};
-    for (const PoseQuantity* const quantity : pose_quantities())
-      for (const auto& [statistic, meaning] : quantity->results)
-        if (statistic)
-          all.push_back({quantity->name + std::string("_") + statistic, meaning + empty_workspace_note(*quantity),
-                         quantity, statistic});
-    return all;
-  }();
-  return list;
+std::vector<AnalysisResult> analysis_results(const MechanismInfo& info) {
+  std::vector<AnalysisResult> all = {{"volume", "measure of the feasible poses over the swept coordinates"}};
+  for (const PoseQuantity* const quantity : pose_quantities(info))
+    for (const auto& [statistic, meaning] : quantity->results)
+      if (statistic)
+        all.push_back({quantity->name + std::string("_") + statistic, meaning + empty_workspace_note(*quantity),
+                       quantity, statistic});
+  return all;
 }
 
 std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const WorkspacePlan& plan) {
@@ -79,14 +76,16 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const W
   }
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const LimitInfo& limit = info.limits[i];
+    if (limit.group == kQuantityLimit) continue;  // the name stands for the statistic of the quantity
     names.push_back({limit.name, limit.unit, "threshold in effect: " + limit.meaning, Origin::threshold, i});
   }
   if (const Size* const size = mechanism.size())
     names.push_back({"size", size->unit(), size->meaning(), Origin::size, 0});
-  for (std::size_t i = 0; i < analysis_results().size(); ++i) {
-    const auto& [name, meaning, quantity, statistic] = analysis_results()[i];
-    if (!quantity || !why_unavailable(mechanism, *quantity))
-      names.push_back({name, quantity ? quantity->unit : volume_unit(info, plan), meaning, Origin::workspace, i});
+  const std::vector<AnalysisResult> results = analysis_results(info);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto& [name, meaning, quantity, statistic] = results[i];
+    if (quantity && (find_named(names, name) || why_unavailable(mechanism, *quantity))) continue;
+    names.push_back({name, quantity ? quantity->unit : volume_unit(info, plan), meaning, Origin::workspace, i});
   }
   return names;
 }
@@ -109,7 +108,8 @@ std::vector<OptionSpec> expression_options() {
 }
 
 Expression::Expression(const EntryContext& context)
-    : names_(expression_names(context.mechanism, context.plan)),
+    : results_(analysis_results(context.mechanism.info())),
+      names_(expression_names(context.mechanism, context.plan)),
       formula_(formula_text(context), names_of(names_)),
       limits_(context.plan.limits),
       sharpness_(context.options.number("sharpness")) {
@@ -127,8 +127,7 @@ bool Expression::needs_workspace() const { return uses(Origin::workspace); }
 void Expression::add_request(const EntryContext& context, FieldRequest& request) const {
   for (const std::size_t i : formula_.used())
     if (names_[i].origin == Origin::workspace)
-      if (const auto* const quantity = analysis_results()[names_[i].index].quantity)
-        request_field(*quantity, context, request);
+      if (const auto* const quantity = results_[names_[i].index].quantity) request_field(*quantity, context, request);
 }
 
 /// Rejects options without effect: most likely the user expects the expression to use another quantity.
@@ -137,7 +136,7 @@ void Expression::refuse_unused_options(const Options& options, const FieldReques
     throw std::invalid_argument("characteristic_length has no effect: the expression does not use the conditioning");
   const bool has_extremum = std::ranges::any_of(formula_.used(), [&](std::size_t i) {
     if (names_[i].origin != Origin::workspace) return false;
-    const std::string& statistic = analysis_results()[names_[i].index].statistic;
+    const std::string& statistic = results_[names_[i].index].statistic;
     return statistic == "min" || statistic == "max";
   });
   if (options.values().at("sharpness") != sharpness_option("").initial && !has_extremum)
@@ -163,7 +162,7 @@ S Expression::value(const DesignView<S>& design) const {
         values[i] = design.mechanism.size()->of(design.parameters);
         break;
       case Origin::workspace:
-        values[i] = analysis_results()[index].value(*design.workspace, sharpness_, design.scratch);
+        values[i] = results_[index].value(*design.workspace, sharpness_, design.scratch);
     }
   }
   return formula_.value(std::span<const S>(values), stack);

@@ -21,7 +21,7 @@ struct ExpressionName {
   std::string unit;
   std::string meaning;
   Origin origin = Origin::parameter;
-  std::size_t index = 0;  ///< in the mechanism's parameters or limits, or in analysis_results()
+  std::size_t index = 0;  ///< in the mechanism's parameters or limits, or in analysis_results(info)
 };
 
 /// A scalar result of a workspace analysis: the volume or a statistic of a pose quantity.
@@ -37,8 +37,8 @@ struct AnalysisResult {
   S value(const WorkspaceResult<S>& workspace, double sharpness, Scratch& scratch) const;
 };
 
-/// The volume and the statistics of all pose quantities.
-const std::vector<AnalysisResult>& analysis_results();
+/// The volume and the statistics of all pose quantities of a mechanism.
+std::vector<AnalysisResult> analysis_results(const MechanismInfo& info);
 
 /// All names that expressions of a mechanism may use, except `pi` and the functions, which every formula has.
 std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const WorkspacePlan& plan);
@@ -64,6 +64,7 @@ class Expression {
   bool uses(ExpressionName::Origin origin) const;
   void refuse_unused_options(const Options& options, const FieldRequest& request) const;
 
+  std::vector<AnalysisResult> results_;
   std::vector<ExpressionName> names_;
   Formula formula_;
   LimitSpec limits_;

@@ -2,6 +2,8 @@
 // helpers that the catalogue entries based on them share.
 #pragma once
 
+#include <cmath>
+#include <string>
 #include <type_traits>
 
 #include "engine/math/statistics.hpp"
@@ -13,6 +15,7 @@ namespace pkm {
 /// Text on the value of an empty workspace: "; 1 if no pose is feasible", or "" if that value is 0.
 inline std::string empty_workspace_note(const PoseQuantity& quantity) {
   if (quantity.value_if_undefined == 0) return {};
+  if (std::isnan(quantity.value_if_undefined)) return "; undefined if no pose is feasible";
   return "; " + shortest(quantity.value_if_undefined) + " if no pose is feasible";
 }
 
@@ -22,7 +25,7 @@ inline void request_field(const PoseQuantity& quantity, const EntryContext& cont
   if (options.has("limb")) validate_joint(context.mechanism, options.word("limb"));
   request.add(quantity);
   if (quantity.needs_inertia()) request.mode = mode_of(context);
-  if (!quantity.needs_inertia() && options.has("characteristic_length"))
+  if (quantity.needs_report() && options.has("characteristic_length"))
     request.characteristic_length = options.number("characteristic_length");
 }
 
@@ -62,7 +65,7 @@ const std::vector<S>& reduced_field(const WorkspaceResult<S>& workspace, const P
 /// A statistic of one quantity over the weighted samples of a workspace analysis.
 struct PoseStatistic {
   const PoseQuantity& quantity;
-  std::string statistic;        ///< "mean", "std", "min", "max" or "p95" (without derivatives)
+  std::string statistic;        ///< "mean", "std", "min", "max" or a quantile such as "p95" (without derivatives)
   std::string joint = "worst";  ///< as for reduced_field()
   double sharpness = 200;       ///< of the smooth approximation of "min" and "max" with derivatives
 
@@ -71,12 +74,16 @@ struct PoseStatistic {
     const std::vector<S>& weight = workspace.weight;
     if (weight.empty()) return S(quantity.value_if_undefined);
     const std::vector<S>& field = reduced_field(workspace, quantity, joint, scratch);
+    if (std::ranges::any_of(field, [](const S& x) { return std::isnan(value_of(x)); })) return S(std::nan(""));
     if (statistic == "mean") return weighted_mean(weight, field);
     if (statistic == "std") return weighted_standard_deviation(weight, field);
     if constexpr (std::is_same_v<S, double>) {
-      if (statistic == "p95") return weighted_quantile(weight, field, 0.95, scratch.get<SortScratch>().order);
+      if (statistic[0] == 'p')
+        return weighted_quantile(weight, field, std::stoi(statistic.substr(1)) / 100.0,
+                                 scratch.get<SortScratch>().order);
       return statistic == "min" ? least(field) : greatest(field);
     } else {
+      if (quantity.formula) return scaled_extremum(weight, field, scratch.get<ScaledScratch<S>>().field);
       return statistic == "min" ? soft_min(weight, field, sharpness) : soft_max(weight, field, sharpness);
     }
   }
@@ -89,6 +96,21 @@ struct PoseStatistic {
   struct SortScratch {
     std::vector<std::size_t> order;
   };
+  template <class S>
+  struct ScaledScratch {
+    std::vector<S> field;
+  };
+
+  /// The smooth approximation of "min" or "max" of values scaled to [0, 1], so that it does not depend on their unit.
+  template <class S>
+  S scaled_extremum(const std::vector<S>& weight, const std::vector<S>& field, std::vector<S>& scaled) const {
+    const S lower = least(field), range = greatest(field) - lower;
+    if (!(value_of(range) > 0)) return lower;
+    scaled.clear();
+    for (const S& value : field) scaled.push_back((value - lower) / range);
+    return lower +
+           range * (statistic == "min" ? soft_min(weight, scaled, sharpness) : soft_max(weight, scaled, sharpness));
+  }
 };
 
 }  // namespace pkm

@@ -14,9 +14,10 @@ namespace {
 /// Whether the page includes a field. Quantities of inertia need ShownDesigns::coupling, margins and joint positions
 /// need PageDetail::joints.
 bool is_shown(const ShownDesigns& shown, const std::string& field) {
-  for (const PoseQuantity* const quantity : pose_quantities()) {
+  for (const PoseQuantity* const quantity : pose_quantities(shown.mechanism.info())) {
     const std::string name = quantity->name;
-    if (field == name || field.starts_with(name + "_")) return shown.coupling || !quantity->needs_inertia();
+    if (field == name || (quantity->per_joint && field.starts_with(name + "_")))
+      return shown.coupling || !quantity->needs_inertia();
   }
   return shown.detail.joints;
 }

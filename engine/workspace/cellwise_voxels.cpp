@@ -124,6 +124,8 @@ class CellwiseVoxels final : public GridEvaluator<CellwiseVoxels> {
     result.weight.push_back(weight);
     if (request_.poses) result.pose.push_back(pose);
     add_report(report, mechanism_.info().joints.size(), result);
+    for (auto& [quantity, field] : result.fields)
+      if (quantity->formula) field[0].push_back(report.quantities[*quantity->formula]);
     if (request_.needs_inertia()) {
       const MotionState<double> state{pose, AxisVector<double>(pose.size())};
       PoseDynamics<double> d;

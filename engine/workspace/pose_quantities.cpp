@@ -1,10 +1,35 @@
 #include "engine/workspace/pose_quantities.hpp"
 
+#include <stdexcept>
+
+#include "engine/core/catalogue.hpp"
+
 namespace pkm {
 
 const std::vector<const PoseQuantity*>& pose_quantities() {
   static const std::vector<const PoseQuantity*> list = {&kConditioning, &kCouplingIndex, &kInertiaCondition};
   return list;
+}
+
+std::vector<const PoseQuantity*> pose_quantities(const MechanismInfo& info) {
+  std::vector<const PoseQuantity*> list = pose_quantities();
+  for (const QuantityInfo& quantity : info.quantities)
+    if (quantity.of_pose) list.push_back(quantity.of_pose.get());
+  return list;
+}
+
+const PoseQuantity& pose_quantity_called(const MechanismInfo& info, const std::string& name) {
+  std::vector<std::string> known;
+  for (const PoseQuantity* const quantity : pose_quantities(info)) {
+    if (quantity->name == name) return *quantity;
+    known.emplace_back(quantity->name);
+  }
+  if (const QuantityInfo* const found = find_named(info.quantities, name))
+    throw std::invalid_argument("quantity '" + name + "' depends on " +
+                                (found->of_design ? "the design alone" : "rates of the motion") +
+                                "; expected a quantity of the pose");
+  throw std::invalid_argument("mechanism " + info.name + " has no quantity '" + name + "'; expected one of " +
+                              join(known) + did_you_mean(name, known));
 }
 
 }  // namespace pkm

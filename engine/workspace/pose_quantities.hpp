@@ -1,25 +1,32 @@
-// List of all per-pose quantities, and their evaluation. To add a quantity, add a file to quantities/, declare its
-// constant here and append it to the list; voxels, objectives, expressions, tables, plots and the report then offer it.
+// List of all per-pose quantities, and their evaluation. To add a built-in quantity, add a file to quantities/, declare
+// its constant here and append it to the list; voxels, objectives, expressions, tables, plots and the report then offer
+// it. Formulas of mechanism files and studies, [[quantity]], are per-pose quantities of their mechanism.
 #pragma once
 
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "engine/mechanism/mechanism.hpp"
 #include "engine/mechanism/workspace_result.hpp"
 
 namespace pkm {
 
 extern const PoseQuantity kConditioning, kCouplingIndex, kInertiaCondition;
 
-/// In the order of tables: quantities of pose reports before quantities of inertia.
+/// The built-in quantities in the order of tables: those of pose reports before those of inertia.
 const std::vector<const PoseQuantity*>& pose_quantities();
+/// The quantities of a mechanism: the built-in ones, then its formulas.
+std::vector<const PoseQuantity*> pose_quantities(const MechanismInfo& info);
+/// The quantity of this name. Throws std::invalid_argument if there is none, or if it is a formula of the design alone
+/// or of time derivatives.
+const PoseQuantity& pose_quantity_called(const MechanismInfo& info, const std::string& name);
 
 /// Appends the values of all requested quantities that are computed from a PoseReport.
 /// @param joints  number of actuated joints of the mechanism
 inline void add_report(const PoseReport& report, std::size_t joints, WorkspaceResult<double>& to) {
   for (auto& [quantity, field] : to.fields) {
-    if (quantity->needs_inertia()) continue;
+    if (!quantity->needs_report()) continue;
     std::array<double, kMaxJoints> values;
     quantity->from_report(report, values.data());
     const std::size_t count = quantity->per_joint ? joints : 1;

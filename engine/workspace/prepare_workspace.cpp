@@ -104,7 +104,7 @@ std::vector<WorkspacePlan> single_plans(const WorkspacePlan& plan) {
 
 const PoseQuantity* first_cellwise_field(const FieldRequest& request) {
   for (const PoseQuantity* const quantity : request.fields)
-    if (!quantity->needs_inertia() && quantity != &kConditioning) return quantity;
+    if (quantity->needs_report() && quantity != &kConditioning) return quantity;
   return nullptr;
 }
 

@@ -43,6 +43,7 @@ class Evaluator {
             const std::string& mode, std::vector<WorkspaceField>& fields, const Poses& poses, std::size_t block)
       : mechanism_(mechanism),
         info_(mechanism.info()),
+        all_(pose_quantities(mechanism.info())),
         parameters_(parameters),
         limits_(limits),
         margin_(mechanism, parameters, limits),
@@ -94,12 +95,12 @@ class Evaluator {
   }
   void add_quantities(bool from_inertia) {
     const std::string& length = info_.characteristic_length;
-    for (const PoseQuantity* const quantity : pose_quantities()) {
+    for (const PoseQuantity* const quantity : all_) {
       if (quantity->needs_inertia() != from_inertia) continue;
       const std::string name = quantity->name, meaning = quantity->meaning;
       if (!quantity->per_joint) {
         add(name, quantity->unit,
-            meaning + (from_inertia || length.empty() ? "" : ", characteristic length " + length));
+            meaning + (!quantity->needs_report() || length.empty() ? "" : ", characteristic length " + length));
         continue;
       }
       for (std::size_t limb = 1; limb <= info_.joints.size(); ++limb)
@@ -116,7 +117,7 @@ class Evaluator {
   template <class Evaluate>
   void store(std::size_t field, std::size_t cell, bool from_inertia, const Evaluate& evaluate) const {
     std::array<double, kMaxJoints> values;
-    for (const PoseQuantity* const quantity : pose_quantities()) {
+    for (const PoseQuantity* const quantity : all_) {
       if (quantity->needs_inertia() != from_inertia) continue;
       evaluate(*quantity, values.data());
       const std::size_t count = quantity->per_joint ? info_.joints.size() : 1;
@@ -137,7 +138,7 @@ class Evaluator {
     if (!feasible(cell)) return;
     const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
     store(kQuantities, cell, false,
-          [&](const PoseQuantity& quantity, double* values) { quantity.from_report(report, values); });
+          [&](const PoseQuantity& quantity, double* values) { quantity.evaluate(report, values); });
     for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(joints_ + i, cell) = (*report.joints)[i];
   }
 
@@ -170,6 +171,7 @@ class Evaluator {
 
   const Mechanism& mechanism_;
   const MechanismInfo& info_;
+  std::vector<const PoseQuantity*> all_;
   std::span<const double> parameters_;
   const LimitSpec& limits_;
   PoseMargin margin_;

@@ -8,6 +8,7 @@
 //   feasible           1 or 0, as counted by voxel workspace analysis
 //   margin             minimum margin of the pose: > 0 in feasible cells, < 0 in the others; 0 on the boundary surface
 //   conditioning       inverse condition number of the Jacobian in [0, 1], with the mechanism's characteristic length
+//   LTI ..             quantities that are formulas ([[quantity]]), named as in the mechanism file or the study
 //   rho1 ..            joint positions, named as in the mechanism
 //   dci_1 ..           dynamic coupling indices of the limbs in [0, 1], if the mechanism has masses
 //   dci_worst          the largest of them

@@ -127,7 +127,10 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
   };
   add_index("det_Jq", report.det_Jq);
   add_index("det_G", report.det_G);
-  for (const auto& [name, value] : report.indices) add_index(name, value);
+  for (const auto& [name, value] : report.indices) {
+    const QuantityInfo* const quantity = find_named(info.quantities, name);
+    indices.push_back({name, number(value, quantity ? quantity->unit : "1")});
+  }
   add_index("conditioning", report.conditioning);
   std::string undefined = why_no_conditioning(info).value_or("");
   if (undefined.empty() && report.J && !report.conditioning)

@@ -1,6 +1,7 @@
 // `pkmopt export` and `workspace`: CSV tables, VTK images and STL surfaces, read back and compared.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -85,7 +86,9 @@ TEST_F(ExportProgram, VtkAndCsvOfAnyMechanismAgree) {
         << output_;
     EXPECT_THAT(output_, HasSubstr("wrote w.vtkhdf\nwrote w.csv\n"));
     const int count = (9 + swept[0]) * (9 + swept[1]) * (9 + swept[2]);
-    const std::size_t arrays = mechanism->dynamics() ? 13 : 7;
+    const auto formulas = std::ranges::count_if(
+        info.quantities, [](const QuantityInfo& quantity) { return quantity.of_pose != nullptr; });
+    const auto arrays = (mechanism->dynamics() ? 13 : 7) + formulas;
     EXPECT_EQ(vtk("w.vtkhdf w.csv"),
               "equal " + std::to_string(count) + " cells of " + std::to_string(arrays) + " arrays\n")
         << info.name;

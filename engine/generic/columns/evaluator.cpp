@@ -8,6 +8,8 @@
 #include "engine/generic/conditioning.hpp"
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/inertia_batch.hpp"
+#include "engine/generic/report_limits.hpp"
+#include "engine/generic/sample_formulas.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "engine/workspace/with_gradients.hpp"
 
@@ -97,6 +99,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     integral_.emplace(std::move(best), tolerance);
     if (request.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
     if (request.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, request.rotors);
+    if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, dual_registers(), mode_);
   }
 
  private:
@@ -119,6 +122,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   struct SampleRoom {
     std::vector<S> inputs;
     ConditioningScratch<S> conditioning;
+    std::vector<S> formulas;
   };
 
   /// The swept and integrated coordinates.
@@ -231,6 +235,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
       inertia_->start(inputs, memory.inertia);
     }
     if (conditioning_) conditioning_->start(parameters, inputs, samples.conditioning);
+    if (formulas_) formulas_->start(inputs, samples.formulas);
     Pose<S> pose(e_.model.inputs.coordinates);
     std::copy_n(&inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
     std::vector<S>* const conditioning = survey.find(kConditioning);
@@ -244,6 +249,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
                                   if (conditioning)
                                     conditioning->push_back(conditioning_->at(pose, samples.conditioning));
                                   if (inertia_) inertia_->add(pose, memory.inertia, survey);
+                                  if (formulas_) formulas_->add(pose, samples.formulas, survey);
                                 });
     if (inertia_) inertia_->finish(memory.inertia, survey);
   }
@@ -258,6 +264,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   std::optional<NestedIntegral> integral_;
   std::optional<SampleConditioning> conditioning_;  ///< if they are requested
   std::optional<InertiaBatch> inertia_;
+  std::optional<SampleFormulas> formulas_;
 };
 
 }  // namespace
@@ -276,6 +283,7 @@ std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Mechanism& mecha
   refuse_clearance(evaluation.model, plan.limits,
                    "has no columns under a clearance (clearance_min), because links that meet end columns where "
                    "no formula says; set workspace.method = \"voxels\"");
+  refuse_report_limits(evaluation.model, plan.limits, "exact columns");
   return std::make_unique<GenericColumns>(mechanism, evaluation, plan, columns, request);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/scratch.hpp"
+#include "engine/core/unsupported.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/mechanism/plan.hpp"
@@ -47,6 +48,8 @@ class PoseMargins {
   virtual ~PoseMargins() = default;
   /// Unit of all margins; "" if each has its own (m, rad or 1).
   virtual std::string margin_unit() const = 0;
+  /// Why margins under these limits have no derivatives; std::nullopt if they have.
+  virtual Unsupported why_no_derivatives(const LimitSpec&) const { return {}; }
   /// Appends the margins of poses, which are finite. A pose that cannot be assembled has margins, too, one of them
   /// negative.
   /// @param mode     one of MechanismInfo::modes, or "": the first

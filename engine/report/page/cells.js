@@ -24,7 +24,7 @@ function fieldTitle(name, joints) {
 
 /**
  * The workspace of one design, unpacked. `values` maps the name of a field to its values at the feasible cells; the value
- * of a cell is at feasibleIndex[cell], which is -1 for infeasible cells.
+ * of a cell is at feasibleIndex[cell], which is -1 for infeasible cells. Fields are in display units.
  */
 class Cells {
   constructor(packed) {
@@ -36,12 +36,17 @@ class Cells {
     let count = 0;
     for (let cell = 0; cell < this.feasibleIndex.length; ++cell)
       if (this.feasible[cell]) this.feasibleIndex[cell] = count++;
-    this.values = new Map(packed.fields.map((field) => [field.name, unpack(field.values)]));
+    this.fields = packed.fields.map((field) => ({ ...field, unit: shownUnit(field.unit) }));
+    const shown = (name, values) => {
+      const scale = shownScale(packed.fields.find((field) => field.name === name)?.unit);
+      return scale === 1 ? unpack(values) : Array.from(unpack(values), (value) => value * scale);
+    };
+    this.values = new Map(packed.fields.map((field) => [field.name, shown(field.name, field.values)]));
     const { surface } = packed; // only if three coordinates are swept
     this.surface = surface && {
       vertices: surface.vertices.map(unpack),
       triangles: unpack(surface.triangles),
-      values: new Map(Object.entries(surface.values).map(([field, values]) => [field, unpack(values)])),
+      values: new Map(Object.entries(surface.values).map(([field, values]) => [field, shown(field, values)])),
     };
   }
   centre(axis, k) {

@@ -26,6 +26,7 @@ inline Options test_options(const std::vector<OptionSpec>& specs, const Mechanis
     if (spec.kind == OptionKind::named_numbers)
       options.set(spec.name, NamedNumbers{{info.parameters[0].name, 0.7}, {info.parameters[1].name, -1.3}});
     if (spec.name == "expression") options.set(spec.name, expression);
+    if (spec.name == "quantity") options.set(spec.name, some_quantity(info));
     if (spec.name == "region") options.set(spec.name, std::string("task"));
     if (spec.name == "motion") options.set(spec.name, std::string("swing"));
     if (spec.name == "samples") options.set(spec.name, std::int64_t{5});

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/config/built_in_mechanisms.hpp"
+#include "engine/mechanism/availability.hpp"
 #include "engine/motion/motion_factories.hpp"
 #include "engine/problem/pose_statistic.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
@@ -69,6 +70,13 @@ inline const std::shared_ptr<const Mechanism>& test_mechanism(const std::string&
 }
 
 inline bool is_from_file(const MechanismInfo& info) { return info.name.starts_with("file-"); }
+
+/// The name of a quantity of the mechanism that needs no dynamics; "" if there is none.
+inline std::string some_quantity(const MechanismInfo& info) {
+  for (const PoseQuantity* const quantity : pose_quantities(info))
+    if (quantity->formula || (quantity->needs_report() && !why_no_conditioning(info))) return quantity->name;
+  return "";
+}
 
 inline std::vector<double> nominal(const MechanismInfo& info) {
   std::vector<double> values;
