@@ -7,6 +7,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/team.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm {
 namespace {
@@ -100,19 +101,19 @@ class SurfaceBuilder {
 
   /// Moves the vertices to the sign change of the pose's margin by bisection, except those on the faces of the box.
   void refine(const WorkspaceFields& workspace, const PoseMargin& margin) {
-    constexpr std::size_t kBlock = 256;  // vertices per work item
+    constexpr std::size_t kBlock = 256;          // vertices per work item
+    constexpr double kEdgeFraction = 1.0 / 128;  // accuracy, relative to the edge
     const std::size_t count = edges_.size();
     std::vector<Scratch> scratch(workers());
     parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end, std::size_t worker) {
       for (std::size_t k = block * kBlock; k < std::min(end * kBlock, count); ++k) {
         if (edges_[k].on_box) continue;
-        double inside = 0, outside = 1;
-        for (int step = 0; step < 7; ++step) {  // down to 1/128 of the edge
-          const double midpoint = (inside + outside) / 2;
-          (margin(workspace.pose(edges_[k].at(midpoint)), scratch[worker]) >= 0 ? inside : outside) = midpoint;
-        }
-        surface_.vertices[k] = edges_[k].at((inside + outside) / 2);
-        if (inside > 0) surface_.inside[k] = edges_[k].at(inside);
+        const auto is_inside = [&](double fraction) {
+          return margin(workspace.pose(edges_[k].at(fraction)), scratch[worker]) >= 0;
+        };
+        const Bracket bracket = bisect(is_inside, {.with = 0, .without = 1}, kEdgeFraction);
+        surface_.vertices[k] = edges_[k].at(bracket.middle());
+        if (bracket.with > 0) surface_.inside[k] = edges_[k].at(bracket.with);
       }
     });
   }

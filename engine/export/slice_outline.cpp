@@ -5,14 +5,15 @@
 #include <map>
 
 #include "engine/core/team.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm {
 namespace {
 
 using PlanePoint = std::array<double, 2>;
 
-constexpr std::size_t kIntervals = 240;  // of the grid, along each axis
-constexpr int kBisections = 20;
+constexpr std::size_t kIntervals = 240;    // of the grid, along each axis
+constexpr double kEdgeFraction = 0x1p-20;  // accuracy of an outline, relative to the edge of a cell
 
 /// Feasibility of the nodes of a grid. The grid is surrounded by a ring of infeasible nodes at the positions of its
 /// border nodes, so that outlines are closed along the border.
@@ -39,12 +40,10 @@ class NodeGrid {
   /// Locates the sign change of the margin between two nodes by bisection.
   /// @return the feasible end of the bracket
   PlanePoint crossing(std::size_t a, std::size_t b) const {
-    PlanePoint in = point(is_feasible(a) ? a : b), out = point(is_feasible(a) ? b : a);
-    for (int k = 0; k < kBisections && in != out; ++k) {
-      const PlanePoint middle = {(in[0] + out[0]) / 2, (in[1] + out[1]) / 2};
-      (is_feasible(middle) ? in : out) = middle;
-    }
-    return in;
+    const PlanePoint in = point(is_feasible(a) ? a : b), out = point(is_feasible(a) ? b : a);
+    if (in == out) return in;
+    const auto at = [&](double t) { return PlanePoint{std::lerp(in[0], out[0], t), std::lerp(in[1], out[1], t)}; };
+    return at(bisect([&](double t) { return is_feasible(at(t)); }, {.with = 0, .without = 1}, kEdgeFraction).with);
   }
 
  private:

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/math/quadrature.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm {
 
@@ -101,13 +102,10 @@ void find_pieces(std::vector<Break<S>>& values, const Signature& signature, cons
       const double next = k == steps ? high - inset : low + length * (k / static_cast<double>(steps));
       const std::uint64_t then = signature(next);
       for (int more = 0; more < 8 && now != then; ++more) {  // up to 8 critical values between two samples
-        double same = at, other = next;
-        while (other - same > 1e-15 * (whole + std::fabs(other))) {
-          const double middle = 0.5 * (same + other);
-          (signature(middle) == now ? same : other) = middle;
-        }
-        split(Break<S>{lift(other), true, true}, now);
-        at = other;
+        const auto is_unchanged = [&](double x) { return signature(x) == now; };
+        const double width = 1e-15 * (whole + std::fabs(next));
+        at = bisect(is_unchanged, {.with = at, .without = next}, width).without;
+        split(Break<S>{lift(at), true, true}, now);
         now = signature(at);
       }
       at = next;

@@ -7,62 +7,14 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/math/roots.hpp"
+
 namespace pkm {
 
 /// A closed interval of the variable.
 struct Part {
   double lower = 0, upper = 0;
 };
-
-/// Bracket [a, b] or [b, a] of a sign change, refined by the false position method (Illinois algorithm). It converges
-/// for discontinuous functions too, because the sign change always stays inside the bracket.
-struct Bracket {
-  double a, at_a, b, at_b;
-  int side = 0;  ///< endpoint replaced last: -1: a, 1: b
-
-  double width() const { return std::fabs(b - a); }
-  double middle() const { return 0.5 * (a + b); }
-  /// Root of the line through the endpoint values; the midpoint if rounding puts it outside the bracket.
-  double guess() const {
-    const double at = b - at_b * (b - a) / (at_b - at_a);
-    return (at > a && at < b) || (at > b && at < a) ? at : middle();
-  }
-  /// Replaces the endpoint whose value has the same sign as `value`, the function value at `at`.
-  void take(double at, double value) {
-    if ((value >= 0) == (at_a >= 0)) {
-      a = at;
-      at_a = value;
-      if (side == -1) at_b *= 0.5;
-      side = -1;
-    } else {
-      b = at;
-      at_b = value;
-      if (side == 1) at_a *= 0.5;
-      side = 1;
-    }
-  }
-};
-
-/// Finds a sign change of f between a and b, with f(a) = at_a and f(b) = at_b, by false position. A bisection step is
-/// inserted whenever three steps have not halved the bracket.
-/// @param width  absolute width of the final bracket
-/// @return its midpoint
-template <class F>
-double bracketed_root(const F& f, double a, double at_a, double b, double at_b, double width) {
-  Bracket bracket{.a = a, .at_a = at_a, .b = b, .at_b = at_b};
-  double before = bracket.width();
-  for (int step = 1; step < 400 && bracket.width() > width; ++step) {
-    bool bisect = false;
-    if (step % 3 == 0) {
-      bisect = bracket.width() > 0.5 * before;
-      before = bracket.width();
-    }
-    const double at = bisect ? bracket.middle() : bracket.guess();
-    if (at == bracket.a || at == bracket.b) break;  // adjacent doubles
-    bracket.take(at, f(at));
-  }
-  return bracket.middle();
-}
 
 /// Finds the intervals of [lower, upper] on which a function is non-negative.
 ///
@@ -93,7 +45,7 @@ class NonNegativeIntervals {
         if (p.positive()) add(p.x, q.x, intervals);
         continue;
       }
-      const double end = bracketed_root(f, p.x, p.value, q.x, q.value, kRootTolerance * range);
+      const double end = refine_root(f, p.x, p.value, q.x, q.value, kRootTolerance * range);
       if (p.positive())
         add(p.x, end, intervals);
       else

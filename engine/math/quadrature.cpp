@@ -1,5 +1,7 @@
 #include "engine/math/quadrature.hpp"
 
+#include "engine/math/roots.hpp"
+
 namespace pkm {
 
 GaussRule gauss_legendre(int n) {
@@ -9,19 +11,19 @@ GaussRule gauss_legendre(int n) {
   for (int i = 0; i < n; ++i) {
     double x = -portable::cos(kPi * (i + 0.75) / (n + 0.5));  // starting value with an error of O(1/n^2)
     double derivative = 1;
-    for (int step = 0; step < 12; ++step) {
-      double previous = 1, value = x;  // P_0, P_1
+    const auto newton_step = [&](double at) {
+      double previous = 1, value = at;  // P_0, P_1
       for (int k = 2; k <= n; ++k) {
-        const double next = ((2 * k - 1) * x * value - (k - 1) * previous) / k;
+        const double next = ((2 * k - 1) * at * value - (k - 1) * previous) / k;
         previous = value;
         value = next;
       }
       if (n == 1) previous = 1;
-      derivative = n * (x * value - previous) / (x * x - 1);
-      const double change = value / derivative;
-      x -= change;
-      if (std::fabs(change) < 1e-16) break;
-    }
+      derivative = n * (at * value - previous) / (at * at - 1);
+      return -value / derivative;
+    };
+    // 12 steps are sufficient, even if rounding errors of P_n keep the last one above the limit.
+    x = iterate_newton(newton_step, x, -1, 1, 12, [](double, double step) { return std::fabs(step) < 1e-16; }).x;
     rule.node[static_cast<std::size_t>(i)] = 0.5 * (1 + x);
     rule.weight[static_cast<std::size_t>(i)] = 1 / ((1 - x * x) * derivative * derivative);
   }

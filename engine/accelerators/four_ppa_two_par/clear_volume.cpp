@@ -1,6 +1,7 @@
 #include "engine/accelerators/four_ppa_two_par/clear_volume.hpp"
 
 #include "engine/core/stop.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {
@@ -27,7 +28,7 @@ double integral_of_stroke(const SlicedDesign<double>& d, const Slice<double>& t,
   };
   const auto root_below = [&](const auto& function, double upper) {
     const double low = function(part.lower), high = function(upper), width = 1e-13 * (part.upper - part.lower);
-    return (low > 0) == (high > 0) ? upper : bracketed_root(function, part.lower, low, upper, high, width);
+    return (low > 0) == (high > 0) ? upper : refine_root(function, part.lower, low, upper, high, width);
   };
   if (!(length(part.lower) > 0)) return 0;
   const double last = root_below(length, part.upper), kink = root_below(h_difference, last);

@@ -1,21 +1,16 @@
 #include "engine/accelerators/four_ppa_two_par/theta_intervals.hpp"
 
-#include "engine/math/nonnegative_intervals.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Root of a switching function between two theta at which it has different signs, to rounding accuracy.
-/// bracketed_root() would differ in the last bits, and with it the results of resumed studies.
+/// Root of a switching function between two theta at which it has different signs, to rounding accuracy; 0 counts as
+/// negative.
 double switching_root(const SlicedDesign<double>& d, std::size_t index, double low, double at_low, double high,
                       double at_high) {
-  Bracket bracket{.a = low, .at_a = -at_low, .b = high, .at_b = -at_high};  // 0 counts as negative
-  for (int step = 0; step < 60 && bracket.width() > 1e-15 * (1 + bracket.b); ++step) {
-    const double theta = bracket.guess(), value = switching_function(d, index, theta);
-    if (std::fabs(value) < 1e-16) return theta;
-    bracket.take(theta, -value);
-  }
-  return bracket.b;
+  const auto negated = [&](double theta) { return -switching_function(d, index, theta); };
+  return refine_root(negated, low, -at_low, high, -at_high, 1e-15);
 }
 
 }  // namespace

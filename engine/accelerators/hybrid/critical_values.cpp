@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/roots.hpp"
+
 namespace pkm::hybrid {
 namespace {
 
@@ -140,13 +142,12 @@ bool refine(const SlicedDesign<Dual<1>>& by_beta, double lower, double upper, do
             Degeneracy& degeneracy) {
   if (degeneracy.kind == Degeneracy::Kind::tangency)
     degeneracy.first.z = 0.5 * (degeneracy.first.z + degeneracy.second.z);
-  for (int k = 0; k < 12; ++k) {
-    const double step = newton_step(slice(by_beta, Dual<1>::variable(beta, 0)), degeneracy);
-    beta += step;
-    if (!(beta > lower && beta < upper)) return false;
-    if (std::fabs(step) < width) return true;
-  }
-  return false;
+  constexpr int kMaxSteps = 12;
+  const auto step = [&](double at) { return newton_step(slice(by_beta, Dual<1>::variable(at, 0)), degeneracy); };
+  const NewtonResult found =
+      iterate_newton(step, beta, lower, upper, kMaxSteps, [&](double, double last) { return std::fabs(last) < width; });
+  beta = found.x;
+  return found.has_converged;
 }
 
 class CriticalValueSearch {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/math/roots.hpp"
+
 namespace pkm::hybrid {
 namespace {
 
@@ -13,12 +15,13 @@ double chain_intersection(const Slice<double>& s, const Edge& first, const Edge&
 
 /// Difference of x of two edges at one z.
 struct Gap {
-  double value, slope, bend;  ///< bend: bound of the second derivative
-  double step() const { return -value / slope; }
+  double value, derivative;
+  double second;  ///< bound of the second derivative
+  double step() const { return -value / derivative; }
   /// Whether Newton's method has converged to rounding accuracy after this step.
   bool is_last(double z) const {
     constexpr double kRelative = 1e-17;
-    return step() * step() * bend <= kRelative * z * std::fabs(slope);
+    return step() * step() * second <= kRelative * z * std::fabs(derivative);
   }
 };
 Gap gap(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
@@ -28,7 +31,7 @@ Gap gap(const Slice<double>& s, const Edge& first, const Edge& second, double z)
     return Gap{s.constant(e) + root * sign, sign * slope, (std::fabs(c.curvature()) + slope * slope) / root};
   };
   const Gap a = at(first), b = at(second);
-  return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
+  return Gap{a.value - b.value, a.derivative - b.derivative, a.second + b.second};
 }
 
 /// Intersection of two circular edges between two heights, the one closest to z; kNoIntersection if there is none, if
@@ -64,31 +67,26 @@ double intersection(const Slice<double>& s, const Edge& first, const Edge& secon
   if (of_chain(first, second)) return std::fmin(std::fmax(chain_intersection(s, first, second), p), q);
   if (const double z = circle_intersection(s, first, second, 0.5 * (p + q), p, q); z == z) return z;
   const double at_p = gap(s, first, second, p).value, at_q = gap(s, first, second, q).value;
-  double z = p - at_p * (q - p) / (at_q - at_p);
-  for (int step = 0; step < 80; ++step) {
-    if (!(z > p && z < q)) z = 0.5 * (p + q);
-    const Gap here = gap(s, first, second, z);
-    ((here.value >= 0) == (at_p >= 0) ? p : q) = z;
-    if (!(q - p > 4e-16 * z)) break;
-    z += here.step();
-    if (here.is_last(z)) return std::fmin(std::fmax(z, p), q);
-  }
-  return z;
+  return refine_root_newton([&](double z) { return gap(s, first, second, z); }, p, q, at_p >= 0,
+                            p - at_p * (q - p) / (at_q - at_p),
+                            [](const Gap& here, double, double next) { return here.is_last(next); });
 }
 
 double intersection_near(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
   if (of_chain(first, second)) return chain_intersection(s, first, second);
   constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   if (const double at = circle_intersection(s, first, second, z, 0, kUnbounded); at == at) return at;
-  double first_slope = 0;
-  for (int step = 0; step < 8; ++step) {
-    const Gap here = gap(s, first, second, z);
-    if (step == 0) first_slope = here.slope;
-    if (!(first_slope * here.slope > 0)) return kNoIntersection;
-    z += here.step();
-    if (here.is_last(z)) return z;
-  }
-  return kNoIntersection;
+  constexpr int kMaxSteps = 8;
+  Gap here{};
+  double first_derivative = 0;  // of the gap at z
+  const auto step = [&](double at) {
+    here = gap(s, first, second, at);
+    if (first_derivative == 0) first_derivative = here.derivative;
+    return first_derivative * here.derivative > 0 ? here.step() : kNoIntersection;
+  };
+  const auto [at, has_converged] = iterate_newton(step, z, -kUnbounded, kUnbounded, kMaxSteps,
+                                                  [&](double next, double) { return here.is_last(next); });
+  return has_converged ? at : kNoIntersection;
 }
 
 }  // namespace pkm::hybrid

@@ -75,7 +75,8 @@ class Column {
                ColumnScratch& scratch) const;
   void add_gradient_of_transcendental(const Surface& surface, double z, double factor, std::span<double> registers,
                                       std::span<double> adjoints) const;
-  double bracketed_root_of(std::size_t curve, double from, double to, std::span<double> registers) const;
+  double bracketed_root_of(std::size_t curve, double from, double to, bool satisfied_at_from,
+                           std::span<double> registers) const;
   void find_high_degree_roots(std::span<const double> registers, double from, double to, Signs& signs,
                               ColumnScratch& scratch) const;
   double root_error_bound(const std::pair<double, EndLabel>& end, std::span<const double> registers) const;

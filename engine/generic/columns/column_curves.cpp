@@ -7,6 +7,7 @@
 #include "engine/core/stop.hpp"
 #include "engine/expression/reverse_mode.hpp"
 #include "engine/generic/columns/column.hpp"
+#include "engine/math/roots.hpp"
 #include "engine/math/satisfied.hpp"
 
 namespace pkm::generic {
@@ -50,7 +51,7 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
     const bool below = is_satisfied(registers[f]);
     set_z<double>(to, registers);
     if (below != is_satisfied(registers[f]))
-      scratch.quadratic.emplace_back(bracketed_root_of(k, from, to, registers),
+      scratch.quadratic.emplace_back(bracketed_root_of(k, from, to, below, registers),
                                      static_cast<EndLabel>(2 * k + (below ? 1 : 0)));
   }
   if (undecided == 0) return;
@@ -58,22 +59,19 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
   isolate(undecided, middle, to, narrow, registers, scratch);
 }
 
-/// Root of a constraint with a single sign change: Newton's method safeguarded by bisection.
-double Column::bracketed_root_of(std::size_t curve, double from, double to, std::span<double> registers) const {
+/// Root of a constraint with a single sign change between two z. @param satisfied_at_from  whether it is satisfied
+/// there
+double Column::bracketed_root_of(std::size_t curve, double from, double to, bool satisfied_at_from,
+                                 std::span<double> registers) const {
   const auto& at = plan_.surfaces[curve].coefficients;
-  set_z<double>(from, registers);
-  const bool below = is_satisfied(registers[at[0]]);
-  double z = 0.5 * (from + to);
-  for (int step = 0; step < 100; ++step) {
+  const auto value_at = [&](double z) {
     set_z<double>(z, registers);
-    const double f = registers[at[0]];
-    (is_satisfied(f) == below ? from : to) = z;
-    double next = z - f / registers[at[1]];
-    if (!(next > from && next < to)) next = 0.5 * (from + to);
-    if (next == z || std::fabs(next - z) <= 1e-16 * (std::fabs(from) + std::fabs(to))) return next;
-    z = next;
-  }
-  return z;
+    return ValueAndDerivative{registers[at[0]], registers[at[1]]};
+  };
+  const double tolerance = 1e-16 * (std::fabs(from) + std::fabs(to));
+  return refine_root_newton(
+      value_at, from, to, satisfied_at_from, 0.5 * (from + to),
+      [&](const ValueAndDerivative&, double z, double next) { return std::fabs(next - z) <= tolerance; });
 }
 
 void Column::add_gradient_of_transcendental(const Surface& surface, double z, double factor,

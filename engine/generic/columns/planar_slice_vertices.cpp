@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "engine/math/roots.hpp"
 #include "engine/math/satisfied.hpp"
 
 namespace pkm::generic {
@@ -92,18 +94,14 @@ void PlanarSlice::find_independent_vertices(std::span<double> registers, PlanarS
     evaluate_independent(next, registers, scratch, scratch.now);
     for (std::size_t i = 0; i < scratch.now.size(); ++i) {
       if (is_satisfied(scratch.before[i]) == is_satisfied(scratch.now[i])) continue;
-      double a = t, b = next, at_a = scratch.before[i], at_b = scratch.now[i];
-      for (int n = 0; n < 100 && b - a > 4e-16; ++n) {  // Illinois algorithm
-        double x = a - at_a * (b - a) / (at_b - at_a);
-        if (!(x > a && x < b) || n % 3 == 2) x = 0.5 * (a + b);
-        if (x <= a || x >= b) break;
+      // refine_root() counts NaN as negative; an infinite value violates the constraint, too.
+      const auto finite = [](double f) { return std::isfinite(f) ? f : std::numeric_limits<double>::quiet_NaN(); };
+      const auto constraint = [&](double x) {
         evaluate_independent(x, registers, scratch, scratch.other_adjoints);
-        const double f = scratch.other_adjoints[i];
-        const bool is_like_a = is_satisfied(f) == is_satisfied(at_a);
-        (is_like_a ? a : b) = x;
-        (is_like_a ? at_a : at_b) = f;
-      }
-      scratch.vertices.push_back({b, kIndependent | static_cast<std::uint32_t>(i)});
+        return finite(scratch.other_adjoints[i]);
+      };
+      const double at = refine_root(constraint, t, finite(scratch.before[i]), next, finite(scratch.now[i]), 4e-16);
+      scratch.vertices.push_back({at, kIndependent | static_cast<std::uint32_t>(i)});
     }
     t = next;
     std::swap(scratch.before, scratch.now);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/roots.hpp"
+
 namespace pkm::generic {
 namespace {
 
@@ -12,23 +14,19 @@ double value(std::span<const double> c, double x) {
   return sum;
 }
 
-/// Root of a monotonic polynomial between endpoints of different signs: Newton's method safeguarded by bisection.
+/// Root of a monotonic polynomial between endpoints of different signs; 0 counts as positive.
 double bracketed_root_of(std::span<const double> c, double low, double high, double at_low) {
-  double x = 0.5 * (low + high);
-  for (int step = 0; step < 80; ++step) {
-    double f = 0, slope = 0;
+  const auto horner = [c](double x) {
+    ValueAndDerivative f{0, 0};
     for (std::size_t i = c.size(); i-- > 0;) {
-      slope = slope * x + f;
-      f = f * x + c[i];
+      f.derivative = f.derivative * x + f.value;
+      f.value = f.value * x + c[i];
     }
-    if (f == 0) return x;
-    ((f < 0) == (at_low < 0) ? low : high) = x;  // an end at which it is 0 counts as positive
-    double next = x - f / slope;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::fabs(next - x) <= 2e-16) return next;
-    x = next;
-  }
-  return x;
+    return f;
+  };
+  return refine_root_newton(
+      horner, low, high, at_low >= 0, 0.5 * (low + high),
+      [](const ValueAndDerivative&, double x, double next) { return std::fabs(next - x) <= 2e-16; });
 }
 
 /// Whether all Bernstein coefficients on [-1, 1] have one sign, so that there is no root.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/math/nonnegative_intervals.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm::bounds {
 
@@ -60,7 +60,7 @@ ColumnPruner::Root ColumnPruner::enclose_root(std::size_t constraint, const Segm
     for (int step = 0; step < 2; ++step) estimate = std::clamp(estimate - value_at(estimate) / by_z.middle(), from, to);
   } else {
     const double at_from = value_at(from), at_to = value_at(to);
-    estimate = (at_from < 0) != (at_to < 0) ? bracketed_root(value_at, from, at_from, to, at_to, 1e-3 * (to - from))
+    estimate = (at_from < 0) != (at_to < 0) ? refine_root(value_at, from, at_from, to, at_to, 1e-3 * (to - from))
                                             : (std::fabs(at_from) < std::fabs(at_to) ? from : to);
   }
   root.expansion = grid_.step_below(estimate, segment.from, segment.to);

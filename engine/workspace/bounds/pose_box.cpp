@@ -1,11 +1,13 @@
 #include "engine/workspace/bounds/pose_box.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/SVD>
 
 #include "engine/core/team.hpp"
 #include "engine/geometry/singular.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm::bounds {
 
@@ -255,22 +257,24 @@ class PoseBranchAndBound {
 
   /// A small box between two poses that contains a root of the determinant (bisection); std::nullopt if the entries are
   /// not continuous there.
-  std::optional<IntervalBox> bracket_root(std::size_t matrix, IntervalBox negative, IntervalBox positive) {
+  std::optional<IntervalBox> bracket_root(std::size_t matrix, const IntervalBox& negative,
+                                          const IntervalBox& positive) {
     Scratch& scratch = scratch_.front();
-    const auto hull = [&] {
+    const auto point = [&](double t) {
       IntervalBox box = negative;
       for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
-        box[axis] = {std::min(negative[axis].lower, positive[axis].lower),
-                     std::max(negative[axis].upper, positive[axis].upper)};
+        box[axis] = Interval(std::lerp(negative[axis].lower, positive[axis].lower, t));
       return box;
     };
-    for (int bisection = 0; bisection < 60; ++bisection) {
-      const IntervalBox midpoint = midpoint_of(hull());
-      const int sign = matrices_->determinant_sign(matrix, midpoint, scratch.matrices);
-      if (sign == 0) break;
-      (sign > 0 ? positive : negative) = midpoint;
-    }
-    const IntervalBox box = hull();
+    const auto is_positive = [&](double t) -> std::optional<bool> {
+      const int sign = matrices_->determinant_sign(matrix, point(t), scratch.matrices);
+      return sign == 0 ? std::nullopt : std::optional(sign > 0);
+    };
+    const auto [with, without] = pkm::bisect(is_positive, {.with = 1, .without = 0}, 0x1p-60);
+    IntervalBox box = point(without);
+    const IntervalBox other = point(with);
+    for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
+      box[axis] = {std::min(box[axis].lower, other[axis].lower), std::max(box[axis].upper, other[axis].upper)};
     if (!matrices_->is_continuous(matrix, box, scratch.matrices)) return {};
     return box;
   }

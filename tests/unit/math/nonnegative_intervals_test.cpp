@@ -35,20 +35,6 @@ void expect_intervals(const std::vector<Part>& found, const std::vector<Part>& e
 
 constexpr double kRoot = 1e-12;
 
-TEST(BracketedRoot, FindsSmoothAndDiscontinuousSignChanges) {
-  const Function functions[] = {[](double x) { return x * x - 2; }, [](double x) { return x < std::sqrt(2) ? -7 : 1; },
-                                [](double x) { return std::pow(x - std::sqrt(2), 9); },
-                                [](double x) { return x < std::sqrt(2) ? -1e-9 : x + 100; }};
-  for (const auto& f : functions) {
-    EXPECT_NEAR(bracketed_root(f, 0, f(0), 3, f(3), 1e-13), std::sqrt(2), 1e-13);
-    EXPECT_NEAR(bracketed_root(f, 3, f(3), 0, f(0), 1e-13), std::sqrt(2), 1e-13);
-  }
-  int calls = 0;
-  const auto counted = [&](double x) { return ++calls, x * x - 2; };
-  bracketed_root(counted, 0, -2, 3, 7, 1e-13);
-  EXPECT_LE(calls, 15);
-}
-
 TEST(NonNegativeIntervals, WholeIntervalOrEmpty) {
   expect_intervals(intervals_of([](double) { return 1; }, 0, 2, 5), {{2, 5}}, 0);
   expect_intervals(intervals_of([](double) { return 0; }, 0, 2, 5), {{2, 5}}, 0);
