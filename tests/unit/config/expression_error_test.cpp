@@ -17,7 +17,10 @@ const std::string kKnown =
     "expected one of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s, "
     "lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p, alpha_min, beta_min, beta_max, h_min, "
     "sin_par_min, cos_theta_min, clearance_min, size, volume, conditioning_mean, conditioning_min, dci_mean, "
-    "dci_worst, pi";
+    "dci_worst, section_type_mean, section_type_std, section_type_min, section_type_max, alpha_1_mean, alpha_1_std, "
+    "alpha_1_min, alpha_1_max, alpha_2_mean, alpha_2_std, alpha_2_min, alpha_2_max, beta_1_mean, beta_1_std, "
+    "beta_1_min, beta_1_max, beta_2_mean, beta_2_std, beta_2_min, beta_2_max, z_c_1_mean, z_c_1_std, z_c_1_min, "
+    "z_c_1_max, z_c_2_mean, z_c_2_std, z_c_2_min, z_c_2_max, pi";
 const std::string kObjective = "[[objective]]\ntype = \"expression\"\n";  // lines 7, 8
 
 TEST(ExpressionErrors, Objectives) {

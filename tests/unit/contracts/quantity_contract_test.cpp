@@ -70,7 +70,7 @@ Options some_options(const std::vector<OptionSpec>& specs, const MechanismInfo& 
       options.set(spec.name, NamedNumbers{{info.parameters[0].name, 1.0}});
     if (spec.name == "bound") options.set(spec.name, info.parameters[0].nominal);
     if (spec.name == "expression") options.set(spec.name, expression);
-    if (spec.name == "quantity") options.set(spec.name, some_quantity(info));
+    if (spec.name == "quantity") options.set(spec.name, test::some_quantity(info));
     if (spec.name == "region") options.set(spec.name, std::string("task"));
     if (spec.name == "motion") options.set(spec.name, std::string("swing"));
   }
