@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/config/assignments.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/config/study_draft.hpp"
 #include "engine/config/study_keys.hpp"
 #include "engine/config/swept_coordinates.hpp"
@@ -131,8 +132,12 @@ void read_limits(const ConfigValue& given, StudyDraft& draft) {
   std::vector<std::string> names;
   for (const LimitInfo& limit : known)
     if (limit.group != kQuantityLimit) names.push_back(limit.name);
-  for (const PoseQuantity* const quantity : pose_quantities(draft.info()))
-    if (!quantity->needs_inertia()) names.emplace_back(quantity->name);
+  const auto& built_in = all_mechanisms();
+  const bool is_generic = draft.study.description ||
+                          std::ranges::find(built_in, draft.info().name, &MechanismEntry::name) != built_in.end();
+  if (is_generic)  // mechanisms in C++ have no limits of quantities
+    for (const PoseQuantity* const quantity : pose_quantities(draft.info()))
+      if (!quantity->needs_inertia()) names.emplace_back(quantity->name);
   const ConfigValue table = given.table_of_names(names);
   const auto read = [&](const std::string& limit, const ConfigValue& value) {
     const auto i = static_cast<std::size_t>(find_named(known, limit) - known.data());

@@ -140,7 +140,7 @@ TEST(LineWrapping, CommandsNumbersAndJsonAreNotWrapped) {
 TEST(LineWrapping, AtTheWidthOfTheTerminal) {
   const std::vector<std::string> command = {"evaluate", "4ppa-2par"};
   const std::string text = without_colours(on_terminal(command, {}, ".", 80));
-  EXPECT_THAT(text, HasSubstr("upper ones have\n                        lambda_u d_u"));
+  EXPECT_THAT(text, HasSubstr("the links of an\n                        upper connector add"));
   EXPECT_EQ(without_colours(on_terminal(command, {}, ".", 300)), pkmopt(command).out);
   EXPECT_EQ(on_terminal(command, {{"NO_COLOR", "1"}}, ".", 80), text);
 }
