@@ -17,7 +17,7 @@ template <class L>
 /// True if a mask is set in all lanes.
 template <class L, class Mask>
 [[gnu::always_inline]] inline bool all(const Mask& mask) {
-  return least(select(mask, L(1.0), L(0.0))) > 0;
+  return reduce_min(select(mask, L(1.0), L(0.0))) > 0;
 }
 
 /// LU decomposition with partial pivoting of one matrix per lane.
@@ -45,8 +45,8 @@ struct LuDecomposition {
         max_so_far = select(greater, magnitude(u[i][k]), max_so_far);
         row = select(greater, L(static_cast<double>(i)), row);
       }
-      const double first = least(row);
-      pivot[k] = first >= greatest(row) ? static_cast<int>(first) : -1;
+      const double first = reduce_min(row);
+      pivot[k] = first >= reduce_max(row) ? static_cast<int>(first) : -1;
       for (int i = k + 1; i < n && pivot[k] < 0; ++i)
         is_pivot[k][i] = (row >= static_cast<double>(i)) & (row <= static_cast<double>(i));
       exchange(u, k, k);

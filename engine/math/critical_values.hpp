@@ -20,7 +20,7 @@ namespace pkm {
 
 /// A critical value of the outer coordinate.
 template <class S>
-struct Break {
+struct CriticalValue {
   S at;
   bool root_below = false;  ///< the measure has a square-root singularity when `at` is approached from below
   bool root_above = false;  ///< likewise from above
@@ -46,13 +46,13 @@ S implicit_root(double t, const S& f, double by_t) {
 ///                        signature that converts to false means an empty slice
 /// @param intervals       receives the subintervals
 template <class Signature, class S, class Changes>
-void find_pieces(const std::vector<Break<S>>& values, double merge_distance, bool merge_roots, const Changes& changes,
-                 std::vector<Piece<S>>& intervals) {
+void find_subintervals(const std::vector<CriticalValue<S>>& values, double merge_distance, bool merge_roots,
+                       const Changes& changes, std::vector<Subinterval<S>>& intervals) {
   intervals.clear();
   if (values.empty()) return;
   Signature before{};  // of the previous subinterval
-  Break<S> from = values.front();
-  const auto split = [&](const Break<S>& to, const Signature& now) {
+  CriticalValue<S> from = values.front();
+  const auto split = [&](const CriticalValue<S>& to, const Signature& now) {
     const bool joins = !intervals.empty() && now == before && value_of(intervals.back().upper) == value_of(from.at) &&
                        (merge_roots || !(from.root_below || from.root_above));
     if (now && joins) {
@@ -65,7 +65,7 @@ void find_pieces(const std::vector<Break<S>>& values, double merge_distance, boo
     from = to;
   };
   for (std::size_t i = 1; i < values.size(); ++i) {
-    const Break<S>& to = values[i];
+    const CriticalValue<S>& to = values[i];
     const double low = value_of(from.at), high = value_of(to.at);
     if (high - low < merge_distance) {
       from.root_above = from.root_above || to.root_above;
@@ -83,12 +83,12 @@ void find_pieces(const std::vector<Break<S>>& values, double merge_distance, boo
 /// @param lift       lift(x): the critical value x, found by bisection, as a number with derivatives
 /// @param samples    number of samples of the signature over the whole range
 template <class S, class Signature, class Lift>
-void find_pieces(std::vector<Break<S>>& values, const Signature& signature, const Lift& lift, int samples,
-                 std::vector<Piece<S>>& intervals) {
+void find_subintervals(std::vector<CriticalValue<S>>& values, const Signature& signature, const Lift& lift, int samples,
+                       std::vector<Subinterval<S>>& intervals) {
   intervals.clear();
   if (values.empty()) return;
   std::sort(values.begin(), values.end(),
-            [](const Break<S>& a, const Break<S>& b) { return value_of(a.at) < value_of(b.at); });
+            [](const CriticalValue<S>& a, const CriticalValue<S>& b) { return value_of(a.at) < value_of(b.at); });
   const double whole = value_of(values.back().at) - value_of(values.front().at);
   if (!(whole > 0)) return;
   const auto changes = [&](double low, double high, const auto& split) {
@@ -105,7 +105,7 @@ void find_pieces(std::vector<Break<S>>& values, const Signature& signature, cons
         const auto is_unchanged = [&](double x) { return signature(x) == now; };
         const double width = 1e-15 * (whole + std::fabs(next));
         at = bisect(is_unchanged, {.with = at, .without = next}, width).without;
-        split(Break<S>{lift(at), true, true}, now);
+        split(CriticalValue<S>{lift(at), true, true}, now);
         now = signature(at);
       }
       at = next;
@@ -113,7 +113,7 @@ void find_pieces(std::vector<Break<S>>& values, const Signature& signature, cons
     }
     return now;
   };
-  find_pieces<std::uint64_t>(values, 1e-13 * whole, true, changes, intervals);
+  find_subintervals<std::uint64_t>(values, 1e-13 * whole, true, changes, intervals);
 }
 
 }  // namespace pkm

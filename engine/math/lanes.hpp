@@ -119,7 +119,7 @@ PKM_LANES bool any(const LaneMask<W>& mask) {
 }
 
 /// Minimum over the lanes.
-PKM_LANES double least(const Lanes<W>& x) {
+PKM_LANES double reduce_min(const Lanes<W>& x) {
   double lane[kLanes], r = 0;
   x.store(lane);
   r = lane[0];
@@ -127,7 +127,7 @@ PKM_LANES double least(const Lanes<W>& x) {
   return r;
 }
 /// Maximum over the lanes.
-PKM_LANES double greatest(const Lanes<W>& x) { return -least(-x); }
+PKM_LANES double reduce_max(const Lanes<W>& x) { return -reduce_min(-x); }
 
 #undef PKM_EACH_REGISTER
 #undef PKM_LANES

@@ -12,7 +12,7 @@
 namespace pkm {
 
 /// A closed interval of the variable.
-struct Part {
+struct ClosedInterval {
   double lower = 0, upper = 0;
 };
 
@@ -31,7 +31,8 @@ class NonNegativeIntervals {
   /// @param lipschitz  lipschitz(p, q): upper bound of |df/dx| of the actual function on [p, q]; may be infinite
   /// @param intervals  receives the intervals in ascending order
   template <class F, class LipschitzBound>
-  void find(const F& f, const LipschitzBound& lipschitz, double lower, double upper, std::vector<Part>& intervals) {
+  void find(const F& f, const LipschitzBound& lipschitz, double lower, double upper,
+            std::vector<ClosedInterval>& intervals) {
     intervals.clear();
     if (!(lower < upper)) return;
     const double range = upper - lower;
@@ -65,7 +66,7 @@ class NonNegativeIntervals {
   };
 
   /// Appends an interval, or extends the last one if they are adjacent.
-  static void add(double from, double to, std::vector<Part>& intervals) {
+  static void add(double from, double to, std::vector<ClosedInterval>& intervals) {
     if (!intervals.empty() && intervals.back().upper == from)
       intervals.back().upper = to;
     else if (from < to)

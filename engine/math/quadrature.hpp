@@ -18,7 +18,7 @@ namespace pkm {
 
 /// A subinterval of the integration.
 template <class S>
-struct Piece {
+struct Subinterval {
   S lower, upper;
   bool sqrt_at_lower = false;  ///< the integrand behaves like a square root at `lower`
   bool sqrt_at_upper = false;  ///< likewise at `upper`
@@ -33,7 +33,7 @@ struct MappedNode {
 
 /// Variable transformation from t in [0, 1] to a subinterval.
 template <class S>
-MappedNode<S> map_node(const Piece<S>& interval, double t) {
+MappedNode<S> map_node(const Subinterval<S>& interval, double t) {
   const S length = interval.upper - interval.lower;
   if (interval.sqrt_at_lower && interval.sqrt_at_upper) {
     return {interval.lower + length * (t * t * (3 - 2 * t)), length * (6 * t * (1 - t))};
@@ -54,7 +54,7 @@ GaussRule gauss_legendre(int n);
 
 /// Calls visit(point, d point / dt, weight of the rule) for each node of a subinterval.
 template <class S, class Visit>
-void visit_nodes(const Piece<S>& interval, const GaussRule& rule, const Visit& visit) {
+void visit_nodes(const Subinterval<S>& interval, const GaussRule& rule, const Visit& visit) {
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const auto [point, jacobian] = map_node(interval, rule.node[i]);
     visit(point, jacobian, rule.weight[i]);
@@ -62,8 +62,8 @@ void visit_nodes(const Piece<S>& interval, const GaussRule& rule, const Visit& v
 }
 /// The same for several subintervals.
 template <class S, class Visit>
-void visit_nodes(const std::vector<Piece<S>>& intervals, const GaussRule& rule, const Visit& visit) {
-  for (const Piece<S>& interval : intervals) visit_nodes(interval, rule, visit);
+void visit_nodes(const std::vector<Subinterval<S>>& intervals, const GaussRule& rule, const Visit& visit) {
+  for (const Subinterval<S>& interval : intervals) visit_nodes(interval, rule, visit);
 }
 
 /// Sequence of nested quadrature rules on [0, 1]: each contains the nodes of the previous one, so that a higher rule
@@ -119,7 +119,7 @@ inline double quadpack_error(double difference, double spread) {
 /// A subinterval of the adaptive subdivision, with the integrand at its nodes and its integral.
 template <class S>
 struct QuadratureCell {
-  Piece<S> interval;
+  Subinterval<S> interval;
   std::size_t levels = 0;                  ///< number of rules applied so far
   std::array<S, NestedRule::kNodes> term;  ///< integrand times Jacobian at the nodes
   Integral<S> integral;
@@ -158,10 +158,10 @@ void apply_rule(const F& f, const Quadrature& how, QuadratureCell<S>& cell) {
 
 /// Bisects a subinterval. Each half inherits the singularity of its outer endpoint.
 template <class S>
-std::array<Piece<S>, 2> halves(const Piece<S>& interval) {
+std::array<Subinterval<S>, 2> halves(const Subinterval<S>& interval) {
   const S middle = (interval.lower + interval.upper) * 0.5;
-  return {Piece<S>{interval.lower, middle, interval.sqrt_at_lower, false},
-          Piece<S>{middle, interval.upper, false, interval.sqrt_at_upper}};
+  return {Subinterval<S>{interval.lower, middle, interval.sqrt_at_lower, false},
+          Subinterval<S>{middle, interval.upper, false, interval.sqrt_at_upper}};
 }
 
 /// Refines a subinterval until its error estimate is at most `tolerance` (absolute): first by the higher rules, then by
@@ -172,7 +172,7 @@ void refine(const F& f, double tolerance, const Quadrature& how, int depth, Quad
   if (cell.integral.error <= tolerance || depth == 0) return;
   Integral<S> sum;
   sum.evaluations = cell.integral.evaluations;
-  for (const Piece<S>& interval : halves(cell.interval)) {
+  for (const Subinterval<S>& interval : halves(cell.interval)) {
     QuadratureCell<S> half{.interval = interval};
     apply_rule(f, how, half);
     refine(f, tolerance / 2, how, depth - 1, half);
@@ -183,7 +183,8 @@ void refine(const F& f, double tolerance, const Quadrature& how, int depth, Quad
 
 /// Integral of f over one subinterval. @param tolerance  absolute
 template <class S, class F>
-Integral<S> integrate_interval(const F& f, const Piece<S>& interval, double tolerance, const Quadrature& how = {}) {
+Integral<S> integrate_interval(const F& f, const Subinterval<S>& interval, double tolerance,
+                               const Quadrature& how = {}) {
   QuadratureCell<S> cell{.interval = interval};
   apply_rule(f, how, cell);
   refine(f, tolerance, how, how.depth, cell);
@@ -196,7 +197,7 @@ Integral<S> integrate_interval(const F& f, const Piece<S>& interval, double tole
 ///                   reduce
 /// @param scratch    scratch memory
 template <class S, class F>
-Integral<S> integrate(const F& f, const std::vector<Piece<S>>& intervals, double tolerance, double floor,
+Integral<S> integrate(const F& f, const std::vector<Subinterval<S>>& intervals, double tolerance, double floor,
                       std::vector<QuadratureCell<S>>& scratch, const Quadrature& how = {}) {
   scratch.resize(intervals.size());
   const auto total = [&] {

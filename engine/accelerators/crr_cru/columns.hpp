@@ -15,8 +15,8 @@ namespace pkm::crr_cru {
 /// Scratch memory of an analysis.
 template <class S>
 struct ColumnScratch {
-  std::vector<Break<S>> critical_values;
-  std::vector<Piece<S>> intervals;  ///< subintervals of the outer coordinate between critical values
+  std::vector<CriticalValue<S>> critical_values;
+  std::vector<Subinterval<S>> intervals;  ///< subintervals of the outer coordinate between critical values
   std::vector<QuadratureCell<S>> integrals;
   Decomposition decomposition;
 };
@@ -90,7 +90,7 @@ void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& 
       return lift_critical_value(s, plain, by_outer, at, value_of(values.back().at) - value_of(values.front().at),
                                  scratch.decomposition);
   };
-  find_pieces(values, signature, lift, samples, scratch.intervals);
+  find_subintervals(values, signature, lift, samples, scratch.intervals);
 }
 
 /// The slice at a value of the outer coordinate; its decomposition is in scratch.decomposition.
@@ -110,7 +110,7 @@ S area_at(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
 
 /// Rounding error of the integral of area_at() over the subintervals [m^3 or m^2 rad].
 template <class S>
-double roundoff(const SlicedDesign<S>& s, const std::vector<Piece<S>>& intervals) {
+double roundoff(const SlicedDesign<S>& s, const std::vector<Subinterval<S>>& intervals) {
   if (intervals.empty()) return 0;
   const auto& out2 = s.design.out2;
   const double size =  // of the terms that cancel in the area
@@ -138,10 +138,10 @@ void visit_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& ru
                    const Visit& visit) {
   const Slice<S> slice = decomposed_slice(s, outer, scratch);
   for (const Column& column : scratch.decomposition.columns) {
-    Piece<S> piece{abscissa(slice, column.lower), abscissa(slice, column.upper)};
-    piece.sqrt_at_lower = has_sqrt_singularity(slice, column, value_of(piece.lower));
-    piece.sqrt_at_upper = has_sqrt_singularity(slice, column, value_of(piece.upper));
-    visit_nodes(piece, rule,
+    Subinterval<S> interval{abscissa(slice, column.lower), abscissa(slice, column.upper)};
+    interval.sqrt_at_lower = has_sqrt_singularity(slice, column, value_of(interval.lower));
+    interval.sqrt_at_upper = has_sqrt_singularity(slice, column, value_of(interval.upper));
+    visit_nodes(interval, rule,
                 [&](const S& u, const S& jacobian, double weight) { visit(slice, column, u, S(jacobian * weight)); });
   }
 }
@@ -171,7 +171,7 @@ void visit_positions(const SlicedDesign<S>& s, const S& outer, const GaussRule& 
   visit_columns(s, outer, rule, scratch, [&](const Slice<S>& slice, const Column& column, const S& u, const S& weight) {
     at[s.axes.u] = u;
     for (std::size_t k = 0; k < column.ends; k += 2) {
-      const Piece<S> interval{end_at(slice, column.end[k], u), end_at(slice, column.end[k + 1], u)};
+      const Subinterval<S> interval{end_at(slice, column.end[k], u), end_at(slice, column.end[k + 1], u)};
       visit_nodes(interval, rule, [&](const S& v, const S& jacobian, double inner) {
         at[s.axes.v] = v;
         visit(at, S(weight * jacobian * inner));

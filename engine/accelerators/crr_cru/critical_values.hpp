@@ -35,7 +35,7 @@ Slice<S> slice_at(const SlicedDesign<S>& s, const S& outer) {
 /// Adds the bounds of phi, given by kappa_p >= c_min and the box, and the phi at which the fixed position is at the end
 /// of a stroke.
 template <class S>
-void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<Break<S>>& values) {
+void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = s.design.g;
   const S delta = offset(s.design.yaw), half(acos(s.design.c_min));
   const S first = max(S(-delta - half), S(s.design.box[3][0])), last = min(S(half - delta), S(s.design.box[3][1]));
@@ -66,7 +66,7 @@ void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<Break<S>>&
 /// intersections with the ranges of y and z, with the centre, the turning points and the intersections with those
 /// ranges of limb 1's annulus, and with each other.
 template <class S>
-void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<Break<S>>& values) {
+void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<CriticalValue<S>>& values) {
   const Design<S>& d = s.design;
   const auto& range = s.positions.range;
   const double first = value_of(range[0].lower), last = value_of(range[0].upper);

@@ -76,7 +76,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
              inner_rule_, test, scratch, survey);
       return;
     }
-    const Piece<S> half{l.h_min, g.L0 * 0.5, true, false};
+    const Subinterval<S> half{l.h_min, g.L0 * 0.5, true, false};
     if (!(value_of(half.upper) > value_of(half.lower))) return;
     // With y, every node represents eight poses. If they are separate samples, a coarser rule is sufficient.
     static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);

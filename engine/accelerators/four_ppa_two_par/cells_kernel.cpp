@@ -41,8 +41,8 @@ struct ColumnLimits {
     x_0 = (at.x_lower + 0.5 * x_step) - half;
     w = at.b - 2.0 * half;
 
-    const double low = least(select(has_poses, greater(L(x_min), w - x_max) - x_0, L(kInfinity)));
-    const double high = greatest(select(has_poses, lesser(L(x_max), w - x_min) - x_0, L(-kInfinity)));
+    const double low = reduce_min(select(has_poses, greater(L(x_min), w - x_max) - x_0, L(kInfinity)));
+    const double high = reduce_max(select(has_poses, lesser(L(x_max), w - x_min) - x_0, L(-kInfinity)));
     const auto columns = static_cast<double>(at.columns);
     const auto index = [&](double i) { return static_cast<std::int64_t>(i > 0 ? i < columns ? i : columns : 0); };
     x_begin = index(low / x_step - 1);  // one more column on each side, because of rounding
@@ -92,8 +92,8 @@ CellTally tally(const ColumnsAtThetas& at, std::int64_t from, std::int64_t to) {
   sum.store(result.cells);
   in_first.store(result.in_first);
   in_last.store(result.in_last);
-  result.lowest = least(lowest) == 0;
-  result.highest = greatest(highest) == limits.cells;
+  result.lowest = reduce_min(lowest) == 0;
+  result.highest = reduce_max(highest) == limits.cells;
   return result;
 }
 

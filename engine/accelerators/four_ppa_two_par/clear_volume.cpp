@@ -6,14 +6,14 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Integral over one clear part of a column of the length of y in which the stroke allows the pose,
+/// Integral over one clear interval of a column of the length of y in which the stroke allows the pose,
 ///
 ///   max(0, L0 - max(2 h_1, 2 h_2, h_1 + h_2 + a sin theta)),   theta >= 0.
 ///
 /// The leaning limb has the smaller h. Both h increase with z, and so does their difference, which is negative or 0:
 /// the length has at most one kink and one root.
 double integral_of_stroke(const SlicedDesign<double>& d, const Slice<double>& t, const Column<double>& column,
-                          const Part& part) {
+                          const ClosedInterval& clear) {
   static const GaussRule rule = gauss_legendre(12);
   const Geometry<double>& g = d.g;
   const double shift = g.a * t.sin_theta;
@@ -27,27 +27,27 @@ double integral_of_stroke(const SlicedDesign<double>& d, const Slice<double>& t,
     return g.L0 - std::fmax(2 * other, other + h(rise, column.leaning) + shift);
   };
   const auto root_below = [&](const auto& function, double upper) {
-    const double low = function(part.lower), high = function(upper), width = 1e-13 * (part.upper - part.lower);
-    return (low > 0) == (high > 0) ? upper : refine_root(function, part.lower, low, upper, high, width);
+    const double low = function(clear.lower), high = function(upper), width = 1e-13 * (clear.upper - clear.lower);
+    return (low > 0) == (high > 0) ? upper : refine_root(function, clear.lower, low, upper, high, width);
   };
-  if (!(length(part.lower) > 0)) return 0;
-  const double last = root_below(length, part.upper), kink = root_below(h_difference, last);
+  if (!(length(clear.lower) > 0)) return 0;
+  const double last = root_below(length, clear.upper), kink = root_below(h_difference, last);
   double sum = 0;
-  for (const auto& [low, high] : {std::pair{part.lower, kink}, std::pair{kink, last}}) {
+  for (const auto& [low, high] : {std::pair{clear.lower, kink}, std::pair{kink, last}}) {
     if (!(low < high)) continue;
-    const Piece<double> piece{low, high, low == 0, false};  // h can behave like a square root at 0
-    visit_nodes(piece, rule,
+    const Subinterval<double> interval{low, high, low == 0, false};  // h can behave like a square root at 0
+    visit_nodes(interval, rule,
                 [&](double rise, double jacobian, double weight) { sum += length(rise) * jacobian * weight; });
   }
   return sum;
 }
 
-/// Length of the clear parts of a column, or its integral over y.
+/// Length of the clear intervals of a column, or its integral over y.
 double measure(const SlicedDesign<double>& d, const Slice<double>& t, const Column<double>& column,
                const ClearanceTest& test, bool over_y, ClearanceScratch& scratch) {
   double sum = 0;
-  for (const Part& part : test.clear_parts(d, t, column, scratch))
-    sum += over_y ? integral_of_stroke(d, t, column, part) : part.upper - part.lower;
+  for (const ClosedInterval& clear : test.clear_heights(d, t, column, scratch))
+    sum += over_y ? integral_of_stroke(d, t, column, clear) : clear.upper - clear.lower;
   return sum;
 }
 
@@ -70,7 +70,7 @@ Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const Clear
     const double outer = 2 * theta_weight * theta_jacobian;
     const Slice<double> t = slice_of(d, theta, over_y);
     visit_halves(d, t, &test, scratch, [&](const HalfSlice<double>& h, std::size_t leaning, double images) {
-      visit_nodes(scratch.ranges, inner_rule, [&](double delta, double jacobian, double weight) {
+      visit_nodes(scratch.deltas, inner_rule, [&](double delta, double jacobian, double weight) {
         const Column<double> c = column(d, t, h, leaning, delta);
         result.value +=
             images * outer * weight * jacobian * c.slope * measure(d, t, c, test, over_y, scratch.clearance);
@@ -88,7 +88,7 @@ Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest
   static const GaussRule coarse = gauss_legendre(5);
   const Integral<double> guess = clear_volume_by_rule(d, test, over_y, coarse, coarse, scratch);  // finds the intervals
   double range = 0;
-  for (const Piece<double>& interval : scratch.intervals) range += interval.upper - interval.lower;
+  for (const Subinterval<double>& interval : scratch.intervals) range += interval.upper - interval.lower;
   const double aim = std::fmax(tolerance, kFinestClearTolerance);
   // Accepted absolute error of a slice, at least a negligible area or volume in relation to the links.
   const double negligible = 1e-9 * d.g.l_d * d.g.l_u * (over_y ? d.g.L0 : 1);
@@ -104,8 +104,8 @@ Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest
         const Column<double> c = column(d, t, h, leaning, delta);
         return c.slope * measure(d, t, c, test, over_y, scratch.clearance);
       };
-      for (const Piece<double>& range_of_delta : scratch.ranges) {
-        const Integral<double> found = integrate_interval(measure_at, range_of_delta, inner_error, inner);
+      for (const Subinterval<double>& interval : scratch.deltas) {
+        const Integral<double> found = integrate_interval(measure_at, interval, inner_error, inner);
         area += images * found.value;
         error += images * found.error;
         columns += found.evaluations;

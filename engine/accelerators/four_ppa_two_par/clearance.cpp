@@ -114,9 +114,10 @@ Placement<double> ClearanceTest::place(const SlicedDesign<double>& d, const Slic
   return p;
 }
 
-const std::vector<Part>& ClearanceTest::clear_ranges(const SlicedDesign<double>& d, const Slice<double>& t,
-                                                     const HalfSlice<double>& h, std::size_t leaning, double low,
-                                                     double high, ClearanceScratch& scratch) const {
+const std::vector<ClosedInterval>& ClearanceTest::clear_deltas(const SlicedDesign<double>& d, const Slice<double>& t,
+                                                               const HalfSlice<double>& h, std::size_t leaning,
+                                                               double low, double high,
+                                                               ClearanceScratch& scratch) const {
   scratch.clear.clear();
   if (suspended_pairs_.empty()) {
     if (low < high) scratch.clear.push_back({low, high});
@@ -133,8 +134,9 @@ const std::vector<Part>& ClearanceTest::clear_ranges(const SlicedDesign<double>&
   return scratch.clear;
 }
 
-const std::vector<Part>& ClearanceTest::clear_parts(const SlicedDesign<double>& d, const Slice<double>& t,
-                                                    const Column<double>& column, ClearanceScratch& scratch) const {
+const std::vector<ClosedInterval>& ClearanceTest::clear_heights(const SlicedDesign<double>& d, const Slice<double>& t,
+                                                                const Column<double>& column,
+                                                                ClearanceScratch& scratch) const {
   scratch.clear.clear();
   if (moving_pairs_.empty()) {
     if (column.length > 0) scratch.clear.push_back({0, column.length});

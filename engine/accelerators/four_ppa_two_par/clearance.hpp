@@ -16,7 +16,7 @@ namespace pkm::four_ppa_two_par {
 
 /// Scratch memory of tests.
 struct ClearanceScratch {
-  std::vector<Part> clear;
+  std::vector<ClosedInterval> clear;
   NonNegativeIntervals finder;
 };
 
@@ -41,15 +41,15 @@ class ClearanceTest {
 
   /// Finds the intervals of [low, high], along the delta of a half slice, in which the suspended links are clear.
   /// @return scratch.clear
-  const std::vector<Part>& clear_ranges(const SlicedDesign<double>& d, const Slice<double>& t,
-                                        const HalfSlice<double>& h, std::size_t leaning, double low, double high,
-                                        ClearanceScratch& scratch) const;
+  const std::vector<ClosedInterval>& clear_deltas(const SlicedDesign<double>& d, const Slice<double>& t,
+                                                  const HalfSlice<double>& h, std::size_t leaning, double low,
+                                                  double high, ClearanceScratch& scratch) const;
 
   /// Finds the intervals of one column, inside such an interval of delta, in which all links are clear, as heights
   /// above its lower end [m].
   /// @return scratch.clear
-  const std::vector<Part>& clear_parts(const SlicedDesign<double>& d, const Slice<double>& t,
-                                       const Column<double>& column, ClearanceScratch& scratch) const;
+  const std::vector<ClosedInterval>& clear_heights(const SlicedDesign<double>& d, const Slice<double>& t,
+                                                   const Column<double>& column, ClearanceScratch& scratch) const;
 
  private:
   double excess(const Placement<double>& p, const std::vector<GroupPair>& pairs) const;

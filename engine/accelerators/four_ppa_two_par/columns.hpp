@@ -15,10 +15,10 @@ namespace pkm::four_ppa_two_par {
 /// Scratch memory of an analysis.
 template <class S>
 struct ColumnScratch {
-  std::vector<Break<S>> critical_values;
-  std::vector<Piece<S>> intervals;  ///< of theta
+  std::vector<CriticalValue<S>> critical_values;
+  std::vector<Subinterval<S>> intervals;  ///< of theta
   std::vector<QuadratureCell<S>> integrals;
-  std::vector<Piece<S>> ranges, parts;  ///< of delta, of z
+  std::vector<Subinterval<S>> deltas, heights;  ///< intervals of delta, of z
   ClearanceScratch clearance;
   ColumnConditioning<S> poses;
   std::array<std::vector<S>, 2> inertia;  ///< values of fields at a pose and at its mirror image in x = b/2
@@ -93,7 +93,7 @@ S area_over_y(const SlicedDesign<S>& d, Slice<S> t, const GaussRule& rule) {
       sum += area(d, t) * length;
       continue;
     }
-    visit_nodes(Piece<S>{lower, y[i], true, true}, rule, [&](const S& at, const S& jacobian, double weight) {
+    visit_nodes(Subinterval<S>{lower, y[i], true, true}, rule, [&](const S& at, const S& jacobian, double weight) {
       set_depths(d, at, t);
       sum += area(d, t) * jacobian * weight;
     });
@@ -121,26 +121,26 @@ Integral<S> volume_over_y(const Geometry<S>& g, const Limits<S>& l, double toler
 
 /// Finds the intervals of delta in a half slice on which the length of columns is smooth: below and above the knee,
 /// without the parts that a clearance limit excludes.
-/// @param scratch  receives them in `ranges`
+/// @param scratch  receives them in `deltas`
 template <class S>
-void feasible_ranges(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>& h, std::size_t leaning,
-                     const ClearanceTest* test, ColumnScratch<S>& scratch) {
-  scratch.ranges.clear();
+void find_delta_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>& h, std::size_t leaning,
+                          const ClearanceTest* test, ColumnScratch<S>& scratch) {
+  scratch.deltas.clear();
   for (const auto& [low, high] : {std::pair{h.low, h.knee}, std::pair{h.knee, h.end}}) {
     if (!(value_of(high) > value_of(low))) continue;
     if constexpr (std::is_same_v<S, double>) {
       if (test) {
-        for (const Part& range : test->clear_ranges(d, t, h, leaning, low, high, scratch.clearance))
-          scratch.ranges.push_back({range.lower, range.upper});
+        for (const ClosedInterval& clear : test->clear_deltas(d, t, h, leaning, low, high, scratch.clearance))
+          scratch.deltas.push_back({clear.lower, clear.upper});
         continue;
       }
     }
-    scratch.ranges.push_back({low, high});
+    scratch.deltas.push_back({low, high});
   }
 }
 
 /// Calls visit(half, leaning, images) for one half of a slice, which represents both if they are symmetric (images =
-/// 2), or for both (images = 1), with feasible_ranges() in scratch.ranges.
+/// 2), or for both (images = 1), with find_delta_intervals() in scratch.deltas.
 template <class S, class Visit>
 void visit_halves(const SlicedDesign<S>& d, const Slice<S>& t, const ClearanceTest* test, ColumnScratch<S>& scratch,
                   const Visit& visit) {
@@ -149,25 +149,25 @@ void visit_halves(const SlicedDesign<S>& d, const Slice<S>& t, const ClearanceTe
   for (std::size_t leaning = 0; leaning < (symmetric ? 1u : 2u); ++leaning) {
     const HalfSlice<S> h = half_slice(t, leaning);
     if (h.empty) continue;
-    feasible_ranges(d, t, h, leaning, test, scratch);
+    find_delta_intervals(d, t, h, leaning, test, scratch);
     visit(h, leaning, symmetric ? 2.0 : 1.0);
   }
 }
 
 /// Finds the feasible intervals of z in a column: the whole one, or the parts of it in which links are clear.
-/// @param scratch  receives them in `parts`
+/// @param scratch  receives them in `heights`
 template <class S>
-void feasible_parts(const SlicedDesign<S>& d, const Slice<S>& t, const Column<S>& column, const ClearanceTest* test,
-                    ColumnScratch<S>& scratch) {
-  scratch.parts.clear();
+void find_height_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const Column<S>& column,
+                           const ClearanceTest* test, ColumnScratch<S>& scratch) {
+  scratch.heights.clear();
   if constexpr (std::is_same_v<S, double>) {
     if (test) {
-      for (const Part& part : test->clear_parts(d, t, column, scratch.clearance))
-        scratch.parts.push_back({part.lower, part.upper, true, true});
+      for (const ClosedInterval& clear : test->clear_heights(d, t, column, scratch.clearance))
+        scratch.heights.push_back({clear.lower, clear.upper, true, true});
       return;
     }
   }
-  scratch.parts.push_back({S(0.0), column.length, true, true});
+  scratch.heights.push_back({S(0.0), column.length, true, true});
 }
 
 /// Contents of the samples.
@@ -250,17 +250,17 @@ void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes 
     visit_halves(d, t, test, scratch, [&](const HalfSlice<S>& h, std::size_t leaning, double halves) {
       const double images = 2 * halves * (planes == Planes::both ? 2.0 : 1.0);
       const S outer = weight * theta_jacobian * theta_weight;
-      visit_nodes(scratch.ranges, inner_rule, [&](const S& delta, const S& delta_jacobian, double delta_weight) {
+      visit_nodes(scratch.deltas, inner_rule, [&](const S& delta, const S& delta_jacobian, double delta_weight) {
         const Column<S> col = column(d, t, h, leaning, delta);
-        feasible_parts(d, t, col, test, scratch);
-        for (const Piece<S>& part : scratch.parts) {
+        find_height_intervals(d, t, col, test, scratch);
+        for (const Subinterval<S>& interval : scratch.heights) {
           ColumnConditioning<S>& poses = scratch.poses;
           poses.clear();
-          visit_nodes(part, inner_rule,
+          visit_nodes(interval, inner_rule,
                       [&](const S& rise, const S&, double) { poses.add(col.z_c(d, rise, 0), col.z_c(d, rise, 1)); });
           if (contents.conditioning) poses.compute({g.l_u, contents.gamma, turn.sin, turn.cos, col.x, col.sigma});
           std::size_t n = 0;
-          visit_nodes(part, inner_rule, [&](const S&, const S& jacobian, double z_weight) {
+          visit_nodes(interval, inner_rule, [&](const S&, const S& jacobian, double z_weight) {
             const S each = outer * col.slope * delta_jacobian * jacobian * (delta_weight * z_weight);
             const S index = contents.conditioning ? poses.index[n] : S(0.0);
             if (contents.distinguishes_images())

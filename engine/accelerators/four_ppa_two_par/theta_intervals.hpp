@@ -89,7 +89,7 @@ S lift_crossing(const SlicedDesign<S>& d, const Crossing& crossing) {
 
 /// Adds the critical values with a closed form, unsorted.
 template <class S>
-void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<Break<S>>& values) {
+void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = d.g;
   const Limits<S>& l = d.l;
   // each with flags: whether the area has a square-root singularity below and above
@@ -159,7 +159,7 @@ Signature split_at_crossings(const SlicedDesign<S>& d, const SlicedDesign<double
     if (then.formula != middle.formula) continue;
     for (int more = 0; has_sample && more < 6 && !(now == then); ++more) {  // several signs can change
       const Crossing crossing = find_crossing(plain, at, now, next, then);
-      split(Break<S>{lift_crossing(d, crossing)}, now);
+      split(CriticalValue<S>{lift_crossing(d, crossing)}, now);
       at = crossing.theta + 1e-12;
       now = signature(plain, at);
       if (now.formula != middle.formula) now = then;
@@ -175,7 +175,8 @@ Signature split_at_crossings(const SlicedDesign<S>& d, const SlicedDesign<double
 /// @param values     scratch memory
 /// @param intervals  receives them
 template <class S>
-void find_theta_intervals(const SlicedDesign<S>& d, std::vector<Break<S>>& values, std::vector<Piece<S>>& intervals) {
+void find_theta_intervals(const SlicedDesign<S>& d, std::vector<CriticalValue<S>>& values,
+                          std::vector<Subinterval<S>>& intervals) {
   values.clear();
   intervals.clear();
   if (d.empty) return;
@@ -183,9 +184,11 @@ void find_theta_intervals(const SlicedDesign<S>& d, std::vector<Break<S>>& value
   values.push_back({S(0.0)});
   add_closed_form_critical_values(d, values);
   const S last = acos(d.l.cos_theta_min);
-  std::erase_if(values, [&](const Break<S>& b) { return !(value_of(b.at) < value_of(last)); });
+  std::erase_if(values, [&](const CriticalValue<S>& b) { return !(value_of(b.at) < value_of(last)); });
   values.push_back({last});
-  const auto in_order = [](const Break<S>& a, const Break<S>& b) { return value_of(a.at) < value_of(b.at); };
+  const auto in_order = [](const CriticalValue<S>& a, const CriticalValue<S>& b) {
+    return value_of(a.at) < value_of(b.at);
+  };
   for (auto next = values.begin(); next != values.end(); ++next)  // std::stable_sort allocates
     std::rotate(std::upper_bound(values.begin(), next, *next, in_order), next, next + 1);
 
@@ -195,7 +198,7 @@ void find_theta_intervals(const SlicedDesign<S>& d, std::vector<Break<S>>& value
     if (!middle || !(middle.formula->stroke_limits_1 || middle.formula->stroke_limits_2)) return middle;
     return split_at_crossings(d, plain, low, high, middle, split);
   };
-  find_pieces<Signature>(values, kMergeDistance, false, changes, intervals);
+  find_subintervals<Signature>(values, kMergeDistance, false, changes, intervals);
 }
 
 }  // namespace pkm::four_ppa_two_par

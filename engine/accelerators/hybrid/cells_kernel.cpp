@@ -46,7 +46,7 @@ CellTally fill(const ColumnsAtBeta& at, CellRuns& runs) {
   double lane[kLanes], cells = 0;
   sum.store(lane);
   for (const double in_lane : lane) cells += in_lane;
-  return {cells, least(lowest) == 0 || greatest(highest) == at.cells};
+  return {cells, reduce_min(lowest) == 0 || reduce_max(highest) == at.cells};
 }
 
 template CellTally fill<PKM_INSTRUCTION_SET>(const ColumnsAtBeta&, CellRuns&);

@@ -14,7 +14,7 @@ namespace pkm::hybrid {
 template <class S>
 struct ColumnScratch {
   CriticalValueScratch beta;
-  std::vector<Piece<S>> intervals;  ///< one for each of beta.intervals
+  std::vector<Subinterval<S>> intervals;  ///< one for each of beta.intervals
   std::vector<QuadratureCell<S>> integrals;
   StripScratch strips;
   Decomposition decomposition;  ///< of a beta outside the intervals
@@ -24,7 +24,7 @@ struct ColumnScratch {
 /// The decomposition of a slice. In an interval of beta, that of the previous slice there is updated if possible.
 template <class S>
 const Decomposition& decomposition_of(const Slice<double>& s, double beta, ColumnScratch<S>& scratch) {
-  const auto contains = [&](const Piece<S>& p) { return value_of(p.lower) < beta && beta < value_of(p.upper); };
+  const auto contains = [&](const Subinterval<S>& p) { return value_of(p.lower) < beta && beta < value_of(p.upper); };
   const auto interval = std::ranges::find_if(scratch.intervals, contains);
   const bool found = interval != scratch.intervals.end();
   const auto number = static_cast<std::size_t>(interval - scratch.intervals.begin());
@@ -67,7 +67,7 @@ S area_at(const SlicedDesign<S>& d, const S& beta, ColumnScratch<S>& scratch) {
 
 /// Rounding error of the integral of area_at() over the intervals [m^2 rad].
 template <class S>
-double roundoff(const SlicedDesign<S>& d, const std::vector<Piece<S>>& intervals) {
+double roundoff(const SlicedDesign<S>& d, const std::vector<Subinterval<S>>& intervals) {
   if (intervals.empty()) return 0;
   double size = value_of(max(d.g.L1, max(d.g.L2, d.g.L3)));  // of the terms that cancel in the area
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(value_of(d.lo[i])) + std::fabs(value_of(d.hi[i]));
@@ -88,8 +88,8 @@ void visit_columns(const SlicedDesign<S>& d, const S& beta, const GaussRule& rul
                    const Visit& visit) {
   const Slice<S> s = slice(d, beta);
   for (const Strip& strip : decomposition_of(values(s), value_of(beta), scratch).strips) {
-    const Piece<S> piece{height(s, strip.from), height(s, strip.to), true, true};
-    visit_nodes(piece, rule, [&](const S& z, const S& jacobian, double weight) {
+    const Subinterval<S> interval{height(s, strip.from), height(s, strip.to), true, true};
+    visit_nodes(interval, rule, [&](const S& z, const S& jacobian, double weight) {
       visit(z, S(edge_at(s, strip.right, z) - edge_at(s, strip.left, z)), S(jacobian * weight));
     });
   }

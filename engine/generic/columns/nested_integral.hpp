@@ -42,7 +42,7 @@ struct CriticalValue {
 
 /// An interval of an outer coordinate in which the type is constant.
 struct SmoothInterval {
-  Piece<double> piece;
+  Subinterval<double> piece;
   Slice below, above;  ///< just inside its endpoints
   IntervalBound lower = kCriticalValue, upper = kCriticalValue;
   double beyond_lower = 0, beyond_upper = 0;  ///< measures just outside its endpoints
@@ -192,8 +192,8 @@ class NestedIntegral {
   /// The intervals before bisection, so that sums over nodes are continuous functions of the design.
   static std::vector<SmoothInterval> merged_intervals(std::size_t level, const IntegralScratch& scratch);
   /// @param below  upper endpoint of the previous interval; null if there is none
-  Piece<Dual4> differentiable_piece(std::size_t level, const SmoothInterval& part, const Dual4* below,
-                                    IntegralScratch& scratch) const;
+  Subinterval<Dual4> differentiable_piece(std::size_t level, const SmoothInterval& part, const Dual4* below,
+                                          IntegralScratch& scratch) const;
   Dual4 differentiable_end(std::size_t level, const SmoothInterval& part, bool upper, IntegralScratch& scratch) const;
 
   /// To be called after inside(level).
@@ -224,7 +224,7 @@ class NestedIntegral {
       }
       return;
     }
-    Piece<S> piece;
+    Subinterval<S> piece;
     const S* below = nullptr;
     for (const SmoothInterval& part : merged_intervals(level, scratch)) {
       if constexpr (Derivative<S>)

@@ -39,11 +39,11 @@ Intervals difference(const Intervals& x, const Intervals& y) {
 }
 
 /// Divides pieces at given points inside them, at which integrands can have square-root singularities.
-std::vector<Piece<double>> divided(const std::vector<Piece<double>>& pieces, std::vector<double> places) {
+std::vector<Subinterval<double>> divided(const std::vector<Subinterval<double>>& pieces, std::vector<double> places) {
   constexpr double kInset = 1e-6;  // relative to a piece
   std::ranges::sort(places);
-  std::vector<Piece<double>> all;
-  for (Piece<double> rest : pieces) {
+  std::vector<Subinterval<double>> all;
+  for (Subinterval<double> rest : pieces) {
     const double inset = kInset * (rest.upper - rest.lower), end = rest.upper - inset;
     for (const double at : places) {
       if (!(at > rest.lower + inset && at < end)) continue;
@@ -137,15 +137,15 @@ void NestedIntegral::visit_one_sided(std::size_t level, double weight, bool in_i
                                      const OneSided& one_sided_points) const {
   if (in_is_empty) return;
   const NestedRule& rule = kronrod_rule();
-  const auto for_each_node = [&](const std::vector<Piece<double>>& pieces, const std::vector<double>& ends,
+  const auto for_each_node = [&](const std::vector<Subinterval<double>>& pieces, const std::vector<double>& ends,
                                  const auto& visit) {
-    for (const Piece<double>& piece : divided(pieces, ends))
+    for (const Subinterval<double>& piece : divided(pieces, ends))
       for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
         const auto [at, jacobian] = map_node(piece, rule.node[i]);
         visit(at, weight * jacobian * rule.level.front().weight[i]);
       }
   };
-  std::vector<Piece<double>> pieces;
+  std::vector<Subinterval<double>> pieces;
   std::vector<double> ends;
   if (level < levels()) {
     for (const SmoothInterval& part : one_sided_points.in.levels[level].parts) pieces.push_back(part.piece);
@@ -165,9 +165,9 @@ void NestedIntegral::visit_one_sided(std::size_t level, double weight, bool in_i
   }
   if (const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_)) {
     planar_slice->add_pieces(one_sided_points.in.planar_slice, pieces);
-    std::vector<Piece<double>> others;
+    std::vector<Subinterval<double>> others;
     if (!out_is_empty) planar_slice->add_pieces(one_sided_points.out.planar_slice, others);
-    for (const Piece<double>& other : others) ends.insert(ends.end(), {other.lower, other.upper});
+    for (const Subinterval<double>& other : others) ends.insert(ends.end(), {other.lower, other.upper});
     for_each_node(pieces, ends, [&](double v, double own) {
       const Intervals in = planar_slice->columns(v, one_sided_points.in.registers, one_sided_points.in.planar_slice);
       Intervals out = planar_slice->columns(v, one_sided_points.out.registers, one_sided_points.out.planar_slice);
@@ -190,7 +190,7 @@ void NestedIntegral::visit_columns(const std::vector<std::array<double, 2>>& col
                                    const OneSided& one_sided_points) const {
   static const GaussRule rule = gauss_legendre(4);
   for (const auto& [from, to] : columns)
-    pkm::visit_nodes(Piece<double>{from, to}, rule, [&](double z, double jacobian, double own) {
+    pkm::visit_nodes(Subinterval<double>{from, to}, rule, [&](double z, double jacobian, double own) {
       const double slope = slope_of_violated(v, z, one_sided_points);
       if (slope != 0 && std::isfinite(slope)) one_sided_points.visit(weight * jacobian * own, slope);
     });

@@ -32,8 +32,8 @@ std::vector<SmoothInterval> NestedIntegral::merged_intervals(std::size_t level, 
   return whole;
 }
 
-Piece<Dual4> NestedIntegral::differentiable_piece(std::size_t level, const SmoothInterval& part, const Dual4* below,
-                                                  IntegralScratch& scratch) const {
+Subinterval<Dual4> NestedIntegral::differentiable_piece(std::size_t level, const SmoothInterval& part,
+                                                        const Dual4* below, IntegralScratch& scratch) const {
   const bool continues = below && part.lower == kCriticalValue && below->a == part.piece.lower;
   return {continues ? *below : differentiable_end(level, part, false, scratch),
           differentiable_end(level, part, true, scratch), part.piece.sqrt_at_lower, part.piece.sqrt_at_upper};

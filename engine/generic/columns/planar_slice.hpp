@@ -78,9 +78,9 @@ class PlanarSlice {
                      const Ends& ends, const Visit& visit) const {
     using S = typename Ends::Scalar;
     for (const auto& piece : scratch.pieces) {
-      const Piece<S> range{ends.vertex(piece.from_vertex, piece.from), ends.vertex(piece.to_vertex, piece.to),
-                           has_sqrt_singularity(piece.from_vertex, scratch),
-                           has_sqrt_singularity(piece.to_vertex, scratch)};
+      const Subinterval<S> range{ends.vertex(piece.from_vertex, piece.from), ends.vertex(piece.to_vertex, piece.to),
+                                 has_sqrt_singularity(piece.from_vertex, scratch),
+                                 has_sqrt_singularity(piece.to_vertex, scratch)};
       visit_nodes(range, along_v, [&](const S& t, const S& jacobian, double weight_v) {
         for (std::size_t k = piece.first; k < piece.first + piece.count; ++k) {
           const S low = ends.end(scratch.spans[k].lower, t), high = ends.end(scratch.spans[k].upper, t);
@@ -116,7 +116,7 @@ class PlanarSlice {
     }
   }
   /// Appends the intervals of v in which the columns have the same endpoints, after measure().
-  void add_pieces(const PlanarSliceScratch& scratch, std::vector<Piece<double>>& pieces) const;
+  void add_pieces(const PlanarSliceScratch& scratch, std::vector<Subinterval<double>>& pieces) const;
   /// The feasible intervals of z at v in ascending order, after measure().
   std::vector<std::array<double, 2>> columns(double v, std::span<double> registers, PlanarSliceScratch& scratch) const;
   /// Finds the vertices that define the type, after measure().

@@ -72,8 +72,8 @@ TEST(Lanes, ExponentialIsBitIdenticalToPortableExp) {
 }
 
 TEST(Lanes, MinimumAndMaximumOverTheLanes) {
-  EXPECT_EQ(least(L::load(kX.data())), -3.7);
-  EXPECT_EQ(greatest(L::load(kY.data())), 7);
+  EXPECT_EQ(reduce_min(L::load(kX.data())), -3.7);
+  EXPECT_EQ(reduce_max(L::load(kY.data())), 7);
 }
 
 }  // namespace

@@ -13,8 +13,9 @@ namespace {
 
 using Function = std::function<double(double)>;
 
-std::vector<Part> intervals_of(const Function& f, double lipschitz, double lower, double upper, int* calls = nullptr) {
-  std::vector<Part> intervals = {{-1, -1}};  // must be discarded
+std::vector<ClosedInterval> intervals_of(const Function& f, double lipschitz, double lower, double upper,
+                                         int* calls = nullptr) {
+  std::vector<ClosedInterval> intervals = {{-1, -1}};  // must be discarded
   NonNegativeIntervals finder;
   const auto counted = [&](double x) {
     if (calls) ++*calls;
@@ -25,7 +26,8 @@ std::vector<Part> intervals_of(const Function& f, double lipschitz, double lower
   return intervals;
 }
 
-void expect_intervals(const std::vector<Part>& found, const std::vector<Part>& expected, double tolerance) {
+void expect_intervals(const std::vector<ClosedInterval>& found, const std::vector<ClosedInterval>& expected,
+                      double tolerance) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_NEAR(found[i].lower, expected[i].lower, tolerance) << i;
