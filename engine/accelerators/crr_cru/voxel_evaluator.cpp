@@ -81,21 +81,21 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     return true;
   }
   /// The cells of a slice; null if there are none.
-  const CellsAtPhi* cells_of(const GriddedSlices& s, std::size_t piece, VoxelWorker& worker) const {
+  const CellsAtPhi* cells_of(const GriddedSlices& s, std::size_t block, VoxelWorker& worker) const {
     if (!s.over_phi) return &s.common;
-    return fill(s, s.grid.centre(s.axes.outer, static_cast<std::int64_t>(piece)), worker.own) ? &worker.own : nullptr;
+    return fill(s, s.grid.centre(s.axes.outer, static_cast<std::int64_t>(block)), worker.own) ? &worker.own : nullptr;
   }
 
-  void find(const GriddedSlices& s, std::size_t, std::size_t piece, VoxelWorker& worker,
+  void find(const GriddedSlices& s, std::size_t, std::size_t block, VoxelWorker& worker,
             WorkspaceResult<double>& to) const {
-    const CellsAtPhi* const at = cells_of(s, piece, worker);
+    const CellsAtPhi* const at = cells_of(s, block, worker);
     if (!at) return;
-    const auto k = static_cast<std::int64_t>(piece);
+    const auto k = static_cast<std::int64_t>(block);
     if (settings_.request.needs_inertia()) {
       visit_runs(s, *at, k, worker.row, [&](const CellRun& run) { sample(s, *at, run, worker.dci, to); });
       return;
     }
-    const PlaneTally plane = at->cells.count(s.over_phi ? 0 : piece);
+    const PlaneTally plane = at->cells.count(s.over_phi ? 0 : block);
     to.feasible_cells += plane.cells;
     to.touches_box = to.touches_box || (plane.cells > 0 && (plane.touches || s.grid.at_end(s.axes.outer, k)));
     if (settings_.with_conditioning && s.over_phi)
@@ -130,9 +130,9 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   template <class Visit>
   void visit_cells(const GriddedSlices& s, Buffers& buffers, const Visit& visit) const {
     VoxelWorker& worker = buffers.per_worker[0];
-    for (std::size_t piece = 0; piece < s.blocks; ++piece)
-      if (const CellsAtPhi* const at = cells_of(s, piece, worker))
-        visit_runs(s, *at, static_cast<std::int64_t>(piece), worker.row,
+    for (std::size_t block = 0; block < s.blocks; ++block)
+      if (const CellsAtPhi* const at = cells_of(s, block, worker))
+        visit_runs(s, *at, static_cast<std::int64_t>(block), worker.row,
                    [&](const CellRun& run) { for_each_cell(run, visit); });
   }
 

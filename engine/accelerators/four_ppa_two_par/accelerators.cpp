@@ -168,7 +168,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
                          plane(g, y_),
                          request_.needs_samples() ? contents(parameters, request_) : SampleContents<double>{}};
     const GridPart largest = planes.grids == 1 ? representative_part(planes, planes[0]) : counter_.whole();
-    planes.blocks = counts(planes) ? counter_.pieces(largest) : counter_.blocks(largest);
+    planes.blocks = counts(planes) ? counter_.tiles(largest) : counter_.blocks(largest);
     return planes;
   }
   /// Whether only the number of cells is needed.
@@ -178,13 +178,13 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     return planes.test || planes.wanted.distinguishes_images() ? counter_.whole() : counter_.representative_part(at);
   }
 
-  void find(const GriddedPlanes& planes, std::size_t number, std::size_t piece, VoxelWorker& own,
+  void find(const GriddedPlanes& planes, std::size_t number, std::size_t block, VoxelWorker& own,
             WorkspaceResult<double>& to) const {
     const VoxelPlane at = planes[number];
     const GridPart part = representative_part(planes, at);
-    if (counts(planes)) return counter_.count(at, part, piece, to);
+    if (counts(planes)) return counter_.count(at, part, block, to);
     const SampleTarget<double> samples(to);
-    counter_.visit_block(at, piece, part, own.columns, [&](const CellRun& run) {
+    counter_.visit_block(at, block, part, own.columns, [&](const CellRun& run) {
       const int images = part.images(run.first[0], run.first[2]);
       count_cells(at.grid, run, to, images);
       if (request_.needs_samples()) sample(at, planes.wanted, run, planes.cell_volume * images, own, samples);

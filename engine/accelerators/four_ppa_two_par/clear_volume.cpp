@@ -73,7 +73,7 @@ Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const Clear
       visit_nodes(scratch.deltas, inner_rule, [&](double delta, double jacobian, double weight) {
         const Column<double> c = column(d, t, h, leaning, delta);
         result.value +=
-            images * outer * weight * jacobian * c.slope * measure(d, t, c, test, over_y, scratch.clearance);
+            images * outer * weight * jacobian * c.derivative * measure(d, t, c, test, over_y, scratch.clearance);
         ++result.evaluations;
       });
     });
@@ -102,7 +102,7 @@ Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest
       const auto measure_at = [&](double delta) {
         check_stop();
         const Column<double> c = column(d, t, h, leaning, delta);
-        return c.slope * measure(d, t, c, test, over_y, scratch.clearance);
+        return c.derivative * measure(d, t, c, test, over_y, scratch.clearance);
       };
       for (const Subinterval<double>& interval : scratch.deltas) {
         const Integral<double> found = integrate_interval(measure_at, interval, inner_error, inner);

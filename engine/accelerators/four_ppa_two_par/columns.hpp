@@ -261,7 +261,7 @@ void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes 
           if (contents.conditioning) poses.compute({g.l_u, contents.gamma, turn.sin, turn.cos, col.x, col.sigma});
           std::size_t n = 0;
           visit_nodes(interval, inner_rule, [&](const S&, const S& jacobian, double z_weight) {
-            const S each = outer * col.slope * delta_jacobian * jacobian * (delta_weight * z_weight);
+            const S each = outer * col.derivative * delta_jacobian * jacobian * (delta_weight * z_weight);
             const S index = contents.conditioning ? poses.index[n] : S(0.0);
             if (contents.distinguishes_images())
               add_images(each, theta, turn, col, {poses.z_c[0][n], poses.z_c[1][n]}, index, halves == 2);

@@ -181,7 +181,7 @@ template <class S>
 struct Column {
   std::array<S, 2> x, sigma;  ///< of the two limbs [m]
   S length;                   ///< of the z interval [m]
-  S slope;                    ///< du / d(delta)
+  S derivative;               ///< du / d(delta)
   std::size_t leaning;
 
   /// z_c of limb j at a height above the lower end of the interval, where that of the leaning limb is -Z_low.
@@ -199,7 +199,7 @@ Column<S> column(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>
   const S q = t.w * t.w + delta * delta;
   const S ratio = g.l_d * t.w / q;
   Column<S> c;
-  c.slope = (ratio * ratio - 0.25) * 2.0 * ch.sin_p / ch.cos_p;
+  c.derivative = (ratio * ratio - 0.25) * 2.0 * ch.sin_p / ch.cos_p;
   c.length = min(h.flat, S(h.slope - delta));
   c.leaning = leaning;
   c.x[leaning] = t.w * 0.5 + ch.u;

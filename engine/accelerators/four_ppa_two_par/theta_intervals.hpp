@@ -80,8 +80,9 @@ S lift_crossing(const SlicedDesign<S>& d, const Crossing& crossing) {
   if constexpr (!std::is_same_v<S, double>) {
     const S value = switching_function(d, crossing.function, S(crossing.theta));
     const auto by_theta = Dual<1>::variable(crossing.theta, 0);
-    const double slope = switching_function(constant_design<Dual<1>>(d), crossing.function, by_theta).v[0];
-    return implicit_root(crossing.theta, value, slope);  // slope 0: a double root, with an interval of length 0
+    const double derivative = switching_function(constant_design<Dual<1>>(d), crossing.function, by_theta).v[0];
+    // if it is 0: a double root, with an interval of length 0
+    return implicit_root(crossing.theta, value, derivative);
   } else {
     return crossing.theta;
   }

@@ -65,10 +65,10 @@ void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, con
   with_instruction_set([&]<InstructionSet set>() { fill<set>(at, block); });
 }
 
-void VoxelCounter::count(const VoxelPlane& plane, const GridPart& part, std::size_t piece,
+void VoxelCounter::count(const VoxelPlane& plane, const GridPart& part, std::size_t tile,
                          WorkspaceResult<double>& to) const {
-  const auto n = static_cast<std::int64_t>(piece);
-  const std::int64_t k_block = n / parts() * kLanes, from = n % parts() * kColumns;
+  const auto n = static_cast<std::int64_t>(tile);
+  const std::int64_t k_block = n / tiles_per_block() * kLanes, from = n % tiles_per_block() * kColumns;
   if (k_block >= part.thetas || from >= part.xs) return;
   const ColumnsAtThetas at = columns(plane, k_block, part);
   const CellTally t = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });

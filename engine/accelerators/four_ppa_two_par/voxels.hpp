@@ -59,11 +59,11 @@ class VoxelCounter {
   std::size_t blocks(const GridPart& part) const {
     return static_cast<std::size_t>((part.thetas + kLanes - 1) / kLanes);
   }
-  /// Number of pieces for count(): units of work of about a microsecond, which threads share.
-  std::size_t pieces(const GridPart& part) const { return blocks(part) * static_cast<std::size_t>(parts()); }
+  /// Number of tiles for count(): kLanes thetas by kColumns x, about a microsecond of work.
+  std::size_t tiles(const GridPart& part) const { return blocks(part) * static_cast<std::size_t>(tiles_per_block()); }
 
-  /// Adds the feasible cells that a piece represents, without the clearance test.
-  void count(const VoxelPlane& plane, const GridPart& part, std::size_t piece, WorkspaceResult<double>& to) const;
+  /// Adds the feasible cells that a tile represents, without the clearance test.
+  void count(const VoxelPlane& plane, const GridPart& part, std::size_t tile, WorkspaceResult<double>& to) const;
 
   /// Calls visit(run) for every run of feasible cells along z in one block, in the order of theta and x. A column has
   /// at most one run, unless the clearance test divides it.
@@ -95,8 +95,8 @@ class VoxelCounter {
   double cos_theta(std::int64_t k) const { return cos_[static_cast<std::size_t>(k)]; }
 
  private:
-  static constexpr std::int64_t kColumns = 64;                                  ///< x of a piece
-  std::int64_t parts() const { return (cells_[0] + kColumns - 1) / kColumns; }  ///< pieces of a block
+  static constexpr std::int64_t kColumns = 64;  ///< x of a tile
+  std::int64_t tiles_per_block() const { return (cells_[0] + kColumns - 1) / kColumns; }
   void fill_block(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part, ColumnBlock& block) const;
   ColumnsAtThetas columns(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part) const;
 

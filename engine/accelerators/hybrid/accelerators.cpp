@@ -150,7 +150,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 
  private:
   friend GridEvaluator;
-  static constexpr std::int64_t kBetas = 8;  ///< of a piece
+  static constexpr std::int64_t kBetas = 8;  ///< of a block
 
   struct Worker {
     PoseList poses;
@@ -158,10 +158,10 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   };
   using Buffers = GridBuffers<VoxelHeights, Worker>;
 
-  /// Calls visit(k) for the numbers of the beta of a piece.
+  /// Calls visit(k) for the numbers of the beta of a block.
   template <class Visit>
-  static void for_each_beta(const VoxelColumns& columns, std::size_t piece, const Visit& visit) {
-    const auto first = static_cast<std::int64_t>(piece) * kBetas;
+  static void for_each_beta(const VoxelColumns& columns, std::size_t block, const Visit& visit) {
+    const auto first = static_cast<std::int64_t>(block) * kBetas;
     for (std::int64_t k = first; k < std::min(first + kBetas, columns.grid.cells[2]); ++k) visit(k);
   }
 
@@ -177,12 +177,12 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     return columns;
   }
 
-  void find(const VoxelColumns& columns, std::size_t, std::size_t piece, Worker& worker,
+  void find(const VoxelColumns& columns, std::size_t, std::size_t block, Worker& worker,
             WorkspaceResult<double>& to) const {
     const bool only_counts = !settings_.request.has(kConditioning);
     const VoxelGrid& grid = columns.grid;
     ColumnSamples<double> samples(columns.design, settings_.request, worker.poses, to);
-    for_each_beta(columns, piece, [&](std::int64_t k) {
+    for_each_beta(columns, block, [&](std::int64_t k) {
       if (only_counts) {
         to.feasible_cells += columns.count(k, worker.runs, to.touches_box);
         return;
@@ -197,8 +197,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   }
   template <class Visit>
   void visit_cells(const VoxelColumns& columns, Buffers& buffers, const Visit& visit) const {
-    for (std::size_t piece = 0; piece < columns.blocks; ++piece)
-      for_each_beta(columns, piece, [&](std::int64_t k) {
+    for (std::size_t block = 0; block < columns.blocks; ++block)
+      for_each_beta(columns, block, [&](std::int64_t k) {
         columns.visit(k, buffers.per_worker[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
       });
   }

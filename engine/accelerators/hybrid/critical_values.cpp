@@ -92,21 +92,22 @@ bool has_heights(const SampledSlice& sample, const Degeneracy& degeneracy) {
 
 /// x of an edge and its first two derivatives with respect to z, the first two with derivatives with respect to beta.
 struct EdgeDerivatives {
-  Dual<1> x, slope;
+  Dual<1> x, derivative;
   double curvature;
 };
 EdgeDerivatives edge_derivatives(const Slice<Dual<1>>& s, const Edge& edge, double z) {
   const Curve<Dual<1>>& c = s.curve[edge.curve];
-  const Dual<1> root = c.root(z), slope = c.slope(z, root);
+  const Dual<1> root = c.root(z), derivative = c.derivative(z, root);
   const double sign = s.sign(edge);
-  return {s.constant(edge) + root * sign, slope * sign, sign * (value_of(c.curvature()) - slope.a * slope.a) / root.a};
+  return {s.constant(edge) + root * sign, derivative * sign,
+          sign * (value_of(c.curvature()) - derivative.a * derivative.a) / root.a};
 }
 
 /// The height of a bound after one Newton step if it is an intersection, with its derivative with respect to beta.
 Dual<1> newton_height(const Slice<Dual<1>>& s, const StripBound& end) {
   if (end.kind != StripBound::Kind::intersection) return height(s, end);
   const EdgeDerivatives first = edge_derivatives(s, end.first, end.z), second = edge_derivatives(s, end.second, end.z);
-  return end.z - (second.x - first.x) / (second.slope.a - first.slope.a);
+  return end.z - (second.x - first.x) / (second.derivative.a - first.derivative.a);
 }
 
 /// One step of Newton's method for a degeneracy, in beta and the heights of intersections.
@@ -127,11 +128,11 @@ double newton_step(const Slice<Dual<1>>& s, Degeneracy& degeneracy) {
   // a tangency: the distance of the edges and its derivative with respect to z are 0
   const EdgeDerivatives left = edge_derivatives(s, degeneracy.left, degeneracy.first.z),
                         right = edge_derivatives(s, degeneracy.right, degeneracy.first.z);
-  const Dual<1> difference = right.x - left.x, slope = right.slope - left.slope;
+  const Dual<1> difference = right.x - left.x, derivative = right.derivative - left.derivative;
   const double curvature = right.curvature - left.curvature,
-               determinant = difference.v[0] * curvature - slope.a * slope.v[0];
-  degeneracy.first.z += (slope.v[0] * difference.a - difference.v[0] * slope.a) / determinant;
-  return (slope.a * slope.a - curvature * difference.a) / determinant;
+               determinant = difference.v[0] * curvature - derivative.a * derivative.v[0];
+  degeneracy.first.z += (derivative.v[0] * difference.a - difference.v[0] * derivative.a) / determinant;
+  return (derivative.a * derivative.a - curvature * difference.a) / determinant;
 }
 
 /// Finds a degeneracy between two beta by Newton's method.

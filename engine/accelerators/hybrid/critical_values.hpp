@@ -96,8 +96,8 @@ S lift_critical_value(const SlicedDesign<S>& d, const SlicedDesign<Dual<1>>& by_
   if constexpr (std::is_same_v<S, double>) {
     return at;
   } else {
-    const double slope = distance(slice(by_beta, Dual<1>::variable(at, 0)), degeneracy).v[0];
-    return implicit_root(at, distance(slice(d, S(at)), degeneracy), slope);
+    const double derivative = distance(slice(by_beta, Dual<1>::variable(at, 0)), degeneracy).v[0];
+    return implicit_root(at, distance(slice(d, S(at)), degeneracy), derivative);
   }
 }
 

@@ -27,8 +27,9 @@ struct Gap {
 Gap gap(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
   const auto at = [&](const Edge& e) {
     const Curve<double>& c = s.curve[e.curve];
-    const double root = c.root(z), slope = c.slope(z, root), sign = s.sign(e);
-    return Gap{s.constant(e) + root * sign, sign * slope, (std::fabs(c.curvature()) + slope * slope) / root};
+    const double root = c.root(z), derivative = c.derivative(z, root), sign = s.sign(e);
+    return Gap{s.constant(e) + root * sign, sign * derivative,
+               (std::fabs(c.curvature()) + derivative * derivative) / root};
   };
   const Gap a = at(first), b = at(second);
   return Gap{a.value - b.value, a.derivative - b.derivative, a.second + b.second};

@@ -98,7 +98,7 @@ struct Curve : Product<S> {
   S root(const S& z) const { return sqrt_or_zero(S((a + a_z * z) * (b + b_z * z))); }
   S curvature() const { return a_z * b_z; }  ///< coefficient of z^2 under the root
   /// Derivative of the root by z.
-  S slope(const S& z, const S& root) const { return (a_z * (b + b_z * z) + b_z * (a + a_z * z)) / (root * 2.0); }
+  S derivative(const S& z, const S& root) const { return (a_z * (b + b_z * z) + b_z * (a + a_z * z)) / (root * 2.0); }
 };
 
 /// Whether a bound of x is a lower (left) or an upper (right) one.

@@ -41,26 +41,27 @@ double possible_intersection(const Slice<double>& s, const Edge& above, const Ed
   if (!above_is_convex && !below_is_concave) return kNoIntersection;
   const auto chord = [&](const Edge& e, double sign) { return sign * (q.root[e.curve] - p.root[e.curve]) / width; };
   const auto tangent = [&](const Edge& e, double sign, const Node& n) {
-    return sign * s.curve[e.curve].slope(n.z, n.root[e.curve]);
+    return sign * s.curve[e.curve].derivative(n.z, n.root[e.curve]);
   };
-  double slope_p = 0, slope_q = 0;
+  double derivative_p = 0, derivative_q = 0;
   const auto add = [&](const Edge& e, double sign, bool use_tangent, double factor) {
     const double straight = use_tangent ? 0 : chord(e, sign);
-    slope_p += factor * (use_tangent ? tangent(e, sign, p) : straight);
-    slope_q += factor * (use_tangent ? tangent(e, sign, q) : straight);
+    derivative_p += factor * (use_tangent ? tangent(e, sign, p) : straight);
+    derivative_q += factor * (use_tangent ? tangent(e, sign, q) : straight);
   };
   add(above, high, above_is_convex, 1);
   add(below, low, below_is_concave, -1);
-  if (slope_p >= 0 || slope_q <= 0) return kNoIntersection;  // the minimum is at p or q
-  // intersection of the lines gap_p + slope_p (z - p) and gap_q - slope_q (q - z); a slope can be infinite
-  double along = (gap_q - gap_p - slope_q * width) / (slope_p - slope_q);
-  double smallest = gap_p + slope_p * along;
-  if (std::isinf(slope_p)) {
+  if (derivative_p >= 0 || derivative_q <= 0) return kNoIntersection;  // the minimum is at p or q
+  // intersection of the lines gap_p + derivative_p (z - p) and gap_q - derivative_q (q - z); a derivative can be
+  // infinite
+  double along = (gap_q - gap_p - derivative_q * width) / (derivative_p - derivative_q);
+  double smallest = gap_p + derivative_p * along;
+  if (std::isinf(derivative_p)) {
     along = 0;
-    smallest = std::isinf(slope_q) ? -1 : gap_q - slope_q * width;
-  } else if (std::isinf(slope_q)) {
+    smallest = std::isinf(derivative_q) ? -1 : gap_q - derivative_q * width;
+  } else if (std::isinf(derivative_q)) {
     along = width;
-    smallest = gap_p + slope_p * width;
+    smallest = gap_p + derivative_p * width;
   }
   if (smallest >= 0) return kNoIntersection;
   return p.z + std::fmin(std::fmax(along, 0.1 * width), 0.9 * width);
@@ -70,8 +71,8 @@ double possible_intersection(const Slice<double>& s, const Edge& above, const Ed
 class Envelope {
  public:
   Envelope(const Slice<double>& s, Side side, std::size_t curves, const Node& low, const Node& high,
-           std::vector<StripScratch::EnvelopePiece>& pieces)
-      : s_(s), side_(side), curves_(curves), out_(pieces) {
+           std::vector<StripScratch::EnvelopeInterval>& intervals)
+      : s_(s), side_(side), curves_(curves), out_(intervals) {
     out_.clear();
     divide(low, active(low), high, active(high), kDepth);
   }
@@ -122,7 +123,7 @@ class Envelope {
   const Slice<double>& s_;
   Side side_;
   std::size_t curves_;
-  std::vector<StripScratch::EnvelopePiece>& out_;
+  std::vector<StripScratch::EnvelopeInterval>& out_;
 };
 
 StripBound intersection_at(double z, const Edge& first, const Edge& second) {

@@ -51,11 +51,11 @@ inline bool same_type(const Decomposition& p, const Decomposition& q) {
 
 /// Scratch memory of decompose().
 struct StripScratch {
-  struct EnvelopePiece {  ///< interval of z on which one curve is active
+  struct EnvelopeInterval {  ///< interval of z on which one curve is active
     double from, to;
     std::uint8_t curve;
   };
-  std::vector<EnvelopePiece> left, right;
+  std::vector<EnvelopeInterval> left, right;
   std::vector<Strip> outer, inner;
 };
 
@@ -87,12 +87,12 @@ S height(const Slice<S>& s, const StripBound& end) {
   if (end.kind == StripBound::Kind::upper) return s.upper[end.index];
   if (end.kind == StripBound::Kind::hole) return s.hole_end;
   const S z(end.z), apart = edge_at(s, end.second, z) - edge_at(s, end.first, z);
-  const auto slope = [&](const Edge& edge) {
+  const auto derivative = [&](const Edge& edge) {
     const Curve<S>& c = s.curve[edge.curve];
     const double root = value_of(c.root(z));
-    return root > 0 ? s.sign(edge) * value_of(c.slope(z, S(root))) : 0.0;
+    return root > 0 ? s.sign(edge) * value_of(c.derivative(z, S(root))) : 0.0;
   };
-  const double by_z = slope(end.second) - slope(end.first);
+  const double by_z = derivative(end.second) - derivative(end.first);
   return implicit_root(end.z, apart, by_z);
 }
 
