@@ -2,6 +2,8 @@
 // incompatible settings.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/study_program.hpp"
 
@@ -148,7 +150,8 @@ TEST_F(SolverProgram, StartsFromDistinctBasinsFindSeveralOptima) {
   std::map<int, double> optima;
   for (const auto& start : printed["stages"][1]["starts"]) {
     EXPECT_LT(start["optimality"], 1e-6) << start["origin"];
-    optima[start["optimum"]] = start["end"]["objectives"]["conditioning"];
+    double& best = optima[start["optimum"]];  // starts in one basin differ by rounding
+    best = std::max(best, start["end"]["objectives"]["conditioning"].get<double>());
   }
   ASSERT_GE(optima.size(), 2u);
   EXPECT_GT(optima[1], optima[2] + 0.01);
