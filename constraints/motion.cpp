@@ -21,7 +21,7 @@ std::unique_ptr<const Quantity> minimum_along(const EntryContext& context) {
   return make_quantity(
       [along](const DesignView<double>& design) {
         const std::vector<double>& margins = margins_of(design, along);
-        return margins.empty() ? kUnlimited : least(margins);
+        return margins.empty() ? kUnlimited : minimum(margins);
       },
       [along, sharpness](const DesignView<Dual4>& design) {
         const std::vector<Dual4>& margins = margins_of(design, along);

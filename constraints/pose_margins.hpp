@@ -46,7 +46,7 @@ const std::vector<S>& margins_of(const DesignView<S>& design, const MarginPoses&
 /// Smooth lower bound of the minimum (log-sum-exp, Kreisselmeier-Steinhauser function); the error is at most
 /// ln(number of margins) / sharpness.
 inline Dual4 soft_minimum(const std::vector<Dual4>& margins, double sharpness) {
-  const double shift = least(margins).a;
+  const double shift = minimum(margins).a;
   Dual4 sum(0.0);
   for (const Dual4& margin : margins) sum += exp((margin - shift) * -sharpness);
   return shift - log(sum) / sharpness;

@@ -61,7 +61,7 @@ std::unique_ptr<const Quantity> make_task_workspace(const EntryContext& context)
                        region.plan.limits};
   const double required = context.options.number("margin"), sharpness = context.options.number("sharpness");
   return make_quantity(
-      [of, required](const DesignView<double>& design) { return least(margins_of(design, of)) - required; },
+      [of, required](const DesignView<double>& design) { return minimum(margins_of(design, of)) - required; },
       [of, required, sharpness](const DesignView<Dual4>& design) {
         return Dual4(soft_minimum(margins_of(design, of), sharpness) - required);
       },

@@ -36,13 +36,13 @@ S power_mean(const std::vector<S>& field, double r) {
 
 /// Minimum of the samples; 0 if there are none.
 template <class S>
-S least(const std::vector<S>& field) {
+S minimum(const std::vector<S>& field) {
   return field.empty() ? S(0.0) : *std::ranges::min_element(field, {}, [](const S& x) { return value_of(x); });
 }
 
 /// Maximum of the samples; 0 if there are none.
 template <class S>
-S greatest(const std::vector<S>& field) {
+S maximum(const std::vector<S>& field) {
   return field.empty() ? S(0.0) : *std::ranges::max_element(field, {}, [](const S& x) { return value_of(x); });
 }
 
@@ -65,14 +65,14 @@ S kreisselmeier_steinhauser(const std::vector<S>& weight, const std::vector<S>& 
 /// constant, because the result does not depend on it.
 template <class S>
 S soft_min(const std::vector<S>& weight, const std::vector<S>& field, double sharpness) {
-  return kreisselmeier_steinhauser(weight, field, value_of(least(field)), -sharpness);
+  return kreisselmeier_steinhauser(weight, field, value_of(minimum(field)), -sharpness);
 }
 
 /// Smooth approximation of the maximum (soft-max) likewise: not above the maximum, and converging to it as `sharpness`
 /// increases.
 template <class S>
 S soft_max(const std::vector<S>& weight, const std::vector<S>& field, double sharpness) {
-  return kreisselmeier_steinhauser(weight, field, value_of(greatest(field)), sharpness);
+  return kreisselmeier_steinhauser(weight, field, value_of(maximum(field)), sharpness);
 }
 
 /// Weighted standard deviation of a population: the square root of the weighted mean of (f - mean)^2; 0 if there are no

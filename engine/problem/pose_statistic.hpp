@@ -81,7 +81,7 @@ struct PoseStatistic {
       if (statistic[0] == 'p')
         return weighted_quantile(weight, field, std::stoi(statistic.substr(1)) / 100.0,
                                  scratch.get<SortScratch>().order);
-      return statistic == "min" ? least(field) : greatest(field);
+      return statistic == "min" ? minimum(field) : maximum(field);
     } else {
       if (quantity.formula) return scaled_extremum(weight, field, scratch.get<ScaledScratch<S>>().field);
       return statistic == "min" ? soft_min(weight, field, sharpness) : soft_max(weight, field, sharpness);
@@ -104,7 +104,7 @@ struct PoseStatistic {
   /// The smooth approximation of "min" or "max" of values scaled to [0, 1], so that it does not depend on their unit.
   template <class S>
   S scaled_extremum(const std::vector<S>& weight, const std::vector<S>& field, std::vector<S>& scaled) const {
-    const S lower = least(field), range = greatest(field) - lower;
+    const S lower = minimum(field), range = maximum(field) - lower;
     if (!(value_of(range) > 0)) return lower;
     scaled.clear();
     for (const S& value : field) scaled.push_back((value - lower) / range);

@@ -54,7 +54,7 @@ TEST(CrrCruCoupling, GoldenStatistics) {
     const auto s = survey(entry["mechanism"], nominal(), p, coupling(mode_name(mode_of(entry["sigma"]))));
     ASSERT_EQ(s.feasible_cells, entry["feasible"].get<std::int64_t>());
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(greatest(s.field(kCouplingIndex, i)), entry["max"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(maximum(s.field(kCouplingIndex, i)), entry["max"][i].get<double>(), 1e-10);
       EXPECT_NEAR(weighted_mean(s.weight, s.field(kCouplingIndex, i)), entry["mean"][i].get<double>(), 1e-10);
       EXPECT_NEAR(weighted_standard_deviation(s.weight, s.field(kCouplingIndex, i)), entry["std"][i].get<double>(),
                   1e-8);
