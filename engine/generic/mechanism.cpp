@@ -5,7 +5,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/generic/bounds.hpp"
 #include "engine/generic/clearance.hpp"
-#include "engine/generic/columns/evaluator.hpp"
+#include "engine/generic/column_evaluator.hpp"
 #include "engine/generic/design_checks.hpp"
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/equations.hpp"

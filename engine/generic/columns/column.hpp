@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/generic/columns/endpoints.hpp"
-#include "engine/generic/columns/slice_plan.hpp"
+#include "engine/generic/slice_plan.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/math/interval.hpp"
 #include "engine/math/quadrature.hpp"

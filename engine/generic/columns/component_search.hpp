@@ -2,7 +2,7 @@
 // are discarded, the quadratic constraints contract v and z, and the remaining boxes are bisected.
 #pragma once
 
-#include "engine/generic/columns/slice_plan.hpp"
+#include "engine/generic/slice_plan.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/math/interval.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/generic/columns/formula.hpp"
+#include "engine/generic/surface_signs.hpp"
 
 namespace pkm::generic {
 

@@ -7,7 +7,7 @@
 #include "engine/generic/columns/conic.hpp"
 #include "engine/generic/columns/critical_value_solver.hpp"
 #include "engine/generic/columns/endpoints.hpp"
-#include "engine/generic/columns/slice_plan.hpp"
+#include "engine/generic/slice_plan.hpp"
 #include "engine/math/quadrature.hpp"
 
 namespace pkm::generic {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "engine/expression/program.hpp"
-#include "engine/generic/columns/formula.hpp"
 #include "engine/generic/evaluation.hpp"
+#include "engine/generic/surface_signs.hpp"
 
 namespace pkm::generic {
 
@@ -27,7 +27,7 @@ struct CoordinateOrder {
   std::size_t z = 0;
 };
 
-using Ranges = std::vector<std::optional<std::array<double, 2>>>;
+using CoordinateRanges = std::vector<std::optional<std::array<double, 2>>>;
 
 struct SlicePlan {
   CoordinateOrder order;
@@ -43,6 +43,6 @@ struct SlicePlan {
 /// @param curves  whether transcendental constraints are allowed in lines
 /// @param box     by coordinate; std::nullopt: the range of the model
 SlicePlan plan_slices(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,
-                      const Ranges& box);
+                      const CoordinateRanges& box);
 
 }  // namespace pkm::generic

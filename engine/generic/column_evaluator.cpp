@@ -1,4 +1,4 @@
-#include "engine/generic/columns/evaluator.hpp"
+#include "engine/generic/column_evaluator.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -40,8 +40,8 @@ std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& 
   return orders;
 }
 
-Ranges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& columns) {
-  Ranges box(coordinates);
+CoordinateRanges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& columns) {
+  CoordinateRanges box(coordinates);
   if (columns.box)
     for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
       box[static_cast<std::size_t>(sweep.swept[axis])] = (*columns.box)[axis];
@@ -56,7 +56,7 @@ struct Plans {
 /// Slices of conics if possible, otherwise lines bounded by polynomials, otherwise any lines. @param max_evaluations
 /// maximum number of plans
 Plans plans_of(const Evaluation& evaluation, std::size_t mode, const Sweep& sweep, const WorkspacePlan& plan,
-               const Ranges& box, std::size_t max_evaluations = 100) {
+               const CoordinateRanges& box, std::size_t max_evaluations = 100) {
   Plans plans;
   for (const auto& [are_lines, curves] : {std::pair{false, false}, {true, false}, {true, true}}) {
     if (!plans.all.empty()) break;
@@ -87,7 +87,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     if (request.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
-    const Ranges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
+    const CoordinateRanges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
     auto [plans, why_not] = plans_of(evaluation, mode_, sweep_, plan, box);
     if (plans.empty())
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +

@@ -1,4 +1,4 @@
-#include "engine/generic/columns/slice_plan.hpp"
+#include "engine/generic/slice_plan.hpp"
 
 #include <algorithm>
 
@@ -82,7 +82,8 @@ bool is_known_to_exist(const Graph& graph, Node node) {
 
 class Planner {
  public:
-  Planner(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves, const Ranges& box)
+  Planner(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,
+          const CoordinateRanges& box)
       : model_(evaluation.model),
         known_(constraints_of(model_, mode)),
         graph_(known_.graph),
@@ -254,7 +255,7 @@ class Planner {
     return Signs{1} << (number % kMaxSurfaces);
   }
 
-  std::array<Node, 2> ends_of(std::size_t coordinate, const Ranges& box) {
+  std::array<Node, 2> ends_of(std::size_t coordinate, const CoordinateRanges& box) {
     if (box[coordinate]) return {graph_.number((*box[coordinate])[0]), graph_.number((*box[coordinate])[1])};
     if (known_.box[coordinate]) return *known_.box[coordinate];
     refuse("it has no [survey] box for " + model_.info.coordinates[coordinate].name);
@@ -277,7 +278,7 @@ class Planner {
 }  // namespace
 
 SlicePlan plan_slices(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,
-                      const Ranges& box) {
+                      const CoordinateRanges& box) {
   return Planner(evaluation, mode, order, curves, box).finish();
 }
 
