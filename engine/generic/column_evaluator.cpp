@@ -1,11 +1,13 @@
 #include "engine/generic/column_evaluator.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/generic/clearance.hpp"
 #include "engine/generic/columns/nested_integral.hpp"
 #include "engine/generic/conditioning.hpp"
+#include "engine/generic/corner_curves/volume.hpp"
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/inertia_batch.hpp"
 #include "engine/generic/report_limits.hpp"
@@ -92,6 +94,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     if (plans.empty())
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
                                   "; set workspace.method = \"voxels\"");
+    if (!request.needs_samples()) find_corner_curves(plans, columns.tolerance);
     SlicePlan best = fastest(std::move(plans));
     // Derivatives lose digits at a kink of the measure that no change of the type indicates; with conics two more
     // digits are cheap.
@@ -112,9 +115,11 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     std::vector<double> by_input;
     Integral<double> volume;
   };
+  using CornerCurves = corner_curves::Volume;
   struct Room {
     std::vector<double> inputs;
     IntegralScratch integral;
+    CornerCurves::Scratch corner_curves;
     InertiaScratch inertia;
     Known known;
   };
@@ -167,6 +172,42 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     return std::move(plans[best]);
   }
 
+  /// Among the plans that corner curves serve, the one that takes the least work for the default design.
+  void find_corner_curves(const std::vector<SlicePlan>& plans, double tolerance) {
+    std::vector<double> design, inputs;
+    for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
+    CornerCurves::Scratch scratch;
+    double least = std::numeric_limits<double>::infinity();
+    for (const SlicePlan& plan : plans) {
+      CornerCurves curves(plan, tolerance);
+      if (!curves.why_not().empty()) continue;
+      fill_inputs<double>(design, inputs);
+      if (!curves.measure(inputs, scratch)) continue;
+      const double work = scratch.work();
+      if (work >= least) continue;
+      least = work;
+      corner_curves_.emplace(std::move(curves));
+    }
+  }
+
+  /// By corner curves if they serve the design, otherwise by slices.
+  Integral<double> measure(std::span<const double> inputs, Room& memory) const {
+    if (corner_curves_)
+      if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) return *found;
+    return integral_->measure(inputs, memory.integral);
+  }
+  Integral<double> measure_with_gradient(std::span<const double> inputs, std::span<double> by_input,
+                                         Room& memory) const {
+    if (corner_curves_)
+      if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) {
+        corner_curves_->add_gradient(by_input, memory.corner_curves);
+        return *found;
+      }
+    const Integral<double> found = integral_->measure_for_gradient(inputs, memory.integral);
+    integral_->add_gradient(by_input, memory.integral);
+    return found;
+  }
+
   /// The inputs, with fixed coordinates at their values.
   template <class S>
   void fill_inputs(std::span<const S> parameters, std::vector<S>& inputs) const {
@@ -196,7 +237,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     Integral<double> found;
     if constexpr (std::is_same_v<S, double>) {
       memory.known.of = nullptr;
-      found = integral_->measure(memory.inputs, memory.integral);
+      found = measure(memory.inputs, memory);
     } else {
       found = with_slopes(samples.inputs, memory);
     }
@@ -219,9 +260,8 @@ class GenericColumns final : public WithGradients<GenericColumns> {
       return known.volume;
     known.of = this;
     known.inputs = inputs;
-    known.volume = integral_->measure_for_gradient(memory.inputs, memory.integral);
     known.by_input.assign(memory.inputs.size(), 0);
-    integral_->add_gradient(known.by_input, memory.integral);
+    known.volume = measure_with_gradient(memory.inputs, known.by_input, memory);
     return known.volume;
   }
 
@@ -262,6 +302,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
   std::optional<NestedIntegral> integral_;
+  std::optional<CornerCurves> corner_curves_;       ///< if a plan without samples is served by them
   std::optional<SampleConditioning> conditioning_;  ///< if they are requested
   std::optional<InertiaBatch> inertia_;
   std::optional<SampleFormulas> formulas_;

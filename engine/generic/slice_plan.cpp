@@ -111,6 +111,7 @@ class Planner {
     groups.push_back(v_);
     for (std::size_t i = 1; i < groups.size(); ++i) groups[0] &= ~groups[i];
     groups[0] &= ~z_;
+    if (plan_.order.v) plan_.limits = expression::Program(graph_, limits(), groups);
     if (!curve_nodes_.empty()) groups.push_back(z_);
     std::vector<Node> outputs = plain_;
     for (const NodeSurface& each : surface_nodes_) outputs.insert(outputs.end(), each.begin(), each.end());
@@ -214,6 +215,18 @@ class Planner {
     curve[1] = expression::derivative(graph_, node, z);
     curve_nodes_.push_back(node);
     plan_.formula.all |= bit(curve);
+  }
+
+  /// The constraints that depend on v but not on z, each with its derivatives with respect to v.
+  std::vector<Node> limits() {
+    const Node v = graph_.input(model_.inputs.coordinate(*plan_.order.v), v_);
+    std::vector<Node> all;
+    for (const Node limit : plain_) {
+      if ((graph_[limit].groups & v_) == 0) continue;
+      const Node slope = expression::derivative(graph_, limit, v);
+      all.insert(all.end(), {limit, slope, expression::derivative(graph_, slope, v)});
+    }
+    return all;
   }
 
   void add_clause(const NodeClause& clause) {

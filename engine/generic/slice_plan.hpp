@@ -36,6 +36,9 @@ struct SlicePlan {
   Formula formula;
   std::vector<std::vector<std::uint32_t>>
       independent;  ///< constraints independent of the inner coordinates, by stage: registers, >= 0 if satisfied
+  /// Constraints independent of z alone: outputs are the value, its derivative and its second derivative with respect
+  /// to v, of each; stages are the design, each outer coordinate, v.
+  expression::Program limits;
   std::vector<std::array<std::uint32_t, 2>> range;  ///< registers of the bounds of each outer coordinate, v and z
   std::string why_not;                              ///< if not empty: why these slices have no closed form
 };

@@ -1,0 +1,120 @@
+#include "engine/generic/corner_curves/boundary_curve.hpp"
+
+#include <algorithm>
+
+#include "engine/generic/corner_curves/root_isolation.hpp"
+
+namespace pkm::generic::corner_curves {
+namespace {
+
+/// Bounds of the magnitudes of the coefficients of a curve's equation.
+double size_of_b(const BoundaryCurve& curve) {
+  return (curve.is_circle() ? 2 : 1) * std::fmax(curve.size[0], curve.size[1]);
+}
+double size_of_c(const BoundaryCurve& curve) {
+  if (!curve.is_circle()) return curve.size[2];
+  return curve.size[0] * curve.size[0] + curve.size[1] * curve.size[1] + curve.size[2];
+}
+
+}  // namespace
+
+bool BoundaryCurve::interpolate(double tolerance) {
+  terms = 1;
+  tail = error = 0;
+  bool has_converged = true;
+  for (std::size_t f = 0; f < 3; ++f) {
+    size[f] = 0;
+    for (const double value : values[f]) size[f] = std::fmax(size[f], std::fabs(value));
+    if (!std::isfinite(size[f])) return false;
+    to_coefficients(values[f], series[f]);
+    const double scale = is_circle() ? 1 + size[f] : 1;
+    const double own_tail = interpolation_error(series[f], 0);
+    has_converged = has_converged && own_tail <= tolerance * scale;
+    // The coefficients of the rounding errors of the values are left out.
+    const double rounding = 8 * kUnitRoundoff * scale;
+    tail = std::fmax(tail, own_tail);
+    error = std::fmax(error, own_tail + rounding);
+    terms = std::max(terms, significant_terms(series[f], kNodes, rounding));
+  }
+  equation = values;
+  if (is_circle())
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      const double u = values[0][n], w = values[1][n];
+      equation[0][n] = -2 * u;
+      equation[1][n] = -2 * w;
+      equation[2][n] = u * u + w * w - values[2][n];
+    }
+  return has_converged;
+}
+
+void discriminant(const BoundaryCurve& i, const BoundaryCurve& j, Sampled& result) {
+  const double b = size_of_b(i) + size_of_b(j);
+  if (!i.is_circle() && !j.is_circle()) {
+    for (std::size_t n = 0; n < kNodes; ++n)
+      result.values[n] = i.values[0][n] * j.values[1][n] - i.values[1][n] * j.values[0][n];
+    result.rounding = 4 * kUnitRoundoff * b * b;
+    return;
+  }
+  const BoundaryCurve &circle = i.is_circle() ? i : j, &other = i.is_circle() ? j : i;
+  const double share = other.is_circle() ? 1 : 0;
+  double largest = 0;
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    const double x = share * circle.equation[0][n] - other.equation[0][n],
+                 y = share * circle.equation[1][n] - other.equation[1][n],
+                 chord = share * circle.equation[2][n] - other.equation[2][n];
+    const double at_centre = x * circle.values[0][n] + y * circle.values[1][n] + chord, bb = x * x + y * y;
+    result.values[n] = bb * circle.values[2][n] - at_centre * at_centre;
+    const double size = bb * circle.size[2] + std::fabs(at_centre);
+    largest = size > largest ? size : largest;
+  }
+  const double c = b * b + size_of_c(i) + size_of_c(j);
+  result.rounding = 8 * kUnitRoundoff * (b * b * circle.size[2] + largest * c);
+}
+
+void concurrence(const BoundaryCurve& i, const BoundaryCurve& j, const BoundaryCurve& k, Sampled& result) {
+  const BoundaryCurve* curves[3] = {&i, &j, &k};
+  if (!curves[1]->is_circle() && curves[2]->is_circle()) std::swap(curves[1], curves[2]);
+  if (!curves[0]->is_circle() && curves[1]->is_circle()) std::swap(curves[0], curves[1]);
+  if (!curves[1]->is_circle() && curves[2]->is_circle()) std::swap(curves[1], curves[2]);
+  const auto& [p, q, r] = curves;
+  const double b = std::fmax(1, size_of_b(i) + size_of_b(j) + size_of_b(k)),
+               c = size_of_c(i) + size_of_c(j) + size_of_c(k);
+  const auto &f = p->equation, &g = q->equation, &h = r->equation;
+  if (!p->is_circle()) {
+    for (std::size_t n = 0; n < kNodes; ++n)
+      result.values[n] = f[0][n] * (g[1][n] * h[2][n] - h[1][n] * g[2][n]) +
+                         f[1][n] * (g[2][n] * h[0][n] - h[2][n] * g[0][n]) +
+                         f[2][n] * (g[0][n] * h[1][n] - h[0][n] * g[1][n]);
+    result.rounding = 16 * kUnitRoundoff * b * b * c;
+    return;
+  }
+  const auto rows = [](const std::array<Samples, 3>& equation, const double** to) {
+    for (std::size_t coefficient = 0; coefficient < 3; ++coefficient) to[coefficient] = equation[coefficient].data();
+  };
+  ConcurrenceArguments arguments{{}, {}, {}, q->is_circle() ? 1.0 : 0.0, r->is_circle() ? 1.0 : 0.0};
+  rows(f, arguments.first);
+  rows(g, arguments.second);
+  rows(h, arguments.third);
+  const double largest = with_instruction_set(
+      [&]<InstructionSet set> { return concurrence_at_nodes<set>(arguments, result.values.data()); });
+  result.rounding = 16 * kUnitRoundoff * (largest * b * c + largest * b * b * (b + c));
+}
+
+Vector crossing(const CurveAt& i, const CurveAt& j, double branch) {
+  if (!i.is_circle && !j.is_circle) {
+    const double d = i.u * j.w - i.w * j.u;
+    return {(i.w * j.c - j.w * i.c) / d, (i.c * j.u - j.c * i.u) / d};
+  }
+  const CurveAt &circle = i.is_circle ? i : j, &other = i.is_circle ? j : i;
+  // The chord b . (p - m) + e = 0, relative to the centre.
+  double bx = other.u, by = other.w, e = other.u * circle.u + other.w * circle.w + other.c;
+  if (other.is_circle) {
+    bx = 2 * (other.u - circle.u);
+    by = 2 * (other.w - circle.w);
+    e = -0.25 * (bx * bx + by * by) - circle.c + other.c;
+  }
+  const double bb = bx * bx + by * by, d = bb * circle.c - e * e, root = branch * std::sqrt(d > 0 ? d : 0);
+  return {circle.u + (-bx * e - by * root) / bb, circle.w + (-by * e + bx * root) / bb};
+}
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,81 @@
+// Circles and lines that bound the slices of a workspace as functions of the outer coordinate, their crossings, and the
+// functions that vanish where two of them touch or three meet in one point.
+//
+// In the plane (x, y) of a slice a boundary curve is the zero set of
+//
+//   h(p) = a |p|^2 + b . p + c,   circle: a = 1, b = -2 m, c = |m|^2 - s;   line: a = 0, |b| = 1
+//
+// with centre m, squared radius s (which may be negative: no circle), unit normal b. The three functions of a curve
+// depend on one variable tau in [-1, 1] and are Chebyshev interpolants (chebyshev.hpp).
+#pragma once
+
+#include <cstdint>
+
+#include "engine/generic/corner_curves/chebyshev.hpp"
+
+namespace pkm::generic::corner_curves {
+
+struct Vector {
+  double x, y;
+};
+
+/// A curve at one value of tau. u and w: centre of a circle, or normal of a line; c: squared radius, or h at the
+/// origin.
+struct CurveAt {
+  bool is_circle;
+  double u, w, c;
+
+  double h(const Vector& p) const {
+    if (!is_circle) return u * p.x + w * p.y + c;
+    const double x = p.x - u, y = p.y - w;
+    return x * x + y * y - c;
+  }
+  Vector gradient(const Vector& p) const { return is_circle ? Vector{2 * (p.x - u), 2 * (p.y - w)} : Vector{u, w}; }
+};
+
+struct BoundaryCurve {
+  enum class Kind : std::uint8_t {
+    circle,
+    line,
+    cut  ///< the line through a circle's centre in the direction of angle 0
+  };
+  Kind kind = Kind::line;
+  std::array<Samples, 3> values;    ///< at the nodes: u, w and c of CurveAt
+  std::array<Samples, 3> series;    ///< their coefficients
+  std::array<Samples, 3> equation;  ///< b and c of the curve's equation, at the nodes
+  std::size_t terms = kNodes;       ///< of the series
+  double tail = 0;                  ///< interpolation error of the series, estimated from its last coefficients
+  double error = 0;                 ///< the same, with a bound of the rounding errors
+  std::array<double, 3> size{};     ///< maxima of |u|, |w|, |c|
+
+  bool is_circle() const { return kind == Kind::circle; }
+  CurveAt at(double tau) const {
+    return {is_circle(), evaluate_series(series[0].data(), terms, tau), evaluate_series(series[1].data(), terms, tau),
+            evaluate_series(series[2].data(), terms, tau)};
+  }
+  CurveAt at_node(std::size_t n) const { return {is_circle(), values[0][n], values[1][n], values[2][n]}; }
+  /// Computes everything else from kind and values.
+  /// @param tolerance  relative tail of an interpolant that is accepted
+  /// @return false if the interpolant has not converged
+  bool interpolate(double tolerance);
+};
+
+/// A scalar function of tau at the nodes, with a bound of its rounding errors.
+struct Sampled {
+  Samples values;
+  double rounding = 0;
+};
+
+/// Function that is positive where two curves cross: for a circle the discriminant |b|^2 s - (b . m + c)^2 with the
+/// common chord b . p + c = 0, for two lines the determinant of their normals, of either sign.
+void discriminant(const BoundaryCurve& i, const BoundaryCurve& j, Sampled& result);
+
+/// Function that vanishes where three curves meet in one point: the power of their radical centre, times the square of
+/// a determinant; for three lines a determinant.
+void concurrence(const BoundaryCurve& i, const BoundaryCurve& j, const BoundaryCurve& k, Sampled& result);
+
+/// One of the two points in which two curves cross; for two lines there is one, whatever the branch.
+/// @param branch  1 or -1
+Vector crossing(const CurveAt& i, const CurveAt& j, double branch);
+
+}  // namespace pkm::generic::corner_curves

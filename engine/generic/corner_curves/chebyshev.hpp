@@ -1,0 +1,60 @@
+// Chebyshev interpolation on [-1, 1] with a fixed number of nodes (Trefethen, "Approximation Theory and Approximation
+// Practice", SIAM 2013, chapters 3 and 18).
+//
+// An analytic function is represented by its values at the roots of T_32, or by its coefficients
+// f(x) = c[0] T_0(x) + ... + c[31] T_31(x). Since |T_k| <= 1, the sum of |c[k]| bounds |f|, also on a subinterval
+// after restriction: this is how roots are excluded (root_isolation.hpp).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "engine/generic/corner_curves/kernels.hpp"
+
+namespace pkm::generic::corner_curves {
+
+inline constexpr double kUnitRoundoff = 0x1p-53;
+
+/// Values at the nodes, or coefficients.
+struct alignas(64) Samples : std::array<double, kNodes> {};
+
+/// The nodes, in descending order.
+const Samples& chebyshev_nodes();
+
+/// Coefficients of the interpolant through values at the nodes.
+void to_coefficients(const Samples& values, Samples& coefficients);
+
+/// Node n of the interpolation with `nodes` nodes, 8, 16 or kNodes.
+double chebyshev_node(std::size_t n, std::size_t nodes);
+
+/// From derivatives by the coefficients to derivatives by the values at `nodes` nodes, 8, 16 or kNodes: the transpose
+/// of the interpolation, for functions of which `nodes` coefficients suffice.
+void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samples& by_values);
+
+/// The number of leading coefficients, of `terms`, beyond which the sum of magnitudes is at most `size`; at least 1.
+std::size_t significant_terms(const Samples& coefficients, std::size_t terms, double size);
+
+/// c[0] T_0(x) + ... + c[terms - 1] T_(terms - 1)(x), by Clenshaw's recurrence.
+inline double evaluate_series(const double* c, std::size_t terms, double x) {
+  double next = 0, after = 0;
+  for (std::size_t k = terms; k-- > 1;) {
+    const double here = c[k] + 2 * x * next - after;
+    after = next;
+    next = here;
+  }
+  return c[0] + x * next - after;
+}
+
+/// Coefficients on [-1, 0] and on [0, 1], each in its own variable in [-1, 1].
+/// @param terms  number of coefficients; those beyond them are not read, and those of the halves are undefined
+void restrict_to_halves(const Samples& coefficients, std::size_t terms, Samples& lower, Samples& upper);
+
+/// Values of three series at kPoints places.
+/// @param values  by series, kPoints each
+void evaluate_at_points(const std::array<Samples, 3>& series, std::size_t terms, const double* points, double* values);
+
+/// Coefficients of the derivative, of which there are terms - 1.
+void differentiate_series(const double* coefficients, std::size_t terms, double* derivative);
+
+}  // namespace pkm::generic::corner_curves

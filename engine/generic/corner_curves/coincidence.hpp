@@ -1,0 +1,25 @@
+// Degenerate triples: three boundary curves that pass through one point for all tau, as those of the root A + sqrt(Q)
+// do (A = 0, Q = 0 and Q = A^2).
+//
+// They are resolved by an infinitesimal perturbation of the curves (simulation of simplicity, Edelsbrunner and Mucke
+// 1990), which does not change the volume: curves that touch are moved apart, and of others the last one is moved
+// outward. The third curve then has a constant sign at the crossing of the other two.
+#pragma once
+
+#include "engine/generic/corner_curves/decomposition.hpp"
+
+namespace pkm::generic::corner_curves {
+
+inline constexpr double kZero = 64;  ///< a function is zero if it is at most this many times its rounding error
+
+/// Whether two curves cross, at one value of tau.
+bool has_crossing(const CurveAt& i, const CurveAt& j);
+
+/// Adds the constant signs, and the events of branches on which the three curves do not coincide, to the pairs.
+/// @param triple  curves in ascending order
+/// @param pairs   the pairs (0, 1), (0, 2) and (1, 2) of these; null: the two curves touch for all tau
+/// @return false if the degeneracy is not supported
+bool resolve_coincidence(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
+                         const std::array<DecompositionScratch::Pair*, 3>& pairs, std::vector<Root>& roots);
+
+}  // namespace pkm::generic::corner_curves

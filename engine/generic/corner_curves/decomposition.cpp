@@ -1,0 +1,514 @@
+#include "engine/generic/corner_curves/decomposition.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <span>
+
+#include "engine/generic/corner_curves/coincidence.hpp"
+#include "engine/math/portable.hpp"
+
+namespace pkm::generic::corner_curves {
+namespace {
+
+constexpr double kTiny = 1e-13;       // of tau: shorter intervals are not sampled
+constexpr double kShort = 1e-7;       // of tau: signs in shorter intervals are uncertain
+constexpr double kParallel = 1e-13;   // relative distance of the centres, or sine of the angle, of parallel curves
+constexpr double kUnresolved = 1e-9;  // relative error of a function that is not accepted
+
+/// Constraints that have to be satisfied: curves that have nothing feasible on one side.
+struct Necessary {
+  Signs inside = 0, outside = 0;
+
+  explicit Necessary(const SliceFormula& formula) {
+    const Signs all = formula.formula.all;
+    for (std::size_t i = 0; i < formula.literals.size(); ++i) {
+      const auto [out, in] = formula.literals[i];
+      if ((in & ~out & all) != 0) inside |= bit(i);
+      if ((out & ~in & all) != 0) outside |= bit(i);
+    }
+    for (const auto& strip : formula.strips)
+      if (strip.is_inside && (strip.surface & all) != 0) {
+        outside |= bit(strip.first);
+        inside |= bit(strip.second);
+      }
+    for (const auto& bound : formula.bounds) (bound.outside ? outside : inside) |= bit(bound.curve);
+  }
+  bool has(std::size_t i) const { return ((inside | outside) & bit(i)) != 0; }
+  /// Whether the signs of the curves `known` violate one of these constraints.
+  bool is_violated(Signs signs, Signs known) const {
+    return ((signs & inside & known) | (~signs & outside & known)) != 0;
+  }
+  /// Violation of the constraint of a curve; <= 0: it is satisfied.
+  double violation(std::size_t i, double h) const {
+    if ((inside & bit(i)) != 0) return h;
+    return (outside & bit(i)) != 0 ? -h : 0;
+  }
+};
+
+class Builder {
+ public:
+  Builder(std::vector<BoundaryCurve>& curves, const SliceFormula& formula, Decomposition& result,
+          DecompositionScratch& scratch)
+      : curves_(curves), count_(curves.size()), formula_(formula), necessary_(formula), out_(result), s_(scratch) {}
+
+  bool run() {
+    out_.ranges.clear();
+    out_.undecided = out_.unbalanced = 0;
+    out_.functions = 0;
+    s_.pair_count = 0;
+    s_.meetings.clear();
+    add_cuts();
+    s_.pair_of.assign(curves_.size() * curves_.size(), kNone);
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = i + 1; j < count_; ++j)
+        if (!add_pair(i, j)) return false;
+      if (cut_of_[i] != 0 && !add_pair(i, cut_of_[i])) return false;
+    }
+    if (!add_triples()) return false;
+    add_meetings();
+    align_undecided_roots();
+    for (std::size_t p = 0; p < s_.pair_count; ++p) add_ranges(s_.pairs[p]);
+    check_balance();
+    return true;
+  }
+
+ private:
+  using Pair = DecompositionScratch::Pair;
+  struct Place {
+    double tau;
+    std::size_t node;  ///< kNodes: none
+  };
+  static constexpr int kNone = -1, kTangent = -2, kInfeasible = -3;
+
+  int& pair_of(std::size_t i, std::size_t j) { return s_.pair_of[i * curves_.size() + j]; }
+
+  /// The angle of a circle is 0 in a direction in which the circle bounds nothing feasible, if there is one.
+  void add_cuts() {
+    constexpr std::size_t kDirections = 7, kSampleNodes = 5;
+    for (std::size_t i = 0; i < count_; ++i) {
+      cut_of_[i] = 0;
+      if (!curves_[i].is_circle()) continue;
+      std::size_t best = 0, fewest = kSampleNodes + 1;
+      for (std::size_t d = 0; d < kDirections && fewest > 0; ++d) {
+        const auto [sine, cosine] = direction(d);
+        std::size_t active = 0;
+        for (std::size_t k = 0; k < kSampleNodes; ++k) {
+          const std::size_t n = (2 * k + 1) * kNodes / (2 * kSampleNodes);
+          const double radius = std::sqrt(std::fmax(0, curves_[i].values[2][n]));
+          const Vector p{curves_[i].values[0][n] + radius * cosine, curves_[i].values[1][n] + radius * sine};
+          const Signs signs = signs_at_node(n, p);
+          active += formula_.holds(signs | bit(i)) != formula_.holds(signs & ~bit(i));
+        }
+        if (active < fewest) {
+          fewest = active;
+          best = d;
+        }
+      }
+      const auto [sine, cosine] = direction(best);
+      BoundaryCurve cut;
+      cut.kind = BoundaryCurve::Kind::cut;
+      for (std::size_t n = 0; n < kNodes; ++n) {
+        cut.values[0][n] = sine;
+        cut.values[1][n] = -cosine;
+        cut.values[2][n] = cosine * curves_[i].values[1][n] - sine * curves_[i].values[0][n];
+      }
+      cut.interpolate(1);
+      cut_of_[i] = curves_.size();
+      curves_.push_back(cut);
+    }
+  }
+  CurveAt curve_at(std::size_t k, const Place& place) const {
+    return place.node < kNodes ? curves_[k].at_node(place.node) : curves_[k].at(place.tau);
+  }
+  /// A place inside a range: a node, whose values are known, if one is near its middle.
+  static Place place_in(double low, double high) {
+    const Samples& nodes = chebyshev_nodes();
+    const double middle = 0.5 * (low + high);
+    auto at = std::ranges::lower_bound(nodes, middle, std::greater<>());
+    if (at == nodes.end() || (at != nodes.begin() && at[-1] - middle < middle - *at)) --at;
+    if (std::fabs(*at - middle) <= 0.3 * (high - low)) return {*at, static_cast<std::size_t>(at - nodes.begin())};
+    return {middle, kNodes};
+  }
+  static SinCosOf<double> direction(std::size_t d) {
+    return portable::sincos(0.3711 + 0.8976 * static_cast<double>(d));
+  }
+  Signs signs_at_node(std::size_t n, const Vector& p) const {
+    Signs signs = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const auto& [u, w, c] = curves_[k].values;
+      if (CurveAt{curves_[k].is_circle(), u[n], w[n], c[n]}.h(p) > 0) signs |= bit(k);
+    }
+    return signs;
+  }
+
+  /// Interpolates a function and isolates its roots. @return false if it is not resolved
+  bool find_roots(const Sampled& function, std::vector<Root>& roots) {
+    roots.clear();
+    ++out_.functions;
+    double largest = 0;
+    for (const double value : function.values) largest = std::fmax(largest, std::fabs(value));
+    Samples series;
+    to_coefficients(function.values, series);
+    const double error = interpolation_error(series, function.rounding);
+    if (error - function.rounding > kUnresolved * largest) return false;
+    isolate_roots(series, error, roots);
+    for (const Root& root : roots) out_.undecided += root.width;
+    return true;
+  }
+  static bool is_zero(const Sampled& function) {
+    return std::ranges::all_of(function.values,
+                               [&](double value) { return std::fabs(value) <= kZero * function.rounding; });
+  }
+
+  bool add_pair(std::size_t i, std::size_t j) {
+    if (s_.pair_count == s_.pairs.size()) s_.pairs.emplace_back();
+    Pair& pair = s_.pairs[s_.pair_count];
+    pair.first = static_cast<std::uint8_t>(i);
+    pair.second = static_cast<std::uint8_t>(j);
+    pair.has_branches = curves_[i].is_circle() || curves_[j].is_circle();
+    pair.events.clear();
+    pair.constants.clear();
+    if (is_parallel(i, j)) return add_parallel(i, j);
+    discriminant(curves_[i], curves_[j], pair.discriminant);
+    if (is_zero(pair.discriminant)) {
+      pair_of(i, j) = pair_of(j, i) = kTangent;
+      return true;
+    }
+    if (!find_roots(pair.discriminant, pair.ends)) return false;
+    if (pair.has_branches && pair.ends.empty() && pair.discriminant.values[0] < 0) return true;
+    if (is_infeasible(pair)) {
+      pair_of(i, j) = pair_of(j, i) = kInfeasible;
+      return true;
+    }
+    pair_of(i, j) = pair_of(j, i) = static_cast<int>(s_.pair_count++);
+    return true;
+  }
+
+  /// Whether two curves are concentric circles or parallel lines for all tau.
+  bool is_parallel(std::size_t i, std::size_t j) const {
+    if (curves_[i].is_circle() != curves_[j].is_circle()) return false;
+    const auto& [u, w, c] = curves_[i].values;
+    const auto& [x, y, d] = curves_[j].values;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      const double across = curves_[i].is_circle() ? std::fabs(u[n] - x[n]) + std::fabs(w[n] - y[n])
+                                                   : std::fabs(u[n] * y[n] - w[n] * x[n]);
+      if (across > kParallel * (1 + std::fabs(u[n]) + std::fabs(w[n]))) return false;
+    }
+    return true;
+  }
+  /// Parallel curves do not cross, but may coincide at single values of tau.
+  bool add_parallel(std::size_t i, std::size_t j) {
+    const auto& first = curves_[i].values;
+    const auto& second = curves_[j].values;
+    const double sign = curves_[i].is_circle() || first[0][0] * second[0][0] + first[1][0] * second[1][0] > 0 ? 1 : -1;
+    for (std::size_t n = 0; n < kNodes; ++n) function_.values[n] = first[2][n] - sign * second[2][n];
+    function_.rounding = 4 * kUnitRoundoff * (curves_[i].size[2] + curves_[j].size[2] + 1);
+    if (!find_roots(function_, s_.roots)) return false;
+    for (const Root& root : s_.roots)
+      s_.meetings.push_back({root.at, root.width, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)});
+    return true;
+  }
+  void add_meetings() {
+    for (const auto& [at, width, i, j] : s_.meetings)
+      for (std::size_t k = 0; k < curves_.size(); ++k)
+        for (const auto& [own, other] : {std::pair{i, j}, {j, i}})
+          if (k != i && k != j && pair_of(own, k) >= 0)
+            s_.pairs[static_cast<std::size_t>(pair_of(own, k))].events.push_back({at, width, other, 0});
+  }
+
+  /// Moves undecided roots to roots within their width, so that what happens at one tau is at one place on all curves.
+  void align_undecided_roots() {
+    if (out_.undecided == 0) return;
+    const std::span<Pair> pairs = std::span(s_.pairs).first(s_.pair_count);
+    std::vector<double>& places = s_.places;
+    places.clear();
+    for (const Pair& pair : pairs) {
+      for (const Root& end : pair.ends)
+        if (end.width == 0) places.push_back(end.at);
+      for (const auto& event : pair.events)
+        if (event.width == 0) places.push_back(event.at);
+    }
+    const auto align = [&](double& at, double width) {
+      if (width == 0) return;
+      double nearest = width;
+      const double own = at;
+      for (const double place : places)
+        if (std::fabs(place - own) < nearest) {
+          nearest = std::fabs(place - own);
+          at = place;
+        }
+      if (nearest == width) places.push_back(at);
+    };
+    for (Pair& pair : pairs) {
+      for (Root& end : pair.ends) align(end.at, end.width);
+      for (auto& event : pair.events) align(event.at, event.width);
+    }
+  }
+
+  /// Whether one constraint is violated wherever the curves cross: then nothing depends on the crossing. One sample of
+  /// each range in which they cross suffices if the constraint's curve never passes through a crossing.
+  bool is_infeasible(Pair& pair) {
+    const std::size_t i = pair.first, j = pair.second;
+    const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
+    std::array<double, kMaxCurves> smallest;
+    smallest.fill(1e9);
+    std::ranges::sort(pair.ends, {}, &Root::at);
+    double low = -1;
+    for (std::size_t e = 0; e <= pair.ends.size(); ++e) {
+      const double high = e == pair.ends.size() ? 1 : pair.ends[e].at;
+      const Place place = place_in(low, high);
+      const bool is_short = high - low <= kTiny;
+      low = high;
+      if (is_short) continue;
+      const CurveAt first = curve_at(i, place), second = curve_at(j, place);
+      if (pair.has_branches && !has_crossing(first, second)) continue;
+      for (const double branch : {1.0, -1.0}) {
+        if (branch < 0 && (is_cut || !pair.has_branches)) break;
+        const Vector p = crossing(first, second, branch);
+        for (std::size_t k = 0; k < count_; ++k)
+          if (necessary_.has(k) && smallest[k] > 0)
+            smallest[k] = std::fmin(smallest[k], necessary_.violation(k, curve_at(k, place).h(p)));
+      }
+    }
+    std::size_t worst = count_;
+    double largest = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (!necessary_.has(k) || k == i || k == j || smallest[k] <= largest) continue;
+      largest = smallest[k];
+      worst = k;
+    }
+    if (worst == count_) return false;
+    concurrence(curves_[i], curves_[j], curves_[worst], function_);
+    ++out_.functions;
+    Samples series;
+    to_coefficients(function_.values, series);
+    double rest = interpolation_error(series, function_.rounding);
+    for (std::size_t k = 1; k < kNodes; ++k) rest += std::fabs(series[k]);
+    return std::fabs(series[0]) > rest;
+  }
+
+  bool add_triples() {
+    for (std::size_t i = 0; i < count_; ++i)
+      for (std::size_t j = i + 1; j < count_; ++j) {
+        if (!may_meet(i, j)) continue;
+        for (std::size_t k = j + 1; k < count_; ++k)
+          if (may_meet(i, k) && may_meet(j, k) && !add_triple(i, j, k)) return false;
+        if (pair_of(i, j) < 0) continue;
+        for (const auto& [circle, other] : {std::pair{i, j}, {j, i}})
+          if (cut_of_[circle] != 0 && pair_of(circle, cut_of_[circle]) >= 0 && !add_cut_triple(circle, other))
+            return false;
+      }
+    return true;
+  }
+  bool may_meet(std::size_t i, std::size_t j) { return pair_of(i, j) >= 0 || pair_of(i, j) == kTangent; }
+  bool add_triple(std::size_t i, std::size_t j, std::size_t k) {
+    const int pairs[3] = {pair_of(i, j), pair_of(i, k), pair_of(j, k)};
+    if (pairs[0] < 0 && pairs[1] < 0 && pairs[2] < 0) return true;
+    concurrence(curves_[i], curves_[j], curves_[k], function_);
+    const auto pair = [&](int number) { return number < 0 ? nullptr : &s_.pairs[static_cast<std::size_t>(number)]; };
+    if (is_zero(function_)) {
+      ++out_.functions;
+      return resolve_coincidence(curves_, {i, j, k}, {pair(pairs[0]), pair(pairs[1]), pair(pairs[2])}, s_.roots);
+    }
+    // Curves that touch for all tau without crossing each other meet a third one at the same tau, without effect.
+    if (pairs[0] < 0 || pairs[1] < 0 || pairs[2] < 0) return true;
+    if (!find_roots(function_, s_.roots)) return false;
+    for (const Root& root : s_.roots) {
+      const auto add = [&](int to, std::size_t third) {
+        s_.pairs[static_cast<std::size_t>(to)].events.push_back(
+            {root.at, root.width, static_cast<std::uint8_t>(third), 0});
+      };
+      add(pairs[0], k);
+      add(pairs[1], j);
+      add(pairs[2], i);
+    }
+    return true;
+  }
+  bool add_cut_triple(std::size_t circle, std::size_t other) {
+    const std::size_t cut = cut_of_[circle];
+    concurrence(curves_[circle], curves_[cut], curves_[other], function_);
+    if (is_zero(function_)) return false;
+    if (!find_roots(function_, s_.roots)) return false;
+    for (const Root& root : s_.roots) {
+      const auto add = [&](int to, std::size_t third) {
+        s_.pairs[static_cast<std::size_t>(to)].events.push_back(
+            {root.at, root.width, static_cast<std::uint8_t>(third), 0});
+      };
+      add(pair_of(circle, other), cut);
+      add(pair_of(circle, cut), other);
+    }
+    return true;
+  }
+
+  void add_ranges(Pair& pair) {
+    std::ranges::sort(pair.events, {}, &DecompositionScratch::Event::at);
+    std::ranges::sort(pair.ends, {}, &Root::at);
+    double low = -1;
+    bool root_at_low = false;
+    for (std::size_t e = 0; e <= pair.ends.size(); ++e) {
+      const bool is_last = e == pair.ends.size();
+      const double high = is_last ? 1 : pair.ends[e].at;
+      const double width = std::max({kTiny, e > 0 ? pair.ends[e - 1].width : 0, is_last ? 0 : pair.ends[e].width});
+      if (high - low > width) add_ranges_between(pair, low, high, root_at_low, !is_last);
+      low = high;
+      root_at_low = true;
+    }
+  }
+
+  /// Curves whose changes of sign at the crossing are not among the events, because these are infeasible.
+  Signs unknown_signs(std::size_t i, std::size_t j) {
+    Signs unknown = 0;
+    for (std::size_t k = 0; k < count_; ++k)
+      if (k != i && k != j && (pair_of(i, k) == kInfeasible || pair_of(j, k) == kInfeasible)) unknown |= bit(k);
+    return unknown;
+  }
+
+  /// @param low, high  the crossing exists between them, or does not
+  void add_ranges_between(const Pair& pair, double low, double high, bool root_at_low, bool root_at_high) {
+    const std::size_t i = pair.first, j = pair.second;
+    const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
+    if (pair.has_branches) {
+      const Place place = place_in(low, high);
+      if (!has_crossing(curve_at(i, place), curve_at(j, place))) return;
+    }
+    root_at_low = root_at_low && pair.has_branches;
+    root_at_high = root_at_high && pair.has_branches;
+    for (const double branch : {1.0, -1.0}) {
+      if (branch < 0 && (is_cut || !pair.has_branches)) break;
+      Signs signs = 0, stale = ~Signs{0}, constant = bit(i) | bit(j);  // stale: signs that may have changed
+      for (const auto& each : pair.constants)
+        if (each.branch == 0 || each.branch == static_cast<int>(branch)) {
+          constant |= bit(each.third);
+          signs = each.outside ? signs | bit(each.third) : signs & ~bit(each.third);
+        }
+      const Signs unknown = unknown_signs(i, j);
+      ActiveRange range{pair.first, pair.second, static_cast<std::int8_t>(branch), 0, low, low, root_at_low, false};
+      const auto finish = [&](double at, bool root) {
+        range.high = at;
+        range.root_at_high = root;
+        if (range.weight != 0 && range.high > range.low) out_.ranges.push_back(range);
+        range.low = at;
+        range.root_at_low = false;
+      };
+      double from = low, width = 0;
+      bool is_divided = false;
+      const auto sample = [&](double to) {
+        const Place place = place_in(from, to);
+        const CurveAt first = curve_at(i, place), second = curve_at(j, place);
+        const Vector p = crossing(first, second, branch);
+        stale = (stale | unknown) & ~constant;
+        // In a short interval a sign may be a rounding error: it is determined again in the next one.
+        const Signs evaluated_again = to - from < kShort ? stale : 0;
+        // The signs of constraints that have to hold come first: most crossings violate one of them.
+        const Signs known = ~(stale | bit(i) | bit(j));
+        bool is_violated = necessary_.is_violated(signs, known);
+        for (const Signs which : {necessary_.inside | necessary_.outside, ~Signs{0}})
+          for (std::size_t k = 0; k < count_ && !is_violated; ++k) {
+            if ((which & stale & bit(k)) == 0) continue;
+            stale &= ~bit(k);
+            const double h = curve_at(k, place).h(p);
+            signs = h > 0 ? signs | bit(k) : signs & ~bit(k);
+            is_violated = necessary_.violation(k, h) > 0;
+          }
+        stale |= evaluated_again;
+        const int weight = is_violated ? 0
+                           : is_cut    ? weight_of_cut(i, signs)
+                                       : weight_of(i, j, signs, determinant(first, second, p));
+        if (weight != range.weight || is_divided) {
+          finish(from, false);
+          range.weight = static_cast<std::int8_t>(weight);
+        }
+        is_divided = false;
+      };
+      for (const auto& event : pair.events) {
+        if (event.at <= low || event.at >= high || (event.branches != 0 && event.branches != static_cast<int>(branch)))
+          continue;
+        // Close to an undecided interval nothing is sampled.
+        if (event.at - from > std::max({kTiny, width, event.width})) {
+          sample(event.at);
+          from = event.at;
+          width = 0;
+        }
+        width = std::fmax(width, event.width);
+        if (event.third < count_)
+          stale |= bit(event.third);
+        else
+          is_divided = true;
+      }
+      if (high - from > std::fmax(kTiny, width)) sample(high);
+      if (high - from > kShort) {
+        const Signs followed = ~(stale | unknown | constant) & (bit(count_) - 1);
+        if (!are_signs(i, j, branch, place_in(from, high), followed, signs)) out_.unbalanced += high - low;
+      }
+      finish(high, root_at_high);
+    }
+  }
+
+  /// Whether signs that were followed through all events are those at a place: no event was missed.
+  bool are_signs(std::size_t i, std::size_t j, double branch, const Place& place, Signs which, Signs signs) const {
+    constexpr double kUncertain = 1e-9;
+    const Vector p = crossing(curve_at(i, place), curve_at(j, place), branch);
+    for (std::size_t k = 0; k < count_; ++k) {
+      if ((which & bit(k)) == 0) continue;
+      const double h = curve_at(k, place).h(p);
+      if (std::fabs(h) > kUncertain && (h > 0) != ((signs & bit(k)) != 0)) return false;
+    }
+    return true;
+  }
+
+  int weight_of(std::size_t i, std::size_t j, Signs signs, double determinant) const {
+    signs &= ~(bit(i) | bit(j));
+    const int sum = static_cast<int>(formula_.holds(signs | bit(i) | bit(j))) -
+                    static_cast<int>(formula_.holds(signs | bit(i))) -
+                    static_cast<int>(formula_.holds(signs | bit(j))) + static_cast<int>(formula_.holds(signs));
+    if (sum == 0) return 0;
+    return determinant > 0 ? sum : -sum;
+  }
+  static double determinant(const CurveAt& first, const CurveAt& second, const Vector& p) {
+    const Vector g = first.gradient(p), h = second.gradient(p);
+    return g.x * h.y - g.y * h.x;
+  }
+  int weight_of_cut(std::size_t i, Signs signs) const {
+    signs &= ~bit(i);
+    return static_cast<int>(formula_.holds(signs)) - static_cast<int>(formula_.holds(signs | bit(i)));
+  }
+
+  void check_balance() {
+    s_.balance.clear();
+    for (const ActiveRange& range : out_.ranges) {
+      if (curves_[range.second].kind == BoundaryCurve::Kind::cut) continue;
+      for (const auto& [curve, sign] : {std::pair{range.first, 1}, {range.second, -1}}) {
+        s_.balance.push_back({range.low, curve, sign * range.weight});
+        s_.balance.push_back({range.high, curve, -sign * range.weight});
+      }
+    }
+    std::ranges::sort(
+        s_.balance, [](const auto& a, const auto& b) { return a.curve != b.curve ? a.curve < b.curve : a.at < b.at; });
+    int sum = 0;
+    for (std::size_t k = 0; k + 1 < s_.balance.size(); ++k) {
+      if (k > 0 && s_.balance[k].curve != s_.balance[k - 1].curve) sum = 0;
+      sum += s_.balance[k].change;
+      if (sum != 0 && s_.balance[k + 1].curve == s_.balance[k].curve)
+        out_.unbalanced += s_.balance[k + 1].at - s_.balance[k].at;
+    }
+  }
+
+  std::vector<BoundaryCurve>& curves_;
+  std::size_t count_;  ///< without cuts
+  const SliceFormula& formula_;
+  Necessary necessary_;
+  Decomposition& out_;
+  DecompositionScratch& s_;
+  std::array<std::size_t, kMaxCurves> cut_of_{};  ///< by curve; 0: it is no circle
+  Sampled function_;
+};
+
+}  // namespace
+
+bool decompose(std::vector<BoundaryCurve>& curves, const SliceFormula& formula, Decomposition& result,
+               DecompositionScratch& scratch) {
+  if (curves.empty()) return false;
+  return Builder(curves, formula, result, scratch).run();
+}
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,81 @@
+// Corner curves: the crossings of two boundary curves as functions of tau, and the ranges of tau in which they are
+// vertices of the feasible part of the slice.
+//
+// With the signs F(+-, +-) of feasibility around a crossing p of curves i and j, Green's theorem gives the area as
+//
+//   A = sum over crossings of kappa (W_i(p) - W_j(p)),   kappa = sgn det(grad h_i, grad h_j) (F(++) - F(+-) - F(-+) +
+//   F(--))
+//
+// where W is the integral of (x dy - y dx)/2 along a curve; and for every circle whose point at angle 0 bounds the
+// feasible part, the area of the whole circle (README.md). The weight kappa changes only where the discriminant of the
+// pair vanishes, or the concurrence function of the pair and a third curve. The roots of these functions are isolated
+// once for each pair and each triple, so that all three pairs of a triple see the same critical value. Between
+// consecutive roots one sample decides.
+#pragma once
+
+#include "engine/generic/corner_curves/boundary_curve.hpp"
+#include "engine/generic/corner_curves/root_isolation.hpp"
+#include "engine/generic/corner_curves/slice_formula.hpp"
+
+namespace pkm::generic::corner_curves {
+
+/// A maximal range of tau in which a crossing is a vertex of constant weight.
+struct ActiveRange {
+  std::uint8_t first, second;  ///< curves; the second one may be a cut
+  std::int8_t branch, weight;  ///< kappa; of a cut point: +-1, positive if the disc is feasible
+  double low, high;
+  bool root_at_low, root_at_high;  ///< the discriminant vanishes there
+};
+
+struct Decomposition {
+  std::vector<ActiveRange> ranges;
+  double undecided = 0;   ///< total length of undecided intervals, of tau
+  double unbalanced = 0;  ///< length of tau on which decisions contradict each other: 0 unless one is wrong
+  long functions = 0;     ///< discriminants and concurrence functions examined
+};
+
+/// Scratch memory of decompose().
+struct DecompositionScratch {
+  struct Event {
+    double at, width;      ///< as of a Root
+    std::uint8_t third;    ///< curve whose sign may change
+    std::int8_t branches;  ///< 0: on both
+  };
+  struct Constant {
+    std::uint8_t third;
+    std::int8_t branch;  ///< 0: both
+    bool outside;
+  };
+  struct Pair {
+    std::uint8_t first, second;
+    bool has_branches;
+    Sampled discriminant;
+    std::vector<Root> ends;  ///< roots of the discriminant
+    std::vector<Event> events;
+    std::vector<Constant> constants;  ///< signs of curves through the crossing for all tau
+  };
+  /// Where two parallel curves coincide.
+  struct Meeting {
+    double at, width;
+    std::uint8_t first, second;
+  };
+  std::vector<Pair> pairs;
+  std::size_t pair_count = 0;
+  std::vector<int> pair_of;  ///< by curves; -1: they do not cross
+  std::vector<Meeting> meetings;
+  std::vector<Root> roots;
+  std::vector<double> places;
+  struct Step {
+    double at;
+    std::uint8_t curve;
+    int change;
+  };
+  std::vector<Step> balance;
+};
+
+/// @param curves  at most kMaxCurves, without cuts, which are appended, one for each circle
+/// @return false if the slices have a degeneracy that is not supported, or the functions are not resolved
+bool decompose(std::vector<BoundaryCurve>& curves, const SliceFormula& formula, Decomposition& result,
+               DecompositionScratch& scratch);
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,53 @@
+// Volume of the slices of a segment, and its derivatives by the curves: adaptive Gauss-Kronrod quadrature of every
+// corner curve over the ranges in which it is active (decomposition.hpp).
+//
+// At an end where the discriminant vanishes, the crossing behaves like a square root; the variable transformation of
+// math/quadrature.hpp makes the integrand analytic there. A range is therefore integrated with few nodes, whatever
+// happens to other crossings.
+#pragma once
+
+#include "engine/generic/corner_curves/decomposition.hpp"
+#include "engine/math/quadrature.hpp"
+
+namespace pkm::generic::corner_curves {
+
+/// The outer coordinate as a function of tau, t = low + (high - low) phi((tau + 1)/2), with the transformation phi of
+/// math/quadrature.hpp at ends where the curves behave like square roots.
+using OuterRange = Piece<double>;
+
+/// The derivative of the outer coordinate by tau.
+inline double outer_derivative(const OuterRange& range, double tau) {
+  return 0.5 * map_node(range, 0.5 * (tau + 1)).jacobian;
+}
+
+/// A subinterval of an active range.
+struct RangeCell {
+  std::uint32_t range;
+  Piece<double> tau;
+  double value, error, size;  ///< size: integral of the magnitude
+};
+
+/// A segment of the outer coordinate.
+struct SegmentIntegral {
+  OuterRange outer;
+  std::vector<BoundaryCurve> curves;
+  Decomposition decomposition;
+  std::vector<RangeCell> cells;
+  Integral<double> area{};  ///< integral over tau, with a bound of the rounding error
+
+  /// Integrates all ranges with one rule each.
+  void start();
+  /// Halves the subinterval of the greatest error. @return false if there is none that can be halved
+  bool refine();
+  void sum();
+};
+
+/// Derivatives of the volume by the functions u, w, c of a curve, by the coefficients of their series.
+using CurveAdjoints = std::array<Samples, 3>;
+
+/// Adds the derivatives of the integral of a segment by the first coefficients.
+/// @param terms     number of coefficients, at least 2
+/// @param adjoints  by curve
+void add_adjoints(const SegmentIntegral& segment, std::size_t terms, std::vector<CurveAdjoints>& adjoints);
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,124 @@
+#include "engine/generic/corner_curves/outer_plan.hpp"
+
+#include <algorithm>
+
+namespace pkm::generic::corner_curves {
+namespace {
+
+using expression::Code;
+using expression::Program;
+
+/// Functions other than those with a code that are analytic wherever they are defined.
+bool is_analytic(const std::string& name) {
+  static const std::vector<std::string> names = {"sin", "cos", "exp", "sinh", "cosh", "tanh", "atan"};
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// The function at whose roots a step of the program is not analytic; std::nullopt if there is none.
+/// @param served  set to false if these points have no such function
+std::optional<OuterFunction> divider_of(const Program::Step& step, bool& served) {
+  using Kind = OuterFunction::Kind;
+  switch (step.code) {
+    case Code::sqrt:
+      return OuterFunction{.registers = {step.from[0]}, .has_root = true};
+    case Code::abs:
+      return OuterFunction{.registers = {step.from[0]}};
+    case Code::divide:
+      return OuterFunction{.registers = {step.from[1]}};
+    case Code::min:
+    case Code::max:
+      return OuterFunction{.kind = Kind::difference, .registers = {step.from[0], step.from[1]}};
+    case Code::other:
+      if (step.operation->name == "asin" || step.operation->name == "acos")
+        return OuterFunction{.kind = Kind::one_minus_square, .registers = {step.from[0]}, .has_root = true};
+      if (!is_analytic(step.operation->name)) served = false;
+      return {};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+double OuterFunction::value(std::span<const double> all) const {
+  const double a = all[registers[0]];
+  switch (kind) {
+    case Kind::value:
+      return a;
+    case Kind::difference:
+      return a - all[registers[1]];
+    case Kind::one_minus_square:
+      return (1 - a) * (1 + a);
+    case Kind::discriminant:
+      break;
+  }
+  return all[registers[1]] * all[registers[1]] - 4 * a * all[registers[2]];
+}
+
+std::array<double, 3> OuterFunction::derivatives(std::span<const double> all) const {
+  switch (kind) {
+    case Kind::value:
+      return {1, 0, 0};
+    case Kind::difference:
+      return {1, -1, 0};
+    case Kind::one_minus_square:
+      return {-2 * all[registers[0]], 0, 0};
+    case Kind::discriminant:
+      break;
+  }
+  return {-4 * all[registers[2]], 2 * all[registers[1]], -4 * all[registers[0]]};
+}
+
+OuterPlan::OuterPlan(const SlicePlan& plan) {
+  if (!plan.order.v || plan.order.outer.size() != 1) {
+    why_not = "corner curves need two inner coordinates and one outer coordinate";
+    return;
+  }
+  const Program& program = plan.program;
+  std::vector<double> numbers(program.registers());
+  program.start<double>(numbers);
+  const auto is_number = [&](std::uint32_t at) { return program.stage_of()[at] < 0; };
+  const auto is_zero = [&](std::uint32_t at) { return is_number(at) && numbers[at] == 0; };
+  const auto varies = [&](std::uint32_t at) { return program.stage_of()[at] == 1; };
+
+  bool served = true;
+  for (const Program::Step& step : program.stages()[1].steps) {
+    const auto function = divider_of(step, served);
+    if (!served) {
+      why_not = "a formula of the outer coordinate contains '" + step.operation->name + "'";
+      return;
+    }
+    if (function && std::ranges::any_of(std::span(function->registers).first(function->arguments()), varies))
+      functions.push_back(*function);
+  }
+  for (const std::uint32_t at : plan.independent[1]) functions.push_back({.registers = {at}, .is_required = true});
+  for (const Surface& surface : plan.surfaces) {
+    const auto& c = surface.coefficients;
+    const auto zero = [&](std::initializer_list<std::size_t> which) {
+      return std::ranges::all_of(which, [&](std::size_t i) { return is_zero(c[i]); });
+    };
+    const bool is_round = c[3] == c[5] || (is_number(c[3]) && is_number(c[5]) && numbers[c[3]] == numbers[c[5]]);
+    const auto discriminant = [&](std::uint32_t b, std::uint32_t a) {
+      functions.push_back({.kind = OuterFunction::Kind::discriminant, .registers = {c[0], b, a}, .has_root = true});
+    };
+    if (zero({1, 2, 3, 4, 5})) {
+      shapes.push_back(Shape::constant);
+      if (varies(c[0])) functions.push_back({.registers = {c[0]}});
+    } else if (zero({3, 4, 5})) {
+      shapes.push_back(Shape::line);
+    } else if (is_round && zero({4})) {
+      shapes.push_back(Shape::circle);
+    } else if (zero({2, 4, 5})) {
+      shapes.push_back(Shape::strip_along_v);
+      discriminant(c[1], c[3]);
+    } else if (zero({1, 3, 4})) {
+      shapes.push_back(Shape::strip_along_z);
+      discriminant(c[2], c[5]);
+    } else {
+      why_not = "a surface is neither a circle nor a line";
+      return;
+    }
+  }
+}
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,40 @@
+// Which plans of slices corner curves can serve, and the functions of the outer coordinate that divide its range.
+//
+// The coefficients of all boundary curves must be analytic functions of the outer coordinate t between the roots of
+// known functions: arguments of square roots, absolute values, inverse sines and cosines, differences of the arguments
+// of minima and maxima, divisors, constraints independent of the inner coordinates, and discriminants of pairs of
+// parallel lines.
+#pragma once
+
+#include "engine/generic/slice_plan.hpp"
+
+namespace pkm::generic::corner_curves {
+
+/// A function of t, by its registers.
+struct OuterFunction {
+  enum class Kind : std::uint8_t { value, difference, one_minus_square, discriminant };
+  Kind kind = Kind::value;
+  std::array<std::uint32_t, 3> registers{};
+  bool has_root = false;     ///< curves behave like square roots where it vanishes
+  bool is_required = false;  ///< a constraint: >= 0 where anything is feasible
+
+  double value(std::span<const double> all) const;
+  /// Derivatives by the registers.
+  std::array<double, 3> derivatives(std::span<const double> all) const;
+  std::size_t arguments() const {
+    return kind == Kind::value || kind == Kind::one_minus_square ? 1 : kind == Kind::difference ? 2 : 3;
+  }
+};
+
+/// Shape of a surface in a slice.
+enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_along_z };
+
+struct OuterPlan {
+  std::vector<Shape> shapes;  ///< by surface
+  std::vector<OuterFunction> functions;
+  std::string why_not;  ///< not "": the plan is not served
+
+  explicit OuterPlan(const SlicePlan& plan);
+};
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,129 @@
+#include "engine/generic/corner_curves/root_isolation.hpp"
+
+#include <algorithm>
+
+namespace pkm::generic::corner_curves {
+namespace {
+
+constexpr int kMaxDepth = 44;
+
+struct Subinterval {
+  double low, high;
+  double error, derivative_error;  ///< bounds for the series and its derivative, in the subinterval's own variable
+  std::size_t terms;
+  int depth;
+  Samples c;
+};
+
+/// Markov's bound of the derivative of a polynomial of `terms` coefficients on [-1, 1], relative to its maximum.
+double markov(std::size_t terms) { return static_cast<double>((terms - 1) * (terms - 1)); }
+
+/// With a bound of its rounding error.
+double sum_of_magnitudes(const double* c, std::size_t from, std::size_t terms) {
+  double sum = 0;
+  for (std::size_t k = from; k < terms; ++k) sum += std::fabs(c[k]);
+  return sum * (1 + 2 * kUnitRoundoff * static_cast<double>(kNodes));
+}
+
+/// The value at -1 or 1.
+double end_value(const Subinterval& interval, bool upper) {
+  double sum = 0;
+  for (std::size_t k = interval.terms; k-- > 0;) sum += upper || k % 2 == 0 ? interval.c[k] : -interval.c[k];
+  return sum;
+}
+
+/// Bracketed secant method (Illinois variant) on a monotone series. @return  root in [-1, 1]
+double refine_root(const Subinterval& interval, double at_low, double at_high) {
+  double low = -1, high = 1, x = 0;
+  for (int step = 0; step < 60; ++step) {
+    x = (low * at_high - high * at_low) / (at_high - at_low);
+    if (!(x > low && x < high)) x = 0.5 * (low + high);
+    const double f = evaluate_series(interval.c.data(), interval.terms, x);
+    if (f == 0 || high - low < 2 * kUnitRoundoff) break;
+    if ((f > 0) == (at_high > 0)) {
+      if (std::fabs(x - high) < kUnitRoundoff) break;
+      high = x;
+      at_high = f;
+      at_low *= 0.5;
+    } else {
+      if (std::fabs(x - low) < kUnitRoundoff) break;
+      low = x;
+      at_low = f;
+      at_high *= 0.5;
+    }
+  }
+  return x;
+}
+
+}  // namespace
+
+void isolate_roots(const Samples& coefficients, double error, std::vector<Root>& roots) {
+  if (std::fabs(coefficients[0]) > sum_of_magnitudes(coefficients.data(), 1, kNodes) + error) return;
+  std::array<Subinterval, kMaxDepth + 2> stack;
+  Samples halved;
+  std::size_t size = 1;
+  stack[0] = {-1, 1, error, markov(kNodes) * error, kNodes, 0, coefficients};
+  // An undecided interval includes the roots that it touches.
+  const auto add_root = [&](double low, double high) {
+    if (!roots.empty() && (roots.back().width > 0 || high > low) && roots.back().at + 0.5 * roots.back().width >= low) {
+      low = roots.back().at - 0.5 * roots.back().width;
+      roots.pop_back();
+    }
+    roots.push_back({0.5 * (low + high), high - low});
+  };
+  while (size > 0) {
+    Subinterval& interval = stack[size - 1];
+    // Negligible coefficients become part of the error.
+    const std::size_t terms = significant_terms(interval.c, interval.terms, 0.1 * interval.error);
+    if (terms < interval.terms) {
+      const double rest = sum_of_magnitudes(interval.c.data(), terms, interval.terms);
+      interval.error += rest;
+      interval.derivative_error += markov(interval.terms) * rest;
+      interval.terms = terms;
+    }
+    const double rest = sum_of_magnitudes(interval.c.data(), 1, interval.terms), first = std::fabs(interval.c[0]);
+    if (first > rest + interval.error) {
+      --size;
+      continue;
+    }
+    if (first + rest <= 3 * interval.error || interval.depth == kMaxDepth || interval.terms < 2) {
+      add_root(interval.low, interval.high);
+      --size;
+      continue;
+    }
+    std::array<double, kNodes> derivative;
+    differentiate_series(interval.c.data(), interval.terms, derivative.data());
+    if (std::fabs(derivative[0]) >
+        sum_of_magnitudes(derivative.data(), 1, interval.terms - 1) + interval.derivative_error) {
+      const double at_low = end_value(interval, false), at_high = end_value(interval, true);
+      const double middle = 0.5 * (interval.low + interval.high), half = 0.5 * (interval.high - interval.low);
+      if ((at_low < 0) != (at_high < 0))
+        roots.push_back({middle + half * refine_root(interval, at_low, at_high)});
+      else if (std::fabs(at_low) <= interval.error)
+        add_root(interval.low, interval.low);
+      else if (std::fabs(at_high) <= interval.error)
+        add_root(interval.high, interval.high);
+      --size;
+      continue;
+    }
+    Subinterval& lower = stack[size];
+    const double middle = 0.5 * (interval.low + interval.high);
+    lower.low = interval.low;
+    lower.high = middle;
+    // Sums of products with a matrix whose rows have sums of magnitudes below 4.6.
+    const double rounding = 4.6 * kUnitRoundoff * (0.5 * static_cast<double>(interval.terms) + 3) * (first + rest);
+    lower.error = interval.error + rounding;
+    lower.derivative_error = 0.5 * interval.derivative_error + markov(interval.terms) * rounding;
+    lower.terms = interval.terms;
+    lower.depth = interval.depth + 1;
+    restrict_to_halves(interval.c, interval.terms, lower.c, halved);
+    interval.low = middle;
+    interval.error = lower.error;
+    interval.derivative_error = lower.derivative_error;
+    interval.depth = lower.depth;
+    std::copy_n(halved.begin(), interval.terms, interval.c.begin());
+    ++size;
+  }
+}
+
+}  // namespace pkm::generic::corner_curves

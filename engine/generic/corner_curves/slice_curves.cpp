@@ -1,0 +1,343 @@
+#include "engine/generic/corner_curves/slice_curves.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <ranges>
+
+#include "engine/math/satisfied.hpp"
+
+namespace pkm::generic::corner_curves {
+namespace {
+
+constexpr double kSame = 1e-12;   // difference of equal curves
+constexpr double kMargin = 1e-9;  // by which a curve misses the rectangle
+constexpr std::size_t kMiddle = kNodes / 2;
+
+/// Enclosure of a series.
+struct Range {
+  double low, high;
+};
+Range range_of(const BoundaryCurve& curve, std::size_t f) {
+  double rest = curve.error;
+  for (std::size_t k = 1; k < curve.terms; ++k) rest += std::fabs(curve.series[f][k]);
+  return {curve.series[f][0] - rest, curve.series[f][0] + rest};
+}
+Range product(const Range& a, const Range& b) {
+  const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+  return {low, high};
+}
+
+/// Enclosure of h of a curve in a rectangle.
+Range values_in(const BoundaryCurve& curve, const Range& x, const Range& y) {
+  const Range u = range_of(curve, 0), w = range_of(curve, 1), c = range_of(curve, 2);
+  if (!curve.is_circle()) {
+    const Range a = product(u, x), b = product(w, y);
+    return {a.low + b.low + c.low, a.high + b.high + c.high};
+  }
+  const auto squares = [](const Range& p, const Range& q) {
+    const double low = p.low - q.high, high = p.high - q.low;
+    const double near = low > 0 ? low : high < 0 ? -high : 0, far = std::fmax(-low, high);
+    return Range{near * near, far * far};
+  };
+  const Range a = squares(x, u), b = squares(y, w);
+  return {a.low + b.low - c.high, a.high + b.high - c.low};
+}
+
+bool is_same(const BoundaryCurve& a, const BoundaryCurve& b) {
+  if (a.kind != b.kind) return false;
+  for (std::size_t f = 0; f < 3; ++f)
+    for (std::size_t n = 0; n < kNodes; ++n)
+      if (std::fabs(a.values[f][n] - b.values[f][n]) > kSame * (1 + std::fabs(a.values[f][n]))) return false;
+  return true;
+}
+
+bool is_defined(const std::array<Samples, 6>& c, bool& nowhere) {
+  std::size_t defined = 0;
+  for (std::size_t n = 0; n < kNodes; ++n)
+    defined += std::ranges::all_of(c, [&](const Samples& each) { return std::isfinite(each[n]); });
+  nowhere = defined == 0;
+  return defined == kNodes;
+}
+
+}  // namespace
+
+std::size_t SliceCurves::add_curve(const BoundaryCurve& curve, const CurveSource& source) {
+  const auto same = std::ranges::find_if(curves, [&](const BoundaryCurve& known) { return is_same(known, curve); });
+  if (same != curves.end()) return static_cast<std::size_t>(same - curves.begin());
+  curves.push_back(curve);
+  sources.push_back(source);
+  formula.literals.emplace_back();
+  return curves.size() - 1;
+}
+
+/// A line in a direction that does not depend on its sign, so that opposite constraints share it.
+void SliceCurves::add_line(BoundaryCurve& line, CurveSource source, Signs positive, std::size_t* number) {
+  const double u = line.values[0][kMiddle], w = line.values[1][kMiddle];
+  const bool flips = std::fabs(u) >= std::fabs(w) ? u < 0 : w < 0;
+  if (flips) {
+    for (Samples& each : line.values)
+      for (double& value : each) value = -value;
+    source.sign = -source.sign;
+  }
+  const std::size_t at = add_curve(line, source);
+  (flips ? formula.literals[at].inside : formula.literals[at].outside) |= positive;
+  if (number) *number = at;
+}
+
+/// Two parallel lines, the roots of a quadratic in one coordinate.
+bool SliceCurves::add_strip(std::size_t surface, bool along_v, const std::array<Samples, 6>& c) {
+  const Samples &c0 = c[0], &b = along_v ? c[1] : c[2], &a = along_v ? c[3] : c[5];
+  const bool is_inside = a[kMiddle] < 0;
+  std::array<BoundaryCurve, 2> lines;
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    if ((a[n] < 0) != is_inside || a[n] == 0) return false;
+    const double square = b[n] * b[n] - 4 * a[n] * c0[n];
+    if (square < 0) {
+      const bool never = std::ranges::all_of(std::views::iota(std::size_t{0}, kNodes),
+                                             [&](std::size_t k) { return b[k] * b[k] - 4 * a[k] * c0[k] < 0; });
+      if (never && !is_inside) formula.constant |= bit(surface);
+      return never;
+    }
+    const double q = -0.5 * (b[n] + (b[n] < 0 ? -1 : 1) * std::sqrt(square));
+    const double r = q / a[n], s = q == 0 ? r : c0[n] / q;
+    const double centre = along_v ? frame.v : frame.z;
+    for (const bool upper : {false, true}) {
+      auto& [u, w, at] = lines[upper].values;
+      u[n] = along_v ? 1 : 0;
+      w[n] = along_v ? 0 : 1;
+      at[n] = -((upper ? std::fmax(r, s) : std::fmin(r, s)) - centre) / frame.scale;
+    }
+  }
+  SliceFormula::Strip strip{0, 0, bit(surface), is_inside};
+  add_line(lines[0], {CurveSource::Kind::lower_root, surface, 1}, 0, &strip.first);
+  add_line(lines[1], {CurveSource::Kind::upper_root, surface, 1}, 0, &strip.second);
+  if (strip.first == strip.second) return false;
+  formula.strips.push_back(strip);
+  return true;
+}
+
+bool SliceCurves::add_surface(std::size_t surface, Shape shape, const std::array<Samples, 6>& c) {
+  bool nowhere = false;
+  if (!is_defined(c, nowhere)) return nowhere;  // an undefined value is not >= 0
+  BoundaryCurve curve;
+  switch (shape) {
+    case Shape::constant:
+      if (is_satisfied(c[0][kMiddle])) formula.constant |= bit(surface);
+      return true;
+    case Shape::strip_along_v:
+    case Shape::strip_along_z:
+      return add_strip(surface, shape == Shape::strip_along_v, c);
+    case Shape::line: {
+      double smallest = std::hypot(c[1][0], c[2][0]), largest = smallest;
+      for (std::size_t n = 0; n < kNodes; ++n) {
+        const double size = std::sqrt(c[1][n] * c[1][n] + c[2][n] * c[2][n]);
+        smallest = std::fmin(smallest, size);
+        largest = std::fmax(largest, size);
+        curve.values[0][n] = c[1][n] / size;
+        curve.values[1][n] = c[2][n] / size;
+        curve.values[2][n] = (c[0][n] + c[1][n] * frame.v + c[2][n] * frame.z) / (size * frame.scale);
+      }
+      if (!(smallest > 1e-6 * largest)) return false;
+      add_line(curve, {CurveSource::Kind::line, surface, 1}, bit(surface));
+      return true;
+    }
+    case Shape::circle:
+      break;
+  }
+  const bool is_inside = c[3][kMiddle] < 0;
+  curve.kind = BoundaryCurve::Kind::circle;
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    const double a = c[3][n];
+    if ((a < 0) != is_inside || a == 0) return false;
+    const double v = -0.5 * c[1][n] / a, z = -0.5 * c[2][n] / a;
+    curve.values[0][n] = (v - frame.v) / frame.scale;
+    curve.values[1][n] = (z - frame.z) / frame.scale;
+    curve.values[2][n] = (v * v + z * z - c[0][n] / a) / (frame.scale * frame.scale);
+  }
+  const std::size_t at = add_curve(curve, {CurveSource::Kind::circle, surface, 1});
+  (is_inside ? formula.literals[at].inside : formula.literals[at].outside) |= bit(surface);
+  return true;
+}
+
+/// v is between its bounds.
+void SliceCurves::add_bound(BoundaryCurve& line, bool upper) {
+  std::size_t at = 0;
+  add_line(line, {CurveSource::Kind::v_bound, upper ? std::size_t{1} : 0, 1}, 0, &at);
+  formula.bounds.push_back({at, !upper});
+}
+
+/// Nothing is feasible in the intervals of v in which a limit is violated.
+bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
+  std::size_t before = 0;  // the line of the previous root
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    const bool is_first = i == 0 || roots[i - 1].limit != roots[i].limit,
+               is_last = i + 1 == roots.size() || roots[i + 1].limit != roots[i].limit;
+    BoundaryCurve line;
+    line.values[0].fill(1);
+    line.values[1].fill(0);
+    for (std::size_t n = 0; n < kNodes; ++n) line.values[2][n] = (frame.v - roots[i].v[n]) / frame.scale;
+    std::size_t at = 0;
+    add_line(line, {CurveSource::Kind::limit, roots[i].limit, 1}, 0, &at);
+    if (!is_first && at == before) return false;
+    if (roots[i].rises && !is_first)
+      formula.strips.push_back({before, at, 0, false});
+    else if (roots[i].rises || is_last)
+      formula.bounds.push_back({at, roots[i].rises});
+    before = at;
+  }
+  return true;
+}
+
+/// Replaces a curve by its constant sign; the curve stays, without a literal.
+void SliceCurves::remove_constant(std::size_t i, bool outside) {
+  auto& literal = formula.literals[i];
+  formula.constant |= outside ? literal.outside : literal.inside;
+  literal = {};
+  std::erase_if(formula.bounds, [&](const auto& each) { return each.curve == i; });
+  for (auto strip = formula.strips.begin(); strip != formula.strips.end();) {
+    if (strip->first != i && strip->second != i) {
+      ++strip;
+      continue;
+    }
+    const bool is_first = strip->first == i;
+    auto& other = formula.literals[is_first ? strip->second : strip->first];
+    if (is_first == outside) {  // the point is on the strip's side of this line: the other one decides
+      const bool is_other_inside = is_first == strip->is_inside;
+      (is_other_inside ? other.inside : other.outside) |= strip->surface;
+      if (strip->surface == 0) formula.bounds.push_back({is_first ? strip->second : strip->first, !is_other_inside});
+    } else if (!strip->is_inside) {
+      formula.constant |= strip->surface;
+    }
+    strip = formula.strips.erase(strip);
+  }
+}
+
+SliceCurves::Status SliceCurves::simplify() {
+  Formula& f = formula.formula;
+  // A rectangle around what satisfies the constraints that have to hold.
+  constexpr double kFar = 1e6;
+  Range x{-kFar, kFar}, y{-kFar, kFar};
+  const auto bound = [&](std::size_t i, bool outside) {
+    const Range u = range_of(curves[i], 0), w = range_of(curves[i], 1), c = range_of(curves[i], 2);
+    if (curves[i].is_circle()) {
+      if (outside) return;
+      const double radius = std::sqrt(std::fmax(0, c.high));
+      x = {std::fmax(x.low, u.low - radius), std::fmin(x.high, u.high + radius)};
+      y = {std::fmax(y.low, w.low - radius), std::fmin(y.high, w.high + radius)};
+      return;
+    }
+    for (const bool along_x : {true, false}) {
+      const Range& normal = along_x ? u : w;
+      const Range& across = along_x ? w : u;
+      Range& place = along_x ? x : y;
+      if (normal.low < 0.999999 || std::fmax(-across.low, across.high) > 1e-13) continue;
+      // The curve's error, and what an inclination of 1e-13 can move within the rectangle, are within this margin.
+      (outside ? place.low : place.high) =
+          outside ? std::fmax(place.low, -c.high - kMargin) : std::fmin(place.high, -c.low + kMargin);
+    }
+  };
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const auto [out, in] = formula.literals[i];
+    if ((in & ~out & f.all) != 0) bound(i, false);
+    if ((out & ~in & f.all) != 0) bound(i, true);
+  }
+  for (const auto& strip : formula.strips)
+    if (strip.is_inside && (strip.surface & f.all) != 0) {
+      bound(strip.first, true);
+      bound(strip.second, false);
+    }
+  for (const auto& each : formula.bounds) bound(each.curve, each.outside);
+  if (!(x.low < x.high && y.low < y.high)) return Status::empty;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const Range h = values_in(curves[i], x, y);
+    const bool outside = h.low > kMargin;
+    if (!outside && !(h.high < -kMargin)) continue;
+    if (std::ranges::any_of(formula.bounds,
+                            [&](const auto& each) { return each.curve == i && each.outside != outside; }))
+      return Status::empty;
+    remove_constant(i, outside);
+  }
+
+  Signs possible = formula.constant;
+  for (const auto& literal : formula.literals) possible |= literal.outside | literal.inside;
+  for (const auto& strip : formula.strips) possible |= strip.surface;
+  if ((f.all & ~possible) != 0) return Status::empty;
+  for (auto clause = f.any.begin(); clause != f.any.end();) {
+    const Signs some = *clause & possible;
+    if (some == 0) return Status::empty;
+    const bool is_single = std::has_single_bit(some);
+    if (is_single) f.all |= some;
+    clause = is_single || (some & formula.constant) != 0 ? f.any.erase(clause) : clause + 1;
+  }
+  remove_irrelevant();
+  return Status::filled;
+}
+
+void SliceCurves::remove_irrelevant() {
+  const Formula& f = formula.formula;
+  Signs relevant = f.all & ~formula.constant;
+  for (const Signs clause : f.any) relevant |= clause;
+  for (const CrankSigns& crank : f.cranks)
+    relevant |= crank.at_min | crank.at_max | crank.after_min | crank.before_max | crank.reach;
+  std::erase_if(formula.strips,
+                [&](const auto& strip) { return strip.surface != 0 && (strip.surface & relevant) == 0; });
+  std::array<std::size_t, kMaxCurves> place{};
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const auto& [outside, inside] = formula.literals[i];
+    const bool is_used =
+        std::ranges::any_of(formula.strips, [&](const auto& strip) { return strip.first == i || strip.second == i; }) ||
+        std::ranges::any_of(formula.bounds, [&](const auto& each) { return each.curve == i; });
+    if (((outside | inside) & relevant) == 0 && !is_used) continue;
+    place[i] = kept;
+    if (kept != i) {
+      curves[kept] = curves[i];
+      sources[kept] = sources[i];
+      formula.literals[kept] = formula.literals[i];
+    }
+    ++kept;
+  }
+  curves.resize(kept);
+  sources.resize(kept);
+  formula.literals.resize(kept);
+  for (auto& strip : formula.strips) {
+    strip.first = place[strip.first];
+    strip.second = place[strip.second];
+  }
+  for (auto& each : formula.bounds) each.curve = place[each.curve];
+}
+
+SliceCurves::Status SliceCurves::build(const SlicePlan& plan, const OuterPlan& outer, const NodeValues& nodes,
+                                       const std::vector<LimitRoot>& limits, const Frame& where,
+                                       const double* registers) {
+  frame = where;
+  curves.clear();
+  sources.clear();
+  formula.formula = plan.formula;
+  formula.registers = registers;
+  formula.constant = 0;
+  formula.literals.clear();
+  formula.strips.clear();
+  formula.bounds.clear();
+  for (std::size_t k = 0; k < plan.surfaces.size(); ++k)
+    if (!add_surface(k, outer.shapes[k], nodes.surfaces[k])) return Status::unresolved;
+  for (const bool upper : {false, true}) {
+    BoundaryCurve line;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      const double sign = upper ? -1 : 1;
+      line.values[0][n] = sign;
+      line.values[1][n] = 0;
+      line.values[2][n] = sign * (frame.v - nodes.v[upper][n]) / frame.scale;
+    }
+    add_bound(line, upper);
+  }
+  if (!add_limits(limits) || curves.size() > kMaxCurves) return Status::unresolved;
+  constexpr double kConverged = 1e-12, kLimitConverged = 1e-10;  // rounding errors of limits are larger at folds
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const bool is_limit = sources[i].kind == CurveSource::Kind::limit;
+    if (!curves[i].interpolate(is_limit ? kLimitConverged : kConverged)) return Status::unresolved;
+  }
+  return simplify();
+}
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,58 @@
+// Boundary curves of the slices of a segment of the outer coordinate, from the coefficients of the constraint surfaces
+// at the Chebyshev nodes.
+//
+// Surfaces that have one sign in a rectangle around the feasible part become constants of the formula, equal curves
+// become one, and curves that the rest of the formula does not contain are left out. All of this is decided by bounds
+// that hold in the whole segment.
+#pragma once
+
+#include "engine/generic/corner_curves/boundary_curve.hpp"
+#include "engine/generic/corner_curves/outer_plan.hpp"
+#include "engine/generic/corner_curves/slice_formula.hpp"
+#include "engine/generic/corner_curves/v_limits.hpp"
+
+namespace pkm::generic::corner_curves {
+
+/// Coordinates of the curves: (v, z) = centre + scale (x, y).
+struct Frame {
+  double v = 0, z = 0, scale = 1;
+};
+
+/// Origin of a curve, for derivatives.
+struct CurveSource {
+  enum class Kind : std::uint8_t { circle, line, lower_root, upper_root, v_bound, limit };
+  Kind kind;
+  std::size_t surface;  ///< of a bound: 0 the lower one, 1 the upper one; of a limit: its number
+  double sign;          ///< of a line's normal relative to the surface's gradient
+};
+
+/// Values of all registers that the curves need, by node.
+struct NodeValues {
+  std::vector<std::array<Samples, 6>> surfaces;  ///< coefficients of 1, v, z, v^2, v z, z^2
+  std::array<Samples, 2> v;                      ///< the range of v
+};
+
+struct SliceCurves {
+  Frame frame;
+  std::vector<BoundaryCurve> curves;
+  std::vector<CurveSource> sources;  ///< by curve
+  SliceFormula formula;
+
+  enum class Status { empty, filled, unresolved };
+  /// @return empty: nothing is feasible in the segment; unresolved: a coefficient is not analytic, or has not converged
+  Status build(const SlicePlan& plan, const OuterPlan& outer, const NodeValues& nodes,
+               const std::vector<LimitRoot>& limits, const Frame& where, const double* registers);
+
+ private:
+  bool add_surface(std::size_t surface, Shape shape, const std::array<Samples, 6>& c);
+  bool add_strip(std::size_t surface, bool along_v, const std::array<Samples, 6>& c);
+  void add_line(BoundaryCurve& line, CurveSource source, Signs positive, std::size_t* number = nullptr);
+  void add_bound(BoundaryCurve& line, bool upper);
+  bool add_limits(const std::vector<LimitRoot>& roots);
+  std::size_t add_curve(const BoundaryCurve& curve, const CurveSource& source);
+  Status simplify();
+  void remove_constant(std::size_t i, bool outside);
+  void remove_irrelevant();
+};
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,57 @@
+// Feasibility of a point of a slice by the signs of the boundary curves there: the formula of the constraint
+// surfaces (surface_signs.hpp), of which some have a constant sign and others are products of two lines.
+#pragma once
+
+#include "engine/generic/surface_signs.hpp"
+
+namespace pkm::generic::corner_curves {
+
+inline constexpr std::size_t kMaxCurves = 64;
+
+inline Signs bit(std::size_t i) { return Signs{1} << i; }
+
+struct SliceFormula {
+  /// Surfaces that are >= 0 on one side of a curve.
+  struct Literals {
+    Signs outside = 0, inside = 0;  ///< where h > 0, and where h < 0
+  };
+  /// A surface that is >= 0 between two parallel lines, or beyond them: where h > 0 on the first one and h < 0 on the
+  /// other, or elsewhere.
+  struct Strip {
+    std::size_t first, second;  ///< curves
+    Signs surface;              ///< 0: where it is violated, nothing is feasible
+    bool is_inside;
+  };
+
+  /// A curve that has nothing feasible on one side, in addition to the formula.
+  struct Bound {
+    std::size_t curve;
+    bool outside;  ///< where the feasible points are: h > 0
+  };
+
+  Formula formula;
+  const double* registers = nullptr;  ///< of the program
+  Signs constant = 0;                 ///< surfaces that are >= 0 in the whole slice
+  std::vector<Literals> literals;     ///< by curve
+  std::vector<Strip> strips;
+  std::vector<Bound> bounds;
+
+  /// @param outside  by curve: h > 0
+  bool holds(Signs outside) const {
+    for (const Bound& bound : bounds)
+      if (((outside & bit(bound.curve)) != 0) != bound.outside) return false;
+    Signs surfaces = constant;
+    for (std::size_t i = 0; i < literals.size(); ++i)
+      surfaces |= (outside >> i & 1U) != 0 ? literals[i].outside : literals[i].inside;
+    for (const Strip& strip : strips) {
+      const bool between = (outside & bit(strip.first)) != 0 && (outside & bit(strip.second)) == 0;
+      if (between == strip.is_inside)
+        surfaces |= strip.surface;
+      else if (strip.surface == 0)
+        return false;
+    }
+    return formula.holds(surfaces, registers);
+  }
+};
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,81 @@
+// Constraints f(t, v) >= 0 that depend on the outer coordinate t and on v, but not on z. In a slice they are satisfied
+// between lines v = v_k(t), whatever functions they are.
+//
+// On a segment of t the range of v is bisected until interval arithmetic proves for each subinterval that f has one
+// sign, or that f or df/dv is monotone along v (interval branch and prune). Neighbouring monotone subintervals contain
+// at most one root for each t, convex and concave ones two. Two roots merge at a fold, where the extremum of f along v
+// vanishes. This extremum is a function of t, whose roots divide the segment.
+#pragma once
+
+#include <vector>
+
+#include "engine/generic/corner_curves/boundary_curve.hpp"
+#include "engine/generic/corner_curves/root_isolation.hpp"
+#include "engine/generic/slice_plan.hpp"
+#include "engine/math/interval.hpp"
+#include "engine/math/quadrature.hpp"
+
+namespace pkm::generic::corner_curves {
+
+/// A root of a limit on a segment.
+struct LimitRoot {
+  std::size_t limit;
+  bool rises;  ///< the limit is satisfied beyond it
+  Samples v;
+};
+
+/// A point (t, v) at which two roots of a limit merge.
+struct LimitFold {
+  std::size_t limit;
+  double t, v;
+};
+
+struct LimitScratch {
+  std::vector<double> registers, adjoints;
+  std::vector<std::size_t> active;  ///< limits that are not certified to be satisfied by the design everywhere
+  std::vector<LimitRoot> roots;     ///< of the last segment, in ascending order for each limit
+  std::vector<LimitFold> folds;
+
+  std::vector<Interval> inputs, intervals;
+  /// A subinterval of v. sign: of f, 0: unknown; slope, curvature: signs of the derivatives, 0: unknown.
+  struct Cell {
+    double lower, upper;
+    int sign, slope, curvature;
+    bool is_undefined;
+  };
+  std::vector<Cell> cells;
+  /// An interval with one root, or with an extremum between at most two roots.
+  struct Search {
+    std::size_t limit;
+    double lower, upper;
+    int sign_at_lower;
+    int curvature;  ///< 0: there is one root
+    double scale;   ///< magnitude of the limit at the ends of an interval with an extremum
+    Samples extremum, value_there;
+    std::array<Samples, 2> root;
+    bool has_extremum;
+  };
+  std::vector<Search> searches;
+  std::vector<int> signs;  ///< of each active limit at a place in the range of v; 0: it is undefined everywhere
+  std::vector<Root> isolated;
+};
+
+/// Runs the design's stage, and finds the limits that are not certified to be satisfied in the box.
+/// @param box  ranges of t and v
+void start_limits(const SlicePlan& plan, std::span<const double> inputs, const std::array<Interval, 2>& box,
+                  LimitScratch& scratch);
+
+/// Runs the stages of the outer coordinate, and of v.
+void run_limits(const SlicePlan& plan, double t, LimitScratch& scratch);
+void run_limits_at(const SlicePlan& plan, double v, LimitScratch& scratch);
+
+enum class LimitState { resolved, violated, divided, unresolved };
+
+/// Finds the roots of the active limits on a segment.
+/// @param v  range of v at the nodes
+/// @return violated: a limit is violated everywhere; divided: there are folds inside the segment; unresolved: shorter
+///         segments are needed
+LimitState find_limit_roots(const SlicePlan& plan, const Piece<double>& outer, const std::array<Samples, 2>& v,
+                            LimitScratch& scratch);
+
+}  // namespace pkm::generic::corner_curves

@@ -1,0 +1,82 @@
+#include "engine/generic/corner_curves/volume.hpp"
+
+#include <algorithm>
+
+#include "engine/math/satisfied.hpp"
+
+namespace pkm::generic::corner_curves {
+
+double Volume::Scratch::work() const {
+  constexpr double kFunction = 5, kRun = 1;  // relative to a node of the quadrature
+  double sum = kRun * static_cast<double>(segments.runs);
+  for (std::size_t i = 0; i < segments.count; ++i) {
+    const SegmentIntegral& integral = segments.segments[i].integral;
+    sum += kFunction * static_cast<double>(integral.decomposition.functions) +
+           static_cast<double>(integral.area.evaluations);
+  }
+  return sum;
+}
+
+std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, Scratch& scratch) const {
+  constexpr double kBalanced = 1e-10;  // of tau: longer contradictions among the decisions are not accepted
+  constexpr std::size_t kMaxCells = 4000;
+  constexpr double kBetter = 0.1;  // of the tolerance
+  SegmentScratch& s = scratch.segments;
+  const expression::Program& program = plan_.program;
+  s.registers.resize(program.registers());
+  program.start<double>(s.registers);
+  program.run<double>(0, inputs, s.registers);
+  const auto holds = [&](std::uint32_t at) { return is_satisfied(s.registers[at]); };
+  if (!std::ranges::all_of(plan_.independent[0], holds)) return Integral<double>{};
+  const auto range = [&](std::size_t level) {
+    const auto [from, to] = plan_.range[level];
+    return Interval(std::fmin(s.registers[from], s.registers[to]), std::fmax(s.registers[from], s.registers[to]));
+  };
+  start_limits(plan_, inputs, {range(0), range(1)}, s.limits);
+  if (!divide(plan_, outer_, s)) return {};
+
+  const std::span<Segment> segments = std::span(s.segments).first(s.count);
+  std::size_t cells = 0;
+  for (Segment& segment : segments) {
+    if (segment.integral.decomposition.unbalanced > kBalanced) {
+      return {};
+    }
+    segment.integral.start();
+    cells += segment.integral.cells.size();
+  }
+  const auto scale = [](const Segment& segment) { return segment.slices.frame.scale * segment.slices.frame.scale; };
+  const std::size_t start = cells;
+  Integral<double> total;
+  for (;; ++cells) {
+    total = {};
+    Segment* worst = nullptr;
+    double largest = 0;
+    for (Segment& segment : segments) {
+      const double error = scale(segment) * segment.integral.area.error;
+      total.value += segment.volume();
+      total.error += error;
+      total.evaluations += segment.integral.area.evaluations;
+      if (error <= largest) continue;
+      largest = error;
+      worst = &segment;
+    }
+    // Ten times the digits cost little where the integrands are smooth, and derivatives need them.
+    const double share = total.error / (tolerance_ * std::fabs(total.value));
+    if (!worst || share <= kBetter || (share <= 1 && cells > 2 * start) || cells > kMaxCells) break;
+    if (!worst->integral.refine()) break;
+  }
+  for (const Segment& segment : segments) {
+    const auto& [ranges, undecided, unbalanced, functions] = segment.integral.decomposition;
+    // In an undecided interval three curves miss each other by about the square root of the rounding error, 1e-7, and
+    // enclose an area of its square; all of them share the decision.
+    double per_slice = unbalanced + undecided * 1e-12;
+    // An arc in the frame is shorter than its perimeter, 8; its centre is displaced by at most sqrt(2) tails.
+    for (const BoundaryCurve& curve : segment.slices.curves) per_slice += 12 * curve.tail;
+    total.error += scale(segment) * per_slice * 0.5 * (segment.upper.at - segment.lower.at);
+  }
+  if (!(total.value > 0)) return {};  // slices tell empty workspaces from those that only touch
+
+  return total;
+}
+
+}  // namespace pkm::generic::corner_curves

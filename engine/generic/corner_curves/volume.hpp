@@ -1,0 +1,44 @@
+// Volume of a workspace by corner curves, and its gradient by adjoints.
+#pragma once
+
+#include "engine/generic/corner_curves/segments.hpp"
+
+namespace pkm::generic::corner_curves {
+
+/// Immutable; scratch memory belongs to the caller.
+class Volume {
+ public:
+  struct Scratch {
+    SegmentScratch segments;
+    std::vector<CurveAdjoints> by_curve;
+    std::vector<double> adjoints, own;
+
+    /// Work of the last measure() in an arbitrary unit, the same on every machine.
+    double work() const;
+  };
+
+  /// @param tolerance  relative
+  Volume(SlicePlan plan, double tolerance) : plan_(std::move(plan)), outer_(plan_), tolerance_(tolerance) {}
+
+  /// Empty if the plan is served.
+  const std::string& why_not() const { return outer_.why_not; }
+  const SlicePlan& plan() const { return plan_; }
+
+  /// @param inputs  of the graph, with fixed coordinates
+  /// @return std::nullopt if the design is not served: a degeneracy, or functions that do not converge
+  std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch) const;
+  /// Adds the derivatives of the volume by the graph's inputs, after measure().
+  void add_gradient(std::span<double> by_input, Scratch& scratch) const;
+
+ private:
+  void add_segment_gradient(const Segment& segment, Scratch& scratch) const;
+  void add_node_gradient(const Segment& segment, std::size_t node, double tau, Scratch& scratch) const;
+  void add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const;
+  void add_end_gradient(const SegmentEnd& end, bool upper, double derivative, Scratch& scratch) const;
+
+  SlicePlan plan_;
+  OuterPlan outer_;
+  double tolerance_;
+};
+
+}  // namespace pkm::generic::corner_curves
