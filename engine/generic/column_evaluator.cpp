@@ -21,12 +21,17 @@ namespace {
 using Kind = FixedCoordinate::Kind;
 
 /// The orders of coordinates in which slices can have closed forms: each pair of swept ones as (v, z), or each one as
-/// z, with the others as outer coordinates (in a single order for lines); integrated ones are outermost.
+/// z, with the others as outer coordinates (in a single order for lines). Integrated ones are outermost, except for the
+/// last one if a single coordinate is swept: slices of these two are planar.
 std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
   std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
   for (const int coordinate : sweep.fixed)
     if (how_fixed(plan, coordinate).kind == Kind::integrated)
       integrated.push_back(static_cast<std::size_t>(coordinate));
+  if (!are_lines && swept.size() == 1 && !integrated.empty()) {
+    swept.push_back(integrated.back());
+    integrated.pop_back();
+  }
   std::ranges::sort(swept);
   std::vector<CoordinateOrder> orders;
   do {
