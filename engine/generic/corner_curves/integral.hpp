@@ -13,7 +13,7 @@ namespace pkm::generic::corner_curves {
 
 /// The outer coordinate as a function of tau, t = low + (high - low) phi((tau + 1)/2), with the transformation phi of
 /// math/quadrature.hpp at ends where the curves behave like square roots.
-using OuterRange = Piece<double>;
+using OuterRange = Subinterval<double>;
 
 /// The derivative of the outer coordinate by tau.
 inline double outer_derivative(const OuterRange& range, double tau) {
@@ -23,7 +23,7 @@ inline double outer_derivative(const OuterRange& range, double tau) {
 /// A subinterval of an active range.
 struct RangeCell {
   std::uint32_t range;
-  Piece<double> tau;
+  Subinterval<double> tau;
   double value, error, size;  ///< size: integral of the magnitude
 };
 

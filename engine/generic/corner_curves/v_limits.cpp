@@ -15,7 +15,8 @@ int sign_of(const Interval& x) { return x.lower > 0 ? 1 : x.upper < 0 ? -1 : 0; 
 
 class LimitRootFinder {
  public:
-  LimitRootFinder(const SlicePlan& plan, const Piece<double>& outer, const std::array<Samples, 2>& v, LimitScratch& s)
+  LimitRootFinder(const SlicePlan& plan, const Subinterval<double>& outer, const std::array<Samples, 2>& v,
+                  LimitScratch& s)
       : plan_(plan), program_(plan.limits), outer_(outer), s_(s) {
     low_ = *std::ranges::min_element(v[0]);
     high_ = *std::ranges::max_element(v[1]);
@@ -160,7 +161,8 @@ class LimitRootFinder {
     return v;
   }
 
-  /// Refines a fold by Newton's method, because roots close to it depend on the square root of the distance.
+  /// Refines a fold by Newton's method: roots near a fold vary like the square root of the distance from it, so an
+  /// error of the fold would be magnified.
   LimitFold fold_near(const Search& search, double t) {
     double v = 0.5 * (search.lower + search.upper);
     const auto extremum = [&](double place) {
@@ -209,7 +211,7 @@ class LimitRootFinder {
 
   const SlicePlan& plan_;
   const expression::Program& program_;
-  const Piece<double>& outer_;
+  const Subinterval<double>& outer_;
   LimitScratch& s_;
   double low_, high_;  ///< range of v in the segment
 };
@@ -247,7 +249,7 @@ void run_limits_at(const SlicePlan& plan, double v, LimitScratch& scratch) {
   plan.limits.run<double>(2, std::span(scratch.registers));
 }
 
-LimitState find_limit_roots(const SlicePlan& plan, const Piece<double>& outer, const std::array<Samples, 2>& v,
+LimitState find_limit_roots(const SlicePlan& plan, const Subinterval<double>& outer, const std::array<Samples, 2>& v,
                             LimitScratch& scratch) {
   if (scratch.active.empty()) {
     scratch.roots.clear();

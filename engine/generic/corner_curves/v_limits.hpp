@@ -75,7 +75,7 @@ enum class LimitState { resolved, violated, divided, unresolved };
 /// @param v  range of v at the nodes
 /// @return violated: a limit is violated everywhere; divided: there are folds inside the segment; unresolved: shorter
 ///         segments are needed
-LimitState find_limit_roots(const SlicePlan& plan, const Piece<double>& outer, const std::array<Samples, 2>& v,
+LimitState find_limit_roots(const SlicePlan& plan, const Subinterval<double>& outer, const std::array<Samples, 2>& v,
                             LimitScratch& scratch);
 
 }  // namespace pkm::generic::corner_curves

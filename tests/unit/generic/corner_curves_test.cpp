@@ -104,7 +104,7 @@ TEST(CornerCurves, IntegrateTheLensOfTwoCircles) {
                     {}};
   slices.require(0, false);
   slices.require(1, false);
-  const std::vector<Piece<double>> pieces = {{-kR - kS, kS - kR, true, true}, {kR - kS, kR + kS, true, true}};
+  const std::vector<Subinterval<double>> pieces = {{-kR - kS, kS - kR, true, true}, {kR - kS, kR + kS, true, true}};
   std::vector<QuadratureCell<double>> scratch;
   const double known =
       integrate<double>([&](double t) { return lens(std::fabs(t), kR, kS); }, pieces, 1e-13, 0, scratch).value +
