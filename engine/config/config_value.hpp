@@ -133,7 +133,7 @@ class ConfigValue {
   }
 
  private:
-  /// A description of a table, and the further keys that this table has.
+  /// The description of a table, and the keys that this table accepts in addition to the described ones.
   struct Description {
     const TableSpec* spec;
     std::vector<OptionSpec> more;
@@ -143,8 +143,8 @@ class ConfigValue {
   ConfigValue child(const TomlValue& value, std::string path, Spec spec) const;
   /// The description of a key; null if this table is not described. Throws std::logic_error if the key is not.
   Spec spec_of(const std::string& key) const;
-  /// The description of this value; null if it has none. Throws std::logic_error if it is of none of these kinds, or of
-  /// another unit. @param unit  "": any
+  /// The description of this value; null if it has none. Throws std::logic_error if the description has none of these
+  /// kinds, or another unit. @param unit  "" accepts any unit
   const OptionSpec* spec_as(std::initializer_list<OptionKind> kinds, std::string_view unit = "") const;
   /// The description of this value, which has to be of this kind.
   const OptionSpec& described_as(OptionKind kind) const;

@@ -27,7 +27,7 @@ class ParetoArchive {
  public:
   ParetoArchive(const ParetoArchivePlan& plan, const Problem& problem, const EvaluationTable& table);
 
-  /// Adds evaluated rows of the table. New rows are in ascending order; rows added before are ignored.
+  /// Adds evaluated rows of the table. New rows must be in ascending order; rows added before are ignored.
   /// @return true if the front changed
   bool add(std::span<const std::int64_t> rows);
   const Front& front() const { return front_; }

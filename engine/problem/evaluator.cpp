@@ -99,7 +99,7 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
 }
 
 void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double each) {
-  // [s]: of a batch, below which one thread is faster; of a design, above which parallelism within it pays off.
+  // Times [s]: a shorter batch is faster on one thread; a longer design is worth evaluating on several threads.
   constexpr double kMinBatchTime = 5e-6, kMinDesignTime = 200e-6;
   const auto [first, end] = rows;
   const std::size_t count = end - first;

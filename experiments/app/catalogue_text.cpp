@@ -30,7 +30,7 @@ std::string sweep_summary(const Json& sweeps) {
   for (const Json& sweep : sweeps) ++count[sweep["swept"].size()];
   std::vector<std::string> words;
   for (const auto& [swept, number] : count)
-    words.push_back(std::to_string(number) + " over " + std::to_string(swept) +
+    words.push_back(std::to_string(number) + (words.empty() ? " sweeps of " : " of ") + std::to_string(swept) +
                     (swept == 1 ? " coordinate" : " coordinates"));
   return join(words) + "; --json lists them";
 }

@@ -66,8 +66,8 @@ std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const Wo
     rows.push_back(row);
   };
   for (std::size_t i = 0; i < info.joints.size(); ++i) add(std::to_string(i + 1), info.joints[i].name);
-  add("worst", "largest in a pose");
-  add("mean", "mean in a pose");
+  add("worst", "maximum of the limbs");
+  add("mean", "mean of the limbs");
   return {json, rows};
 }
 

@@ -59,13 +59,14 @@ void report_summary(const Mechanism& mechanism, const Trajectory& trajectory, Pr
   };
   const auto if_known = [&s](const AxisVector<double>& values) { return s.has_forces ? Values(values) : Values(); };
   const std::string forces = units_of(assignable_forces(info));
+  const std::string force = forces == "N m" ? "torque [N m]" : "force [" + forces + "]";
   const std::string per = trajectory.periodic ? "per cycle" : "over the motion";
   add("peak_speed", "peak speed [" + units_of(info.joints, "/s") + "]", s.peak_speed);
   if (const Unsupported reason = why_no_joint_forces(mechanism)) {
     json["no_forces"] = *reason;
   } else {
-    add("peak_force", "peak force [" + forces + "]", if_known(s.peak_force));
-    add("rms_force", "RMS force [" + forces + "]", if_known(s.rms_force));
+    add("peak_force", "peak " + force, if_known(s.peak_force));
+    add("rms_force", "RMS " + force, if_known(s.rms_force));
     add("peak_power", "peak power [W]", if_known(s.peak_power));
     if (mechanism.drive_trains()) {
       add("peak_motor_torque", "motor, peak torque [N m]", if_known(s.peak_torque));

@@ -69,6 +69,6 @@ back = true
 MOTION
 expect "peak speed \[rad/s\]" trajectory five-bar --motion points.toml
 expect "^ *0\.0238[0-9]* +0\.3477[0-9]* " forward five-bar --joints q1=136deg,q2=0.6
-expect "^ *other_sweeps +19 over 3 coordinates, 15 over 2 coordinates, 6 over 1 coordinate; " list mechanisms gough
+expect "^ *other_sweeps +19 sweeps of 3 coordinates, 15 of 2 coordinates, 6 of 1 coordinate; " list mechanisms gough
 expect "^ *q1 .* rad/s +.* rad/s\^2" pose five-bar --at x=2cm,y=350mm --velocity x=1
 echo "all commands work with all mechanisms"

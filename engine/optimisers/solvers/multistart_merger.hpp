@@ -40,7 +40,8 @@ class MultistartMerger {
   bool append_and_report(const EvaluationTable& run_table, std::size_t source);
   /// Records the outcome of a start whose rows have all been merged, and proceeds to the next start.
   void finish(StartRun& run);
-  /// Maximum number of evaluations still to be made. Cached: recounted after every starts / 16 rows.
+  /// Maximum number of evaluations still to be made. Cached: counted again whenever as many rows as a
+  /// sixteenth of the number of starts have been merged.
   std::int64_t evaluations_left();
   /// Snapshots of the starts with evaluations that are not in the stage table.
   std::vector<UnmergedStart> unmerged_starts() const;
