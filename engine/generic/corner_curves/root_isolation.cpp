@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "engine/math/roots.hpp"
+
 namespace pkm::generic::corner_curves {
 namespace {
 
 constexpr int kMaxDepth = 44;
 
-struct Subinterval {
+struct SeriesInterval {
   double low, high;
   double error, derivative_error;  ///< bounds for the series and its derivative, in the subinterval's own variable
   std::size_t terms;
@@ -26,40 +28,17 @@ double sum_of_magnitudes(const double* c, std::size_t from, std::size_t terms) {
 }
 
 /// The value at -1 or 1.
-double end_value(const Subinterval& interval, bool upper) {
+double end_value(const SeriesInterval& interval, bool upper) {
   double sum = 0;
   for (std::size_t k = interval.terms; k-- > 0;) sum += upper || k % 2 == 0 ? interval.c[k] : -interval.c[k];
   return sum;
-}
-
-/// Bracketed secant method (Illinois variant) on a monotone series. @return  root in [-1, 1]
-double refine_root(const Subinterval& interval, double at_low, double at_high) {
-  double low = -1, high = 1, x = 0;
-  for (int step = 0; step < 60; ++step) {
-    x = (low * at_high - high * at_low) / (at_high - at_low);
-    if (!(x > low && x < high)) x = 0.5 * (low + high);
-    const double f = evaluate_series(interval.c.data(), interval.terms, x);
-    if (f == 0 || high - low < 2 * kUnitRoundoff) break;
-    if ((f > 0) == (at_high > 0)) {
-      if (std::fabs(x - high) < kUnitRoundoff) break;
-      high = x;
-      at_high = f;
-      at_low *= 0.5;
-    } else {
-      if (std::fabs(x - low) < kUnitRoundoff) break;
-      low = x;
-      at_low = f;
-      at_high *= 0.5;
-    }
-  }
-  return x;
 }
 
 }  // namespace
 
 void isolate_roots(const Samples& coefficients, double error, std::vector<Root>& roots) {
   if (std::fabs(coefficients[0]) > sum_of_magnitudes(coefficients.data(), 1, kNodes) + error) return;
-  std::array<Subinterval, kMaxDepth + 2> stack;
+  std::array<SeriesInterval, kMaxDepth + 2> stack;
   Samples halved;
   std::size_t size = 1;
   stack[0] = {-1, 1, error, markov(kNodes) * error, kNodes, 0, coefficients};
@@ -72,7 +51,7 @@ void isolate_roots(const Samples& coefficients, double error, std::vector<Root>&
     roots.push_back({0.5 * (low + high), high - low});
   };
   while (size > 0) {
-    Subinterval& interval = stack[size - 1];
+    SeriesInterval& interval = stack[size - 1];
     // Negligible coefficients become part of the error.
     const std::size_t terms = significant_terms(interval.c, interval.terms, 0.1 * interval.error);
     if (terms < interval.terms) {
@@ -97,16 +76,18 @@ void isolate_roots(const Samples& coefficients, double error, std::vector<Root>&
         sum_of_magnitudes(derivative.data(), 1, interval.terms - 1) + interval.derivative_error) {
       const double at_low = end_value(interval, false), at_high = end_value(interval, true);
       const double middle = 0.5 * (interval.low + interval.high), half = 0.5 * (interval.high - interval.low);
-      if ((at_low < 0) != (at_high < 0))
-        roots.push_back({middle + half * refine_root(interval, at_low, at_high)});
-      else if (std::fabs(at_low) <= interval.error)
+      if ((at_low < 0) != (at_high < 0)) {
+        const auto series = [&](double x) { return evaluate_series(interval.c.data(), interval.terms, x); };
+        roots.push_back({middle + half * refine_root(series, -1, at_low, 1, at_high, 2 * kUnitRoundoff)});
+      } else if (std::fabs(at_low) <= interval.error) {
         add_root(interval.low, interval.low);
-      else if (std::fabs(at_high) <= interval.error)
+      } else if (std::fabs(at_high) <= interval.error) {
         add_root(interval.high, interval.high);
+      }
       --size;
       continue;
     }
-    Subinterval& lower = stack[size];
+    SeriesInterval& lower = stack[size];
     const double middle = 0.5 * (interval.low + interval.high);
     lower.low = interval.low;
     lower.high = middle;

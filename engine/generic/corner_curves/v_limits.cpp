@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/math/roots.hpp"
+
 namespace pkm::generic::corner_curves {
 namespace {
 
@@ -146,19 +148,14 @@ class LimitRootFinder {
 
   /// Newton's method with a bracket, for the limit or one of its derivatives along v.
   double root_of(std::size_t limit, std::size_t derivative, double lower, double upper, int sign_at_lower, double v) {
-    constexpr int kMaxSteps = 100;
-    for (int step = 0; step < kMaxSteps; ++step) {
-      run_limits_at(plan_, v, s_);
-      const double f = s_.registers[at(limit, derivative)], by_v = s_.registers[at(limit, derivative + 1)];
-      if (f == 0) break;
-      ((f > 0) == (sign_at_lower > 0) ? lower : upper) = v;
-      double next = v - f / by_v;
-      if (!(next > lower && next < upper)) next = 0.5 * (lower + upper);
-      const double change = std::fabs(next - v);
-      v = next;
-      if (change <= 2 * kUnitRoundoff * std::fabs(v) || upper - lower <= 2 * kUnitRoundoff * std::fabs(v)) break;
-    }
-    return v;
+    const auto limit_at = [&](double x) {
+      run_limits_at(plan_, x, s_);
+      return ValueAndDerivative{s_.registers[at(limit, derivative)], s_.registers[at(limit, derivative + 1)]};
+    };
+    const auto converged = [](const ValueAndDerivative&, double x, double next) {
+      return std::fabs(next - x) <= 2 * kUnitRoundoff * std::fabs(next);
+    };
+    return refine_root_newton(limit_at, lower, upper, sign_at_lower > 0, v, converged);
   }
 
   /// Refines a fold by Newton's method: roots near a fold vary like the square root of the distance from it, so an
