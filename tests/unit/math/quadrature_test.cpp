@@ -103,9 +103,9 @@ TEST(Quadrature, EndpointsContributeToDerivatives) {
 
 TEST(Statistics, OfWeightedSamplesAndOfNoSamples) {
   EXPECT_EQ(weighted_mean<double>({1, 3}, {2, 6}), 5);
-  EXPECT_EQ(least<double>({0.3, 0.1, 0.2}), 0.1);
+  EXPECT_EQ(minimum<double>({0.3, 0.1, 0.2}), 0.1);
   EXPECT_EQ(weighted_mean<double>({}, {}), 0);
-  EXPECT_EQ(least<double>({}), 0);
+  EXPECT_EQ(minimum<double>({}), 0);
   EXPECT_EQ(soft_min<double>({}, {}, 100), 0);
 }
 
