@@ -24,7 +24,7 @@ std::vector<Row> table(const Json& list) {
   return rows;
 }
 
-/// "20 over 3 coordinates, 14 over 2 coordinates, 6 over 1 coordinate; --json lists them"
+/// "20 sweeps of 3 coordinates, 14 of 2 coordinates, 6 of 1 coordinate; --json lists them"
 std::string sweep_summary(const Json& sweeps) {
   std::map<std::size_t, int, std::greater<>> count;
   for (const Json& sweep : sweeps) ++count[sweep["swept"].size()];
