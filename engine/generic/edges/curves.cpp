@@ -1,0 +1,381 @@
+#include "engine/generic/edges/curves.hpp"
+
+namespace pkm::generic::edges {
+namespace {
+
+// Relative to quantities of order one; coincidences of this size are taken as exact.
+constexpr double kParallel = 1e-12;
+
+double norm(const Vector3& v) { return std::sqrt(dot(v, v)); }
+
+/// A unit vector normal to a unit vector.
+Vector3 any_normal(const Vector3& axis) {
+  Vector3 e{};
+  std::size_t smallest = 0;
+  for (std::size_t i = 1; i < 3; ++i)
+    if (std::fabs(axis[i]) < std::fabs(axis[smallest])) smallest = i;
+  e[smallest] = 1;
+  const Vector3 v = cross(axis, e);
+  return v * (1 / norm(v));
+}
+
+/// a[0] + a[1] cos t + a[2] sin t
+using Linear = std::array<double, 3>;
+Trigonometric product(const Linear& a, const Linear& b) {
+  return {a[0] * b[0] + 0.5 * (a[1] * b[1] + a[2] * b[2]), a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0],
+          0.5 * (a[1] * b[1] - a[2] * b[2]), 0.5 * (a[1] * b[2] + a[2] * b[1])};
+}
+
+Quadric quadric_of(const Face& face) {
+  const Body& body = *face.body;
+  const Vector3& c = face.centre;
+  if (face.surface == Surface::plane) return {.v = body.axis, .k = -body.radius};
+  Quadric q{.square = 1, .v = c * -2.0, .k = dot(c, c) - body.radius * body.radius};
+  if (face.surface != Surface::cylinder) return q;
+  const double s = dot(c, body.axis);
+  q.across = 1;
+  q.axis = body.axis;
+  q.v += body.axis * (2 * s);
+  q.k -= s * s;
+  return q;
+}
+
+/// The same quadric as a function of p - c. For spheres and planes.
+Quadric relative_to(const Vector3& c, const Quadric& q) {
+  return {.square = q.square, .v = q.v + c * (2 * q.square), .k = q.square * dot(c, c) + dot(q.v, c) + q.k};
+}
+
+Curve circle(const Face& a, const Face& b, const Vector3& o, const Vector3& normal, double radius) {
+  const Vector3 x = any_normal(normal);
+  return {.faces = {&a, &b}, .o = o, .x = x * radius, .y = cross(normal, x) * radius};
+}
+
+void sphere_and_plane(const Face& sphere, const Face& other, const Vector3& normal, double distance,
+                      std::vector<Curve>& curves) {
+  const double r = sphere.body->radius, radius_2 = (r - distance) * (r + distance);
+  if (radius_2 > 0)
+    curves.push_back(circle(sphere, other, sphere.centre + normal * distance, normal, std::sqrt(radius_2)));
+}
+
+/// Curves on a cylinder: generators o(t) + s axis with A s^2 + 2 B(t) s + C(t) = 0.
+void on_cylinder(const Face& cylinder, const Face& other, std::vector<Curve>& curves) {
+  const Vector3 &a = cylinder.body->axis, &c = cylinder.centre;
+  const Quadric q = quadric_of(other);
+  const double r = cylinder.body->radius, slant = dot(a, q.axis);
+  const Vector3 x = any_normal(a) * r, y = cross(a, x);
+  // p(t) . d, as a trigonometric polynomial
+  const auto along = [&](const Vector3& d) { return Linear{dot(c, d), dot(x, d), dot(y, d)}; };
+  const double A = q.square - q.across * slant * slant;
+  const Linear m = along(q.axis), h = along(q.v), g = along(a), e = along(c);
+  Linear B{};
+  for (std::size_t i = 0; i < 3; ++i) B[i] = q.square * g[i] - q.across * slant * m[i];
+  B[0] += 0.5 * dot(q.v, a);
+  const Trigonometric mm = product(m, m);
+  Trigonometric C{};
+  for (std::size_t i = 0; i < 5; ++i) C[i] = -q.across * mm[i];
+  for (std::size_t i = 0; i < 3; ++i) C[i] += h[i] + q.square * (i == 0 ? 1.0 : 2.0) * e[i];
+  C[0] += q.square * r * r + q.k;
+  Curve curve{.faces = {&cylinder, &other}};
+  if (other.surface == Surface::plane) {  // s = -C / (2 B), where B is constant
+    const Vector3 shift = a * (-0.5 / B[0]);
+    curve.o = c + shift * C[0];
+    curve.x = x + shift * C[1];
+    curve.y = y + shift * C[2];
+  } else {
+    const Vector3 shift = a * (-1 / A);
+    curve.o = c + shift * B[0];
+    curve.x = x + shift * B[1];
+    curve.y = y + shift * B[2];
+    curve.w = a * (1 / A);
+    curve.has_root = true;
+    curve.D = product(B, B);
+    for (std::size_t i = 0; i < 5; ++i) curve.D[i] -= A * C[i];
+  }
+  curves.push_back(curve);
+}
+
+/// Lines along the axis of a cylinder of radius r through `centre`, in the plane normal . p = distance (normal to it).
+void parallel_lines(const Face& a, const Face& b, const Vector3& centre, double r, const Vector3& axis,
+                    const Vector3& normal, double distance, std::vector<Curve>& curves) {
+  const double d = distance - dot(centre, normal), half_2 = (r - d) * (r + d);
+  if (!(half_2 > 0)) return;
+  const Vector3 foot = centre + normal * d - axis * dot(centre, axis), across = cross(axis, normal);
+  for (const double sign : {1.0, -1.0})
+    curves.push_back(
+        {.kind = Curve::Kind::line, .faces = {&a, &b}, .o = foot + across * (sign * std::sqrt(half_2)), .x = axis});
+}
+
+void cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Curve>& curves) {
+  const Vector3 &a = cylinder.body->axis, &c = cylinder.centre;
+  const double r = cylinder.body->radius;
+  if (other.surface == Surface::plane && std::fabs(dot(a, other.body->axis)) < kParallel) {
+    parallel_lines(cylinder, other, c, r, a, other.body->axis, other.body->radius, curves);
+  } else if (other.surface == Surface::cylinder && norm(cross(a, other.body->axis)) < kParallel) {
+    const Vector3 between = other.centre - c, across = between - a * dot(between, a);
+    const double distance = norm(across);
+    if (distance < kParallel * r) return;
+    const Vector3 normal = across * (1 / distance);
+    const double from_c = 0.5 * (distance + (r - other.body->radius) * (r + other.body->radius) / distance);
+    parallel_lines(cylinder, other, c, r, a, normal, dot(c, normal) + from_c, curves);
+  } else {
+    on_cylinder(cylinder, other, curves);
+  }
+}
+
+/// Curves on a torus: cos b alpha + sin b beta = gamma on the meridian at the angle q, where, with xi = v . e_r(q),
+/// alpha = xi + 2 square crank, beta = v . axis, gamma = -(square (crank^2 + rod^2) + k + crank xi) / rod. D = alpha^2
+/// + beta^2 - gamma^2.
+void on_torus(const Face& torus, const Face& other, const Quadric& absolute, const std::optional<Quadric>& cut,
+              std::vector<Curve>& curves) {
+  const PreparedBody& body = *torus.body;
+  const Quadric q = relative_to(torus.centre, absolute);
+  const double l = body.crank, rod = body.radius, beta = dot(q.v, body.axis), size = norm(q.v);
+  if (q.square == 0 && std::fabs(beta) < kParallel * size && std::fabs(q.k) < kParallel * size * (l + rod)) {
+    // A plane through the axis contains two meridian circles. Its further points are on the axis.
+    const Vector3 e = cross(body.axis, q.v) * (1 / size);
+    for (const double sign : {1.0, -1.0})
+      curves.push_back({.faces = {&torus, &other},
+                        .o = torus.centre + e * (sign * l),
+                        .x = e * rod,
+                        .y = body.axis * rod,
+                        .cut = cut});
+    return;
+  }
+  const double a_0 = 2 * q.square * l, g_0 = -(q.square * (l * l + rod * rod) + q.k) / rod, g_1 = -l / rod;
+  const Linear xi{0, dot(q.v, body.zero), dot(q.v, body.beside)};
+  Trigonometric D = product(xi, xi);
+  for (double& each : D) each *= (1 - g_1) * (1 + g_1);
+  for (std::size_t i = 1; i < 3; ++i) D[i] += 2 * (a_0 - g_0 * g_1) * xi[i];
+  D[0] += a_0 * a_0 + beta * beta - g_0 * g_0;
+  curves.push_back(
+      {.kind = Curve::Kind::on_torus, .faces = {&torus, &other}, .has_root = true, .D = D, .with = q, .cut = cut});
+}
+
+/// Two tori of equal radii whose intersection consists of two curves, in a plane and on a sphere or another plane. With
+/// K = |P|^2 + crank^2 - rod^2 and Y = P . axis, the difference of their equations is
+/// (K_a - K_b) (4 crank^2 - K_a - K_b) - 4 crank^2 (Y_a - s Y_b) (Y_a + s Y_b), s = +-1, in which K_a - K_b and
+/// Y_a - s Y_b are linear. The first is a multiple of the second if the tori are mirror images.
+bool two_tori(const Face& a, const Face& b, std::vector<Curve>& curves) {
+  const PreparedBody &A = *a.body, &B = *b.body;
+  const double l = A.crank, l_2 = l * l, size = l + A.radius;
+  if (std::fabs(l - B.crank) > kParallel * size || std::fabs(A.radius - B.radius) > kParallel * size) return false;
+  const Vector3 &c = a.centre, between = b.centre - a.centre;
+  // As functions of P = p - c: K_a - K_b = v . P + k, Y_a - s Y_b = m . P + n.
+  const Vector3 v = between * 2.0;
+  const double k = -dot(between, between), offset = dot(between, B.axis);
+  const auto absolute = [&](const Quadric& q) { return relative_to(c * -1.0, q); };
+  for (const double s : {1.0, -1.0}) {
+    const Vector3 m = A.axis - B.axis * s, other_m = A.axis + B.axis * s;
+    const double n = s * offset, other_n = -s * offset;
+    // 4 l^2 - K_a - K_b = -2 |P|^2 + v . P + r
+    const double r = 2 * l_2 + 2 * A.radius * A.radius - dot(between, between);
+    Quadric plane, rest;
+    if (norm(m) < kParallel && std::fabs(n) < kParallel * size) {
+      if (norm(v) < kParallel * size) return false;
+      plane = {.v = v, .k = k};
+      rest = {.square = -2, .v = v, .k = r};
+    } else {
+      // (K_a - K_b) = factor (Y_a - s Y_b)
+      const double factor = (dot(v, m) + k * n) / (dot(m, m) + n * n);
+      if (norm(v - m * factor) > kParallel * size || std::fabs(k - n * factor) > kParallel * size * size) continue;
+      plane = {.v = m, .k = n};
+      rest = {.square = -2 * factor, .v = v * factor - other_m * (4 * l_2), .k = r * factor - 4 * l_2 * other_n};
+    }
+    on_torus(a, b, absolute(plane), absolute(rest), curves);
+    on_torus(a, b, absolute(rest), absolute(plane), curves);
+    return true;
+  }
+  return false;
+}
+
+/// Coefficients of cos and sin of k (t - t_0), for k = 1, 2.
+struct Shifted {
+  double cosine[2], sine[2];
+};
+Shifted shifted(const Trigonometric& D, double t_0) {
+  Shifted at{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto [s, c] = portable::sincos(static_cast<double>(k + 1) * t_0);
+    at.cosine[k] = D[2 * k + 1] * c + D[2 * k + 2] * s;
+    at.sine[k] = D[2 * k + 2] * c - D[2 * k + 1] * s;
+  }
+  return at;
+}
+
+/// D(t_0 + x) / x^order, where D has a root of this multiplicity at t_0.
+Enclosure quotient(const Trigonometric& D, double t_0, int order, const Enclosure& x) {
+  const auto [cosine, sine] = shifted(D, t_0);
+  const Enclosure half_1 = sinc(x * 0.5), full = sinc(x);
+  if (order == 1)
+    return half_1 * sine_cosine(x * 0.5).sine * -cosine[0] + full * sine[0] +
+           (full * sine_cosine(x).sine * -cosine[1] + sinc(x * 2.0) * sine[1]) * 2.0;
+  return square(half_1) * (-0.5 * cosine[0]) + square(full) * (-2 * cosine[1]) -
+         sine_cosine(x).sine * square(half_1) * sine[1];
+}
+
+Enclosure value_of_D(const Trigonometric& D, const SineCosine& t) {
+  const auto& [s, c] = t;
+  return c * D[1] + s * D[2] + (square(c) * 2.0 - 1.0) * D[3] + s * c * (2 * D[4]) + D[0];
+}
+
+struct Root {
+  double t;
+  int order;
+};
+
+/// Isolates the roots of D in an interval by bisection; those that cannot be told from double roots are taken as such.
+void isolate(const Trigonometric& D, double from, double to, double rounding, std::vector<Root>& roots) {
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  const auto at = [&](double t, double h) { return value_of_D(D, sine_cosine(Enclosure::variable(t, h))); };
+  const Enclosure d = at(middle, half);
+  if (std::fabs(d.value) > d.reach() + rounding) return;
+  constexpr double kDoubleRoot = 1e-8;  // simple roots that are closer to each other differ by rounding errors of D
+  if (d.is_monotone()) {
+    double low = from, high = to;
+    const bool rises = d.slope > 0;
+    if ((at(from, 0).value > 0) == (at(to, 0).value > 0)) return;
+    double t = middle;
+    for (int i = 0; i < 100 && high - low > 4e-16 * (1 + std::fabs(t)); ++i) {
+      const Enclosure f = at(t, 0);
+      ((f.value > 0) == rises ? high : low) = t;
+      const double newton = t - f.value / f.slope;
+      const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+      if (next == t) break;
+      t = next;
+    }
+    roots.push_back({t, 1});
+  } else if (half < kDoubleRoot) {
+    if (!roots.empty() && roots.back().order == 2 && from - roots.back().t < 4 * kDoubleRoot) return;
+    double t = middle;  // the root of D'
+    const Shifted shift = shifted(D, t);
+    const double d_1 = shift.sine[0] + 2 * shift.sine[1], d_2 = -shift.cosine[0] - 4 * shift.cosine[1];
+    if (d_2 != 0) t -= std::clamp(d_1 / d_2, -half, half);
+    roots.push_back({t, 2});
+  } else {
+    isolate(D, from, middle, rounding, roots);
+    isolate(D, middle, to, rounding, roots);
+  }
+}
+
+}  // namespace
+
+bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves) {
+  if (a.surface < b.surface) return add_intersection(b, a, bound, curves);
+  if (a.surface == Surface::torus) {
+    if (b.surface == Surface::torus) return two_tori(a, b, curves);
+    if (b.surface == Surface::cylinder) return false;
+    on_torus(a, b, quadric_of(b), {}, curves);
+  } else if (a.surface == Surface::cylinder) {
+    cylinder_and_other(a, b, curves);
+  } else if (a.surface == Surface::sphere && b.surface == Surface::sphere) {
+    const Vector3 between = b.centre - a.centre;
+    const double distance = norm(between), r = a.body->radius, r_b = b.body->radius;
+    if (distance > kParallel * (r + r_b))
+      sphere_and_plane(a, b, between * (1 / distance), 0.5 * (distance + (r - r_b) * (r + r_b) / distance), curves);
+  } else if (a.surface == Surface::sphere) {
+    sphere_and_plane(a, b, b.body->axis, b.body->radius - dot(a.centre, b.body->axis), curves);
+  } else {
+    const Vector3 &m = a.body->axis, &n = b.body->axis, direction = cross(m, n);
+    const double sine_2 = dot(direction, direction);
+    if (sine_2 < kParallel * kParallel) return true;
+    const Vector3 o = (cross(n, direction) * a.body->radius + cross(direction, m) * b.body->radius) * (1 / sine_2);
+    curves.push_back({.kind = Curve::Kind::line, .faces = {&a, &b}, .o = o, .x = direction * (1 / std::sqrt(sine_2))});
+  }
+  return true;
+}
+
+Curve equator(const Face& end, const Face& fold) {
+  return circle(end, fold, end.centre, end.body->along[static_cast<std::size_t>(end.part)], end.body->radius);
+}
+
+bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs) {
+  if (curve.kind == Curve::Kind::line) {
+    arcs.push_back({.curve = &curve, .t_0 = -bound, .length = 2 * bound});
+    return true;
+  }
+  if (!curve.has_root) {
+    arcs.push_back({.curve = &curve, .length = 2 * kPi});
+    return true;
+  }
+  double size = 0, scale = 0;
+  for (const double d : curve.D) size = std::max(size, std::fabs(d));
+  scale = size;
+  if (!(scale > 0)) return false;
+  // No turning point is at the start, which is arbitrary.
+  constexpr double kStart = 0.1234;
+  std::vector<Root> roots;
+  isolate(curve.D, kStart, kStart + 2 * kPi, 4e-16 * size, roots);
+  const auto add = [&](const Arc& arc) {
+    for (const double branch : {1.0, -1.0}) {
+      arcs.push_back(arc);
+      arcs.back().branch = branch;
+    }
+  };
+  const auto is_positive = [&](double t) { return value_of_D(curve.D, sine_cosine(Enclosure(t))).value > 0; };
+  if (roots.empty()) {
+    if (is_positive(kStart)) add({.curve = &curve, .t_0 = kStart, .length = 2 * kPi});
+    return true;
+  }
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    const Root& from = roots[i];
+    Root to = roots[(i + 1) % roots.size()];
+    if (i + 1 == roots.size()) to.t += 2 * kPi;
+    const double middle = 0.5 * (from.t + to.t);
+    if (!is_positive(middle)) continue;
+    for (const auto& [root, direction] : {std::pair{from, 1.0}, {to, -1.0}}) {
+      const double length = std::fabs(middle - root.t);
+      add({.curve = &curve,
+           .t_0 = root.t,
+           .direction = direction,
+           .order = root.order,
+           .length = root.order == 1 ? std::sqrt(length) : length});
+    }
+  }
+  return true;
+}
+
+Enclosure3 point(const Arc& arc, const Enclosure& u) {
+  const Curve& curve = *arc.curve;
+  const Enclosure x = (arc.order == 1 ? square(u) : u) * arc.direction, t = x + arc.t_0;
+  const auto combine = [](const Vector3& o, const Vector3& a, const Enclosure& s, const Vector3& b,
+                          const Enclosure& r) {
+    Enclosure3 p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = s * a[i] + r * b[i] + o[i];
+    return p;
+  };
+  if (curve.kind == Curve::Kind::line) return combine(curve.o, curve.x, t, curve.y, t);
+  const SineCosine sc = sine_cosine(t);
+  const auto& [sine, cosine] = sc;
+  Enclosure root;
+  if (curve.has_root) {
+    root = arc.order == 0 ? sqrt(value_of_D(curve.D, sc))
+                          : u * sqrt(quotient(curve.D, arc.t_0, arc.order, x) * (arc.order == 1 ? arc.direction : 1.0));
+    root = root * arc.branch;
+  }
+  if (curve.kind == Curve::Kind::trigonometric) {
+    Enclosure3 p = combine(curve.o, curve.x, cosine, curve.y, sine);
+    if (curve.has_root)
+      for (std::size_t i = 0; i < 3; ++i) p[i] += root * curve.w[i];
+    return p;
+  }
+  const Face& torus = *curve.faces[0];
+  const PreparedBody& body = *torus.body;
+  const Quadric& q = curve.with;
+  const double l = body.crank, rod = body.radius, beta = dot(q.v, body.axis);
+  const Enclosure xi = cosine * dot(q.v, body.zero) + sine * dot(q.v, body.beside);
+  const Enclosure alpha = xi + 2 * q.square * l;
+  const Enclosure gamma = (xi * l + (q.square * (l * l + rod * rod) + q.k)) * (-1 / rod);
+  const Enclosure scale = inverse(square(alpha) + beta * beta) * rod;
+  const Enclosure along = (alpha * gamma - root * beta) * scale + l, height = (gamma * beta + alpha * root) * scale;
+  return combine(torus.centre, body.zero, along * cosine, body.beside, along * sine) +
+         combine({}, body.axis, height, {}, Enclosure());
+}
+
+Enclosure evaluate(const Quadric& quadric, const Enclosure3& p) {
+  Enclosure f = dot(p, quadric.v) + quadric.k;
+  if (quadric.square != 0) f += (square(p[0]) + square(p[1]) + square(p[2])) * quadric.square;
+  if (quadric.across != 0) f = f - square(dot(p, quadric.axis)) * quadric.across;
+  return f;
+}
+
+}  // namespace pkm::generic::edges

@@ -1,0 +1,66 @@
+// Intersection curves of two surfaces, each with a parameter t in closed form.
+//
+//   circles, ellipses      p(t) = o + x cos t + y sin t
+//   lines                  p(t) = o + x t
+//   cylinder and quadric   p(t) = o + x cos t + y sin t +- sqrt(D(t)) w: the generator at the angle t in two points
+//   torus and sphere or    the meridian circle at the angle t in two points, cos b = (alpha gamma -+ beta sqrt(D)) / Q,
+//     plane                sin b = (beta gamma +- alpha sqrt(D)) / Q (see on_torus() in the source)
+//
+// D is a trigonometric polynomial of degree two. Its roots are turning points, where the two branches meet. A curve is
+// divided into arcs, each from a turning point t_0 or without one. With t = t_0 +- u^2 at a simple root, and
+// t = t_0 +- u at a double one, sqrt(D) is the power of u times an analytic function, so that an arc is analytic up to
+// its ends.
+#pragma once
+
+#include <optional>
+
+#include "engine/generic/edges/faces.hpp"
+
+namespace pkm::generic::edges {
+
+/// a[0] + a[1] cos t + a[2] sin t + a[3] cos 2t + a[4] sin 2t
+using Trigonometric = std::array<double, 5>;
+
+/// Left side of the equation square |p|^2 - across (p . axis)^2 + v . p + k = 0 of a plane, sphere or cylinder.
+struct Quadric {
+  double square = 0, across = 0;
+  Vector3 axis{}, v{};
+  double k = 0;
+};
+
+struct Curve {
+  enum class Kind : std::uint8_t { trigonometric, line, on_torus };
+  Kind kind = Kind::trigonometric;
+  std::array<const Face*, 2> faces{};
+  Vector3 o{}, x{}, y{}, w{};  ///< w: 0 without a square root
+  bool has_root = false;
+  Trigonometric D{};
+  Quadric with{};                ///< on_torus: the other surface, relative to the centre of the torus
+  std::optional<Quadric> cut{};  ///< where this vanishes, the two surfaces touch
+};
+
+/// Part of one branch of a curve: u in [0, length].
+struct Arc {
+  const Curve* curve;
+  double branch = 1;
+  double t_0 = 0, direction = 1;
+  int order = 0;  ///< multiplicity of the root of D at u = 0
+  double length = 0;
+};
+
+/// Intersection curves of two faces.
+/// @param bound  half the length of lines
+/// @return false if they have no closed form
+bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves);
+/// The circle between an end face and the fold of a slide or crank.
+Curve equator(const Face& end, const Face& fold);
+
+/// @return false if D vanishes identically
+bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs);
+
+/// Encloses the points of an arc.
+/// @param u  Enclosure::variable(): the slope of the result is dp/du
+Enclosure3 point(const Arc& arc, const Enclosure& u);
+Enclosure evaluate(const Quadric& quadric, const Enclosure3& p);
+
+}  // namespace pkm::generic::edges

@@ -1,0 +1,75 @@
+// Faces of bodies: implicit functions of a body, membership, normals, and the differential forms whose integrals along
+// the boundary of a face are moments of its area.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/generic/edges/solid.hpp"
+
+namespace pkm::generic::edges {
+
+/// The faces of a slide or crank: the half spheres about both ends of the path of E, and the fold, which is a cylinder
+/// or a torus. The other bodies have one face, `first`.
+enum class Part : std::uint8_t { first, second, fold };
+
+enum class Surface : std::uint8_t { plane, sphere, cylinder, torus };
+
+/// A body with vectors that are needed often.
+struct PreparedBody : Body {
+  explicit PreparedBody(const Body& body);
+  Vector3 beside{};                ///< crank: axis x zero
+  std::array<Vector3, 2> end{};    ///< slide, crank: E at both ends of the range
+  std::array<Vector3, 2> along{};  ///< slide, crank: unit vector along the path of E there
+};
+
+struct Face {
+  const PreparedBody* body;
+  std::size_t number;  ///< of the body
+  Part part = Part::first;
+  Surface surface = Surface::plane;
+  Vector3 centre{};          ///< plane: the foot point of the origin
+  double side = 1;           ///< 1: the outward normal points away from the centre (plane: along the axis)
+  Vector3 away_from_pole{};  ///< sphere: opposite of the point where its form has a pole
+};
+
+/// The faces of a body, as far as they are not empty.
+void add_faces(const PreparedBody& body, std::size_t number, std::vector<Face>& faces);
+
+/// Values of the implicit functions of a body. Planes, spheres and cylinders have one, positive inside. Slides and
+/// cranks, with the distance function g(q) = |p - E(q)|^2 - rod^2, have: g at both ends of the range; (p - E) . E'
+/// there (scaled); the discriminant of g = 0, positive where q exists; and a function that is positive where g = 0 has
+/// its double root on the near side of the axis of a crank (slide: 1).
+inline constexpr std::size_t kFunctions = 6;
+using Functions = std::array<Enclosure, kFunctions>;
+std::size_t count_functions(const Body& body);
+void evaluate(const PreparedBody& body, const Enclosure3& p, Functions& f);
+
+/// Degree of the function as a power of a length, for its rounding error.
+int degree(const Body& body, std::size_t function);
+
+/// Whether a point belongs to a body or, if it lies on the surface of one of its faces, to that face.
+struct Membership {
+  std::int8_t result;     ///< 1: it does; -1: it does not; 0: that depends on functions whose sign is unknown
+  std::uint8_t relevant;  ///< bits of these functions
+};
+/// @param face   null: the body
+/// @param signs  of the functions: -1, 1, 0: unknown
+Membership membership(const Body& body, const Part* face, const std::array<std::int8_t, kFunctions>& signs);
+
+/// A vector along the outward normal at a point of the face.
+Vector3 outward(const Face& face, const Vector3& p);
+
+/// Moments of the area of a face, with the outward normal n.
+struct Moments {
+  Vector3 normal{};                ///< integral of n
+  Vector3 rotation{};              ///< integral of (p - centre) x n
+  std::array<double, 2> radius{};  ///< integral of the normal speed as a radius grows: the radius or rod, and the crank
+  void add(const Moments& other, double factor);
+};
+/// The integrands of the moments along an edge, to be integrated in the direction that has the face on its left.
+Moments forms(const Face& face, const Vector3& p, const Vector3& dp);
+/// The contribution of a face to three times the volume.
+double three_volumes(const Face& face, const Moments& moments);
+
+}  // namespace pkm::generic::edges

@@ -1,0 +1,395 @@
+#include "engine/generic/edges/solid.hpp"
+
+#include "engine/generic/edges/curves.hpp"
+#include "engine/math/quadrature.hpp"
+
+namespace pkm::generic::edges {
+namespace {
+
+constexpr double kRounding = 4e-15;  // relative to the size of the solid, to the power of a function's degree
+constexpr int kMaxBisections = 36;
+constexpr long kMaxBoxes = 400'000;
+
+/// A condition on the points of a curve: they belong to a body, or to the face of a body on whose surface they lie.
+struct Test {
+  std::size_t body;
+  std::optional<Part> face{};
+};
+
+/// An active part of an arc.
+struct Range {
+  const Arc* arc;
+  double from, to;
+  double sign;  ///< 1: the first face is on the left in the direction of increasing u; -1: the second one is
+};
+
+/// A quadrature interval.
+struct Panel {
+  std::size_t range;
+  double from, to;
+  double value = 0, error = 0;
+  std::array<Moments, 2> moments{};  ///< of the two faces
+};
+
+Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].value}}; }
+Vector3 slopes(const Enclosure3& p) { return {{p[0].slope, p[1].slope, p[2].slope}}; }
+double largest(const Vector3& v) { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
+
+class Evaluator {
+ public:
+  explicit Evaluator(const Solid& solid) : bound_(solid.bound) {
+    for (const Body& body : solid.bodies) bodies_.emplace_back(body);
+    size_ = bound_;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      add_faces(bodies_[i], i, faces_);
+      size_ = std::max(size_, std::fabs(bodies_[i].radius) + bodies_[i].crank + largest(bodies_[i].centre));
+    }
+    powers_ = {1, size_, size_ * size_, 0, size_ * size_ * size_ * size_};
+  }
+
+  EdgeVolume run(double tolerance, std::vector<Body>* gradient) {
+    if (!add_curves()) {
+      result_.is_supported = false;
+      return result_;
+    }
+    for (const Arc& arc : arcs_) search(arc);
+    close();
+    choose_poles();
+    integrate(tolerance);
+    if (gradient) differentiate(*gradient);
+    return result_;
+  }
+
+ private:
+  bool add_curves() {
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      for (std::size_t j = i + 1; j < faces_.size(); ++j) {
+        const Face &a = faces_[i], &b = faces_[j];
+        if (a.number != b.number) {
+          if (!add_intersection(a, b, bound_, curves_)) return false;
+        } else if (b.part == Part::fold) {
+          curves_.push_back(equator(a, b));
+        }
+      }
+    }
+    for (const Curve& curve : curves_)
+      if (!add_arcs(curve, bound_, arcs_)) result_.is_closed = false;
+    return true;
+  }
+
+  // Activity of the points of arcs.
+
+  void search(const Arc& arc) {
+    const auto& [a, b] = arc.curve->faces;
+    tests_.clear();
+    const bool is_equator = a->number == b->number;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (i != a->number && i != b->number)
+        tests_.push_back({i});
+      else if (!is_equator && bodies_[i].kind >= Body::Kind::slide)
+        tests_.push_back({i, i == a->number ? a->part : b->part});
+    }
+    arc_ = &arc;
+    first_range_ = ranges_.size();
+    std::vector<std::size_t> all(tests_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    search(0, arc.length, 0, all);
+  }
+
+  void search(double from, double to, int depth, const std::vector<std::size_t>& tests) {
+    if (++result_.boxes > kMaxBoxes) {
+      result_.is_closed = false;
+      return;
+    }
+    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+    const Enclosure3 p = point(*arc_, Enclosure::variable(middle, half));
+    struct Undecided {
+      std::size_t test, function;
+    };
+    std::vector<std::size_t> remaining;
+    std::vector<Undecided> undecided;
+    bool is_monotone = true;
+    for (const std::size_t i : tests) {
+      const PreparedBody& body = bodies_[tests_[i].body];
+      Functions f;
+      pkm::generic::edges::evaluate(body, p, f);
+      std::array<std::int8_t, kFunctions> signs{};
+      const std::size_t count = count_functions(body);
+      for (std::size_t k = 0; k < count; ++k)
+        signs[k] = sign(f[k], powers_[static_cast<std::size_t>(degree(body, k))], half);
+      const Membership found = membership(body, tests_[i].face ? &*tests_[i].face : nullptr, signs);
+      if (found.result < 0) return;
+      if (found.result > 0) continue;
+      remaining.push_back(i);
+      for (std::size_t k = 0; k < count; ++k) {
+        if ((found.relevant >> k & 1U) == 0) continue;
+        undecided.push_back({i, k});
+        is_monotone = is_monotone && f[k].is_monotone();
+      }
+    }
+    const bool is_cut = arc_->curve->cut.has_value();
+    if (is_cut) {
+      const Enclosure f = pkm::generic::edges::evaluate(*arc_->curve->cut, p);
+      if (!(std::fabs(f.value) > f.reach() + kRounding * powers_[2])) {
+        undecided.push_back({tests_.size(), 0});
+        is_monotone = is_monotone && f.is_monotone();
+      }
+    }
+    if (undecided.empty()) {
+      emit(from, to);
+      return;
+    }
+    if (!is_monotone && depth < kMaxBisections) {
+      search(from, middle, depth + 1, remaining);
+      search(middle, to, depth + 1, remaining);
+      return;
+    }
+    std::vector<double> ends{from, to};
+    if (is_monotone) {
+      for (const auto& [test, function] : undecided)
+        if (const auto root = find_root(test, function, from, to)) ends.push_back(*root);
+    } else {
+      const Vector3 dp = slopes(p);
+      undecided_ += (to - from) * std::sqrt(dot(dp, dp)) * powers_[2];
+    }
+    std::ranges::sort(ends);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+      if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), remaining)) emit(ends[i], ends[i + 1]);
+  }
+
+  /// A function that vanishes on the whole curve does not change its sign there, so that either sign is right.
+  static std::int8_t sign(const Enclosure& f, double power, double half) {
+    const double reach = f.reach();
+    if (f.value - reach > kRounding * power) return 1;
+    if (f.value + reach < -kRounding * power) return -1;
+    constexpr double kWide = 1e-3, kVanishing = 1e-12;
+    return half > kWide && std::fabs(f.value) + reach < kVanishing * power ? 1 : 0;
+  }
+
+  Enclosure function_at(std::size_t test, std::size_t function, double u) const {
+    const Enclosure3 p = point(*arc_, Enclosure::variable(u, 0));
+    if (test == tests_.size()) return pkm::generic::edges::evaluate(*arc_->curve->cut, p);
+    Functions f;
+    pkm::generic::edges::evaluate(bodies_[tests_[test].body], p, f);
+    return f[function];
+  }
+
+  /// The root of a monotone function, by Newton's method with bisection.
+  std::optional<double> find_root(std::size_t test, std::size_t function, double from, double to) const {
+    const auto at = [&](double u) { return function_at(test, function, u); };
+    const bool rises = at(to).value > 0;
+    if (rises == (at(from).value > 0)) return {};
+    double u = 0.5 * (from + to);
+    for (int i = 0; i < 100 && to - from > 4e-16 * arc_->length; ++i) {
+      const Enclosure f = at(u);
+      ((f.value > 0) == rises ? to : from) = u;
+      const double newton = u - f.value / f.slope;
+      const double next = newton > from && newton < to ? newton : 0.5 * (from + to);
+      if (next == u) break;
+      u = next;
+    }
+    return u;
+  }
+
+  bool is_active(double u, const std::vector<std::size_t>& tests) const {
+    const Enclosure3 p = point(*arc_, Enclosure::variable(u, 0));
+    return std::ranges::all_of(
+        tests, [&](std::size_t i) { return is_in(tests_[i].body, tests_[i].face ? &*tests_[i].face : nullptr, p); });
+  }
+
+  bool is_in(std::size_t number, const Part* face, const Enclosure3& p) const {
+    const PreparedBody& body = bodies_[number];
+    Functions f;
+    pkm::generic::edges::evaluate(body, p, f);
+    std::array<std::int8_t, kFunctions> signs{};
+    for (std::size_t k = 0; k < count_functions(body); ++k) signs[k] = f[k].value >= 0 ? 1 : -1;
+    return membership(body, face, signs).result > 0;
+  }
+
+  void emit(double from, double to) {
+    const Enclosure3 at = point(*arc_, Enclosure::variable(0.5 * (from + to), 0));
+    const Vector3 p = values(at), dp = slopes(at);
+    const auto& [a, b] = arc_->curve->faces;
+    const Vector3 n = outward(*a, p);
+    const double side =
+        a->number == b->number ? dot(cross(a->away_from_pole, n), dp) : dot(cross(n, outward(*b, p)), dp);
+    const double sign = side > 0 ? 1 : -1;
+    if (ranges_.size() > first_range_ && ranges_.back().to == from && ranges_.back().sign == sign)
+      ranges_.back().to = to;
+    else
+      ranges_.push_back({arc_, from, to, sign});
+  }
+
+  // Sums over the active ranges.
+
+  void close() {
+    std::vector<Vector3> gaps(faces_.size());
+    for (const Range& range : ranges_) {
+      const Vector3 chord = values(point(*range.arc, range.to)) - values(point(*range.arc, range.from));
+      gaps[index(range, 0)] += chord * range.sign;
+      gaps[index(range, 1)] += chord * -range.sign;
+    }
+    for (const Vector3& gap : gaps) result_.gap = std::max(result_.gap, largest(gap));
+    constexpr double kClosed = 1e-9;
+    if (result_.gap > kClosed * size_) result_.is_closed = false;
+  }
+
+  std::size_t index(const Range& range, std::size_t which) const {
+    return static_cast<std::size_t>(range.arc->curve->faces[which] - faces_.data());
+  }
+
+  /// The pole of a whole sphere is placed far from the edges on it.
+  void choose_poles() {
+    for (Face& face : faces_) {
+      if (face.body->kind != Body::Kind::sphere) continue;
+      double best = -1;
+      for (int i = 0; i < 27; ++i) {
+        const Vector3 v{{i % 3 - 1.1, i / 3 % 3 - 0.9, i / 9 - 1.2}};
+        const Vector3 t = v * (1 / std::sqrt(dot(v, v)));
+        double least = 2;
+        for (const Range& range : ranges_) {
+          if (range.arc->curve->faces[0] != &face && range.arc->curve->faces[1] != &face) continue;
+          for (int k = 0; k <= 4; ++k) {
+            const Vector3 p = values(point(*range.arc, range.from + 0.25 * k * (range.to - range.from)));
+            least = std::min(least, 1 + dot(t, p - face.centre) / face.body->radius);
+          }
+        }
+        if (least <= best) continue;
+        best = least;
+        face.away_from_pole = t;
+      }
+    }
+  }
+
+  void integrate(double tolerance) {
+    moments_.assign(faces_.size(), {});
+    double sum = 0, error = 0, magnitude = 0;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const Face& face = faces_[i];
+      if (face.body->kind != Body::Kind::sphere) continue;
+      const Vector3 pole = face.centre - face.away_from_pole * face.body->radius;
+      Enclosure3 p;
+      std::ranges::copy(pole, p.begin());
+      bool is_active = true;
+      for (std::size_t k = 0; k < bodies_.size() && is_active; ++k)
+        is_active = k == face.number || is_in(k, nullptr, p);
+      if (!is_active) continue;
+      moments_[i].radius[0] = face.side * 4 * kPi * face.body->radius * face.body->radius;
+      sum += three_volumes(face, moments_[i]) / 3;
+    }
+    std::vector<Panel> panels;
+    for (std::size_t i = 0; i < ranges_.size(); ++i) panels.push_back({i, ranges_[i].from, ranges_[i].to});
+    for (Panel& panel : panels) evaluate(panel);
+    const auto total = [&](auto member) {
+      double all = 0;
+      for (const Panel& panel : panels) all += std::fabs(panel.*member);
+      return all;
+    };
+    magnitude = std::fabs(sum);
+    for (const Panel& panel : panels) sum += panel.value;
+    magnitude += total(&Panel::value);
+    error = total(&Panel::error);
+    constexpr std::size_t kMaxPanels = 2000;
+    while (error > std::max(tolerance * std::fabs(sum), 1e-15 * magnitude) && panels.size() < kMaxPanels) {
+      const auto worst = std::ranges::max_element(panels, {}, &Panel::error);
+      const double middle = 0.5 * (worst->from + worst->to);
+      Panel left{worst->range, worst->from, middle}, right{worst->range, middle, worst->to};
+      evaluate(left);
+      evaluate(right);
+      sum += left.value + right.value - worst->value;
+      *worst = left;
+      panels.push_back(right);
+      error = total(&Panel::error);
+    }
+    for (const Panel& panel : panels)
+      for (std::size_t k = 0; k < 2; ++k) moments_[index(ranges_[panel.range], k)].add(panel.moments[k], 1);
+    result_.value = std::max(sum, 0.0);
+    result_.error = error + undecided_ + result_.gap * powers_[2] + 1e-15 * magnitude;
+  }
+
+  void evaluate(Panel& panel) {
+    const Range& range = ranges_[panel.range];
+    const NestedRule& rule = kronrod_rule();
+    const NestedRule::Level& level = rule.level.front();
+    const auto& faces = range.arc->curve->faces;
+    std::array<double, NestedRule::kNodes> f{};
+    double fewer = 0, spread = 0;
+    const double length = panel.to - panel.from;
+    for (std::size_t i = 0; i < level.nodes; ++i) {
+      const Enclosure3 at = point(*range.arc, Enclosure::variable(panel.from + length * rule.node[i], 0));
+      const Vector3 p = values(at), dp = slopes(at) * (length * range.sign);
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double sign = k == 0 ? 1 : -1;
+        const Moments m = forms(*faces[k], p, dp);
+        panel.moments[k].add(m, sign * level.weight[i]);
+        f[i] += sign * three_volumes(*faces[k], m) / 3;
+      }
+      panel.value += level.weight[i] * f[i];
+      fewer += level.fewer[i] * f[i];
+    }
+    for (std::size_t i = 0; i < level.nodes; ++i) spread += level.weight[i] * std::fabs(f[i] - panel.value);
+    panel.error = quadpack_error(std::fabs(panel.value - fewer), spread);
+    result_.nodes += static_cast<long>(level.nodes);
+  }
+
+  /// The derivative by a parameter is the integral of the normal speed of the faces.
+  void differentiate(std::vector<Body>& gradient) const {
+    gradient.assign(bodies_.size(), Body{});
+    for (std::size_t i = 0; i < bodies_.size(); ++i) gradient[i].side = gradient[i].radius = 0;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const Face& face = faces_[i];
+      const PreparedBody& body = *face.body;
+      const Moments& m = moments_[i];
+      Body& by = gradient[face.number];
+      if (face.surface == Surface::plane) {  // the speed is the change of radius - axis . p
+        const double area = dot(body.axis, m.normal);
+        by.radius = area;
+        by.axis = cross(m.rotation, body.axis) - body.axis * (area * body.radius);
+        continue;
+      }
+      by.centre += m.normal;
+      by.radius += m.radius[0];
+      if (face.surface == Surface::cylinder || face.surface == Surface::torus) {
+        by.axis += cross(m.rotation, body.axis);
+        by.crank += m.radius[1];
+      } else if (body.kind == Body::Kind::slide || body.kind == Body::Kind::crank) {
+        const auto e = static_cast<std::size_t>(face.part);
+        const double q = e == 0 ? body.from : body.to, by_q = dot(body.along[e], m.normal);
+        if (body.kind == Body::Kind::slide) {
+          (e == 0 ? by.from : by.to) = by_q;
+          by.axis += m.normal * q;
+        } else {
+          (e == 0 ? by.from : by.to) = by_q * body.crank;
+          const auto [s, c] = portable::sincos(q);
+          by.crank += dot(body.zero * c + body.beside * s, m.normal);
+          by.zero += (m.normal * c + cross(m.normal, body.axis) * s) * body.crank;
+          by.axis += cross(body.zero, m.normal) * (s * body.crank);
+        }
+      }
+    }
+  }
+
+  double bound_, size_ = 0;
+  std::array<double, 5> powers_{};
+  std::vector<PreparedBody> bodies_;
+  std::vector<Face> faces_;
+  std::vector<Curve> curves_;
+  std::vector<Arc> arcs_;
+  std::vector<Range> ranges_;
+  std::vector<Moments> moments_;
+  double undecided_ = 0;
+  EdgeVolume result_;
+
+  // of the arc that is searched
+  const Arc* arc_ = nullptr;
+  std::vector<Test> tests_;
+  std::size_t first_range_ = 0;
+};
+
+}  // namespace
+
+EdgeVolume volume(const Solid& solid, double tolerance, std::vector<Body>* gradient) {
+  return Evaluator(solid).run(tolerance, gradient);
+}
+
+}  // namespace pkm::generic::edges

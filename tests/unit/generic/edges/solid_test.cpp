@@ -1,0 +1,258 @@
+#include "engine/generic/edges/solid.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pkm::generic::edges {
+namespace {
+
+using Kind = Body::Kind;
+
+Body ball(const Vector3& centre, double radius, double side = 1) {
+  return {.kind = Kind::sphere, .centre = centre, .radius = radius, .side = side};
+}
+Body cylinder(const Vector3& axis, double radius, double side = 1) {
+  return {.kind = Kind::cylinder, .axis = axis, .radius = radius, .side = side};
+}
+Body half_space(const Vector3& normal, double distance) {
+  return {.kind = Kind::plane, .axis = normal, .radius = distance};
+}
+
+/// Three cranks and rods, at 120 deg about z, below a plane.
+Solid rotary_delta(double base, double platform, double crank, double rod, double from, double to, double depth = 0) {
+  Solid solid{.bodies = {}, .bound = crank + rod};
+  for (int i = 0; i < 3; ++i) {
+    const auto [s, c] = portable::sincos(2 * kPi * i / 3);
+    solid.bodies.push_back({.kind = Kind::crank,
+                            .centre = {{(base - platform) * c, (base - platform) * s, 0}},
+                            .axis = {{-s, c, 0}},
+                            .zero = {{c, s, 0}},
+                            .radius = rod,
+                            .crank = crank,
+                            .from = from,
+                            .to = to});
+  }
+  solid.bodies.push_back(half_space({{0, 0, 1}}, -depth));
+  return solid;
+}
+
+Solid three_slides(const std::vector<Vector3>& centres, const std::vector<Vector3>& axes, double rod, double from,
+                   double to) {
+  Solid solid{.bodies = {}, .bound = 2};
+  for (std::size_t i = 0; i < 3; ++i)
+    solid.bodies.push_back({.kind = Kind::slide,
+                            .centre = centres[i],
+                            .axis = axes[i],
+                            .radius = rod,
+                            .from = from,
+                            .to = to,
+                            .is_first_root = false});
+  return solid;
+}
+Solid orthoglide() { return three_slides({{}, {}, {}}, {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, 0.31, 0.126, 0.383); }
+Solid linear_delta() {
+  std::vector<Vector3> centres;
+  for (int i = 0; i < 3; ++i) {
+    const auto [s, c] = portable::sincos(2 * kPi * i / 3);
+    centres.push_back({{0.24 * c, 0.24 * s, 0}});
+  }
+  const Vector3 up{{0, 0, 1}};
+  return three_slides(centres, {up, up, up}, 0.5, 0, 0.6);
+}
+
+void expect_volume(const Solid& solid, double expected, double relative = 1e-14) {
+  const EdgeVolume found = volume(solid, 1e-9);
+  EXPECT_TRUE(found.is_supported);
+  EXPECT_TRUE(found.is_closed) << found.gap;
+  EXPECT_NEAR(found.value, expected, relative * expected);
+  EXPECT_LE(std::fabs(found.value - expected), found.error + relative * expected);
+  EXPECT_LE(found.error, 1e-9 * expected);
+}
+
+TEST(EdgeVolume, OfABallIsThatOfItsPole) { expect_volume({{ball({{1, 2, 3}}, 0.5)}, 4.5}, kPi / 6); }
+
+TEST(EdgeVolume, OfALensAndALuneAreClosedForms) {
+  const double R = 1, r = 0.8, d = 0.9;
+  const double lens = kPi * (R + r - d) * (R + r - d) * (d * d + 2 * d * (r + R) - 3 * (r - R) * (r - R)) / (12 * d);
+  const Vector3 a{{0.1, 0.2, 0.3}}, b{{0.1, 1.1, 0.3}};
+  expect_volume({{ball(a, R), ball(b, r)}, 3}, lens);
+  expect_volume({{ball(a, R), ball(b, r, -1)}, 3}, 4 * kPi / 3 - lens);
+}
+
+TEST(EdgeVolume, OfABallWithABoreIsThatOfABallOfItsHeight) {
+  const double ring = kPi / 6 * std::pow(2 * std::sqrt(0.75), 3);
+  const Vector3 axis{{0.6, 0, 0.8}};
+  expect_volume({{ball({}, 1), cylinder(axis, 0.5, -1)}, 1}, ring);
+  expect_volume({{ball({}, 1), cylinder(axis, 0.5)}, 1}, 4 * kPi / 3 - ring);
+}
+
+TEST(EdgeVolume, OfVivianisSolidIsAClosedForm) {
+  Body bore = cylinder({{0, 0, 1}}, 0.5);
+  bore.centre = {{0.5, 0, 0}};
+  expect_volume({{ball({}, 1), bore}, 1}, 2 * kPi / 3 - 8.0 / 9);
+}
+
+TEST(EdgeVolume, OfTwoAndThreeEqualCylindersAreSteinmetzSolids) {
+  const double r = 0.7;
+  const Body x = cylinder({{1, 0, 0}}, r), y = cylinder({{0, 1, 0}}, r), z = cylinder({{0, 0, 1}}, r);
+  expect_volume({{x, y}, 2}, 16.0 / 3 * r * r * r);
+  expect_volume({{x, y, z}, 2}, 8 * (2 - std::sqrt(2.0)) * r * r * r);
+}
+
+TEST(EdgeVolume, OfAnObliquelyCutCylinderIsThatOfItsAxis) {
+  expect_volume({{cylinder({{0, 0, 1}}, 0.5), half_space({{0.6, 0, 0.8}}, 0.8), half_space({{0, 0, -1}}, 1)}, 3},
+                kPi * 0.25 * 2);
+}
+
+TEST(EdgeVolume, OfABoxIsAProduct) {
+  Solid box{.bodies = {}, .bound = 4};
+  for (std::size_t i = 0; i < 3; ++i) {
+    Vector3 n{};
+    n[i] = 1;
+    box.bodies.push_back(half_space(n, 1 + static_cast<double>(i)));
+    box.bodies.push_back(half_space(n * -1.0, 0.5));
+  }
+  expect_volume(box, 1.5 * 2.5 * 3.5);
+}
+
+TEST(EdgeVolume, OfASweptHalfBallIsItsCrossSectionTimesThePath) {
+  Solid tube{.bodies = {{.kind = Kind::crank,
+                         .axis = {{0, 0, 1}},
+                         .zero = {{1, 0, 0}},
+                         .radius = 0.3,
+                         .crank = 1,
+                         .from = -1,
+                         .to = 2}},
+             .bound = 1.3};
+  expect_volume(tube, 3 * kPi * 0.09);
+  tube.bodies.front().to = 4;
+  tube.bodies.front().is_first_root = false;
+  expect_volume(tube, 5 * kPi * 0.09);
+  tube.bodies.push_back(half_space({{0, 0, 1}}, 0));
+  expect_volume(tube, 2.5 * kPi * 0.09);
+}
+
+/// References: cylindrical decomposition, to the digits that it reports.
+TEST(EdgeVolume, OfParallelRobotsAgreesWithCylindricalDecomposition) {
+  const double deg = kPi / 180;
+  expect_volume(rotary_delta(0.2, 0.05, 0.2, 0.5, -40 * deg, 95 * deg), 0.0790895627332, 1e-12);
+  expect_volume(linear_delta(), 0.0974508000056, 1e-11);
+  expect_volume(orthoglide(), 0.0174201287309, 1e-11);
+}
+
+/// References: brute force by inverse kinematics, and certified bounds.
+TEST(EdgeVolume, OfWideCranksIsRight) {
+  expect_volume(rotary_delta(.12940561859303862, .041944237984920529, .27486452962414226, .65021369769406367,
+                             -.96846697688562788, 2.0713768713352843),
+                0.501861152079, 1e-11);
+  expect_volume(rotary_delta(.13426198660357239, .040892405365460772, .17781219728363606, .61440903185353202,
+                             -.30435893295593752, 2.0837650793270677, .2712143322415246),
+                0.107478517961, 1e-11);
+}
+
+TEST(EdgeVolume, IsZeroOfAnEmptySolid) {
+  const EdgeVolume found = volume({{ball({}, 1), ball({{3, 0, 0}}, 1)}, 4}, 1e-9);
+  EXPECT_TRUE(found.is_closed);
+  EXPECT_EQ(found.value, 0);
+}
+
+TEST(EdgeVolume, RefusesATorusThatMeetsACylinder) {
+  Solid solid = rotary_delta(0.2, 0.05, 0.2, 0.5, -0.7, 1.6);
+  solid.bodies.push_back(cylinder({{0, 0, 1}}, 0.1));
+  EXPECT_FALSE(volume(solid, 1e-9).is_supported);
+}
+
+TEST(EdgeVolume, IsNotClosedIfTwoFacesCoincide) {
+  EXPECT_FALSE(volume({{cylinder({{0, 0, 1}}, 1), cylinder({{0, 0, 1}}, 1)}, 2}, 1e-9).is_closed &&
+               volume({{cylinder({{0, 0, 1}}, 1), cylinder({{0, 0, 1}}, 1)}, 2}, 1e-9).value > 0);
+}
+
+/// Compares the derivative by a number with a central difference.
+template <class Change>
+void expect_derivative(const Solid& solid, double derivative, const Change& change) {
+  const auto at = [&](double step) {
+    Solid changed = solid;
+    change(changed, step);
+    return volume(changed, 1e-13).value;
+  };
+  constexpr double kStep = 1e-4;
+  const double difference = (8 * (at(kStep) - at(-kStep)) - (at(2 * kStep) - at(-2 * kStep))) / (12 * kStep);
+  EXPECT_NEAR(derivative, difference, 1e-8);
+}
+
+Vector3 unit(const Vector3& v) { return v * (1 / std::sqrt(dot(v, v))); }
+
+void expect_gradient(const Solid& solid) {
+  std::vector<Body> gradient;
+  ASSERT_TRUE(volume(solid, 1e-13, &gradient).is_closed);
+  for (std::size_t i = 0; i < solid.bodies.size(); ++i) {
+    SCOPED_TRACE(i);
+    const Body& by = gradient[i];
+    for (const auto member : {&Body::radius, &Body::crank, &Body::from, &Body::to}) {
+      if (solid.bodies[i].*member == 0) continue;
+      expect_derivative(solid, by.*member, [&](Solid& s, double step) { s.bodies[i].*member += step; });
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (solid.bodies[i].kind != Kind::plane)
+        expect_derivative(solid, by.centre[k], [&](Solid& s, double step) { s.bodies[i].centre[k] += step; });
+      if (solid.bodies[i].kind == Kind::sphere) continue;
+      const Vector3 a = solid.bodies[i].axis, zero = solid.bodies[i].zero;
+      Vector3 e{};
+      e[k] = 1;
+      const Vector3 da = e - a * a[k];
+      // zero follows the axis: it remains normal to it
+      expect_derivative(solid, dot(by.axis, da) - dot(zero, da) * dot(by.zero, a), [&](Solid& s, double step) {
+        s.bodies[i].axis = unit(a + da * step);
+        s.bodies[i].zero = zero - s.bodies[i].axis * dot(zero, s.bodies[i].axis);
+        if (dot(zero, zero) > 0) s.bodies[i].zero = unit(s.bodies[i].zero);
+      });
+      if (solid.bodies[i].kind != Kind::crank) continue;
+      const Vector3 dz = e - a * a[k] - zero * zero[k];
+      expect_derivative(solid, dot(by.zero, dz),
+                        [&](Solid& s, double step) { s.bodies[i].zero = unit(zero + dz * step); });
+    }
+  }
+}
+
+TEST(EdgeVolumeGradient, AgreesWithDifferencesForQuadrics) {
+  Body bore = cylinder({{0.6, 0, 0.8}}, 0.4, -1);
+  bore.centre = {{0.1, 0.05, 0}};
+  expect_gradient({{ball({{0.1, 0, 0}}, 1), ball({{0.5, 0.3, 0.2}}, 0.9), bore, half_space({{0, 0.6, 0.8}}, 0.4)}, 2});
+}
+TEST(EdgeVolumeGradient, AgreesWithDifferencesForSlides) {
+  Solid solid = orthoglide();
+  for (std::size_t i = 0; i < 3; ++i) {
+    solid.bodies[i].radius += 0.01 * static_cast<double>(i);
+    solid.bodies[i].from += 0.02 * static_cast<double>(i);
+  }
+  expect_gradient(solid);
+}
+/// A single crank: two tori intersect in closed form only if they are mirror images.
+TEST(EdgeVolumeGradient, AgreesWithDifferencesForACrank) {
+  Solid solid = rotary_delta(0.2, 0.05, 0.2, 0.5, -0.4, 1.6);
+  solid.bodies.erase(solid.bodies.begin() + 1, solid.bodies.begin() + 3);
+  solid.bodies.front().centre = {{0.1, 0.02, -0.03}};
+  solid.bodies.push_back(ball({{0, 0.1, -0.3}}, 0.4));
+  expect_gradient(solid);
+}
+/// The three limbs together, by the dimensions that they share.
+TEST(EdgeVolumeGradient, AgreesWithDifferencesForARotaryDelta) {
+  const Solid solid = rotary_delta(0.2, 0.05, 0.2, 0.5, -0.7, 1.6, 0.3);
+  std::vector<Body> gradient;
+  ASSERT_TRUE(volume(solid, 1e-13, &gradient).is_closed);
+  for (const auto member : {&Body::radius, &Body::crank, &Body::from, &Body::to}) {
+    const double sum = gradient[0].*member + gradient[1].*member + gradient[2].*member;
+    expect_derivative(solid, sum, [&](Solid& s, double step) {
+      for (std::size_t i = 0; i < 3; ++i) s.bodies[i].*member += step;
+    });
+  }
+  double by_base = 0;
+  for (std::size_t i = 0; i < 3; ++i) by_base += dot(gradient[i].centre, solid.bodies[i].zero);
+  expect_derivative(solid, by_base, [&](Solid& s, double step) {
+    for (std::size_t i = 0; i < 3; ++i) s.bodies[i].centre += s.bodies[i].zero * step;
+  });
+  expect_derivative(solid, gradient[3].radius, [&](Solid& s, double step) { s.bodies[3].radius += step; });
+}
+
+}  // namespace
+}  // namespace pkm::generic::edges
