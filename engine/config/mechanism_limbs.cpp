@@ -158,8 +158,9 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
   return limb;
 }
 
-/// Adds the polynomial constraints that are equivalent to those of a crank's range and reach.
-void add_polynomial_constraints(const limbs::Limb& limb, generic::Model& model) {
+/// Adds the geometry and the polynomial constraints that are equivalent to those of a limb's range and reach.
+/// @param has_range  the last two margins of the model are those of the joint's range
+void add_equivalent_constraints(const limbs::Limb& limb, bool has_range, generic::Model& model) {
   std::vector<expression::Node> constraints;
   for (const limbs::Constraint& constraint : limb.constraints) constraints.push_back(constraint.margin.node());
   if (limb.annulus) {
@@ -167,10 +168,17 @@ void add_polynomial_constraints(const limbs::Limb& limb, generic::Model& model) 
     if (limb.crank_range) annulus.crank_range = model.crank_ranges.size();
     model.annuli.push_back(annulus);
   }
+  if (!has_range) return;
+  for (std::size_t i = model.margins.size() - 2; i < model.margins.size(); ++i)
+    constraints.push_back(model.margins[i].node);
+  if (limb.path) {
+    const limbs::RodAndPath& path = *limb.path;
+    model.paths.push_back({path.is_circle, nodes(path.v), nodes(path.axis), nodes(path.zero), path.crank.node(),
+                           path.rod.node(), path.branch.node(), model.ranges.back().from, model.ranges.back().to,
+                           constraints});
+  }
   if (limb.crank_range) {
     const limbs::CrankRange& r = *limb.crank_range;
-    for (std::size_t i = model.margins.size() - 2; i < model.margins.size(); ++i)  // those of the range
-      constraints.push_back(model.margins[i].node);
     model.crank_ranges.push_back({r.at_min.node(), r.at_max.node(), r.after_min.node(), r.before_max.node(),
                                   r.half_turn.node(), r.reach.node(), r.branch.node(), constraints});
   }
@@ -191,7 +199,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   model.closures.push_back(limb.closure.node());
   model.info.closed_forms.push_back(copy.drive + ": " + limb.form);
   add_range(copy.table, copy.group, joint, model.info.joints.back().unit, limb.joint, draft);
-  add_polynomial_constraints(limb, model);
+  add_equivalent_constraints(limb, copy.table.has("range"), model);
   if (copy.drive != "slider" || copy.table.has("rod")) model.rods.push_back({nodes(limb.C), nodes(at.B)});
   add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);

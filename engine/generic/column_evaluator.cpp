@@ -9,6 +9,7 @@
 #include "engine/generic/conditioning.hpp"
 #include "engine/generic/corner_curves/volume.hpp"
 #include "engine/generic/dynamics.hpp"
+#include "engine/generic/edges/edge_plan.hpp"
 #include "engine/generic/inertia_batch.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/sample_formulas.hpp"
@@ -105,6 +106,8 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     // digits are cheap.
     const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
     integral_.emplace(std::move(best), tolerance);
+    if (!request.needs_samples() && dual_registers().size() == sweep_.swept.size())
+      edges_.emplace(evaluation, mode_, sweep_.swept, box, tolerance);
     if (request.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
     if (request.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, request.rotors);
     if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, dual_registers(), mode_);
@@ -195,14 +198,18 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     }
   }
 
-  /// By corner curves if they serve the design, otherwise by slices.
+  /// By edges or corner curves if they serve the design, otherwise by slices.
   Integral<double> measure(std::span<const double> inputs, Room& memory) const {
+    if (edges_)
+      if (const auto found = edges_->measure(inputs)) return *found;
     if (corner_curves_)
       if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) return *found;
     return integral_->measure(inputs, memory.integral);
   }
   Integral<double> measure_with_gradient(std::span<const double> inputs, std::span<double> by_input,
                                          Room& memory) const {
+    if (edges_)
+      if (const auto found = edges_->measure(inputs, by_input)) return *found;
     if (corner_curves_)
       if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) {
         corner_curves_->add_gradient(by_input, memory.corner_curves);
@@ -307,6 +314,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
   std::optional<NestedIntegral> integral_;
+  std::optional<edges::EdgePlan> edges_;            ///< if the workspace without samples is a solid with edges
   std::optional<CornerCurves> corner_curves_;       ///< if a plan without samples is served by them
   std::optional<SampleConditioning> conditioning_;  ///< if they are requested
   std::optional<InertiaBatch> inertia_;

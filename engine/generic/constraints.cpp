@@ -17,6 +17,11 @@ void for_each_node(PoseConstraints& constraints, const Visit& visit) {
     std::ranges::for_each(annulus.surfaces, visit);
     std::ranges::for_each(annulus.constraints, visit);
   }
+  for (RodAndPathNodes& path : constraints.paths) {
+    for (auto* const vector : {&path.v, &path.axis, &path.zero}) std::ranges::for_each(*vector, visit);
+    for (Node* const node : {&path.crank, &path.rod, &path.branch, &path.from, &path.to}) visit(*node);
+    std::ranges::for_each(path.constraints, visit);
+  }
   for (auto& ends : constraints.box)
     if (ends) std::ranges::for_each(*ends, visit);
 }
@@ -26,8 +31,12 @@ void for_each_node(PoseConstraints& constraints, const Visit& visit) {
 PoseConstraints constraints_of(const Model& model, std::size_t mode) {
   std::vector<std::optional<double>> signs(model.inputs.sign(0));
   for (const double sign : model.signs[mode]) signs.emplace_back(sign);
-  PoseConstraints constraints{
-      .graph = {}, .all = {}, .crank_ranges = model.crank_ranges, .annuli = model.annuli, .box = model.box};
+  PoseConstraints constraints{.graph = {},
+                              .all = {},
+                              .crank_ranges = model.crank_ranges,
+                              .annuli = model.annuli,
+                              .paths = model.paths,
+                              .box = model.box};
   for (const auto* const list : {&model.domains, &model.margins})
     for (const Result& result : *list) constraints.all.push_back(result.node);
   constraints.all.insert(constraints.all.end(), model.defined.begin(), model.defined.end());

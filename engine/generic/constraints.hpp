@@ -13,6 +13,7 @@ struct PoseConstraints {
   std::vector<Node> all;  ///< satisfied if >= 0: Model::domains, margins, defined
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
+  std::vector<RodAndPathNodes> paths;
   std::vector<std::optional<std::array<Node, 2>>> box;  ///< by coordinate
 };
 

@@ -92,6 +92,14 @@ struct AnnulusNodes {
   std::optional<std::size_t> crank_range;  ///< of the same limb
 };
 
+/// limbs::RodAndPath with the range of the joint, and the constraints of poses that are equivalent to both.
+struct RodAndPathNodes {
+  bool is_circle;
+  std::array<Node, 3> v, axis, zero;
+  Node crank, rod, branch, from, to;
+  std::vector<Node> constraints;
+};
+
 /// The rod or telescope of a limb. C is fixed for given joints; B is fixed to the platform, or given by a formula.
 struct RodNodes {
   std::array<Node, 3> C, B;
@@ -202,6 +210,7 @@ struct Model {
   std::vector<ReportedMargin> reported_margins;
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
+  std::vector<RodAndPathNodes> paths;
   std::vector<Node> quantities;  ///< in the order of MechanismInfo::quantities
   std::vector<ReportLimit> report_limits;
   std::vector<Result> angles;  ///< of passive joints

@@ -4,9 +4,7 @@ namespace pkm::generic::edges {
 namespace {
 
 // Relative to quantities of order one; coincidences of this size are taken as exact.
-constexpr double kParallel = 1e-12;
-
-double norm(const Vector3& v) { return std::sqrt(dot(v, v)); }
+constexpr double kCoincident = 1e-12;
 
 /// A unit vector normal to a unit vector.
 Vector3 any_normal(const Vector3& axis) {
@@ -40,6 +38,13 @@ Quadric quadric_of(const Face& face) {
   return q;
 }
 
+/// |p|^2 as an affine function on a sphere.
+std::optional<Affine> square_on(const Face& face) {
+  if (face.surface != Surface::sphere) return {};
+  const double r = face.body->radius;
+  return Affine{face.centre * 2.0, r * r - dot(face.centre, face.centre)};
+}
+
 /// The same quadric as a function of p - c. For spheres and planes.
 Quadric relative_to(const Vector3& c, const Quadric& q) {
   return {.square = q.square, .v = q.v + c * (2 * q.square), .k = q.square * dot(c, c) + dot(q.v, c) + q.k};
@@ -47,7 +52,7 @@ Quadric relative_to(const Vector3& c, const Quadric& q) {
 
 Curve circle(const Face& a, const Face& b, const Vector3& o, const Vector3& normal, double radius) {
   const Vector3 x = any_normal(normal);
-  return {.faces = {&a, &b}, .o = o, .x = x * radius, .y = cross(normal, x) * radius};
+  return {.faces = {&a, &b}, .o = o, .x = x * radius, .y = cross(normal, x) * radius, .square = square_on(a)};
 }
 
 void sphere_and_plane(const Face& sphere, const Face& other, const Vector3& normal, double distance,
@@ -75,7 +80,7 @@ void on_cylinder(const Face& cylinder, const Face& other, std::vector<Curve>& cu
   for (std::size_t i = 0; i < 5; ++i) C[i] = -q.across * mm[i];
   for (std::size_t i = 0; i < 3; ++i) C[i] += h[i] + q.square * (i == 0 ? 1.0 : 2.0) * e[i];
   C[0] += q.square * r * r + q.k;
-  Curve curve{.faces = {&cylinder, &other}};
+  Curve curve{.faces = {&cylinder, &other}, .square = square_on(other)};
   if (other.surface == Surface::plane) {  // s = -C / (2 B), where B is constant
     const Vector3 shift = a * (-0.5 / B[0]);
     curve.o = c + shift * C[0];
@@ -108,12 +113,12 @@ void parallel_lines(const Face& a, const Face& b, const Vector3& centre, double 
 void cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Curve>& curves) {
   const Vector3 &a = cylinder.body->axis, &c = cylinder.centre;
   const double r = cylinder.body->radius;
-  if (other.surface == Surface::plane && std::fabs(dot(a, other.body->axis)) < kParallel) {
+  if (other.surface == Surface::plane && std::fabs(dot(a, other.body->axis)) < kCoincident) {
     parallel_lines(cylinder, other, c, r, a, other.body->axis, other.body->radius, curves);
-  } else if (other.surface == Surface::cylinder && norm(cross(a, other.body->axis)) < kParallel) {
+  } else if (other.surface == Surface::cylinder && norm(cross(a, other.body->axis)) < kCoincident) {
     const Vector3 between = other.centre - c, across = between - a * dot(between, a);
     const double distance = norm(across);
-    if (distance < kParallel * r) return;
+    if (distance < kCoincident * r) return;
     const Vector3 normal = across * (1 / distance);
     const double from_c = 0.5 * (distance + (r - other.body->radius) * (r + other.body->radius) / distance);
     parallel_lines(cylinder, other, c, r, a, normal, dot(c, normal) + from_c, curves);
@@ -130,7 +135,7 @@ void on_torus(const Face& torus, const Face& other, const Quadric& absolute, con
   const PreparedBody& body = *torus.body;
   const Quadric q = relative_to(torus.centre, absolute);
   const double l = body.crank, rod = body.radius, beta = dot(q.v, body.axis), size = norm(q.v);
-  if (q.square == 0 && std::fabs(beta) < kParallel * size && std::fabs(q.k) < kParallel * size * (l + rod)) {
+  if (q.square == 0 && std::fabs(beta) < kCoincident * size && std::fabs(q.k) < kCoincident * size * (l + rod)) {
     // A plane through the axis contains two meridian circles. Its further points are on the axis.
     const Vector3 e = cross(body.axis, q.v) * (1 / size);
     for (const double sign : {1.0, -1.0})
@@ -158,7 +163,7 @@ void on_torus(const Face& torus, const Face& other, const Quadric& absolute, con
 bool two_tori(const Face& a, const Face& b, std::vector<Curve>& curves) {
   const PreparedBody &A = *a.body, &B = *b.body;
   const double l = A.crank, l_2 = l * l, size = l + A.radius;
-  if (std::fabs(l - B.crank) > kParallel * size || std::fabs(A.radius - B.radius) > kParallel * size) return false;
+  if (std::fabs(l - B.crank) > kCoincident * size || std::fabs(A.radius - B.radius) > kCoincident * size) return false;
   const Vector3 &c = a.centre, between = b.centre - a.centre;
   // As functions of P = p - c: K_a - K_b = v . P + k, Y_a - s Y_b = m . P + n.
   const Vector3 v = between * 2.0;
@@ -170,14 +175,14 @@ bool two_tori(const Face& a, const Face& b, std::vector<Curve>& curves) {
     // 4 l^2 - K_a - K_b = -2 |P|^2 + v . P + r
     const double r = 2 * l_2 + 2 * A.radius * A.radius - dot(between, between);
     Quadric plane, rest;
-    if (norm(m) < kParallel && std::fabs(n) < kParallel * size) {
-      if (norm(v) < kParallel * size) return false;
+    if (norm(m) < kCoincident && std::fabs(n) < kCoincident * size) {
+      if (norm(v) < kCoincident * size) return false;
       plane = {.v = v, .k = k};
       rest = {.square = -2, .v = v, .k = r};
     } else {
       // (K_a - K_b) = factor (Y_a - s Y_b)
       const double factor = (dot(v, m) + k * n) / (dot(m, m) + n * n);
-      if (norm(v - m * factor) > kParallel * size || std::fabs(k - n * factor) > kParallel * size * size) continue;
+      if (norm(v - m * factor) > kCoincident * size || std::fabs(k - n * factor) > kCoincident * size * size) continue;
       plane = {.v = m, .k = n};
       rest = {.square = -2 * factor, .v = v * factor - other_m * (4 * l_2), .k = r * factor - 4 * l_2 * other_n};
     }
@@ -270,14 +275,14 @@ bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Cu
   } else if (a.surface == Surface::sphere && b.surface == Surface::sphere) {
     const Vector3 between = b.centre - a.centre;
     const double distance = norm(between), r = a.body->radius, r_b = b.body->radius;
-    if (distance > kParallel * (r + r_b))
+    if (distance > kCoincident * (r + r_b))
       sphere_and_plane(a, b, between * (1 / distance), 0.5 * (distance + (r - r_b) * (r + r_b) / distance), curves);
   } else if (a.surface == Surface::sphere) {
     sphere_and_plane(a, b, b.body->axis, b.body->radius - dot(a.centre, b.body->axis), curves);
   } else {
     const Vector3 &m = a.body->axis, &n = b.body->axis, direction = cross(m, n);
     const double sine_2 = dot(direction, direction);
-    if (sine_2 < kParallel * kParallel) return true;
+    if (sine_2 < kCoincident * kCoincident) return true;
     const Vector3 o = (cross(n, direction) * a.body->radius + cross(direction, m) * b.body->radius) * (1 / sine_2);
     curves.push_back({.kind = Curve::Kind::line, .faces = {&a, &b}, .o = o, .x = direction * (1 / std::sqrt(sine_2))});
   }
@@ -297,14 +302,15 @@ bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs) {
     arcs.push_back({.curve = &curve, .length = 2 * kPi});
     return true;
   }
-  double size = 0, scale = 0;
+  double size = 0;
   for (const double d : curve.D) size = std::max(size, std::fabs(d));
-  scale = size;
-  if (!(scale > 0)) return false;
-  // No turning point is at the start, which is arbitrary.
-  constexpr double kStart = 0.1234;
+  if (!(size > 0)) return false;
+  // Meridians of a torus outside of its range are left out. Otherwise, no turning point is at the arbitrary start.
+  const bool on_torus = curve.kind == Curve::Kind::on_torus;
+  const double start = on_torus ? curve.faces[0]->body->from : 0.1234;
+  const double length = on_torus ? curve.faces[0]->body->to - start : 2 * kPi;
   std::vector<Root> roots;
-  isolate(curve.D, kStart, kStart + 2 * kPi, 4e-16 * size, roots);
+  isolate(curve.D, start, start + length, 4e-16 * size, roots);
   const auto add = [&](const Arc& arc) {
     for (const double branch : {1.0, -1.0}) {
       arcs.push_back(arc);
@@ -312,51 +318,62 @@ bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs) {
     }
   };
   const auto is_positive = [&](double t) { return value_of_D(curve.D, sine_cosine(Enclosure(t))).value > 0; };
-  if (roots.empty()) {
-    if (is_positive(kStart)) add({.curve = &curve, .t_0 = kStart, .length = 2 * kPi});
-    return true;
+  if (!on_torus && !roots.empty()) {  // begin and end at the same root
+    roots.push_back({roots.front().t + length, roots.front().order});
+  } else {
+    roots.insert(roots.begin(), {start, 0});
+    roots.push_back({start + length, 0});
   }
-  for (std::size_t i = 0; i < roots.size(); ++i) {
-    const Root& from = roots[i];
-    Root to = roots[(i + 1) % roots.size()];
-    if (i + 1 == roots.size()) to.t += 2 * kPi;
+  for (std::size_t i = 0; i + 1 < roots.size(); ++i) {
+    const Root &from = roots[i], &to = roots[i + 1];
     const double middle = 0.5 * (from.t + to.t);
     if (!is_positive(middle)) continue;
-    for (const auto& [root, direction] : {std::pair{from, 1.0}, {to, -1.0}}) {
-      const double length = std::fabs(middle - root.t);
+    const auto add_from = [&](const Root& root, double end) {
+      const double distance = std::fabs(end - root.t);
       add({.curve = &curve,
            .t_0 = root.t,
-           .direction = direction,
+           .direction = end > root.t ? 1.0 : -1.0,
            .order = root.order,
-           .length = root.order == 1 ? std::sqrt(length) : length});
-    }
+           .length = root.order == 1 ? std::sqrt(distance) : distance});
+    };
+    const double end = to.order == 0 ? to.t : from.order == 0 ? from.t : middle;
+    if (end != from.t) add_from(from, end);
+    if (end != to.t) add_from(to, end);
   }
   return true;
 }
 
-Enclosure3 point(const Arc& arc, const Enclosure& u) {
+CurvePoint point(const Arc& arc, const Enclosure& u) {
   const Curve& curve = *arc.curve;
   const Enclosure x = (arc.order == 1 ? square(u) : u) * arc.direction, t = x + arc.t_0;
-  const auto combine = [](const Vector3& o, const Vector3& a, const Enclosure& s, const Vector3& b,
-                          const Enclosure& r) {
-    Enclosure3 p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = s * a[i] + r * b[i] + o[i];
-    return p;
+  CurvePoint at;
+  // p = o + s a + r b
+  const auto combine = [&](const Vector3& o, const Vector3& a, const Enclosure& s, const Vector3& b,
+                           const Enclosure& r) {
+    for (std::size_t i = 0; i < 3; ++i) at.p[i] = s * a[i] + r * b[i] + o[i];
   };
-  if (curve.kind == Curve::Kind::line) return combine(curve.o, curve.x, t, curve.y, t);
-  const SineCosine sc = sine_cosine(t);
-  const auto& [sine, cosine] = sc;
+  const auto add = [&](const Vector3& a, const Enclosure& s) {
+    for (std::size_t i = 0; i < 3; ++i) at.p[i] += s * a[i];
+  };
+  if (curve.kind == Curve::Kind::line) {
+    for (std::size_t i = 0; i < 3; ++i) at.p[i] = t * curve.x[i] + curve.o[i];
+    at.square = square(t) * dot(curve.x, curve.x) + t * (2 * dot(curve.o, curve.x)) + dot(curve.o, curve.o);
+    return at;
+  }
+  const SineCosine angle = sine_cosine(t);
+  const auto& [sine, cosine] = angle;
   Enclosure root;
   if (curve.has_root) {
-    root = arc.order == 0 ? sqrt(value_of_D(curve.D, sc))
+    root = arc.order == 0 ? sqrt(value_of_D(curve.D, angle))
                           : u * sqrt(quotient(curve.D, arc.t_0, arc.order, x) * (arc.order == 1 ? arc.direction : 1.0));
     root = root * arc.branch;
   }
   if (curve.kind == Curve::Kind::trigonometric) {
-    Enclosure3 p = combine(curve.o, curve.x, cosine, curve.y, sine);
-    if (curve.has_root)
-      for (std::size_t i = 0; i < 3; ++i) p[i] += root * curve.w[i];
-    return p;
+    combine(curve.o, curve.x, cosine, curve.y, sine);
+    if (curve.has_root) add(curve.w, root);
+    at.square = curve.square ? dot(at.p, curve.square->v) + curve.square->k
+                             : square(at.p[0]) + square(at.p[1]) + square(at.p[2]);
+    return at;
   }
   const Face& torus = *curve.faces[0];
   const PreparedBody& body = *torus.body;
@@ -367,14 +384,15 @@ Enclosure3 point(const Arc& arc, const Enclosure& u) {
   const Enclosure gamma = (xi * l + (q.square * (l * l + rod * rod) + q.k)) * (-1 / rod);
   const Enclosure scale = inverse(square(alpha) + beta * beta) * rod;
   const Enclosure along = (alpha * gamma - root * beta) * scale + l, height = (gamma * beta + alpha * root) * scale;
-  return combine(torus.centre, body.zero, along * cosine, body.beside, along * sine) +
-         combine({}, body.axis, height, {}, Enclosure());
+  combine(torus.centre, body.zero, along * cosine, body.beside, along * sine);
+  add(body.axis, height);
+  at.square = along * (2 * l) + dot(at.p, torus.centre) * 2.0 + (rod * rod - l * l - dot(torus.centre, torus.centre));
+  return at;
 }
 
-Enclosure evaluate(const Quadric& quadric, const Enclosure3& p) {
-  Enclosure f = dot(p, quadric.v) + quadric.k;
-  if (quadric.square != 0) f += (square(p[0]) + square(p[1]) + square(p[2])) * quadric.square;
-  if (quadric.across != 0) f = f - square(dot(p, quadric.axis)) * quadric.across;
+Enclosure evaluate(const Quadric& quadric, const CurvePoint& at) {
+  Enclosure f = dot(at.p, quadric.v) + at.square * quadric.square + quadric.k;
+  if (quadric.across != 0) f = f - square(dot(at.p, quadric.axis)) * quadric.across;
   return f;
 }
 

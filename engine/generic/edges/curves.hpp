@@ -35,8 +35,9 @@ struct Curve {
   Vector3 o{}, x{}, y{}, w{};  ///< w: 0 without a square root
   bool has_root = false;
   Trigonometric D{};
-  Quadric with{};                ///< on_torus: the other surface, relative to the centre of the torus
-  std::optional<Quadric> cut{};  ///< where this vanishes, the two surfaces touch
+  std::optional<Affine> square{};  ///< |p|^2 on a sphere
+  Quadric with{};                  ///< on_torus: the other surface, relative to the centre of the torus
+  std::optional<Quadric> cut{};    ///< where this vanishes, the two surfaces touch
 };
 
 /// Part of one branch of a curve: u in [0, length].
@@ -60,7 +61,7 @@ bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs);
 
 /// Encloses the points of an arc.
 /// @param u  Enclosure::variable(): the slope of the result is dp/du
-Enclosure3 point(const Arc& arc, const Enclosure& u);
-Enclosure evaluate(const Quadric& quadric, const Enclosure3& p);
+CurvePoint point(const Arc& arc, const Enclosure& u);
+Enclosure evaluate(const Quadric& quadric, const CurvePoint& at);
 
 }  // namespace pkm::generic::edges

@@ -22,6 +22,7 @@
 namespace pkm::generic::edges {
 
 using Vector3 = Vector<double, 3>;
+inline double norm(const Vector3& v) { return std::sqrt(dot(v, v)); }
 
 struct Enclosure {
   double value = 0, slope = 0;  ///< at the middle

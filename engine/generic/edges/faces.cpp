@@ -24,63 +24,57 @@ bool is_on_face(const Bits& is, Part part, bool is_first_root, bool half_turn) {
   return half_turn ? after_from && before_to : after_from || before_to;
 }
 
-/// Membership for all 3^6 combinations of signs.
-using Table = std::array<Membership, 729>;
+/// A function of the signs as a set of the 2^6 combinations, one bit each, and for each sign the set of those in which
+/// the result depends on it.
+struct Rule {
+  std::uint64_t holds = 0;
+  std::array<std::uint64_t, kFunctions> depends{};
+};
 
-template <class Rule>
-Table table_of(const Rule& rule) {
-  Table table;
-  for (std::size_t code = 0; code < table.size(); ++code) {
-    std::array<int, kFunctions> sign{};
-    for (std::size_t i = 0, rest = code; i < kFunctions; ++i, rest /= 3) sign[i] = static_cast<int>(rest % 3) - 1;
-    Membership found{0, 0};
-    bool may_be_in = false, may_be_out = false;
-    for (unsigned all = 0; all < (1U << kFunctions); ++all) {
-      Bits is{};
-      bool agrees = true;
-      for (std::size_t i = 0; i < kFunctions; ++i) {
-        is[i] = ((all >> i) & 1U) != 0;
-        agrees = agrees && (sign[i] == 0 || is[i] == (sign[i] > 0));
-      }
-      if (!agrees) continue;
-      const bool in = rule(is);
-      (in ? may_be_in : may_be_out) = true;
-      for (std::size_t i = 0; i < kFunctions; ++i) {
-        Bits other = is;
-        other[i] = !is[i];
-        if (sign[i] == 0 && rule(other) != in) found.relevant = static_cast<std::uint8_t>(found.relevant | (1U << i));
-      }
-    }
-    found.result = static_cast<std::int8_t>(may_be_in && may_be_out ? 0 : may_be_in ? 1 : -1);
-    table[code] = found;
+template <class Holds>
+Rule rule_of(const Holds& holds) {
+  Rule rule;
+  for (std::size_t code = 0; code < 64; ++code) {
+    Bits is{};
+    for (std::size_t i = 0; i < kFunctions; ++i) is[i] = (code >> i & 1) != 0;
+    if (holds(is)) rule.holds |= std::uint64_t{1} << code;
   }
-  return table;
+  for (std::size_t code = 0; code < 64; ++code)
+    for (std::size_t i = 0; i < kFunctions; ++i)
+      if (((rule.holds >> code ^ rule.holds >> (code ^ std::size_t{1} << i)) & 1) != 0)
+        rule.depends[i] |= std::uint64_t{1} << code;
+  return rule;
 }
 
 /// By root, half turn, and the body or the part of its boundary.
-const Table& table(bool is_first_root, bool half_turn, std::size_t what) {
-  static const auto tables = [] {
-    std::array<std::array<std::array<Table, 4>, 2>, 2> all;
+const Rule& rule(bool is_first_root, bool half_turn, std::size_t what) {
+  static const auto rules = [] {
+    std::array<std::array<std::array<Rule, 4>, 2>, 2> all;
     for (const bool first : {false, true})
       for (const bool half : {false, true})
         for (std::size_t i = 0; i < 4; ++i)
-          all[first][half][i] = table_of([&](const Bits& is) {
+          all[first][half][i] = rule_of([&](const Bits& is) {
             return i == 0 ? is_in_body(is, first, half) : is_on_face(is, static_cast<Part>(i - 1), first, half);
           });
     return all;
   }();
-  return tables[is_first_root][half_turn][what];
+  return rules[is_first_root][half_turn][what];
 }
 
 }  // namespace
 
 PreparedBody::PreparedBody(const Body& body) : Body(body) {
+  height = {axis, kind == Kind::plane ? 0 : -dot(axis, centre)};
+  distance = {centre * -2.0, dot(centre, centre) + crank * crank - radius * radius};
+  if (!has_range(body)) return;
   if (kind == Kind::crank) beside = cross(axis, zero);
   for (std::size_t e = 0; e < 2; ++e) {
     const double q = e == 0 ? from : to;
     const auto [s, c] = portable::sincos(q);
     end[e] = centre + (kind == Kind::slide ? axis * q : zero * (crank * c) + beside * (crank * s));
     along[e] = kind == Kind::slide ? axis : beside * c - zero * s;
+    from_end[e] = {end[e] * -2.0, dot(end[e], end[e]) - radius * radius};
+    ahead[e] = {along[e], -dot(along[e], end[e])};
   }
 }
 
@@ -118,60 +112,53 @@ void add_faces(const PreparedBody& body, std::size_t number, std::vector<Face>& 
   faces.push_back(face);
 }
 
-std::size_t count_functions(const Body& body) { return has_range(body) ? kFunctions : 1; }
-
-int degree(const Body& body, std::size_t function) {
+std::size_t degree(const Body& body, std::size_t function) {
   if (!has_range(body)) return body.kind == Body::Kind::plane ? 1 : 2;
   return function == 2 || function == 3 ? 1 : function == 4 && body.kind == Body::Kind::crank ? 4 : 2;
 }
 
-void evaluate(const PreparedBody& body, const Enclosure3& p, Functions& f) {
-  if (body.kind == Body::Kind::plane) {
-    f[0] = -dot(p, body.axis) + body.radius;
-    return;
-  }
-  const Enclosure3 P = p - body.centre;
-  const Enclosure squares = square(P[0]) + square(P[1]) + square(P[2]);
-  const double rod_2 = body.radius * body.radius;
+Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoint& at) {
+  const auto value = [&](const Affine& f) { return dot(at.p, f.v) + f.k; };
+  const auto distance = [&](const Affine& f) { return at.square + value(f); };
   switch (body.kind) {
     case Body::Kind::plane:
-      break;
+      return -value(body.height) + body.radius;
     case Body::Kind::sphere:
-      f[0] = (-squares + rod_2) * body.side;
-      break;
+      return distance(body.distance) * -body.side;
     case Body::Kind::cylinder:
-      f[0] = (square(dot(P, body.axis)) - squares + rod_2) * body.side;
+      return (square(value(body.height)) - distance(body.distance)) * body.side;
+    case Body::Kind::slide:
+    case Body::Kind::crank:
       break;
-    case Body::Kind::slide: {
-      const Enclosure s = dot(P, body.axis);
-      const Enclosure distance = squares - rod_2;
-      f[0] = distance - s * (2 * body.from) + body.from * body.from;
-      f[1] = distance - s * (2 * body.to) + body.to * body.to;
-      f[2] = s - body.from;
-      f[3] = s - body.to;
-      f[4] = square(s) - distance;
-      f[5] = Enclosure(1);
-      break;
-    }
-    case Body::Kind::crank: {
-      const double l = body.crank;
-      const Enclosure K = squares + (l * l - rod_2), along_axis = dot(P, body.axis);
-      for (std::size_t e = 0; e < 2; ++e) {
-        f[e] = K - dot(P, body.end[e] - body.centre) * 2.0;
-        f[2 + e] = dot(P, body.along[e]);
-      }
-      f[4] = (squares - square(along_axis)) * (4 * l * l) - square(K);
-      f[5] = K;
-      break;
-    }
   }
+  if (number < 2) return distance(body.from_end[number]);
+  if (number < 4) return value(body.ahead[number - 2]);
+  const bool is_slide = body.kind == Body::Kind::slide;
+  if (is_slide && number == 5) return {1};
+  const Enclosure K = distance(body.distance);
+  if (number == 5) return K;
+  const Enclosure Y_2 = square(value(body.height));
+  if (is_slide) return Y_2 - K;
+  const double l_2 = body.crank * body.crank;
+  return (K - Y_2 + (body.radius * body.radius - l_2)) * (4 * l_2) - square(K);
 }
 
-Membership membership(const Body& body, const Part* face, const std::array<std::int8_t, kFunctions>& signs) {
-  if (!has_range(body)) return face ? Membership{1, 0} : Membership{signs[0], static_cast<std::uint8_t>(signs[0] == 0)};
-  std::size_t code = 0;
-  for (std::size_t i = kFunctions; i-- > 0;) code = 3 * code + static_cast<std::size_t>(signs[i] + 1);
-  return table(body.is_first_root, is_up_to_half_turn(body), face ? static_cast<std::size_t>(*face) + 1 : 0)[code];
+Membership membership(const Body& body, const Part* face, const std::array<int, kFunctions>& signs) {
+  if (!has_range(body)) return face ? Membership{1, 0} : Membership{signs[0], signs[0] == 0};
+  // Bits of the combinations of signs in which the sign is positive.
+  static constexpr std::array<std::uint64_t, kFunctions> kPositive{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc,
+                                                                   0xf0f0f0f0f0f0f0f0, 0xff00ff00ff00ff00,
+                                                                   0xffff0000ffff0000, 0xffffffff00000000};
+  const Rule& of = rule(body.is_first_root, is_up_to_half_turn(body), face ? static_cast<std::size_t>(*face) + 1 : 0);
+  std::uint64_t possible = ~std::uint64_t{0};
+  for (std::size_t i = 0; i < kFunctions; ++i)
+    if (signs[i] != 0) possible &= signs[i] > 0 ? kPositive[i] : ~kPositive[i];
+  if ((of.holds & possible) == 0) return {-1, 0};
+  if ((~of.holds & possible) == 0) return {1, 0};
+  Membership found{0, 0};
+  for (std::size_t i = 0; i < kFunctions; ++i)
+    if (signs[i] == 0 && (of.depends[i] & possible) != 0) found.relevant |= 1U << i;
+  return found;
 }
 
 Vector3 outward(const Face& face, const Vector3& p) {

@@ -15,12 +15,21 @@ enum class Part : std::uint8_t { first, second, fold };
 
 enum class Surface : std::uint8_t { plane, sphere, cylinder, torus };
 
-/// A body with vectors that are needed often.
+/// v . p + k
+struct Affine {
+  Vector3 v{};
+  double k = 0;
+};
+
+/// A body with what its functions need.
 struct PreparedBody : Body {
   explicit PreparedBody(const Body& body);
-  Vector3 beside{};                ///< crank: axis x zero
-  std::array<Vector3, 2> end{};    ///< slide, crank: E at both ends of the range
-  std::array<Vector3, 2> along{};  ///< slide, crank: unit vector along the path of E there
+  Vector3 beside{};                       ///< crank: axis x zero
+  std::array<Vector3, 2> end{};           ///< slide, crank: E at both ends of the range
+  std::array<Vector3, 2> along{};         ///< slide, crank: unit vector along the path of E there
+  Affine height;                          ///< (p - centre) . axis; plane: p . axis
+  Affine distance;                        ///< |p - centre|^2 + crank^2 - radius^2, less |p|^2
+  std::array<Affine, 2> from_end, ahead;  ///< |p - E|^2 - rod^2, less |p|^2; (p - E) . along
 };
 
 struct Face {
@@ -36,26 +45,29 @@ struct Face {
 /// The faces of a body, as far as they are not empty.
 void add_faces(const PreparedBody& body, std::size_t number, std::vector<Face>& faces);
 
-/// Values of the implicit functions of a body. Planes, spheres and cylinders have one, positive inside. Slides and
-/// cranks, with the distance function g(q) = |p - E(q)|^2 - rod^2, have: g at both ends of the range; (p - E) . E'
-/// there (scaled); the discriminant of g = 0, positive where q exists; and a function that is positive where g = 0 has
-/// its double root on the near side of the axis of a crank (slide: 1).
-inline constexpr std::size_t kFunctions = 6;
-using Functions = std::array<Enclosure, kFunctions>;
-std::size_t count_functions(const Body& body);
-void evaluate(const PreparedBody& body, const Enclosure3& p, Functions& f);
+/// A point of a curve, and |p|^2, of which curves know tighter enclosures than the sum of the squares.
+struct CurvePoint {
+  Enclosure3 p;
+  Enclosure square;
+};
 
+/// The implicit functions of a body. Planes, spheres and cylinders have one, positive inside. Slides and cranks, with
+/// the distance function g(q) = |p - E(q)|^2 - rod^2, have: 0, 1: g at both ends of the range; 2, 3: (p - E) . E' there
+/// (E' of unit length); 4: the discriminant of g = 0, positive where q exists; 5: positive where a double root of g is
+/// on the near side of the axis of a crank (slide: 1).
+inline constexpr std::size_t kFunctions = 6;
+Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoint& at);
 /// Degree of the function as a power of a length, for its rounding error.
-int degree(const Body& body, std::size_t function);
+std::size_t degree(const Body& body, std::size_t function);
 
 /// Whether a point belongs to a body or, if it lies on the surface of one of its faces, to that face.
 struct Membership {
-  std::int8_t result;     ///< 1: it does; -1: it does not; 0: that depends on functions whose sign is unknown
-  std::uint8_t relevant;  ///< bits of these functions
+  int result;         ///< 1: it does; -1: it does not; 0: that depends on functions whose sign is unknown
+  unsigned relevant;  ///< bits of these functions
 };
 /// @param face   null: the body
 /// @param signs  of the functions: -1, 1, 0: unknown
-Membership membership(const Body& body, const Part* face, const std::array<std::int8_t, kFunctions>& signs);
+Membership membership(const Body& body, const Part* face, const std::array<int, kFunctions>& signs);
 
 /// A vector along the outward normal at a point of the face.
 Vector3 outward(const Face& face, const Vector3& p);

@@ -6,7 +6,7 @@
 namespace pkm::generic::edges {
 namespace {
 
-constexpr double kRounding = 4e-15;  // relative to the size of the solid, to the power of a function's degree
+constexpr double kFunctionRounding = 4e-15;  // relative to the size of the solid, to the power of a function's degree
 constexpr int kMaxBisections = 36;
 constexpr long kMaxBoxes = 400'000;
 
@@ -48,7 +48,8 @@ class Evaluator {
   }
 
   EdgeVolume run(double tolerance, std::vector<Body>* gradient) {
-    if (!add_curves()) {
+    constexpr std::size_t kMaxBodies = 63;
+    if (bodies_.size() > kMaxBodies || !add_curves()) {
       result_.is_supported = false;
       return result_;
     }
@@ -79,104 +80,124 @@ class Evaluator {
 
   // Activity of the points of arcs.
 
+  using Tests = std::uint64_t;  // one bit each
+
   void search(const Arc& arc) {
     const auto& [a, b] = arc.curve->faces;
+    const auto is_fold_of = [](const Face& face) { return face.surface == Surface::torus; };
     tests_.clear();
-    const bool is_equator = a->number == b->number;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (i != a->number && i != b->number)
+      if (i != a->number && i != b->number) {
         tests_.push_back({i});
-      else if (!is_equator && bodies_[i].kind >= Body::Kind::slide)
-        tests_.push_back({i, i == a->number ? a->part : b->part});
+      } else if (a->number != b->number && bodies_[i].kind >= Body::Kind::slide) {
+        // A curve on a torus is restricted to the range already.
+        const Face& face = i == a->number ? *a : *b;
+        if (arc.curve->kind != Curve::Kind::on_torus || &face != a || !is_fold_of(face))
+          tests_.push_back({i, face.part});
+      }
     }
     arc_ = &arc;
     first_range_ = ranges_.size();
-    std::vector<std::size_t> all(tests_.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-    search(0, arc.length, 0, all);
+    // Enclosures over more than a quarter of a circle decide nothing.
+    const int parts = std::max(1, static_cast<int>(arc.length / 1.6));
+    for (int i = 0; i < parts; ++i)
+      search(arc.length * i / parts, arc.length * (i + 1) / parts, 0, (Tests{1} << tests_.size()) - 1);
   }
 
-  void search(double from, double to, int depth, const std::vector<std::size_t>& tests) {
+  struct Undecided {
+    std::size_t test, function;
+  };
+
+  void search(double from, double to, int depth, Tests tests) {
     if (++result_.boxes > kMaxBoxes) {
       result_.is_closed = false;
       return;
     }
     const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
-    const Enclosure3 p = point(*arc_, Enclosure::variable(middle, half));
-    struct Undecided {
-      std::size_t test, function;
-    };
-    std::vector<std::size_t> remaining;
-    std::vector<Undecided> undecided;
+    const CurvePoint at = point(*arc_, Enclosure::variable(middle, half));
+    undecided_functions_.clear();
     bool is_monotone = true;
-    for (const std::size_t i : tests) {
-      const PreparedBody& body = bodies_[tests_[i].body];
-      Functions f;
-      pkm::generic::edges::evaluate(body, p, f);
-      std::array<std::int8_t, kFunctions> signs{};
-      const std::size_t count = count_functions(body);
-      for (std::size_t k = 0; k < count; ++k)
-        signs[k] = sign(f[k], powers_[static_cast<std::size_t>(degree(body, k))], half);
-      const Membership found = membership(body, tests_[i].face ? &*tests_[i].face : nullptr, signs);
-      if (found.result < 0) return;
-      if (found.result > 0) continue;
-      remaining.push_back(i);
-      for (std::size_t k = 0; k < count; ++k) {
-        if ((found.relevant >> k & 1U) == 0) continue;
-        undecided.push_back({i, k});
-        is_monotone = is_monotone && f[k].is_monotone();
+    const auto keep = [&](std::size_t test, std::size_t number, const Enclosure& f) {
+      undecided_functions_.push_back({test, number});
+      is_monotone = is_monotone && f.is_monotone();
+    };
+    for (std::size_t i = 0; i < tests_.size(); ++i) {
+      if ((tests >> i & 1) == 0) continue;
+      std::array<Enclosure, kFunctions> values;
+      const Membership found = examine(tests_[i], at, values, [&](const Enclosure& f, std::size_t k) {
+        return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
+      });
+      if (found.result < 0) {
+        if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);  // often decides the next interval, too
+        return;
       }
-    }
-    const bool is_cut = arc_->curve->cut.has_value();
-    if (is_cut) {
-      const Enclosure f = pkm::generic::edges::evaluate(*arc_->curve->cut, p);
-      if (!(std::fabs(f.value) > f.reach() + kRounding * powers_[2])) {
-        undecided.push_back({tests_.size(), 0});
-        is_monotone = is_monotone && f.is_monotone();
+      if (found.result > 0) {
+        tests &= ~(Tests{1} << i);
+        continue;
       }
+      for (std::size_t k = 0; k < kFunctions; ++k)
+        if ((found.relevant >> k & 1) != 0) keep(i, k, values[k]);
     }
-    if (undecided.empty()) {
+    if (arc_->curve->cut) {
+      const Enclosure f = edges::evaluate(*arc_->curve->cut, at);
+      if (!(std::fabs(f.value) > f.reach() + kFunctionRounding * powers_[2])) keep(tests_.size(), 0, f);
+    }
+    if (undecided_functions_.empty()) {
       emit(from, to);
       return;
     }
     if (!is_monotone && depth < kMaxBisections) {
-      search(from, middle, depth + 1, remaining);
-      search(middle, to, depth + 1, remaining);
+      search(from, middle, depth + 1, tests);
+      search(middle, to, depth + 1, tests);
       return;
     }
     std::vector<double> ends{from, to};
     if (is_monotone) {
-      for (const auto& [test, function] : undecided)
-        if (const auto root = find_root(test, function, from, to)) ends.push_back(*root);
+      for (const auto& [test, number] : undecided_functions_)
+        if (const auto root = find_root(test, number, from, to)) ends.push_back(*root);
     } else {
-      const Vector3 dp = slopes(p);
-      undecided_ += (to - from) * std::sqrt(dot(dp, dp)) * powers_[2];
+      undecided_ += (to - from) * norm(slopes(at.p)) * powers_[2];
     }
     std::ranges::sort(ends);
     for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-      if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), remaining)) emit(ends[i], ends[i + 1]);
+      if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), tests)) emit(ends[i], ends[i + 1]);
+  }
+
+  /// Evaluates functions of a body as far as they are relevant.
+  template <class Sign>
+  Membership examine(const Test& test, const CurvePoint& at, std::array<Enclosure, kFunctions>& values,
+                     const Sign& sign_of) const {
+    const PreparedBody& body = bodies_[test.body];
+    const Part* const face = test.face ? &*test.face : nullptr;
+    std::array<int, kFunctions> signs{};
+    Membership found = membership(body, face, signs);
+    for (std::size_t k = 0; k < kFunctions && found.result == 0; ++k) {
+      if ((found.relevant >> k & 1) == 0) continue;
+      values[k] = function(body, k, at);
+      signs[k] = sign_of(values[k], k);
+      if (signs[k] != 0) found = membership(body, face, signs);
+    }
+    return found;
   }
 
   /// A function that vanishes on the whole curve does not change its sign there, so that either sign is right.
-  static std::int8_t sign(const Enclosure& f, double power, double half) {
+  static int sign(const Enclosure& f, double power, double half) {
     const double reach = f.reach();
-    if (f.value - reach > kRounding * power) return 1;
-    if (f.value + reach < -kRounding * power) return -1;
+    if (f.value - reach > kFunctionRounding * power) return 1;
+    if (f.value + reach < -kFunctionRounding * power) return -1;
     constexpr double kWide = 1e-3, kVanishing = 1e-12;
     return half > kWide && std::fabs(f.value) + reach < kVanishing * power ? 1 : 0;
   }
 
-  Enclosure function_at(std::size_t test, std::size_t function, double u) const {
-    const Enclosure3 p = point(*arc_, Enclosure::variable(u, 0));
-    if (test == tests_.size()) return pkm::generic::edges::evaluate(*arc_->curve->cut, p);
-    Functions f;
-    pkm::generic::edges::evaluate(bodies_[tests_[test].body], p, f);
-    return f[function];
+  Enclosure function_at(std::size_t test, std::size_t number, double u) const {
+    const CurvePoint at = point(*arc_, Enclosure::variable(u, 0));
+    return test == tests_.size() ? edges::evaluate(*arc_->curve->cut, at)
+                                 : function(bodies_[tests_[test].body], number, at);
   }
 
   /// The root of a monotone function, by Newton's method with bisection.
-  std::optional<double> find_root(std::size_t test, std::size_t function, double from, double to) const {
-    const auto at = [&](double u) { return function_at(test, function, u); };
+  std::optional<double> find_root(std::size_t test, std::size_t number, double from, double to) const {
+    const auto at = [&](double u) { return function_at(test, number, u); };
     const bool rises = at(to).value > 0;
     if (rises == (at(from).value > 0)) return {};
     double u = 0.5 * (from + to);
@@ -191,23 +212,20 @@ class Evaluator {
     return u;
   }
 
-  bool is_active(double u, const std::vector<std::size_t>& tests) const {
-    const Enclosure3 p = point(*arc_, Enclosure::variable(u, 0));
-    return std::ranges::all_of(
-        tests, [&](std::size_t i) { return is_in(tests_[i].body, tests_[i].face ? &*tests_[i].face : nullptr, p); });
+  bool is_active(double u, Tests tests) const {
+    const CurvePoint at = point(*arc_, Enclosure::variable(u, 0));
+    for (std::size_t i = 0; i < tests_.size(); ++i)
+      if ((tests >> i & 1) != 0 && !is_in(tests_[i], at)) return false;
+    return true;
   }
 
-  bool is_in(std::size_t number, const Part* face, const Enclosure3& p) const {
-    const PreparedBody& body = bodies_[number];
-    Functions f;
-    pkm::generic::edges::evaluate(body, p, f);
-    std::array<std::int8_t, kFunctions> signs{};
-    for (std::size_t k = 0; k < count_functions(body); ++k) signs[k] = f[k].value >= 0 ? 1 : -1;
-    return membership(body, face, signs).result > 0;
+  bool is_in(const Test& test, const CurvePoint& at) const {
+    std::array<Enclosure, kFunctions> values;
+    return examine(test, at, values, [](const Enclosure& f, std::size_t) { return f.value >= 0 ? 1 : -1; }).result > 0;
   }
 
   void emit(double from, double to) {
-    const Enclosure3 at = point(*arc_, Enclosure::variable(0.5 * (from + to), 0));
+    const Enclosure3 at = point(*arc_, Enclosure::variable(0.5 * (from + to), 0)).p;
     const Vector3 p = values(at), dp = slopes(at);
     const auto& [a, b] = arc_->curve->faces;
     const Vector3 n = outward(*a, p);
@@ -225,7 +243,7 @@ class Evaluator {
   void close() {
     std::vector<Vector3> gaps(faces_.size());
     for (const Range& range : ranges_) {
-      const Vector3 chord = values(point(*range.arc, range.to)) - values(point(*range.arc, range.from));
+      const Vector3 chord = values(point(*range.arc, range.to).p) - values(point(*range.arc, range.from).p);
       gaps[index(range, 0)] += chord * range.sign;
       gaps[index(range, 1)] += chord * -range.sign;
     }
@@ -245,12 +263,12 @@ class Evaluator {
       double best = -1;
       for (int i = 0; i < 27; ++i) {
         const Vector3 v{{i % 3 - 1.1, i / 3 % 3 - 0.9, i / 9 - 1.2}};
-        const Vector3 t = v * (1 / std::sqrt(dot(v, v)));
+        const Vector3 t = v * (1 / norm(v));
         double least = 2;
         for (const Range& range : ranges_) {
           if (range.arc->curve->faces[0] != &face && range.arc->curve->faces[1] != &face) continue;
           for (int k = 0; k <= 4; ++k) {
-            const Vector3 p = values(point(*range.arc, range.from + 0.25 * k * (range.to - range.from)));
+            const Vector3 p = values(point(*range.arc, range.from + 0.25 * k * (range.to - range.from)).p);
             least = std::min(least, 1 + dot(t, p - face.centre) / face.body->radius);
           }
         }
@@ -268,11 +286,10 @@ class Evaluator {
       const Face& face = faces_[i];
       if (face.body->kind != Body::Kind::sphere) continue;
       const Vector3 pole = face.centre - face.away_from_pole * face.body->radius;
-      Enclosure3 p;
-      std::ranges::copy(pole, p.begin());
+      CurvePoint at{.p = {}, .square = Enclosure(dot(pole, pole))};
+      std::ranges::copy(pole, at.p.begin());
       bool is_active = true;
-      for (std::size_t k = 0; k < bodies_.size() && is_active; ++k)
-        is_active = k == face.number || is_in(k, nullptr, p);
+      for (std::size_t k = 0; k < bodies_.size() && is_active; ++k) is_active = k == face.number || is_in({k}, at);
       if (!is_active) continue;
       moments_[i].radius[0] = face.side * 4 * kPi * face.body->radius * face.body->radius;
       sum += three_volumes(face, moments_[i]) / 3;
@@ -316,7 +333,7 @@ class Evaluator {
     double fewer = 0, spread = 0;
     const double length = panel.to - panel.from;
     for (std::size_t i = 0; i < level.nodes; ++i) {
-      const Enclosure3 at = point(*range.arc, Enclosure::variable(panel.from + length * rule.node[i], 0));
+      const Enclosure3 at = point(*range.arc, Enclosure::variable(panel.from + length * rule.node[i], 0)).p;
       const Vector3 p = values(at), dp = slopes(at) * (length * range.sign);
       for (std::size_t k = 0; k < 2; ++k) {
         const double sign = k == 0 ? 1 : -1;
@@ -383,6 +400,7 @@ class Evaluator {
   // of the arc that is searched
   const Arc* arc_ = nullptr;
   std::vector<Test> tests_;
+  std::vector<Undecided> undecided_functions_;
   std::size_t first_range_ = 0;
 };
 

@@ -36,11 +36,13 @@ Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const T
   const Vector3 normal = v - e * s;
   const Term distance_2 = dot(normal, normal);
   const Term joint = s + branch * sqrt(rod * rod - distance_2);
-  return {.joint = joint,
-          .constraints = {{"reaches", "m", rod - sqrt(distance_2)}},
-          .closure = rod_closure(v - e * q, rod),
-          .C = ends.A + e * joint,
-          .S = ends.A + e * joint};
+  Limb limb = {.joint = joint,
+               .constraints = {{"reaches", "m", rod - sqrt(distance_2)}},
+               .closure = rod_closure(v - e * q, rod),
+               .C = ends.A + e * joint,
+               .S = ends.A + e * joint};
+  if (!ends.across) limb.path = RodAndPath{false, v, e, e, rod, rod, branch};
+  return limb;
 }
 
 Limb slider(const Ends& ends, const Vector3& e, const Term& q) {
@@ -84,6 +86,7 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
                .C = ends.A + arm(joint),
                .S = ends.A,
                .arm = Arm{to_C, axis, v - to_C}};
+  if (!ends.across) limb.path = RodAndPath{true, v, axis, zero, crank, rod, branch};
   if (dot(v, axis).is(0)) {
     const Term longest = crank + rod, shortest = crank - rod;
     limb.annulus = Annulus{longest * longest - dot(v, v), dot(v, v) - shortest * shortest};

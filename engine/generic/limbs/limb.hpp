@@ -51,6 +51,14 @@ struct Arm {
 /// >= 0. The equivalent constraints "reaches" and "unfolds" contain a root, and their squares have degree four.
 using Annulus = std::array<Term, 2>;
 
+/// A rod of constant length in space whose other end E moves along a line or circle:
+/// E = A + q axis, or E = A + crank (cos q zero + sin q axis x zero).
+struct RodAndPath {
+  bool is_circle;
+  Vector3 v, axis, zero;  ///< v = B - A; zero: of a circle
+  Term crank, rod, branch;
+};
+
 struct Limb {
   Term joint;                           ///< joint coordinate; undefined if a constraint is violated
   std::vector<Constraint> constraints;  ///< under which the limb assembles
@@ -61,6 +69,7 @@ struct Limb {
   std::optional<CrankRange> crank_range{};
   std::optional<Arm> arm{};
   std::optional<Annulus> annulus{};  ///< equivalent to all constraints, for a planar crank
+  std::optional<RodAndPath> path{};  ///< of a rod with ball joints, without Ends::across
 };
 
 struct Ends {

@@ -1,0 +1,75 @@
+// Recognition of workspaces that are solids bounded by planes, spheres, cylinders and tori, and their volumes.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/expression/program.hpp"
+#include "engine/generic/edges/solid.hpp"
+#include "engine/generic/evaluation.hpp"
+#include "engine/math/quadrature.hpp"
+
+namespace pkm::generic::edges {
+
+/// The workspace over three swept coordinates as an intersection of bodies. A rod with a range becomes a slide or a
+/// crank; every other constraint has to be a quadric in the swept coordinates. Immutable, shared by threads.
+class EdgePlan {
+ public:
+  /// @param swept      coordinates; the others are inputs
+  /// @param box        by coordinate; std::nullopt: the range of the model
+  /// @param tolerance  of the volume, relative
+  EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::vector<int>& swept,
+           const std::vector<std::optional<std::array<double, 2>>>& box, double tolerance);
+
+  /// Why the workspace is no such solid; empty if it is one.
+  const std::string& why_not() const { return why_not_; }
+
+  /// The volume of a design; std::nullopt if the workspace is no such solid, a quadric is of another kind, two faces
+  /// have an intersection without a closed form, or the edges are not closed.
+  /// @param inputs    of the model's graph
+  /// @param by_input  if not empty, the derivatives of the volume are added
+  std::optional<Integral<double>> measure(std::span<const double> inputs, std::span<double> by_input = {}) const;
+
+  /// The bodies of a design, in coordinates relative to the middle of the box; std::nullopt if a quadric is of another
+  /// kind.
+  std::optional<Solid> solid(std::span<const double> inputs) const;
+
+ private:
+  /// Positions of the first of the 10 coefficients of each quadric, among the outputs of the program. At least one of
+  /// the quadrics is >= 0.
+  using Clause = std::vector<std::size_t>;
+  struct Rod {
+    std::size_t output;  ///< first of B - A at the origin, axis, zero, rod, crank, from, to
+    bool is_crank, is_first_root;
+  };
+  /// What a body is made from.
+  struct Source {
+    enum class Kind { rod, quadric, box };
+    Kind kind;
+    std::size_t output;  ///< first one
+    double side = 0;     ///< box: 1: upper bound
+  };
+  struct Design {
+    std::vector<double> registers, outputs;
+    Vector3 origin;
+    Solid solid;
+    std::vector<Source> sources;  ///< by body
+    bool is_empty = false;
+
+    /// Bound on the distance of the solid from the origin of the coordinates.
+    double reach() const { return solid.bound + norm(origin); }
+  };
+  /// @return false if a quadric is of another kind
+  bool build(std::span<const double> inputs, Design& design) const;
+  void add_gradient(const Design& design, const std::vector<Body>& gradient, std::span<double> by_input) const;
+
+  expression::Program program_;
+  std::size_t constants_ = 0;  ///< first of the last outputs: constraints of the design, >= 0
+  std::size_t box_ = 0;        ///< first of the outputs of the box: lower and upper bound of each coordinate
+  std::vector<Rod> rods_;
+  std::vector<Clause> clauses_;
+  std::string why_not_;
+  double tolerance_;
+};
+
+}  // namespace pkm::generic::edges
