@@ -24,7 +24,7 @@ struct WorkspaceResult {
   double cell_volume = 0;
   bool touches_box = false;  ///< true if a feasible cell lies in the outermost layer of the box
   // of columns
-  std::int64_t columns = 0;  ///< number of columns evaluated
+  std::int64_t columns = 0;  ///< number of columns, or of nodes along edges, evaluated
   double error = 0;          ///< estimated relative error of the volume
   // by feasible sample, if requested; otherwise empty
   std::vector<S> weight;

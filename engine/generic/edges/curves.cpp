@@ -6,6 +6,8 @@ namespace {
 // Relative to quantities of order one; coincidences of this size are taken as exact.
 constexpr double kCoincident = 1e-12;
 
+bool is_same(double a, double b) { return std::fabs(a - b) <= kCoincident * (std::fabs(a) + std::fabs(b)); }
+
 /// A unit vector normal to a unit vector.
 Vector3 any_normal(const Vector3& axis) {
   Vector3 e{};
@@ -110,7 +112,7 @@ void parallel_lines(const Face& a, const Face& b, const Vector3& centre, double 
         {.kind = Curve::Kind::line, .faces = {&a, &b}, .o = foot + across * (sign * std::sqrt(half_2)), .x = axis});
 }
 
-void cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Curve>& curves) {
+bool cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Curve>& curves) {
   const Vector3 &a = cylinder.body->axis, &c = cylinder.centre;
   const double r = cylinder.body->radius;
   if (other.surface == Surface::plane && std::fabs(dot(a, other.body->axis)) < kCoincident) {
@@ -118,13 +120,14 @@ void cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Cur
   } else if (other.surface == Surface::cylinder && norm(cross(a, other.body->axis)) < kCoincident) {
     const Vector3 between = other.centre - c, across = between - a * dot(between, a);
     const double distance = norm(across);
-    if (distance < kCoincident * r) return;
+    if (distance < kCoincident * r) return !is_same(r, other.body->radius);
     const Vector3 normal = across * (1 / distance);
     const double from_c = 0.5 * (distance + (r - other.body->radius) * (r + other.body->radius) / distance);
     parallel_lines(cylinder, other, c, r, a, normal, dot(c, normal) + from_c, curves);
   } else {
     on_cylinder(cylinder, other, curves);
   }
+  return true;
 }
 
 /// Curves on a torus: cos b alpha + sin b beta = gamma on the meridian at the angle q, where, with xi = v . e_r(q),
@@ -163,7 +166,7 @@ void on_torus(const Face& torus, const Face& other, const Quadric& absolute, con
 bool two_tori(const Face& a, const Face& b, std::vector<Curve>& curves) {
   const PreparedBody &A = *a.body, &B = *b.body;
   const double l = A.crank, l_2 = l * l, size = l + A.radius;
-  if (std::fabs(l - B.crank) > kCoincident * size || std::fabs(A.radius - B.radius) > kCoincident * size) return false;
+  if (!is_same(l, B.crank) || !is_same(A.radius, B.radius)) return false;
   const Vector3 &c = a.centre, between = b.centre - a.centre;
   // As functions of P = p - c: K_a - K_b = v . P + k, Y_a - s Y_b = m . P + n.
   const Vector3 v = between * 2.0;
@@ -210,12 +213,14 @@ Shifted shifted(const Trigonometric& D, double t_0) {
 /// D(t_0 + x) / x^order, where D has a root of this multiplicity at t_0.
 Enclosure quotient(const Trigonometric& D, double t_0, int order, const Enclosure& x) {
   const auto [cosine, sine] = shifted(D, t_0);
-  const Enclosure half_1 = sinc(x * 0.5), full = sinc(x);
+  const Enclosure half = x * 0.5, twice = x * 2.0;
+  const SineCosine of_half = sine_cosine(half), of_x = sine_cosine(x);
+  const Enclosure sinc_half = sinc(half, of_half), sinc_x = sinc(x, of_x);
   if (order == 1)
-    return half_1 * sine_cosine(x * 0.5).sine * -cosine[0] + full * sine[0] +
-           (full * sine_cosine(x).sine * -cosine[1] + sinc(x * 2.0) * sine[1]) * 2.0;
-  return square(half_1) * (-0.5 * cosine[0]) + square(full) * (-2 * cosine[1]) -
-         sine_cosine(x).sine * square(half_1) * sine[1];
+    return sinc_half * of_half.sine * -cosine[0] + sinc_x * sine[0] +
+           (sinc_x * of_x.sine * -cosine[1] + sinc(twice, sine_cosine(twice)) * sine[1]) * 2.0;
+  return square(sinc_half) * (-0.5 * cosine[0]) + square(sinc_x) * (-2 * cosine[1]) -
+         of_x.sine * square(sinc_half) * sine[1];
 }
 
 Enclosure value_of_D(const Trigonometric& D, const SineCosine& t) {
@@ -228,13 +233,15 @@ struct Root {
   int order;
 };
 
-/// Isolates the roots of D in an interval by bisection; those that cannot be told from double roots are taken as such.
+/// Simple roots that are closer to each other cannot be told from a double root, because of the rounding errors of D.
+constexpr double kDoubleRoot = 4e-8;
+
+/// Isolates the roots of D in an interval by bisection. Roots that may be double are reported once or several times.
 void isolate(const Trigonometric& D, double from, double to, double rounding, std::vector<Root>& roots) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   const auto at = [&](double t, double h) { return value_of_D(D, sine_cosine(Enclosure::variable(t, h))); };
   const Enclosure d = at(middle, half);
   if (std::fabs(d.value) > d.reach() + rounding) return;
-  constexpr double kDoubleRoot = 1e-8;  // simple roots that are closer to each other differ by rounding errors of D
   if (d.is_monotone()) {
     double low = from, high = to;
     const bool rises = d.slope > 0;
@@ -249,17 +256,30 @@ void isolate(const Trigonometric& D, double from, double to, double rounding, st
       t = next;
     }
     roots.push_back({t, 1});
-  } else if (half < kDoubleRoot) {
-    if (!roots.empty() && roots.back().order == 2 && from - roots.back().t < 4 * kDoubleRoot) return;
-    double t = middle;  // the root of D'
-    const Shifted shift = shifted(D, t);
-    const double d_1 = shift.sine[0] + 2 * shift.sine[1], d_2 = -shift.cosine[0] - 4 * shift.cosine[1];
-    if (d_2 != 0) t -= std::clamp(d_1 / d_2, -half, half);
-    roots.push_back({t, 2});
+  } else if (half < 0.25 * kDoubleRoot) {
+    roots.push_back({middle, 2});
   } else {
     isolate(D, from, middle, rounding, roots);
     isolate(D, middle, to, rounding, roots);
   }
+}
+
+/// Merges roots that cannot be told from a double root into one, at the root of D'.
+std::vector<Root> merged(const Trigonometric& D, const std::vector<Root>& roots) {
+  std::vector<Root> result;
+  for (std::size_t i = 0, end = 0; i < roots.size(); i = end) {
+    for (end = i + 1; end < roots.size() && roots[end].t - roots[end - 1].t < kDoubleRoot;) ++end;
+    double t = 0.5 * (roots[i].t + roots[end - 1].t);
+    if (end == i + 1 && roots[i].order == 1) {
+      result.push_back(roots[i]);
+      continue;
+    }
+    const Shifted at = shifted(D, t);
+    const double d_1 = at.sine[0] + 2 * at.sine[1], d_2 = -at.cosine[0] - 4 * at.cosine[1];
+    if (d_2 != 0) t -= std::clamp(d_1 / d_2, -kDoubleRoot, kDoubleRoot);
+    result.push_back({t, 2});
+  }
+  return result;
 }
 
 }  // namespace
@@ -271,18 +291,19 @@ bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Cu
     if (b.surface == Surface::cylinder) return false;
     on_torus(a, b, quadric_of(b), {}, curves);
   } else if (a.surface == Surface::cylinder) {
-    cylinder_and_other(a, b, curves);
+    return cylinder_and_other(a, b, curves);
   } else if (a.surface == Surface::sphere && b.surface == Surface::sphere) {
     const Vector3 between = b.centre - a.centre;
     const double distance = norm(between), r = a.body->radius, r_b = b.body->radius;
-    if (distance > kCoincident * (r + r_b))
-      sphere_and_plane(a, b, between * (1 / distance), 0.5 * (distance + (r - r_b) * (r + r_b) / distance), curves);
+    if (distance < kCoincident * (r + r_b)) return !is_same(r, r_b);
+    sphere_and_plane(a, b, between * (1 / distance), 0.5 * (distance + (r - r_b) * (r + r_b) / distance), curves);
   } else if (a.surface == Surface::sphere) {
     sphere_and_plane(a, b, b.body->axis, b.body->radius - dot(a.centre, b.body->axis), curves);
   } else {
     const Vector3 &m = a.body->axis, &n = b.body->axis, direction = cross(m, n);
     const double sine_2 = dot(direction, direction);
-    if (sine_2 < kCoincident * kCoincident) return true;
+    if (sine_2 < kCoincident * kCoincident)
+      return std::fabs(a.body->radius - dot(m, n) * b.body->radius) > kCoincident * bound;
     const Vector3 o = (cross(n, direction) * a.body->radius + cross(direction, m) * b.body->radius) * (1 / sine_2);
     curves.push_back({.kind = Curve::Kind::line, .faces = {&a, &b}, .o = o, .x = direction * (1 / std::sqrt(sine_2))});
   }
@@ -311,6 +332,7 @@ bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs) {
   const double length = on_torus ? curve.faces[0]->body->to - start : 2 * kPi;
   std::vector<Root> roots;
   isolate(curve.D, start, start + length, 4e-16 * size, roots);
+  roots = merged(curve.D, roots);
   const auto add = [&](const Arc& arc) {
     for (const double branch : {1.0, -1.0}) {
       arcs.push_back(arc);

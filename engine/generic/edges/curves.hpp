@@ -51,7 +51,7 @@ struct Arc {
 
 /// Intersection curves of two faces.
 /// @param bound  half the length of lines
-/// @return false if they have no closed form
+/// @return false if they have no closed form, or if the surfaces are the same
 bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves);
 /// The circle between an end face and the fold of a slide or crank.
 Curve equator(const Face& end, const Face& fold);

@@ -93,9 +93,9 @@ inline SineCosine sine_cosine(const Enclosure& x) {
   return {x.through(s, c, most_c, most_s), x.through(c, -s, most_s, most_c)};
 }
 /// sin(x) / x
-inline Enclosure sinc(const Enclosure& x) {
-  const double t = x.value, t2 = t * t;
-  const auto [s, c] = portable::sincos(t);
+/// @param of_x  sine_cosine(x)
+inline Enclosure sinc(const Enclosure& x, const SineCosine& of_x) {
+  const double t = x.value, t2 = t * t, s = of_x.sine.value, c = of_x.cosine.value;
   const bool is_small = std::fabs(t) < 0.3;  // the series is exact to 1e-16 there
   const double f = is_small ? 1 - t2 / 6 * (1 - t2 / 20 * (1 - t2 / 42 * (1 - t2 / 72 * (1 - t2 / 110)))) : s / t;
   const double f1 = is_small ? -t / 3 * (1 - t2 / 10 * (1 - t2 / 28 * (1 - t2 / 54 * (1 - t2 / 88)))) : (c - f) / t;

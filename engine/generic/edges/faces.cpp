@@ -24,41 +24,19 @@ bool is_on_face(const Bits& is, Part part, bool is_first_root, bool half_turn) {
   return half_turn ? after_from && before_to : after_from || before_to;
 }
 
-/// A function of the signs as a set of the 2^6 combinations, one bit each, and for each sign the set of those in which
-/// the result depends on it.
-struct Rule {
-  std::uint64_t holds = 0;
-  std::array<std::uint64_t, kFunctions> depends{};
-};
-
 template <class Holds>
 Rule rule_of(const Holds& holds) {
   Rule rule;
   for (std::size_t code = 0; code < 64; ++code) {
     Bits is{};
     for (std::size_t i = 0; i < kFunctions; ++i) is[i] = (code >> i & 1) != 0;
-    if (holds(is)) rule.holds |= std::uint64_t{1} << code;
+    if (holds(is)) rule.holds |= SignSets{1} << code;
   }
   for (std::size_t code = 0; code < 64; ++code)
     for (std::size_t i = 0; i < kFunctions; ++i)
       if (((rule.holds >> code ^ rule.holds >> (code ^ std::size_t{1} << i)) & 1) != 0)
-        rule.depends[i] |= std::uint64_t{1} << code;
+        rule.depends[i] |= SignSets{1} << code;
   return rule;
-}
-
-/// By root, half turn, and the body or the part of its boundary.
-const Rule& rule(bool is_first_root, bool half_turn, std::size_t what) {
-  static const auto rules = [] {
-    std::array<std::array<std::array<Rule, 4>, 2>, 2> all;
-    for (const bool first : {false, true})
-      for (const bool half : {false, true})
-        for (std::size_t i = 0; i < 4; ++i)
-          all[first][half][i] = rule_of([&](const Bits& is) {
-            return i == 0 ? is_in_body(is, first, half) : is_on_face(is, static_cast<Part>(i - 1), first, half);
-          });
-    return all;
-  }();
-  return rules[is_first_root][half_turn][what];
 }
 
 }  // namespace
@@ -143,22 +121,21 @@ Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoin
   return (K - Y_2 + (body.radius * body.radius - l_2)) * (4 * l_2) - square(K);
 }
 
-Membership membership(const Body& body, const Part* face, const std::array<int, kFunctions>& signs) {
-  if (!has_range(body)) return face ? Membership{1, 0} : Membership{signs[0], signs[0] == 0};
-  // Bits of the combinations of signs in which the sign is positive.
-  static constexpr std::array<std::uint64_t, kFunctions> kPositive{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc,
-                                                                   0xf0f0f0f0f0f0f0f0, 0xff00ff00ff00ff00,
-                                                                   0xffff0000ffff0000, 0xffffffff00000000};
-  const Rule& of = rule(body.is_first_root, is_up_to_half_turn(body), face ? static_cast<std::size_t>(*face) + 1 : 0);
-  std::uint64_t possible = ~std::uint64_t{0};
-  for (std::size_t i = 0; i < kFunctions; ++i)
-    if (signs[i] != 0) possible &= signs[i] > 0 ? kPositive[i] : ~kPositive[i];
-  if ((of.holds & possible) == 0) return {-1, 0};
-  if ((~of.holds & possible) == 0) return {1, 0};
-  Membership found{0, 0};
-  for (std::size_t i = 0; i < kFunctions; ++i)
-    if (signs[i] == 0 && (of.depends[i] & possible) != 0) found.relevant |= 1U << i;
-  return found;
+const Rule& membership(const Body& body, const Part* face) {
+  static const Rule single = rule_of([](const Bits& is) { return is[0]; });
+  // By root, half turn, and the body or the part of its boundary.
+  static const auto rules = [] {
+    std::array<std::array<std::array<Rule, 4>, 2>, 2> all;
+    for (const bool first : {false, true})
+      for (const bool half : {false, true})
+        for (std::size_t i = 0; i < 4; ++i)
+          all[first][half][i] = rule_of([&](const Bits& is) {
+            return i == 0 ? is_in_body(is, first, half) : is_on_face(is, static_cast<Part>(i - 1), first, half);
+          });
+    return all;
+  }();
+  if (!has_range(body)) return single;
+  return rules[body.is_first_root][is_up_to_half_turn(body)][face ? static_cast<std::size_t>(*face) + 1 : 0];
 }
 
 Vector3 outward(const Face& face, const Vector3& p) {

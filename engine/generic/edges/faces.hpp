@@ -60,14 +60,20 @@ Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoin
 /// Degree of the function as a power of a length, for its rounding error.
 std::size_t degree(const Body& body, std::size_t function);
 
+/// Combinations of the signs of the functions, one bit each: bit c is the combination in which function i is positive
+/// if bit i of c is set.
+using SignSets = std::uint64_t;
+/// The combinations in which a function is positive.
+inline constexpr std::array<SignSets, kFunctions> kPositive{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
+                                                            0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
+
 /// Whether a point belongs to a body or, if it lies on the surface of one of its faces, to that face.
-struct Membership {
-  int result;         ///< 1: it does; -1: it does not; 0: that depends on functions whose sign is unknown
-  unsigned relevant;  ///< bits of these functions
+struct Rule {
+  SignSets holds = 0;
+  std::array<SignSets, kFunctions> depends{};  ///< the combinations in which that depends on the sign of a function
 };
-/// @param face   null: the body
-/// @param signs  of the functions: -1, 1, 0: unknown
-Membership membership(const Body& body, const Part* face, const std::array<int, kFunctions>& signs);
+/// @param face  null: the body
+const Rule& membership(const Body& body, const Part* face);
 
 /// A vector along the outward normal at a point of the face.
 Vector3 outward(const Face& face, const Vector3& p);

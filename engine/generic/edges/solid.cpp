@@ -13,7 +13,7 @@ constexpr long kMaxBoxes = 400'000;
 /// A condition on the points of a curve: they belong to a body, or to the face of a body on whose surface they lie.
 struct Test {
   std::size_t body;
-  std::optional<Part> face{};
+  const Rule* rule;
 };
 
 /// An active part of an arc.
@@ -44,7 +44,7 @@ class Evaluator {
       add_faces(bodies_[i], i, faces_);
       size_ = std::max(size_, std::fabs(bodies_[i].radius) + bodies_[i].crank + largest(bodies_[i].centre));
     }
-    powers_ = {1, size_, size_ * size_, 0, size_ * size_ * size_ * size_};
+    for (std::size_t i = 1; i < powers_.size(); ++i) powers_[i] = powers_[i - 1] * size_;
   }
 
   EdgeVolume run(double tolerance, std::vector<Body>* gradient) {
@@ -84,16 +84,15 @@ class Evaluator {
 
   void search(const Arc& arc) {
     const auto& [a, b] = arc.curve->faces;
-    const auto is_fold_of = [](const Face& face) { return face.surface == Surface::torus; };
     tests_.clear();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (i != a->number && i != b->number) {
-        tests_.push_back({i});
+        tests_.push_back({i, &membership(bodies_[i], nullptr)});
       } else if (a->number != b->number && bodies_[i].kind >= Body::Kind::slide) {
         // A curve on a torus is restricted to the range already.
         const Face& face = i == a->number ? *a : *b;
-        if (arc.curve->kind != Curve::Kind::on_torus || &face != a || !is_fold_of(face))
-          tests_.push_back({i, face.part});
+        if (arc.curve->kind != Curve::Kind::on_torus || &face != a)
+          tests_.push_back({i, &membership(bodies_[i], &face.part)});
       }
     }
     arc_ = &arc;
@@ -123,20 +122,22 @@ class Evaluator {
     };
     for (std::size_t i = 0; i < tests_.size(); ++i) {
       if ((tests >> i & 1) == 0) continue;
+      const Rule& rule = *tests_[i].rule;
       std::array<Enclosure, kFunctions> values;
-      const Membership found = examine(tests_[i], at, values, [&](const Enclosure& f, std::size_t k) {
+      const SignSets possible = examine(tests_[i], at, values, [&](const Enclosure& f, std::size_t k) {
         return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
       });
-      if (found.result < 0) {
+      if ((rule.holds & possible) == 0) {
         if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);  // often decides the next interval, too
         return;
       }
-      if (found.result > 0) {
+      if ((~rule.holds & possible) == 0) {
         tests &= ~(Tests{1} << i);
         continue;
       }
       for (std::size_t k = 0; k < kFunctions; ++k)
-        if ((found.relevant >> k & 1) != 0) keep(i, k, values[k]);
+        if ((rule.depends[k] & possible) != 0 && (kPositive[k] & possible) != 0 && (~kPositive[k] & possible) != 0)
+          keep(i, k, values[k]);
     }
     if (arc_->curve->cut) {
       const Enclosure f = edges::evaluate(*arc_->curve->cut, at);
@@ -163,21 +164,19 @@ class Evaluator {
       if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), tests)) emit(ends[i], ends[i + 1]);
   }
 
-  /// Evaluates functions of a body as far as they are relevant.
+  /// The possible combinations of signs, as far as they matter.
   template <class Sign>
-  Membership examine(const Test& test, const CurvePoint& at, std::array<Enclosure, kFunctions>& values,
-                     const Sign& sign_of) const {
-    const PreparedBody& body = bodies_[test.body];
-    const Part* const face = test.face ? &*test.face : nullptr;
-    std::array<int, kFunctions> signs{};
-    Membership found = membership(body, face, signs);
-    for (std::size_t k = 0; k < kFunctions && found.result == 0; ++k) {
-      if ((found.relevant >> k & 1) == 0) continue;
-      values[k] = function(body, k, at);
-      signs[k] = sign_of(values[k], k);
-      if (signs[k] != 0) found = membership(body, face, signs);
+  SignSets examine(const Test& test, const CurvePoint& at, std::array<Enclosure, kFunctions>& values,
+                   const Sign& sign_of) const {
+    const Rule& rule = *test.rule;
+    SignSets possible = ~SignSets{0};
+    for (std::size_t k = 0; k < kFunctions; ++k) {
+      if ((rule.depends[k] & possible) == 0) continue;
+      values[k] = function(bodies_[test.body], k, at);
+      const int is = sign_of(values[k], k);
+      if (is != 0) possible &= is > 0 ? kPositive[k] : ~kPositive[k];
     }
-    return found;
+    return possible;
   }
 
   /// A function that vanishes on the whole curve does not change its sign there, so that either sign is right.
@@ -198,16 +197,18 @@ class Evaluator {
   /// The root of a monotone function, by Newton's method with bisection.
   std::optional<double> find_root(std::size_t test, std::size_t number, double from, double to) const {
     const auto at = [&](double u) { return function_at(test, number, u); };
-    const bool rises = at(to).value > 0;
-    if (rises == (at(from).value > 0)) return {};
-    double u = 0.5 * (from + to);
-    for (int i = 0; i < 100 && to - from > 4e-16 * arc_->length; ++i) {
+    const double first = at(from).value, last = at(to).value;
+    const bool rises = last > 0;
+    if (rises == (first > 0)) return {};
+    double u = from - first * ((to - from) / (last - first));
+    for (int i = 0; i < 100; ++i) {
       const Enclosure f = at(u);
       ((f.value > 0) == rises ? to : from) = u;
       const double newton = u - f.value / f.slope;
-      const double next = newton > from && newton < to ? newton : 0.5 * (from + to);
-      if (next == u) break;
+      const double next = newton > from && newton < to ? newton : 0.5 * (from + to), step = std::fabs(next - u);
       u = next;
+      // The error of Newton's method is of the order of the square of its last step.
+      if (step < (next == newton ? 1e-9 : 4e-16) * arc_->length) break;
     }
     return u;
   }
@@ -221,7 +222,8 @@ class Evaluator {
 
   bool is_in(const Test& test, const CurvePoint& at) const {
     std::array<Enclosure, kFunctions> values;
-    return examine(test, at, values, [](const Enclosure& f, std::size_t) { return f.value >= 0 ? 1 : -1; }).result > 0;
+    const auto sign_of = [](const Enclosure& f, std::size_t) { return f.value >= 0 ? 1 : -1; };
+    return (~test.rule->holds & examine(test, at, values, sign_of)) == 0;
   }
 
   void emit(double from, double to) {
@@ -249,7 +251,7 @@ class Evaluator {
     }
     for (const Vector3& gap : gaps) result_.gap = std::max(result_.gap, largest(gap));
     constexpr double kClosed = 1e-9;
-    if (result_.gap > kClosed * size_) result_.is_closed = false;
+    if (result_.gap > kClosed * size_ || undecided_ > kClosed * powers_[3]) result_.is_closed = false;
   }
 
   std::size_t index(const Range& range, std::size_t which) const {
@@ -289,7 +291,8 @@ class Evaluator {
       CurvePoint at{.p = {}, .square = Enclosure(dot(pole, pole))};
       std::ranges::copy(pole, at.p.begin());
       bool is_active = true;
-      for (std::size_t k = 0; k < bodies_.size() && is_active; ++k) is_active = k == face.number || is_in({k}, at);
+      for (std::size_t k = 0; k < bodies_.size() && is_active; ++k)
+        is_active = k == face.number || is_in({k, &membership(bodies_[k], nullptr)}, at);
       if (!is_active) continue;
       moments_[i].radius[0] = face.side * 4 * kPi * face.body->radius * face.body->radius;
       sum += three_volumes(face, moments_[i]) / 3;
@@ -387,7 +390,7 @@ class Evaluator {
   }
 
   double bound_, size_ = 0;
-  std::array<double, 5> powers_{};
+  std::array<double, 5> powers_{1};
   std::vector<PreparedBody> bodies_;
   std::vector<Face> faces_;
   std::vector<Curve> curves_;
