@@ -130,23 +130,32 @@ bool cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Cur
   return true;
 }
 
-/// Curves on a torus: cos b alpha + sin b beta = gamma on the meridian at the angle q, where, with xi = v . e_r(q),
-/// alpha = xi + 2 square crank, beta = v . axis, gamma = -(square (crank^2 + rod^2) + k + crank xi) / rod. D = alpha^2
+/// Curves on a torus, on its meridians: cos b alpha + sin b beta = gamma on the meridian at the angle q, where, with xi
+/// = v . e_r(q), alpha = xi + 2 square crank, beta = v . axis, gamma = -(square (crank^2 + rod^2) + k + crank xi) /
+/// rod. D = alpha^2
 /// + beta^2 - gamma^2.
 void on_torus(const Face& torus, const Face& other, const Quadric& absolute, const std::optional<Quadric>& cut,
               std::vector<Curve>& curves) {
   const PreparedBody& body = *torus.body;
   const Quadric q = relative_to(torus.centre, absolute);
-  const double l = body.crank, rod = body.radius, beta = dot(q.v, body.axis), size = norm(q.v);
-  if (q.square == 0 && std::fabs(beta) < kCoincident * size && std::fabs(q.k) < kCoincident * size * (l + rod)) {
-    // A plane through the axis contains two meridian circles. Its further points are on the axis.
-    const Vector3 e = cross(body.axis, q.v) * (1 / size);
-    for (const double sign : {1.0, -1.0})
-      curves.push_back({.faces = {&torus, &other},
-                        .o = torus.centre + e * (sign * l),
-                        .x = e * rod,
-                        .y = body.axis * rod,
-                        .cut = cut});
+  const double l = body.crank, rod = body.radius, beta = dot(q.v, body.axis);
+  const Vector3 across = q.v - body.axis * beta;
+  if (q.square == 0 && dot(across, across) > beta * beta) {
+    // A steep plane meets the parallel circle at the height rod sin b, of radius |crank + rod cos b|, in two points. On
+    // meridians, a plane through the axis would be singular.
+    const double size = norm(across);
+    const Vector3 e = across * (1 / size);
+    const Linear radius{l, rod, 0}, along{-q.k / size, 0, -rod * beta / size};
+    Trigonometric D = product(radius, radius);
+    const Trigonometric square = product(along, along);
+    for (std::size_t i = 0; i < D.size(); ++i) D[i] -= square[i];
+    curves.push_back({.faces = {&torus, &other},
+                      .o = torus.centre + e * along[0],
+                      .y = e * along[2] + body.axis * rod,
+                      .w = cross(body.axis, e),
+                      .has_root = true,
+                      .D = D,
+                      .cut = cut});
     return;
   }
   const double a_0 = 2 * q.square * l, g_0 = -(q.square * (l * l + rod * rod) + q.k) / rod, g_1 = -l / rod;

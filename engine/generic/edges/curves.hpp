@@ -3,8 +3,9 @@
 //   circles, ellipses      p(t) = o + x cos t + y sin t
 //   lines                  p(t) = o + x t
 //   cylinder and quadric   p(t) = o + x cos t + y sin t +- sqrt(D(t)) w: the generator at the angle t in two points
+//   torus, steep plane     the same: the parallel circle at the height rod sin t in two points
 //   torus and sphere or    the meridian circle at the angle t in two points, cos b = (alpha gamma -+ beta sqrt(D)) / Q,
-//     plane                sin b = (beta gamma +- alpha sqrt(D)) / Q (see on_torus() in the source)
+//     flat plane           sin b = (beta gamma +- alpha sqrt(D)) / Q (see on_torus() in the source)
 //
 // D is a trigonometric polynomial of degree two. Its roots are turning points, where the two branches meet. A curve is
 // divided into arcs, each from a turning point t_0 or without one. With t = t_0 +- u^2 at a simple root, and

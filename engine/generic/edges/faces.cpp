@@ -183,6 +183,7 @@ Moments forms(const Face& face, const Vector3& p, const Vector3& dp) {
       const double u = dot(P, body.zero), w = dot(P, body.beside), l = body.crank, rod = body.radius;
       const double outer = dot(P, P) + l * l > rod * rod ? 1 : -1;  // the sign of the distance from the axis
       const double distance = outer * std::sqrt(u * u + w * w);
+      if (distance == 0) break;
       const double ddistance = (u * dot(dp, body.zero) + w * dot(dp, body.beside)) / distance;
       const double cosine = (distance - l) / rod, sine = dot(P, body.axis) / rod;
       const double middle = 0.5 * (body.from + body.to);

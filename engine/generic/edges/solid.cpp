@@ -325,6 +325,7 @@ class Evaluator {
       for (std::size_t k = 0; k < 2; ++k) moments_[index(ranges_[panel.range], k)].add(panel.moments[k], 1);
     result_.value = std::max(sum, 0.0);
     result_.error = error + undecided_ + result_.gap * powers_[2] + 1e-15 * magnitude;
+    if (!std::isfinite(sum + result_.error)) result_.is_closed = false;
   }
 
   void evaluate(Panel& panel) {
