@@ -9,7 +9,7 @@
 #include "engine/generic/conditioning.hpp"
 #include "engine/generic/corner_curves/volume.hpp"
 #include "engine/generic/dynamics.hpp"
-#include "engine/generic/edges/edge_plan.hpp"
+#include "engine/generic/edge_plan.hpp"
 #include "engine/generic/inertia_batch.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/sample_formulas.hpp"

@@ -1,4 +1,4 @@
-#include "engine/generic/edges/edge_plan.hpp"
+#include "engine/generic/edge_plan.hpp"
 
 #include "engine/expression/polynomial_form.hpp"
 #include "engine/expression/reverse_mode.hpp"

@@ -1,5 +1,5 @@
 // Workspaces of mechanism files that are solids of planes, spheres, cylinders and tori: volumes and derivatives.
-#include "engine/generic/edges/edge_plan.hpp"
+#include "engine/generic/edge_plan.hpp"
 
 #include <gtest/gtest.h>
 
