@@ -65,7 +65,7 @@ class CellwiseVoxels final : public GridEvaluator<CellwiseVoxels> {
         [&](int coordinate) {
           const auto range = ranges ? std::optional((*ranges)[static_cast<std::size_t>(coordinate)])
                                     : mechanism_.reach(parameters, coordinate);
-          if (!range) throw_no_ranges();
+          if (!range) throw_missing_ranges();
           return *range;
         },
         fixed);
@@ -95,13 +95,13 @@ class CellwiseVoxels final : public GridEvaluator<CellwiseVoxels> {
       });
   }
 
-  [[noreturn]] void throw_no_ranges() const {
+  [[noreturn]] void throw_missing_ranges() const {
     throw DesignError("mechanism " + mechanism_.info().name + " has no default box; give a box");
   }
   /// A box that contains the workspace: that of the mechanism's own voxels, otherwise its ranges.
   Box box_of(std::span<const double> parameters, const Sweep& sweep,
              const std::optional<std::vector<std::array<double, 2>>>& ranges) const {
-    if (!ranges && !mechanism_.voxels()) throw_no_ranges();
+    if (!ranges && !mechanism_.voxels()) throw_missing_ranges();
     Box box;
     box.fill({0, 1});
     if (mechanism_.voxels()) {

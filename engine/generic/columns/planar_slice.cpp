@@ -111,7 +111,7 @@ void PlanarSlice::find_pieces(bool independent, std::span<double> registers, Pla
   add(1, scratch.vertices.size());
 }
 
-void PlanarSlice::find_type(PlanarSliceScratch& scratch) const {
+void PlanarSlice::find_combinatorial_type(PlanarSliceScratch& scratch) const {
   SliceType& type = scratch.type;
   Signs round = 0, cut = 0;  // surfaces whose arcs continue beyond turning points, and those that have other vertices
   const auto add = [&](std::size_t surface, std::size_t first, double t) {
@@ -192,7 +192,7 @@ double PlanarSlice::measure(std::span<double> registers, PlanarSliceScratch& scr
       };
       sum += area(upper) - area(lower);
     }
-  find_type(scratch);
+  find_combinatorial_type(scratch);
   return sum * scratch.v[1] * scratch.z[1];
 }
 

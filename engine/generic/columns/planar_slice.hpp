@@ -137,7 +137,7 @@ class PlanarSlice {
   void find_independent_vertices(std::span<double> registers, PlanarSliceScratch& scratch) const;
   void find_pieces(bool independent, std::span<double> registers, PlanarSliceScratch& scratch) const;
   void find_column(double t, const double* registers, PlanarSliceScratch& scratch) const;
-  /// Evaluates the stage of v at t.
+  /// Computes all registers that depend on v, but not on z, for v = t.
   void set_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
   /// Evaluates the constraints that are independent of z at t.
   void evaluate_independent(double t, std::span<double> registers, const PlanarSliceScratch& scratch,
@@ -146,7 +146,7 @@ class PlanarSlice {
   /// Integrals of 1, s and s^2 over the columns of a piece at t.
   std::array<double, 3> moments(const PlanarSliceScratch::Piece& piece, double t,
                                 const PlanarSliceScratch& scratch) const;
-  void find_type(PlanarSliceScratch& scratch) const;
+  void find_combinatorial_type(PlanarSliceScratch& scratch) const;
   /// Whether the length of columns has a square-root singularity there.
   static bool has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch);
   std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }

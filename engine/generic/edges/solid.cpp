@@ -2,6 +2,7 @@
 
 #include "engine/generic/edges/curves.hpp"
 #include "engine/math/quadrature.hpp"
+#include "engine/math/roots.hpp"
 
 namespace pkm::generic::edges {
 namespace {
@@ -194,23 +195,21 @@ class Evaluator {
                                  : function(bodies_[tests_[test].body], number, at);
   }
 
-  /// The root of a monotone function, by Newton's method with bisection.
+  /// The root of a monotone function.
   std::optional<double> find_root(std::size_t test, std::size_t number, double from, double to) const {
     const auto at = [&](double u) { return function_at(test, number, u); };
     const double first = at(from).value, last = at(to).value;
     const bool rises = last > 0;
     if (rises == (first > 0)) return {};
-    double u = from - first * ((to - from) / (last - first));
-    for (int i = 0; i < 100; ++i) {
+    const auto value_at = [&](double u) {
       const Enclosure f = at(u);
-      ((f.value > 0) == rises ? to : from) = u;
-      const double newton = u - f.value / f.slope;
-      const double next = newton > from && newton < to ? newton : 0.5 * (from + to), step = std::fabs(next - u);
-      u = next;
-      // The error of Newton's method is of the order of the square of its last step.
-      if (step < (next == newton ? 1e-9 : 4e-16) * arc_->length) break;
-    }
-    return u;
+      return ValueAndDerivative{f.value, f.slope};
+    };
+    // The error of Newton's method is of the order of the square of its last step.
+    const auto converged = [this](const ValueAndDerivative&, double u, double next) {
+      return std::fabs(next - u) < 1e-9 * arc_->length;
+    };
+    return refine_root_newton(value_at, from, to, first > 0, from - first * ((to - from) / (last - first)), converged);
   }
 
   bool is_active(double u, Tests tests) const {
