@@ -128,6 +128,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     std::vector<double> inputs;
     IntegralScratch integral;
     CornerCurves::Scratch corner_curves;
+    edges::EdgePlan::Scratch edges;
     InertiaScratch inertia;
     Known known;
   };
@@ -201,7 +202,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   /// By edges or corner curves if they serve the design, otherwise by slices.
   Integral<double> measure(std::span<const double> inputs, Room& memory) const {
     if (edges_)
-      if (const auto found = edges_->measure(inputs)) return *found;
+      if (const auto found = edges_->measure(inputs, memory.edges)) return *found;
     if (corner_curves_)
       if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) return *found;
     return integral_->measure(inputs, memory.integral);
@@ -209,7 +210,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   Integral<double> measure_with_gradient(std::span<const double> inputs, std::span<double> by_input,
                                          Room& memory) const {
     if (edges_)
-      if (const auto found = edges_->measure(inputs, by_input)) return *found;
+      if (const auto found = edges_->measure(inputs, memory.edges, by_input)) return *found;
     if (corner_curves_)
       if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) {
         corner_curves_->add_gradient(by_input, memory.corner_curves);

@@ -185,6 +185,10 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
 }
 
 bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
+  design.outputs.clear();
+  design.solid.bodies.clear();
+  design.sources.clear();
+  design.is_empty = false;
   program_.run_all<double>(inputs, design.registers);
   for (const std::uint32_t output : program_.outputs()) design.outputs.push_back(design.registers[output]);
   const double* const values = design.outputs.data();
@@ -265,19 +269,23 @@ std::optional<Solid> EdgePlan::solid(std::span<const double> inputs) const {
   return design.solid;
 }
 
-std::optional<Integral<double>> EdgePlan::measure(std::span<const double> inputs, std::span<double> by_input) const {
-  Design design;
+std::optional<Integral<double>> EdgePlan::measure(std::span<const double> inputs, Scratch& scratch,
+                                                  std::span<double> by_input) const {
+  Design& design = scratch.design;
   if (!why_not_.empty() || !build(inputs, design)) return {};
   if (design.is_empty) return Integral<double>{};
-  std::vector<Body> gradient;
-  const EdgeVolume found = volume(design.solid, tolerance_, by_input.empty() ? nullptr : &gradient);
+  const EdgeVolume found =
+      volume(design.solid, tolerance_, scratch.volume, by_input.empty() ? nullptr : &scratch.gradient);
   if (!found.is_supported || !found.is_closed) return {};
-  if (!by_input.empty()) add_gradient(design, gradient, by_input);
+  if (!by_input.empty()) add_gradient(scratch, by_input);
   return Integral<double>{found.value, found.error, found.nodes};
 }
 
-void EdgePlan::add_gradient(const Design& design, const std::vector<Body>& gradient, std::span<double> by_input) const {
-  std::vector<double> adjoints(program_.registers());
+void EdgePlan::add_gradient(Scratch& scratch, std::span<double> by_input) const {
+  const Design& design = scratch.design;
+  const std::vector<Body>& gradient = scratch.gradient;
+  std::vector<double>& adjoints = scratch.adjoints;
+  adjoints.assign(program_.registers(), 0);
   const auto add = [&](std::size_t output, double derivative) { adjoints[program_.outputs()[output]] += derivative; };
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     const auto& [kind, at, side] = design.sources[i];

@@ -24,11 +24,14 @@ class EdgePlan {
   /// Why the workspace is no such solid; empty if it is one.
   const std::string& why_not() const { return why_not_; }
 
+  struct Scratch;
+
   /// The volume of a design; std::nullopt if the workspace is no such solid, a quadric is of another kind, two faces
   /// have an intersection without a closed form, or the edges are not closed.
   /// @param inputs    of the model's graph
   /// @param by_input  if not empty, the derivatives of the volume are added
-  std::optional<Integral<double>> measure(std::span<const double> inputs, std::span<double> by_input = {}) const;
+  std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch,
+                                          std::span<double> by_input = {}) const;
 
   /// The bodies of a design, in coordinates relative to the middle of the box; std::nullopt if a quadric is of another
   /// kind.
@@ -61,7 +64,7 @@ class EdgePlan {
   };
   /// @return false if a quadric is of another kind
   bool build(std::span<const double> inputs, Design& design) const;
-  void add_gradient(const Design& design, const std::vector<Body>& gradient, std::span<double> by_input) const;
+  void add_gradient(Scratch& scratch, std::span<double> by_input) const;
 
   expression::Program program_;
   std::size_t constants_ = 0;  ///< first of the last outputs: constraints of the design, >= 0
@@ -70,6 +73,14 @@ class EdgePlan {
   std::vector<Clause> clauses_;
   std::string why_not_;
   double tolerance_;
+};
+
+/// Scratch memory of one thread.
+struct EdgePlan::Scratch {
+  Design design;
+  VolumeScratch volume;
+  std::vector<Body> gradient;
+  std::vector<double> adjoints;
 };
 
 }  // namespace pkm::generic::edges

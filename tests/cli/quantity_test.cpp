@@ -48,7 +48,7 @@ TEST(Quantity, IsAFieldOfTheWorkspace) {
   EXPECT_NEAR(fields["transmission"]["least"].get<double>(),
               std::cos(fields["pressure_angle"]["greatest"].get<double>()), 1e-12);
   EXPECT_FALSE(found.json()["cube"].is_null());
-  EXPECT_THAT(text_of(csv), HasSubstr(",sine_squared,transmission,pressure_angle,"));
+  EXPECT_THAT(text_of(csv), HasSubstr(",sine_squared,transmission,pressure_angle [rad],"));
   EXPECT_THAT(text_of(folder.path() + "/w.vtkhdf"), HasSubstr("pressure_angle"));
 
   const auto plain = pkmopt({"workspace", kExample, "--cells", "12"});
@@ -62,8 +62,8 @@ TEST(Quantity, IsAFieldOfTheWorkspace) {
 TEST(Quantity, IsPrintedWithPosesAndMotions) {
   const json pose = pkmopt({"pose", kExample, kPose, "--json"}).json();
   EXPECT_NEAR(pose["quantities"]["transmission"].get<double>(), transmission(0.02, -0.03, 0.01), 1e-12);
-  EXPECT_NEAR(pose["margins"]["sine_squared_max"].get<double>(),
-              0.5 - pose["quantities"]["sine_squared"].get<double>(), 1e-12);
+  EXPECT_NEAR(pose["margins"]["sine_squared_max"].get<double>(), 0.5 - pose["quantities"]["sine_squared"].get<double>(),
+              1e-12);
   const auto far = pkmopt({"pose", kExample, "--at=x=0,y=0.1,z=-0.2", "--set", "q_min=0"});
   EXPECT_THAT(far.out, HasSubstr("sine_squared_max is violated"));
 

@@ -270,7 +270,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     const double jacobian = jacobians[i];
     part.weight[i] = jacobian * weights.weight[i];
     part.value += part.weight[i] * slices[i].measure;
-    part.irreducible_error += part.weight[i] * slices[i].error;
+    part.irreducible_error += std::fabs(part.weight[i]) * slices[i].error;
     less += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
@@ -295,7 +295,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
   if (scratch.for_gradient && same) part.missed_at_ends = missed_at_ends(part, slices);
   if (!same) {
     const auto [least, largest] = std::ranges::minmax(slices, {}, &Slice::measure);
-    part.irreducible_error += width * (largest.measure - least.measure);
+    part.irreducible_error += std::fabs(width) * (largest.measure - least.measure);
   }
   own.parts.push_back(part);
 }

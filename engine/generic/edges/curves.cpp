@@ -1,5 +1,7 @@
 #include "engine/generic/edges/curves.hpp"
 
+#include "engine/math/roots.hpp"
+
 namespace pkm::generic::edges {
 namespace {
 
@@ -237,34 +239,26 @@ Enclosure value_of_D(const Trigonometric& D, const SineCosine& t) {
   return c * D[1] + s * D[2] + (square(c) * 2.0 - 1.0) * D[3] + s * c * (2 * D[4]) + D[0];
 }
 
-struct Root {
-  double t;
-  int order;
-};
-
 /// Simple roots that are closer to each other cannot be told from a double root, because of the rounding errors of D.
 constexpr double kDoubleRoot = 4e-8;
 
 /// Isolates the roots of D in an interval by bisection. Roots that may be double are reported once or several times.
-void isolate(const Trigonometric& D, double from, double to, double rounding, std::vector<Root>& roots) {
+void isolate(const Trigonometric& D, double from, double to, double rounding, std::vector<CurveRoot>& roots) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   const auto at = [&](double t, double h) { return value_of_D(D, sine_cosine(Enclosure::variable(t, h))); };
   const Enclosure d = at(middle, half);
   if (std::fabs(d.value) > d.reach() + rounding) return;
   if (d.is_monotone()) {
-    double low = from, high = to;
-    const bool rises = d.slope > 0;
-    if ((at(from, 0).value > 0) == (at(to, 0).value > 0)) return;
-    double t = middle;
-    for (int i = 0; i < 100 && high - low > 4e-16 * (1 + std::fabs(t)); ++i) {
+    const bool positive_at_from = at(from, 0).value > 0;
+    if (positive_at_from == (at(to, 0).value > 0)) return;
+    const auto value_at = [&](double t) {
       const Enclosure f = at(t, 0);
-      ((f.value > 0) == rises ? high : low) = t;
-      const double newton = t - f.value / f.slope;
-      const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-      if (next == t) break;
-      t = next;
-    }
-    roots.push_back({t, 1});
+      return ValueAndDerivative{f.value, f.slope};
+    };
+    const auto converged = [](const ValueAndDerivative&, double t, double next) {
+      return std::fabs(next - t) <= 4e-16 * (1 + std::fabs(t));
+    };
+    roots.push_back({refine_root_newton(value_at, from, to, positive_at_from, middle, converged), 1});
   } else if (half < 0.25 * kDoubleRoot) {
     roots.push_back({middle, 2});
   } else {
@@ -274,21 +268,21 @@ void isolate(const Trigonometric& D, double from, double to, double rounding, st
 }
 
 /// Merges roots that cannot be told from a double root into one, at the root of D'.
-std::vector<Root> merged(const Trigonometric& D, const std::vector<Root>& roots) {
-  std::vector<Root> result;
+void merge(const Trigonometric& D, std::vector<CurveRoot>& roots) {
+  std::size_t count = 0;
   for (std::size_t i = 0, end = 0; i < roots.size(); i = end) {
     for (end = i + 1; end < roots.size() && roots[end].t - roots[end - 1].t < kDoubleRoot;) ++end;
     double t = 0.5 * (roots[i].t + roots[end - 1].t);
     if (end == i + 1 && roots[i].order == 1) {
-      result.push_back(roots[i]);
+      roots[count++] = roots[i];
       continue;
     }
     const Shifted at = shifted(D, t);
     const double d_1 = at.sine[0] + 2 * at.sine[1], d_2 = -at.cosine[0] - 4 * at.cosine[1];
     if (d_2 != 0) t -= std::clamp(d_1 / d_2, -kDoubleRoot, kDoubleRoot);
-    result.push_back({t, 2});
+    roots[count++] = {t, 2};
   }
-  return result;
+  roots.resize(count);
 }
 
 }  // namespace
@@ -323,7 +317,7 @@ Curve equator(const Face& end, const Face& fold) {
   return circle(end, fold, end.centre, end.body->along[static_cast<std::size_t>(end.part)], end.body->radius);
 }
 
-bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs) {
+bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, std::vector<Arc>& arcs) {
   if (curve.kind == Curve::Kind::line) {
     arcs.push_back({.curve = &curve, .t_0 = -bound, .length = 2 * bound});
     return true;
@@ -339,9 +333,9 @@ bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs) {
   const bool on_torus = curve.kind == Curve::Kind::on_torus;
   const double start = on_torus ? curve.faces[0]->body->from : 0.1234;
   const double length = on_torus ? curve.faces[0]->body->to - start : 2 * kPi;
-  std::vector<Root> roots;
+  roots.clear();
   isolate(curve.D, start, start + length, 4e-16 * size, roots);
-  roots = merged(curve.D, roots);
+  merge(curve.D, roots);
   const auto add = [&](const Arc& arc) {
     for (const double branch : {1.0, -1.0}) {
       arcs.push_back(arc);
@@ -356,10 +350,10 @@ bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs) {
     roots.push_back({start + length, 0});
   }
   for (std::size_t i = 0; i + 1 < roots.size(); ++i) {
-    const Root &from = roots[i], &to = roots[i + 1];
+    const CurveRoot &from = roots[i], &to = roots[i + 1];
     const double middle = 0.5 * (from.t + to.t);
     if (!is_positive(middle)) continue;
-    const auto add_from = [&](const Root& root, double end) {
+    const auto add_from = [&](const CurveRoot& root, double end) {
       const double distance = std::fabs(end - root.t);
       add({.curve = &curve,
            .t_0 = root.t,

@@ -57,8 +57,15 @@ bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Cu
 /// The circle between an end face and the fold of a slide or crank.
 Curve equator(const Face& end, const Face& fold);
 
+/// A root t of Curve::D and its multiplicity.
+struct CurveRoot {
+  double t;
+  int order;
+};
+
+/// @param roots  scratch memory
 /// @return false if D vanishes identically
-bool add_arcs(const Curve& curve, double bound, std::vector<Arc>& arcs);
+bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, std::vector<Arc>& arcs);
 
 /// Encloses the points of an arc.
 /// @param u  Enclosure::variable(): the slope of the result is dp/du

@@ -36,19 +36,12 @@ Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].valu
 Vector3 slopes(const Enclosure3& p) { return {{p[0].slope, p[1].slope, p[2].slope}}; }
 double largest(const Vector3& v) { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
 
+}  // namespace
+
 class Evaluator {
  public:
-  explicit Evaluator(const Solid& solid) : bound_(solid.bound) {
-    for (const Body& body : solid.bodies) bodies_.emplace_back(body);
-    size_ = bound_;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      add_faces(bodies_[i], i, faces_);
-      size_ = std::max(size_, std::fabs(bodies_[i].radius) + bodies_[i].crank + largest(bodies_[i].centre));
-    }
-    for (std::size_t i = 1; i < powers_.size(); ++i) powers_[i] = powers_[i - 1] * size_;
-  }
-
-  EdgeVolume run(double tolerance, std::vector<Body>* gradient) {
+  EdgeVolume run(const Solid& solid, double tolerance, std::vector<Body>* gradient) {
+    reset(solid);
     constexpr std::size_t kMaxBodies = 63;
     if (bodies_.size() > kMaxBodies || !add_curves()) {
       result_.is_supported = false;
@@ -63,6 +56,23 @@ class Evaluator {
   }
 
  private:
+  void reset(const Solid& solid) {
+    bodies_.clear();
+    faces_.clear();
+    curves_.clear();
+    arcs_.clear();
+    ranges_.clear();
+    undecided_ = 0;
+    result_ = {};
+    for (const Body& body : solid.bodies) bodies_.emplace_back(body);
+    size_ = bound_ = solid.bound;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      add_faces(bodies_[i], i, faces_);
+      size_ = std::max(size_, std::fabs(bodies_[i].radius) + bodies_[i].crank + largest(bodies_[i].centre));
+    }
+    for (std::size_t i = 1; i < powers_.size(); ++i) powers_[i] = powers_[i - 1] * size_;
+  }
+
   bool add_curves() {
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       for (std::size_t j = i + 1; j < faces_.size(); ++j) {
@@ -75,7 +85,7 @@ class Evaluator {
       }
     }
     for (const Curve& curve : curves_)
-      if (!add_arcs(curve, bound_, arcs_)) result_.is_closed = false;
+      if (!add_arcs(curve, bound_, roots_, arcs_)) result_.is_closed = false;
     return true;
   }
 
@@ -153,7 +163,8 @@ class Evaluator {
       search(middle, to, depth + 1, tests);
       return;
     }
-    std::vector<double> ends{from, to};
+    std::vector<double>& ends = ends_;
+    ends.assign({from, to});
     if (is_monotone) {
       for (const auto& [test, number] : undecided_functions_)
         if (const auto root = find_root(test, number, from, to)) ends.push_back(*root);
@@ -242,7 +253,8 @@ class Evaluator {
   // Sums over the active ranges.
 
   void close() {
-    std::vector<Vector3> gaps(faces_.size());
+    std::vector<Vector3>& gaps = gaps_;
+    gaps.assign(faces_.size(), {});
     for (const Range& range : ranges_) {
       const Vector3 chord = values(point(*range.arc, range.to).p) - values(point(*range.arc, range.from).p);
       gaps[index(range, 0)] += chord * range.sign;
@@ -296,7 +308,8 @@ class Evaluator {
       moments_[i].radius[0] = face.side * 4 * kPi * face.body->radius * face.body->radius;
       sum += three_volumes(face, moments_[i]) / 3;
     }
-    std::vector<Panel> panels;
+    std::vector<Panel>& panels = panels_;
+    panels.clear();
     for (std::size_t i = 0; i < ranges_.size(); ++i) panels.push_back({i, ranges_[i].from, ranges_[i].to});
     for (Panel& panel : panels) evaluate(panel);
     const auto total = [&](auto member) {
@@ -389,7 +402,7 @@ class Evaluator {
     }
   }
 
-  double bound_, size_ = 0;
+  double bound_ = 0, size_ = 0;
   std::array<double, 5> powers_{1};
   std::vector<PreparedBody> bodies_;
   std::vector<Face> faces_;
@@ -397,6 +410,9 @@ class Evaluator {
   std::vector<Arc> arcs_;
   std::vector<Range> ranges_;
   std::vector<Moments> moments_;
+  std::vector<Vector3> gaps_;
+  std::vector<Panel> panels_;
+  std::vector<CurveRoot> roots_;
   double undecided_ = 0;
   EdgeVolume result_;
 
@@ -404,13 +420,15 @@ class Evaluator {
   const Arc* arc_ = nullptr;
   std::vector<Test> tests_;
   std::vector<Undecided> undecided_functions_;
+  std::vector<double> ends_;
   std::size_t first_range_ = 0;
 };
 
-}  // namespace
+VolumeScratch::VolumeScratch() : evaluator_(std::make_unique<Evaluator>()) {}
+VolumeScratch::~VolumeScratch() = default;
 
-EdgeVolume volume(const Solid& solid, double tolerance, std::vector<Body>* gradient) {
-  return Evaluator(solid).run(tolerance, gradient);
+EdgeVolume volume(const Solid& solid, double tolerance, VolumeScratch& scratch, std::vector<Body>* gradient) {
+  return scratch.evaluator_->run(solid, tolerance, gradient);
 }
 
 }  // namespace pkm::generic::edges

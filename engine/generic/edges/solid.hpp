@@ -1,6 +1,7 @@
 // Volume of a solid bounded by planes, spheres, cylinders and tori, from integrals along its edges (README.md).
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -43,9 +44,20 @@ struct EdgeVolume {
   long boxes = 0, nodes = 0;  ///< intervals examined and quadrature nodes
 };
 
+/// Scratch memory of volume(), of one thread.
+class VolumeScratch {
+ public:
+  VolumeScratch();
+  ~VolumeScratch();
+
+ private:
+  friend EdgeVolume volume(const Solid&, double, VolumeScratch&, std::vector<Body>*);
+  std::unique_ptr<class Evaluator> evaluator_;
+};
+
 /// The volume to a relative tolerance. It is valid only if it is supported and closed.
 /// @param gradient  if not null, receives the derivative of the volume by each member of each body that is a number,
 ///                  for variations that keep unit vectors at unit length and `zero` normal to `axis`
-EdgeVolume volume(const Solid& solid, double tolerance, std::vector<Body>* gradient = nullptr);
+EdgeVolume volume(const Solid& solid, double tolerance, VolumeScratch& scratch, std::vector<Body>* gradient = nullptr);
 
 }  // namespace pkm::generic::edges

@@ -9,6 +9,11 @@ namespace {
 
 using Kind = Body::Kind;
 
+EdgeVolume volume(const Solid& solid, double tolerance, std::vector<Body>* gradient = nullptr) {
+  VolumeScratch scratch;
+  return edges::volume(solid, tolerance, scratch, gradient);
+}
+
 Vector3 unit(const Vector3& v) { return v * (1 / norm(v)); }
 
 Body ball(const Vector3& centre, double radius, double side = 1) {
