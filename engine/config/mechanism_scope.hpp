@@ -42,7 +42,8 @@ class MechanismScope {
   limbs::Vector3 point_of_design(const ConfigValue& value, const std::string& what);
   /// Reads a direction, three formulas of parameters only, and normalises it.
   limbs::Vector3 direction(const ConfigValue& value, const std::string& what);
-  /// Value of a formula for the default parameters at an arbitrary pose, to test equations that must hold at every pose.
+  /// Value of a formula for the default parameters at an arbitrary pose, to test equations that must hold at every
+  /// pose.
   double at_default(const limbs::Term& term) const;
   /// Refuses a range that is empty for the default parameters.
   void refuse_empty(const ConfigValue& range, const limbs::Term& from, const limbs::Term& to) const;
