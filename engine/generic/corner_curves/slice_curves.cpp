@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <ranges>
 
 #include "engine/math/satisfied.hpp"
 
@@ -93,8 +92,8 @@ bool SliceCurves::add_strip(std::size_t surface, bool along_v, const std::array<
     if ((a[n] < 0) != is_inside || a[n] == 0) return false;
     const double square = b[n] * b[n] - 4 * a[n] * c0[n];
     if (square < 0) {
-      const bool never = std::ranges::all_of(std::views::iota(std::size_t{0}, kNodes),
-                                             [&](std::size_t k) { return b[k] * b[k] - 4 * a[k] * c0[k] < 0; });
+      bool never = true;
+      for (std::size_t k = 0; k < kNodes; ++k) never = never && b[k] * b[k] - 4 * a[k] * c0[k] < 0;
       if (never && !is_inside) formula.constant |= bit(surface);
       return never;
     }
