@@ -44,6 +44,8 @@ set(PKM_TESTS_OF_RELEASE
   MechanismFile.InvalidFiles LimbParameter.UnknownNames IsNotOverwrittenByOutputs OverwritesOnlyWithForce
   ExistingFilesAreNotOverwritten NewFilesAreShort Obstacle.InvalidDefinitions CheckReportsIncompatibleSettings
   TooManyCellsAreRejected ADeviationFromTheRecord LongLinesTakeNoTime AHigherEvaluationLimitResumes ThreadsDoNotMatter/ipopt
+  ExampleFindsTheLargestWorkspace OfRandomDesignsAreThoseOfSlices OfLimitsOfTwoCoordinates AgreeWithDenseSlices
+  OfRandomSolidsIs HaveDerivativesThatAgreeWithDifferences/rotarydelta
   NanIsFailedAndNeverBest/ipopt RespectsBounds/ipopt CatalogueMdIsUpToDate NumberOfThreadsFromEnvironment)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.
