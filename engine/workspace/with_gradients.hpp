@@ -1,8 +1,6 @@
 // CRTP base for workspace evaluators whose analysis is one template for double and Dual4.
 #pragma once
 
-#include <cmath>
-
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanism/workspace_evaluator.hpp"
 
@@ -26,7 +24,7 @@ template <class S, class T>
 void set_volume(const Integral<T>& integral, WorkspaceResult<S>& result) {
   const double value = value_of(integral.value);
   result.volume = S(integral.value);
-  result.error = value > 0 ? std::fabs(integral.error) / value : 0;
+  result.error = value > 0 ? integral.error / value : 0;
   result.columns = integral.evaluations;
 }
 

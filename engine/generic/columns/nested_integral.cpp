@@ -243,7 +243,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
   IntegralScratch::Level& own = scratch.levels[level];
   const double width = part.piece.upper - part.piece.lower;
   if (width < kMinWidth * whole) {
-    own.irreducible_error += width * std::max(part.below.measure, part.above.measure);
+    // Negative if slices beside a critical value lie beyond the next one: the overlap is counted twice.
+    own.irreducible_error += std::fabs(width) * std::max(part.below.measure, part.above.measure);
     return;
   }
   const NestedRule& rule = kronrod_rule();
@@ -270,7 +271,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     const double jacobian = jacobians[i];
     part.weight[i] = jacobian * weights.weight[i];
     part.value += part.weight[i] * slices[i].measure;
-    part.irreducible_error += std::fabs(part.weight[i]) * slices[i].error;
+    part.irreducible_error += part.weight[i] * slices[i].error;
     less += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
@@ -295,7 +296,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
   if (scratch.for_gradient && same) part.missed_at_ends = missed_at_ends(part, slices);
   if (!same) {
     const auto [least, largest] = std::ranges::minmax(slices, {}, &Slice::measure);
-    part.irreducible_error += std::fabs(width) * (largest.measure - least.measure);
+    part.irreducible_error += width * (largest.measure - least.measure);
   }
   own.parts.push_back(part);
 }
