@@ -16,6 +16,16 @@ double size_of_c(const BoundaryCurve& curve) {
   return curve.size[0] * curve.size[0] + curve.size[1] * curve.size[1] + curve.size[2];
 }
 
+/// The line b . (p - m) + e = 0 through the crossings of a circle with centre m and another curve.
+struct Chord {
+  double bx, by, e;
+};
+Chord chord_of(const CurveAt& circle, const CurveAt& other) {
+  if (!other.is_circle) return {other.u, other.w, other.u * circle.u + other.w * circle.w + other.c};
+  const double bx = 2 * (other.u - circle.u), by = 2 * (other.w - circle.w);
+  return {bx, by, -0.25 * (bx * bx + by * by) - circle.c + other.c};
+}
+
 }  // namespace
 
 bool BoundaryCurve::interpolate(double tolerance) {
@@ -100,19 +110,19 @@ void concurrence(const BoundaryCurve& i, const BoundaryCurve& j, const BoundaryC
   result.rounding = 16 * kUnitRoundoff * (largest * b * c + largest * b * b * (b + c));
 }
 
+bool has_crossing(const CurveAt& i, const CurveAt& j) {
+  const CurveAt &circle = i.is_circle ? i : j, &other = i.is_circle ? j : i;
+  const auto [bx, by, e] = chord_of(circle, other);
+  return (bx * bx + by * by) * circle.c > e * e;
+}
+
 Vector crossing(const CurveAt& i, const CurveAt& j, double branch) {
   if (!i.is_circle && !j.is_circle) {
     const double d = i.u * j.w - i.w * j.u;
     return {(i.w * j.c - j.w * i.c) / d, (i.c * j.u - j.c * i.u) / d};
   }
   const CurveAt &circle = i.is_circle ? i : j, &other = i.is_circle ? j : i;
-  // The chord b . (p - m) + e = 0, relative to the centre.
-  double bx = other.u, by = other.w, e = other.u * circle.u + other.w * circle.w + other.c;
-  if (other.is_circle) {
-    bx = 2 * (other.u - circle.u);
-    by = 2 * (other.w - circle.w);
-    e = -0.25 * (bx * bx + by * by) - circle.c + other.c;
-  }
+  const auto [bx, by, e] = chord_of(circle, other);
   const double bb = bx * bx + by * by, d = bb * circle.c - e * e, root = branch * std::sqrt(d > 0 ? d : 0);
   return {circle.u + (-bx * e - by * root) / bb, circle.w + (-by * e + bx * root) / bb};
 }

@@ -18,6 +18,7 @@ namespace pkm::generic::corner_curves {
 struct Vector {
   double x, y;
 };
+inline double determinant(const Vector& g, const Vector& h) { return g.x * h.y - g.y * h.x; }
 
 /// A curve at one value of tau. u and w: centre of a circle, or normal of a line; c: squared radius, or h at the
 /// origin.
@@ -73,6 +74,9 @@ void discriminant(const BoundaryCurve& i, const BoundaryCurve& j, Sampled& resul
 /// Function that vanishes where three curves meet in one point: the power of their radical centre, times the square of
 /// a determinant; for three lines a determinant.
 void concurrence(const BoundaryCurve& i, const BoundaryCurve& j, const BoundaryCurve& k, Sampled& result);
+
+/// Whether two curves cross, one of which is a circle.
+bool has_crossing(const CurveAt& i, const CurveAt& j);
 
 /// One of the two points in which two curves cross; for two lines there is one, whatever the branch.
 /// @param branch  1 or -1

@@ -22,13 +22,12 @@ bool is_outside(const CurveAt& curve, const CurveAt& other) {
   return largest > 0;
 }
 
-double determinant(const Vector& g, const Vector& h) { return g.x * h.y - g.y * h.x; }
-
 /// The case that two of the curves touch.
-bool resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
+/// @param touching  the pair of them, whose crossings are not followed
+void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                      const std::array<CurvePair*, 3>& pairs, std::size_t touching) {
-  constexpr std::size_t kMembers[3][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}};  // of each pair, then the third curve
-  const auto [a, b, c] = kMembers[touching];
+  constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};  // of each pair
+  const auto [a, b] = kMembers[touching];
   const std::size_t first = triple[a], second = triple[b], middle = kNodes / 2;
   const CurveAt f = curves[first].at_node(middle), g = curves[second].at_node(middle);
   for (std::size_t p = 0; p < 3; ++p) {
@@ -37,7 +36,6 @@ bool resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<
     pairs[p]->constants.push_back(
         {static_cast<std::uint8_t>(has_first ? second : first), 0, has_first ? is_outside(f, g) : is_outside(g, f)});
   }
-  return c < 3;
 }
 
 /// The signs at the crossing of one pair if all three curves cross each other.
@@ -89,24 +87,14 @@ bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std
 
 }  // namespace
 
-bool has_crossing(const CurveAt& i, const CurveAt& j) {
-  const CurveAt &circle = i.is_circle ? i : j, &other = i.is_circle ? j : i;
-  double bx = other.u, by = other.w, e = other.u * circle.u + other.w * circle.w + other.c;
-  if (other.is_circle) {
-    bx = 2 * (other.u - circle.u);
-    by = 2 * (other.w - circle.w);
-    e = -0.25 * (bx * bx + by * by) - circle.c + other.c;
-  }
-  return (bx * bx + by * by) * circle.c > e * e;
-}
-
 bool resolve_coincidence(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                          const std::array<CurvePair*, 3>& pairs, std::vector<Root>& roots) {
   const auto touching = std::ranges::count(pairs, nullptr);
-  if (touching == 1)
-    return resolve_contact(curves, triple, pairs,
-                           static_cast<std::size_t>(std::ranges::find(pairs, nullptr) - pairs.begin()));
   if (touching > 1) return false;
+  if (touching == 1) {
+    resolve_contact(curves, triple, pairs, static_cast<std::size_t>(std::ranges::find(pairs, nullptr) - pairs.begin()));
+    return true;
+  }
   const auto& [i, j, k] = triple;
   return resolve_pair(curves, *pairs[0], k, k, roots) && resolve_pair(curves, *pairs[1], j, k, roots) &&
          resolve_pair(curves, *pairs[2], i, k, roots);

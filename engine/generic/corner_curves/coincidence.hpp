@@ -12,9 +12,6 @@ namespace pkm::generic::corner_curves {
 
 inline constexpr double kZero = 64;  ///< a function is zero if it is at most this many times its rounding error
 
-/// Whether two curves cross, at one value of tau.
-bool has_crossing(const CurveAt& i, const CurveAt& j);
-
 /// Adds the constant signs, and the events of branches on which the three curves do not coincide, to the pairs.
 /// @param triple  curves in ascending order
 /// @param pairs   the pairs (0, 1), (0, 2) and (1, 2) of these; null: the two curves touch for all tau

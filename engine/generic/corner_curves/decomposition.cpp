@@ -300,6 +300,11 @@ class Builder {
       }
     return true;
   }
+  /// A third curve passes through the crossings of a pair.
+  void add_event(int pair, const Root& root, std::size_t third) {
+    s_.pairs[static_cast<std::size_t>(pair)].events.push_back(
+        {root.at, root.width, static_cast<std::uint8_t>(third), 0});
+  }
   bool may_meet(std::size_t i, std::size_t j) { return pair_of(i, j) >= 0 || pair_of(i, j) == kTangent; }
   bool add_triple(std::size_t i, std::size_t j, std::size_t k) {
     const int pairs[3] = {pair_of(i, j), pair_of(i, k), pair_of(j, k)};
@@ -314,13 +319,9 @@ class Builder {
     if (pairs[0] < 0 || pairs[1] < 0 || pairs[2] < 0) return true;
     if (!find_roots(function_, s_.roots)) return false;
     for (const Root& root : s_.roots) {
-      const auto add = [&](int to, std::size_t third) {
-        s_.pairs[static_cast<std::size_t>(to)].events.push_back(
-            {root.at, root.width, static_cast<std::uint8_t>(third), 0});
-      };
-      add(pairs[0], k);
-      add(pairs[1], j);
-      add(pairs[2], i);
+      add_event(pairs[0], root, k);
+      add_event(pairs[1], root, j);
+      add_event(pairs[2], root, i);
     }
     return true;
   }
@@ -330,12 +331,8 @@ class Builder {
     if (is_zero(function_)) return false;
     if (!find_roots(function_, s_.roots)) return false;
     for (const Root& root : s_.roots) {
-      const auto add = [&](int to, std::size_t third) {
-        s_.pairs[static_cast<std::size_t>(to)].events.push_back(
-            {root.at, root.width, static_cast<std::uint8_t>(third), 0});
-      };
-      add(pair_of(circle, other), cut);
-      add(pair_of(circle, cut), other);
+      add_event(pair_of(circle, other), root, cut);
+      add_event(pair_of(circle, cut), root, other);
     }
     return true;
   }
@@ -413,7 +410,7 @@ class Builder {
         stale |= evaluated_again;
         const int weight = is_violated ? 0
                            : is_cut    ? weight_of_cut(i, signs)
-                                       : weight_of(i, j, signs, determinant(first, second, p));
+                                       : weight_of(i, j, signs, determinant(first.gradient(p), second.gradient(p)));
         if (weight != range.weight || is_divided) {
           finish(from, false);
           range.weight = static_cast<std::int8_t>(weight);
@@ -456,17 +453,13 @@ class Builder {
     return true;
   }
 
-  int weight_of(std::size_t i, std::size_t j, Signs signs, double determinant) const {
+  int weight_of(std::size_t i, std::size_t j, Signs signs, double orientation) const {
     signs &= ~(bit(i) | bit(j));
     const int sum = static_cast<int>(formula_.holds(signs | bit(i) | bit(j))) -
                     static_cast<int>(formula_.holds(signs | bit(i))) -
                     static_cast<int>(formula_.holds(signs | bit(j))) + static_cast<int>(formula_.holds(signs));
     if (sum == 0) return 0;
-    return determinant > 0 ? sum : -sum;
-  }
-  static double determinant(const CurveAt& first, const CurveAt& second, const Vector& p) {
-    const Vector g = first.gradient(p), h = second.gradient(p);
-    return g.x * h.y - g.y * h.x;
+    return orientation > 0 ? sum : -sum;
   }
   int weight_of_cut(std::size_t i, Signs signs) const {
     signs &= ~bit(i);

@@ -37,7 +37,7 @@ struct SegmentIntegral {
 
   /// Integrates all ranges with one rule each.
   void start();
-  /// Halves the subinterval of the greatest error. @return false if there is none that can be halved
+  /// Bisects the subinterval with the largest error. @return false if all are too short
   bool refine();
   void sum();
 };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxDivisions = 12;
 constexpr double kFunctionConverged = 1e-11;  // relative tail of a function
-constexpr std::size_t kMaxRecursion = 100;    // of recursion
+constexpr std::size_t kMaxRecursion = 100;
 constexpr std::size_t kMaxSegments = 200;
 
 class Divider {

@@ -38,9 +38,7 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
   const std::span<Segment> segments = std::span(s.segments).first(s.count);
   std::size_t cells = 0;
   for (Segment& segment : segments) {
-    if (segment.integral.decomposition.unbalanced > kBalanced) {
-      return {};
-    }
+    if (segment.integral.decomposition.unbalanced > kBalanced) return {};
     segment.integral.start();
     cells += segment.integral.cells.size();
   }
@@ -74,8 +72,7 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
     for (const BoundaryCurve& curve : segment.slices.curves) per_slice += 12 * curve.tail;
     total.error += scale(segment) * per_slice * 0.5 * (segment.upper.at - segment.lower.at);
   }
-  if (!(total.value > 0)) return {};  // slices tell empty workspaces from those that only touch
-
+  if (!(total.value > 0)) return {};  // slices distinguish empty workspaces from missed ones
   return total;
 }
 
