@@ -106,8 +106,10 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     // digits are cheap.
     const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
     integral_.emplace(std::move(best), tolerance);
-    if (!request.needs_samples() && dual_registers().size() == sweep_.swept.size())
-      edges_.emplace(evaluation, mode_, sweep_.swept, box, tolerance);
+    if (!request.needs_samples() && dual_registers().size() == sweep_.swept.size()) {
+      edges::EdgePlan edges(evaluation, mode_, sweep_.swept, box, tolerance);
+      if (edges.why_not().empty()) edges_.emplace(std::move(edges));
+    }
     if (request.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
     if (request.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, request.rotors);
     if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, dual_registers(), mode_);

@@ -263,16 +263,10 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
   return true;
 }
 
-std::optional<Solid> EdgePlan::solid(std::span<const double> inputs) const {
-  Design design;
-  if (!why_not_.empty() || !build(inputs, design)) return {};
-  return design.solid;
-}
-
 std::optional<Integral<double>> EdgePlan::measure(std::span<const double> inputs, Scratch& scratch,
                                                   std::span<double> by_input) const {
   Design& design = scratch.design;
-  if (!why_not_.empty() || !build(inputs, design)) return {};
+  if (!build(inputs, design)) return {};
   if (design.is_empty) return Integral<double>{};
   const EdgeVolume found =
       volume(design.solid, tolerance_, scratch.volume, by_input.empty() ? nullptr : &scratch.gradient);

@@ -26,16 +26,12 @@ class EdgePlan {
 
   struct Scratch;
 
-  /// The volume of a design; std::nullopt if the workspace is no such solid, a quadric is of another kind, two faces
+  /// The volume of a design, if why_not() is empty; std::nullopt if a quadric is of another kind, two faces
   /// have an intersection without a closed form, or the edges are not closed.
   /// @param inputs    of the model's graph
   /// @param by_input  if not empty, the derivatives of the volume are added
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch,
                                           std::span<double> by_input = {}) const;
-
-  /// The bodies of a design, in coordinates relative to the middle of the box; std::nullopt if a quadric is of another
-  /// kind.
-  std::optional<Solid> solid(std::span<const double> inputs) const;
 
  private:
   /// Positions of the first of the 10 coefficients of each quadric, among the outputs of the program. At least one of
