@@ -1,6 +1,6 @@
-// Volumes of mechanism files by corner curves, which are used without samples, compared with those of slices, which are
-// used with samples, and with certified bounds. PKM_CORNER_DESIGNS: number of random designs of each mechanism;
-// PKM_CORNER_FIRST: number of the first one, to repeat a case.
+// Volumes of mechanism files by corner curves or edges, which are used without samples, compared with those of slices,
+// which are used with samples, and with certified bounds. PKM_CORNER_DESIGNS: number of random designs of each
+// mechanism; PKM_CORNER_FIRST: number of the first one, to repeat a case.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -26,8 +26,9 @@ TEST_P(CornerCurveVolumes, AreThoseOfSlices) {
   EXPECT_NEAR(curves.volume / slices.volume, 1, 1e-10);
 }
 
-/// Slices may miss a component of a thin workspace: where both volumes differ, certified bounds have to contain that of
-/// the corner curves.
+/// Volumes without samples: of the Deltas, the Orthoglide and the Gough platform by edges where these are closed,
+/// otherwise by corner curves. Slices may miss a component of a thin workspace: where both volumes differ, certified
+/// bounds have to contain the one without slices.
 TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
   const auto number = [](const char* name, unsigned otherwise) {
     const char* const text = std::getenv(name);
@@ -64,7 +65,8 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
     const double allowed = (curves.error + 1e-9) * curves.volume;
     EXPECT_LE(bounds.lower, curves.volume + allowed);
     EXPECT_GE(bounds.upper, curves.volume - allowed);
-    EXPECT_TRUE(slices < bounds.lower || slices > bounds.upper)
+    // Slices that report an error of this size contradict nothing.
+    EXPECT_TRUE(difference <= found.error || slices < bounds.lower || slices > bounds.upper)
         << curves.volume << " +- " << curves.error * curves.volume << " or " << slices << "? [" << bounds.lower << ", "
         << bounds.upper << ']';
   }
@@ -72,11 +74,12 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
   EXPECT_EQ(beyond, 0U);  // the sum of both reported errors
   EXPECT_LE(uncertain, 1 + designs / 100);
   std::cout << GetParam() << ": " << compared << " volumes, largest relative difference " << largest << ", "
-            << different << " with components that slices miss, " << uncertain << " with errors above 1e-6\n";
+            << different << " with components that slices miss or large errors of slices, " << uncertain
+            << " with errors above 1e-6\n";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CornerCurveVolumes,
-                         ::testing::Values("3-rpr", "gough", "linear-delta", "orthoglide", "4ppa-2par"),
+                         ::testing::Values("3-rpr", "gough", "linear-delta", "orthoglide", "4ppa-2par", "rotary-delta"),
                          [](const auto& name) { return test::test_name(name.param); });
 
 /// A limit on x and theta that is no polynomial, |sin(beta_1 + beta_2)| of 4PPa-2PaR, between thresholds that cut all
