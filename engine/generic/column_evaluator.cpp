@@ -150,37 +150,34 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     return all;
   }
 
-  /// The plan whose analysis of the default design at low accuracy takes the fewest slices; plans that take too long
-  /// are excluded unless all do.
+  /// The plan whose analysis of the default design at low accuracy takes the least work.
   SlicePlan fastest(std::vector<SlicePlan> plans) const {
     const double tolerance = plans.front().order.v ? 1e-3 : 1e-2;
-    if (plans.size() == 1 || plans.front().order.outer.empty()) return std::move(plans.front());
+    const bool has_curves = std::ranges::any_of(plans.front().surfaces, &Surface::is_transcendental);
+    if ((plans.size() == 1 && !has_curves) || plans.front().order.outer.empty()) return std::move(plans.front());
     std::vector<double> design;
     for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
-    constexpr long kMaxBisections = 2'000'000;  // a few seconds
     Room memory;
-    std::size_t best = 0;
-    double least = 1e7;
+    std::optional<std::size_t> best;
+    // interval operations, or surfaces in slices: about a second
+    long least = has_curves ? 100'000'000 : 10'000'000;
     for (std::size_t i = 0; i < plans.size(); ++i) {
       const NestedIntegral trial(plans[i], tolerance);
-      const auto curves =
-          static_cast<std::size_t>(std::ranges::count(plans[i].surfaces, true, &Surface::is_transcendental));
-      const auto per_section =
-          static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].independent.back().size() + 400 * curves);
+      const auto per_slice = static_cast<long>(plans[i].surfaces.size() + 8 * plans[i].independent.back().size());
+      NestedIntegral::Budget budget;
+      (has_curves ? budget.operations : budget.evaluations) = has_curves ? least : std::max(1L, least / per_slice);
       fill_inputs<double>(design, memory.inputs);
-      memory.integral.column.bisections = 0;
-      memory.integral.column.max_bisections = kMaxBisections;
-      try {
-        trial.measure(memory.inputs, memory.integral, std::max(1L, static_cast<long>(least / per_section)));
-      } catch (const TooManyBisections&) {
-        continue;
-      }
-      const double work = static_cast<double>(memory.integral.evaluations) * per_section;
-      if (i > 0 && work >= least) continue;
+      trial.measure(memory.inputs, memory.integral, budget);
+      const long work = has_curves ? memory.integral.column.operations : memory.integral.evaluations * per_slice;
+      if (work >= least) continue;
       best = i;
       least = work;
     }
-    return std::move(plans[best]);
+    if (!best && has_curves)
+      throw std::invalid_argument("mechanism " + mechanism_.info().name +
+                                  " has no exact columns that can be computed in seconds: its constraints are no "
+                                  "polynomials of degree four; use voxels");
+    return std::move(plans[best.value_or(0)]);
   }
 
   /// Among the plans that corner curves serve, the one that takes the least work for the default design.
@@ -256,6 +253,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     } else {
       found = with_slopes(samples.inputs, memory);
     }
+    found.error = std::max(found.error, std::numeric_limits<double>::epsilon() * found.value);
     set_volume(found, survey);
     if (found.value == 0 && found.error > 0) survey.error = 1;
     if constexpr (!std::is_same_v<S, double>) {

@@ -134,6 +134,7 @@ class Planner {
     }
     for (CrankSigns& crank : plan_.formula.cranks) crank.half_turn = *at++;
     for (std::size_t i = 0; i < ends_.size(); ++i, at += 2) plan_.range.push_back({at[0], at[1]});
+    if (plan_.independent.size() > 1) plan_.univariate = expression::Program(graph_, univariate(), groups);
     return std::move(plan_);
   }
 
@@ -215,6 +216,19 @@ class Planner {
     curve[1] = expression::derivative(graph_, node, z);
     curve_nodes_.push_back(node);
     plan_.formula.all |= bit(curve);
+  }
+
+  /// The constraints that depend on the first coordinate alone, each with its derivative with respect to it.
+  std::vector<Node> univariate() {
+    const std::size_t coordinate = plan_.order.outer.empty() ? plan_.order.v.value_or(0) : plan_.order.outer.front();
+    const Node by = graph_.input(model_.inputs.coordinate(coordinate), Inputs::coordinate_group(coordinate));
+    std::vector<Node> all;
+    for (std::size_t i = 0; i < plain_.size(); ++i)
+      if (plan_.program.stage_of()[plan_.program.outputs()[i]] == 1)
+        all.insert(all.end(), {plain_[i], expression::derivative(graph_, plain_[i], by)});
+    if (all.size() > 2 * kMaxSurfaces)
+      refuse("more than " + std::to_string(kMaxSurfaces) + " constraints depend on a single coordinate");
+    return all;
   }
 
   /// The constraints that depend on v but not on z, each with its derivatives with respect to v.

@@ -39,6 +39,9 @@ struct SlicePlan {
   /// Constraints independent of z alone: outputs are the value, its derivative and its second derivative with respect
   /// to v, of each; stages are the design, each outer coordinate, v.
   expression::Program limits;
+  /// The constraints independent[1], which depend on a single coordinate: outputs are the value and its derivative with
+  /// respect to it, of each; stages are those of `program`.
+  expression::Program univariate;
   std::vector<std::array<std::uint32_t, 2>> range;  ///< registers of the bounds of each outer coordinate, v and z
   std::string why_not;                              ///< if not empty: why these slices have no closed form
 };

@@ -23,15 +23,16 @@ struct EvaluateArguments : DesignArguments, SensitivityArguments {
 };
 
 /// The problem of a mechanism without a study: all objectives that support the mechanism and the workspace method, with
-/// their default options. The method is exact columns if the mechanism has them and no cells are given, else voxels.
-std::shared_ptr<const DesignProblem> default_problem(const Target& target, const Catalogues& catalogues,
-                                                     const std::vector<std::string>& cells) {
+/// their default options.
+/// @param cells  of voxels; empty: a default number
+DesignProblem problem_of_all_objectives(const Target& target, const Catalogues& catalogues, bool by_columns,
+                                        const std::vector<std::string>& cells) {
   ProblemParts parts;
   parts.mechanism = target.mechanism;
   parts.parameters = target.parameters;
   parts.plan.limits = target.limits;
   const Sweep& sweep = target.info().sweeps.front();
-  if (!target.mechanism->columns() || !cells.empty()) parts.plan.method = equal_cells(sweep, kDefaultCells);
+  if (!by_columns) parts.plan.method = equal_cells(sweep, kDefaultCells);
   if (!cells.empty())
     std::ranges::copy(parse_cells(cells, coordinate_names(target.info(), sweep.swept)),
                       std::get<VoxelOptions>(parts.plan.method).cells.begin());
@@ -50,15 +51,39 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
                                 .quantity = entry.make(context),
                                 .uses_workspace = entry.reads(context)});
   }
+  return DesignProblem(std::move(parts));
+}
+
+struct ProblemOfMechanism {
+  std::shared_ptr<const DesignProblem> problem;
+  std::string why_voxels;  ///< if the mechanism's columns cannot be computed in time
+};
+
+/// By exact columns if the mechanism has them and no cells are given, otherwise by voxels.
+ProblemOfMechanism default_problem(const Target& target, const Catalogues& catalogues,
+                                   const std::vector<std::string>& cells) {
+  ProblemOfMechanism made;
+  const auto make = [&](bool by_columns) {
+    made.problem =
+        std::make_shared<const DesignProblem>(problem_of_all_objectives(target, catalogues, by_columns, cells));
+  };
   try {
-    return std::make_shared<const DesignProblem>(std::move(parts));
+    if (target.mechanism->columns() && cells.empty()) make(true);
+  } catch (const std::invalid_argument& reason) {
+    made.why_voxels = reason.what();
+  }
+  try {
+    if (!made.problem) make(false);
   } catch (const std::invalid_argument& reason) {
     throw ConfigError({"", 0, target.info().name}, reason.what());
   }
+  return made;
 }
 
 /// Adds the measure of the workspace to the output.
-void report_workspace(const DesignProblem& problem, const WorkspaceResult<double>& survey, Printout& out) {
+/// @param note  on the method; may be empty
+void report_workspace(const DesignProblem& problem, const WorkspaceResult<double>& survey, const std::string& note,
+                      Printout& out) {
   const WorkspacePlan& plan = problem.parts().plan;
   const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
   const std::string method = plan.voxels() ? "voxels" : "columns";
@@ -79,8 +104,11 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
     json["columns"] = survey.columns;
     json["relative_error"] = estimated ? Json(survey.error) : Json();
     rows.push_back({"columns", std::to_string(survey.columns)});
-    if (estimated) rows.push_back({"relative error", number(survey.error)});
+    if (estimated)
+      rows.push_back({"relative error",
+                      number(survey.error) + (survey.error < 1 ? ", estimated" : ", that is, the volume is unknown")});
   }
+  if (!note.empty()) rows.push_back({"note", note});
   out.json["workspace"] = json;
   out.add_table("workspace", rows);
 }
@@ -119,8 +147,8 @@ std::string feasibility_text(const DesignProblem& problem, const DesignReport& r
 
 std::string evaluate(const Catalogues& catalogues, const Target& target, const EvaluateArguments& arguments,
                      Printout& out) {
-  const auto problem =
-      target.study ? target.study->problem : default_problem(target, catalogues, arguments.changes.cells);
+  const auto [problem, why_voxels] = target.study ? ProblemOfMechanism{target.study->problem, ""}
+                                                  : default_problem(target, catalogues, arguments.changes.cells);
   const ColumnOptions* const columns = problem->parts().plan.columns();
   std::optional<double> gap = columns ? columns->certified : std::nullopt;
   if (!arguments.certified.empty()) {
@@ -155,7 +183,7 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   out.head.push_back({"feasible", feasibility_text(*problem, report)});
   report_values("parameters", "parameters", target.info().parameters, report.parameters, no_remark);
   out.json["workspace"] = nullptr;
-  if (surveyed) report_workspace(*problem, report.workspace, out);
+  if (surveyed) report_workspace(*problem, report.workspace, why_voxels, out);
   if (bounds) report_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
   report_values(
       "objectives", "objectives", problem->objectives(), report.objectives,

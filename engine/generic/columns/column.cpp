@@ -44,6 +44,11 @@ Column::Column(SlicePlan plan) : plan_(std::move(plan)) {
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k)
     if (const Surface& surface = plan_.surfaces[k]; surface.is_high_degree || surface.is_transcendental)
       (surface.is_high_degree ? high_degree_ : transcendental_) |= bit(k);
+  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k)
+    if ((transcendental_ & bit(k)) != 0) {
+      curves_.push_back({plan_.surfaces[k].coefficients[0], plan_.surfaces[k].coefficients[1]});
+      curve_surfaces_.push_back(static_cast<EndLabel>(k));
+    }
   positive_literals_ = high_degree_;
   for (const CrankSigns& crank : plan_.formula.cranks)
     positive_literals_ &= ~(crank.at_min | crank.at_max | crank.after_min | crank.before_max);
@@ -146,6 +151,7 @@ void Column::merge_coincident_roots(std::span<const double> registers, double ti
 
 double Column::measure(std::span<double> registers, ColumnScratch& scratch) const {
   scratch.type = 0;
+  scratch.error = 0;
   scratch.labels.clear();
   scratch.pieces.clear();
   scratch.ends.clear();

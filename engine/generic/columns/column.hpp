@@ -2,9 +2,8 @@
 // torus), or roots of transcendental constraints, isolated by interval arithmetic.
 #pragma once
 
-#include <limits>
-
 #include "engine/generic/columns/endpoints.hpp"
+#include "engine/generic/columns/sign_changes.hpp"
 #include "engine/generic/slice_plan.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/math/interval.hpp"
@@ -21,18 +20,16 @@ struct ColumnScratch {
   Ends ends;  ///< all relevant sign changes of constraints
   Ends quadratic,
       high_degree;  ///< of quadratic and transcendental constraints, in order; of other ones between two of those
-  std::vector<Interval> intervals;  ///< registers
-  std::vector<EndLabel> labels;     ///< of the endpoints of pieces
+  std::vector<EndLabel> labels;  ///< of the endpoints of pieces
   SliceType type = 0;
-  long bisections = 0;                                     ///< so far, of intervals for transcendental constraints
-  long max_bisections = std::numeric_limits<long>::max();  ///< limit, beyond which TooManyBisections is thrown
+  double error = 0;  ///< length in which the signs of transcendental constraints are unknown
+  SignChangeScratch sign_changes;
+  long operations = 0;      ///< with intervals so far, in all columns
+  long max_operations = 0;  ///< afterwards, what is not known counts as error
 };
 
 /// Whether a column has so many endpoints that it takes much longer than a microsecond.
 inline bool is_long(const ColumnScratch& scratch) { return scratch.ends.size() > 64; }
-
-/// Thrown by measure().
-struct TooManyBisections {};
 
 class Column {
  public:
@@ -62,7 +59,7 @@ class Column {
  private:
   bool find_quadratic_roots(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
                             ColumnScratch& scratch) const;
-  /// Evaluates the stage of z; S is double, Dual4 or Interval.
+  /// Evaluates the stage of z; S is double or Dual4.
   template <class S>
   void set_z(const S& z, std::span<S> registers) const {
     const expression::Program& program = plan_.program;
@@ -71,12 +68,8 @@ class Column {
   }
   void find_transcendental_roots(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
                                  ColumnScratch& scratch) const;
-  void isolate(Signs curves, double from, double to, double narrow, std::span<double> registers,
-               ColumnScratch& scratch) const;
   void add_gradient_of_transcendental(const Surface& surface, double z, double factor, std::span<double> registers,
                                       std::span<double> adjoints) const;
-  double bracketed_root_of(std::size_t curve, double from, double to, bool satisfied_at_from,
-                           std::span<double> registers) const;
   void find_high_degree_roots(std::span<const double> registers, double from, double to, Signs& signs,
                               ColumnScratch& scratch) const;
   double root_error_bound(const std::pair<double, EndLabel>& end, std::span<const double> registers) const;
@@ -86,6 +79,8 @@ class Column {
   Signs high_degree_ = 0;        ///< constraints of degree three and four
   Signs positive_literals_ = 0;  ///< those of them that occur only positively in the feasibility formula
   Signs transcendental_ = 0;
+  std::vector<WithDerivative> curves_;    ///< transcendental constraints
+  std::vector<EndLabel> curve_surfaces_;  ///< their surfaces
 };
 
 }  // namespace pkm::generic

@@ -66,6 +66,8 @@ NestedIntegral::NestedIntegral(SlicePlan plan, double tolerance)
                               : std::variant<PlanarSlice, Column>(Column(std::move(plan)))),
       tolerance_(tolerance) {
   const SlicePlan& own = this->plan();
+  const std::vector<std::uint32_t>& outputs = own.univariate.outputs();
+  for (std::size_t i = 0; i < outputs.size(); i += 2) univariate_.push_back({outputs[i], outputs[i + 1]});
   // transcendental constraints depend on all preceding stages
   if (!ends_in_lines() || levels() == 0 || std::ranges::any_of(own.surfaces, &Surface::is_transcendental)) return;
   const auto stage = static_cast<int>(levels());
@@ -81,37 +83,65 @@ NestedIntegral::NestedIntegral(SlicePlan plan, double tolerance)
 }
 
 Integral<double> NestedIntegral::measure(std::span<const double> inputs, IntegralScratch& scratch,
-                                         long max_evaluations) const {
+                                         const Budget& budget) const {
   scratch.for_gradient = false;
-  return measure_all(inputs, scratch, max_evaluations);
+  return measure_all(inputs, scratch, budget);
 }
 
 Integral<double> NestedIntegral::measure_for_gradient(std::span<const double> inputs, IntegralScratch& scratch) const {
   scratch.for_gradient = true;
-  return measure_all(inputs, scratch, 0);
+  return measure_all(inputs, scratch, {});
 }
 
 Integral<double> NestedIntegral::measure_all(std::span<const double> inputs, IntegralScratch& scratch,
-                                             long max_evaluations) const {
+                                             const Budget& budget) const {
   const expression::Program& program = plan().program;
   scratch.registers.resize(program.registers());
   scratch.levels.resize(levels() + 1);
   scratch.evaluations = 0;
-  scratch.max_evaluations = max_evaluations > 0 ? max_evaluations : levels() < 2 ? 100'000 : 20'000'000;
+  scratch.max_evaluations = budget.evaluations > 0 ? budget.evaluations : levels() < 2 ? 100'000 : 20'000'000;
   for (IntegralScratch::Level& level : scratch.levels) level.largest = 0;
   program.start<double>(scratch.registers);
   program.run<double>(0, inputs, scratch.registers);
+  scratch.column.operations = 0;
+  scratch.column.max_operations = budget.operations;
   scratch.measured = scratch.has_hints = false;
   scratch.kept.clear();
+  const double unknown = find_univariate_changes(inputs, scratch);
   const Slice all = inside(0, scratch);
   scratch.measured = true;
-  return {all.measure, all.error, scratch.evaluations};
+  return {all.measure, all.error + unknown, scratch.evaluations};
 }
 
 void NestedIntegral::set(std::size_t level, double at, IntegralScratch& scratch) const {
   scratch.levels[level].at = at;
   for (const auto& input : plan().program.stages()[level + 1].inputs) scratch.registers[input.to] = at;
   plan().program.run<double>(level + 1, std::span<double>(scratch.registers));
+}
+
+bool NestedIntegral::is_exhausted(const IntegralScratch& scratch) const {
+  return scratch.evaluations >= scratch.max_evaluations || scratch.column.operations >= scratch.column.max_operations;
+}
+
+double NestedIntegral::find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const {
+  constexpr long kMaxEvaluations = 40'000;
+  constexpr double kMostUndecided = 0.01;
+  scratch.changes.found.clear();
+  if (univariate_.empty()) return 0;
+  const expression::Program& program = plan().univariate;
+  scratch.univariate.resize(program.registers());
+  program.start<double>(scratch.univariate);
+  program.run<double>(0, inputs, scratch.univariate);
+  const auto range = [&](std::size_t i) {
+    return std::array{scratch.registers[plan().range[i][0]], scratch.registers[plan().range[i][1]]};
+  };
+  const auto [low, high] = range(0);
+  if (!(high > low)) return 0;
+  find_sign_changes(program, 1, univariate_, low, high, kMaxEvaluations, scratch.univariate, scratch.changes);
+  double unknown = scratch.changes.undecided;
+  if (unknown > kMostUndecided * (high - low)) scratch.max_evaluations = 0;  // the measure will not be known
+  for (std::size_t i = 1; i < plan().range.size() && unknown > 0; ++i) unknown *= std::fabs(range(i)[1] - range(i)[0]);
+  return unknown;
 }
 
 Slice NestedIntegral::inside(std::size_t level, IntegralScratch& scratch) const {
@@ -122,13 +152,13 @@ Slice NestedIntegral::inside(std::size_t level, IntegralScratch& scratch) const 
   constexpr long kColumnsPerCheck = 16;  // a column takes a microsecond
   if (!ends_in_lines() || scratch.evaluations % kColumnsPerCheck == 0 || is_long(scratch.column)) check_stop();
   ++scratch.evaluations;
-  const auto measured = [&](const auto& innermost, auto& own) {
-    const double measure = innermost.measure(scratch.registers, own);
-    return Slice{.measure = measure, .hash = own.type};
-  };
-  const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_);
-  return planar_slice ? measured(*planar_slice, scratch.planar_slice)
-                      : measured(std::get<Column>(innermost_), scratch.column);
+  if (const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_)) {
+    const double area = planar_slice->measure(scratch.registers, scratch.planar_slice,
+                                              levels() == 0 ? &scratch.changes.found : nullptr);
+    return {.measure = area, .hash = scratch.planar_slice.type};
+  }
+  const double length = std::get<Column>(innermost_).measure(scratch.registers, scratch.column);
+  return {.measure = length, .error = scratch.column.error, .hash = scratch.column.type};
 }
 
 Slice NestedIntegral::slice(std::size_t level, double at, IntegralScratch& scratch) const {
@@ -180,6 +210,7 @@ Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) con
   CriticalValues& critical_values = own.critical_values[0];
   critical_values.clear();
   choose_samples(level, low, high, scratch);
+  if (level == 0) add_samples_between_changes(low, high, scratch);
   if (level == 0) scratch.is_scanning = true;
   own.scanned.resize(own.places.size());
   find_slices(level, own.places, own.scanned, scratch);
@@ -276,7 +307,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     same = same && slices[i].hash == part.below.hash;
   }
   if (!same && depth < kMaxDepth && width > (ends_in_lines() ? kBlurredInLines : kMinResolvableWidth) * whole &&
-      scratch.evaluations < scratch.max_evaluations) {
+      !is_exhausted(scratch)) {
     CriticalValues& critical_values = own.critical_values[static_cast<std::size_t>(depth) + 1];
     const Slice below{.measure = part.beyond_lower, .violated = part.lower};
     const Slice above{.measure = part.beyond_upper, .violated = part.upper};
@@ -311,7 +342,7 @@ void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& sc
   const auto misses = [&](const SmoothInterval& part) {
     return part.missed_at_ends > may_miss && part.piece.upper - part.piece.lower > kMinWidth * whole;
   };
-  while (own.parts.size() < kMostParts && scratch.evaluations < scratch.max_evaluations) {
+  while (own.parts.size() < kMostParts && !is_exhausted(scratch)) {
     double value = 0, error = 0;
     for (const SmoothInterval& part : own.parts) {
       value += part.value;

@@ -88,7 +88,10 @@ struct IntegralScratch {
   ColumnScratch column;
   SearchScratch search;
   std::vector<double> registers, adjoints, own;
-  expression::Rows rows;  ///< of several lines, for SIMD batches
+  std::vector<double> univariate;  ///< registers of SlicePlan::univariate
+  SignChangeScratch changes;       ///< of its constraints along the first coordinate
+  std::vector<double> ends;        ///< the sorted abscissas of these changes, and the ends of the range
+  expression::Rows rows;           ///< of several lines, for SIMD batches
   std::vector<Dual4> dual_registers,
       along;  ///< registers with derivatives with respect to the design, and to an outer coordinate
   std::vector<Level> levels;
@@ -111,9 +114,16 @@ class NestedIntegral {
   const SlicePlan& plan() const {
     return std::visit([](const auto& each) -> const SlicePlan& { return each.plan(); }, innermost_);
   }
+  /// Limits, after which what is not known counts as error.
+  struct Budget {
+    long evaluations = 0;             ///< of slices; 0: more than are usually of use
+    long operations = 1'000'000'000;  ///< with intervals, for transcendental constraints: some ten seconds
+  };
   /// @param inputs  of the graph, with fixed coordinates
-  /// @param most    slices, after which what is not known counts as error; 0: more than are usually of use
-  Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch, long max_evaluations = 0) const;
+  Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
+  Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch) const {
+    return measure(inputs, scratch, Budget{});
+  }
   /// The same with critical values accurate enough for derivatives, and with intermediate results for add_gradient().
   Integral<double> measure_for_gradient(std::span<const double> inputs, IntegralScratch& scratch) const;
   /// Adds the derivatives of the measure with respect to the inputs of the graph, after measure_for_gradient().
@@ -133,8 +143,13 @@ class NestedIntegral {
 
   std::size_t levels() const { return plan().order.outer.size(); }
   bool ends_in_lines() const { return std::holds_alternative<Column>(innermost_); }
-  Integral<double> measure_all(std::span<const double> inputs, IntegralScratch& scratch, long max_evaluations) const;
+  Integral<double> measure_all(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
   void set(std::size_t level, double at, IntegralScratch& scratch) const;
+  /// Whether the budget is used up: what is not known then counts as error.
+  bool is_exhausted(const IntegralScratch& scratch) const;
+  /// Finds all sign changes of constraints along the first coordinate. @return bound of the measure that those which
+  /// remain unknown can affect
+  double find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const;
   /// The slice, with the coordinates before `level` set.
   Slice inside(std::size_t level, IntegralScratch& scratch) const;
   Slice slice(std::size_t level, double at, IntegralScratch& scratch) const;
@@ -144,6 +159,7 @@ class NestedIntegral {
   void find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
                    IntegralScratch& scratch) const;
   void choose_samples(std::size_t level, double low, double high, IntegralScratch& scratch) const;
+  static void add_samples_between_changes(double low, double high, IntegralScratch& scratch);
   static void add_expected_samples(double outside, IntegralScratch::Level& own);
   static void record_intervals(double outside, IntegralScratch::Level& own);
   Slice integrate(std::size_t level, IntegralScratch& scratch) const;
@@ -246,6 +262,7 @@ class NestedIntegral {
   std::optional<expression::BatchStage>
       lines_;                                  ///< if slices are lines: the operations that differ from one to the next
   std::vector<std::uint32_t> line_registers_;  ///< its registers that Column reads
+  std::vector<WithDerivative> univariate_;     ///< registers of SlicePlan::univariate
   double tolerance_;
 };
 

@@ -48,7 +48,7 @@ void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& 
                                           CriticalValues& critical_values, IntegralScratch& scratch) const {
   const double least = kClearDistance * whole;
   double step = least;
-  for (int more = 0; more < 24 && from.hash != to.hash && scratch.evaluations < scratch.max_evaluations; ++more) {
+  for (int more = 0; more < 24 && from.hash != to.hash && !is_exhausted(scratch); ++more) {
     Slice low = from, high = to;
     // Rounding can produce a cluster of spurious changes. Bisection terminates at one of them; extrapolation would
     // visit all of them in turn.

@@ -81,6 +81,8 @@ void NestedIntegral::visit_one_sided(std::size_t level, const SmoothInterval& pa
   if (!scratch.other) scratch.other = std::make_unique<IntegralScratch>();
   IntegralScratch& out = *scratch.other;
   out.registers = scratch.registers;
+  out.column.operations = 0;
+  out.column.max_operations = scratch.column.max_operations;
   out.levels.resize(scratch.levels.size());
   for (std::size_t i = 0; i < out.levels.size(); ++i) {
     const IntegralScratch::Level& own = scratch.levels[i];

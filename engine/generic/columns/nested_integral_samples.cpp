@@ -66,7 +66,7 @@ void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   const long evaluations = scratch.evaluations;
   scratch.has_hints = true;
   std::vector<SearchScratch::Box>& boxes = scratch.search.boxes;
-  while (scratch.search.examined < kMany && scratch.evaluations < scratch.max_evaluations) {
+  while (scratch.search.examined < kMany && !is_exhausted(scratch)) {
     search.examine(scratch.search);
     if (boxes.empty()) break;
     places.clear();
@@ -151,6 +151,21 @@ void NestedIntegral::choose_samples(std::size_t level, double low, double high, 
   if (level > 0 && scratch.has_hints) own.places.insert(own.places.end(), own.hints.begin(), own.hints.end());
   if (level > 0) add_expected_samples(scratch.levels[level - 1].at, own);
   std::ranges::sort(own.places);
+}
+
+/// Adds samples of the outermost coordinate where there is none between two sign changes of constraints.
+void NestedIntegral::add_samples_between_changes(double low, double high, IntegralScratch& scratch) {
+  scratch.ends.assign({low, high});
+  for (const SignChange& change : scratch.changes.found) scratch.ends.push_back(change.at);
+  std::ranges::sort(scratch.ends);
+  std::vector<double>& places = scratch.levels[0].places;
+  const std::size_t known = places.size();
+  for (std::size_t i = 1; i < scratch.ends.size(); ++i) {
+    const auto begin = places.begin(), end = begin + static_cast<std::ptrdiff_t>(known);
+    const auto next = std::lower_bound(begin, end, scratch.ends[i - 1]);
+    if (next == end || *next > scratch.ends[i]) places.push_back(0.5 * (scratch.ends[i - 1] + scratch.ends[i]));
+  }
+  std::ranges::sort(places);
 }
 
 /// Intervals are expected as at the two nearest values of the next outer coordinate on either side, and by linear

@@ -172,7 +172,8 @@ double PlanarSlice::distance(const BoundaryFeature& vertex, const BoundaryFeatur
   return least;
 }
 
-double PlanarSlice::measure(std::span<double> registers, PlanarSliceScratch& scratch) const {
+double PlanarSlice::measure(std::span<double> registers, PlanarSliceScratch& scratch,
+                            const std::vector<SignChange>* changes) const {
   scratch.type = 0;
   scratch.pieces.clear();
   scratch.spans.clear();
@@ -180,7 +181,12 @@ double PlanarSlice::measure(std::span<double> registers, PlanarSliceScratch& scr
   find_vertices(scratch);
   find_pieces(false, registers, scratch);
   if (!plan_.independent.back().empty() && !scratch.pieces.empty()) {
-    find_independent_vertices(registers, scratch);
+    if (changes)
+      for (const SignChange& change : *changes)
+        scratch.vertices.push_back(
+            {(change.at - scratch.v[0]) / scratch.v[1], kIndependent | static_cast<std::uint32_t>(change.constraint)});
+    else
+      find_independent_vertices(registers, scratch);
     find_pieces(true, registers, scratch);
   }
   double sum = 0;

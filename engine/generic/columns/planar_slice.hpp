@@ -7,6 +7,7 @@
 #include "engine/generic/columns/conic.hpp"
 #include "engine/generic/columns/critical_value_solver.hpp"
 #include "engine/generic/columns/endpoints.hpp"
+#include "engine/generic/columns/sign_changes.hpp"
 #include "engine/generic/slice_plan.hpp"
 #include "engine/math/quadrature.hpp"
 
@@ -67,7 +68,9 @@ class PlanarSlice {
 
   const SlicePlan& plan() const { return plan_; }
   /// Computes the area, the type and the pieces. @param registers  after all stages but that of v
-  double measure(std::span<double> registers, PlanarSliceScratch& scratch) const;
+  /// @param changes  of constraints that are independent of z, along v; null: they are found by samples
+  double measure(std::span<double> registers, PlanarSliceScratch& scratch,
+                 const std::vector<SignChange>* changes = nullptr) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
   void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
                     PlanarSliceScratch& scratch) const;

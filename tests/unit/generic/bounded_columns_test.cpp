@@ -27,12 +27,63 @@ class BoundedColumns : public ::testing::TestWithParam<std::string> {
     return all;
   }
 
-  /// Half of the designs have round numbers, which meet each other.
-  std::vector<double> design(bool round, Stream& random) const {
+  /// Random designs, one in six of each kind: as they are; some parameters nominal, so that round numbers meet; thin
+  /// ranges of joints; equal lengths; lengths that are sums or differences of others; lengths far from the usual ones.
+  std::vector<double> design(unsigned kind, Stream& random) const {
     std::vector<double> design = test::random_design(info(), random);
+    const auto& parameters = info().parameters;
+    const auto any_length = [&] {
+      std::vector<std::size_t> lengths;
+      for (std::size_t i = 0; i < parameters.size(); ++i)
+        if (parameters[i].unit == "m") lengths.push_back(i);
+      return lengths[random.below(lengths.size())];
+    };
+    switch (kind) {
+      case 1:
+        for (std::size_t i = 0; i < design.size(); ++i)
+          if (random.chance(0.5)) design[i] = parameters[i].nominal;
+        break;
+      case 2:
+        for (std::size_t i = 0; i < design.size(); ++i)
+          if (const std::optional<std::size_t> upper = upper_end(i)) {
+            const double width = std::pow(10, -1 - 3 * random.u01());
+            if (random.chance(0.7)) design[*upper] = design[i] + width * std::fabs(design[*upper] - design[i]);
+          }
+        break;
+      case 3:
+        for (int n = 0; n < 2; ++n) design[any_length()] = design[any_length()];
+        break;
+      case 4:
+        design[any_length()] = std::fabs(design[any_length()] + (random.chance(0.5) ? 1 : -1) * design[any_length()]);
+        break;
+      case 5:
+        for (std::size_t i = 0; i < design.size(); ++i)
+          if (parameters[i].unit == "m") design[i] *= std::pow(4, 2 * random.u01() - 1);
+        break;
+      default:
+        break;
+    }
     for (std::size_t i = 0; i < design.size(); ++i)
-      if (random.chance(0.5) && round) design[i] = info().parameters[i].nominal;
+      design[i] = std::clamp(design[i], parameters[i].lower, parameters[i].upper);
     return design;
+  }
+  /// The parameter that is the upper end of a range, of which parameter i is the lower one: rmin and rmax.
+  std::optional<std::size_t> upper_end(std::size_t i) const {
+    std::string name = info().parameters[i].name;
+    const std::size_t at = name.find("min");
+    if (at == std::string::npos) return {};
+    name.replace(at, 3, "max");
+    const auto found = std::ranges::find(info().parameters, name, &Parameter::name);
+    if (found == info().parameters.end()) return {};
+    return static_cast<std::size_t>(found - info().parameters.begin());
+  }
+
+  /// Thresholds of limits: random, or round numbers, which meet those of designs.
+  LimitSpec limits(bool round, Stream& random) const {
+    LimitSpec limits = test::random_limits(info(), random);
+    for (std::optional<double>& given : limits.given)
+      if (given && round) given = std::round(*given * 20) / 20;
+    return limits;
   }
 
   /// Beside the middle of what is fixed.
@@ -59,8 +110,8 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
   for (unsigned k = first; compared < designs && k < first + 40 * designs; ++k) {
     Stream random(19, 0, k, Stream::Use::start);
     WorkspacePlan plan = all[k % 2 == 0 ? 0 : random.below(all.size())];
-    const std::vector<double> p = design(k % 4 >= 2, random);
-    if (k % 3 > 0) plan.limits = test::random_limits(info(), random);
+    const std::vector<double> p = design(k / 2 % 6, random);
+    if (k % 3 > 0) plan.limits = limits(k % 5 == 0, random);
     if (k % 3 > 1) hold(p, plan, random);
     if (file().refuse(p)) continue;
     const WorkspaceResult<double> exact = test::survey(file(), p, plan);
@@ -87,8 +138,8 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BoundedColumns,
-                         ::testing::Values("3-rpr", "3-rrr", "five-bar", "linear-delta", "orthoglide", "gough",
-                                           "4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"),
+                         ::testing::Values("3-rpr", "3-rrr", "five-bar", "linear-delta", "rotary-delta", "orthoglide",
+                                           "par4", "gough", "4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"),
                          [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace

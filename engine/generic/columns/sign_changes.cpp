@@ -1,0 +1,109 @@
+#include "engine/generic/columns/sign_changes.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "engine/core/stop.hpp"
+#include "engine/math/roots.hpp"
+#include "engine/math/satisfied.hpp"
+
+namespace pkm::generic {
+namespace {
+
+constexpr double kNarrow = 1e-12;  // relative to the range: width below which an undecided interval is accepted
+
+class Search {
+ public:
+  Search(const expression::Program& program, std::size_t stage, std::span<const WithDerivative> constraints,
+         std::span<double> registers, SignChangeScratch& scratch)
+      : program_(program), stage_(stage), constraints_(constraints), registers_(registers), s_(scratch) {
+    s_.registers.resize(registers.size());
+    for (std::size_t i = 0; i < registers.size(); ++i) s_.registers[i] = Interval(registers[i]);
+  }
+
+  void run(double from, double to, long max_evaluations) {
+    const double narrow = kNarrow * (to - from);
+    s_.parts.assign(1, {from, to, constraints_.size() < 64 ? bit(constraints_.size()) - 1 : ~Signs{0}});
+    // breadth first, so that the limit of evaluations leaves no part of the range unexamined
+    while (!s_.parts.empty()) {
+      s_.halves.clear();
+      for (SignChangeScratch::Part part : s_.parts) {
+        check_stop();
+        part.undecided = examine(part);
+        if (part.undecided == 0) continue;
+        const double middle = 0.5 * (part.from + part.to);
+        // an interval of a few ulp, or NaN, has no midpoint
+        if (part.to - part.from <= narrow || !(part.from < middle && middle < part.to) ||
+            s_.evaluations >= max_evaluations) {
+          s_.undecided += part.to - part.from;
+          add_changes(part, part.undecided);
+          continue;
+        }
+        s_.halves.push_back({part.from, middle, part.undecided});
+        s_.halves.push_back({middle, part.to, part.undecided});
+      }
+      s_.parts.swap(s_.halves);
+    }
+  }
+
+ private:
+  template <class S>
+  void evaluate(const S& at, std::span<S> registers) const {
+    for (const auto& input : program_.stages()[stage_].inputs) registers[input.to] = at;
+    program_.run<S>(stage_, registers);
+  }
+
+  /// Adds the changes of monotonic constraints. @return those that are undecided
+  Signs examine(const SignChangeScratch::Part& part) {
+    ++s_.evaluations;
+    evaluate<Interval>({part.from, part.to}, s_.registers);
+    Signs monotonic = 0, undecided = 0;
+    for (Signs rest = part.undecided; rest != 0; rest &= rest - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+      const Interval &f = s_.registers[constraints_[k].value], &slope = s_.registers[constraints_[k].derivative];
+      if (f.is_certified_satisfied() || f.is_certified_violated()) continue;
+      const bool has_one =
+          f.is_defined() && f.is_continuous() && slope.is_defined() && (slope.lower > 0 || slope.upper < 0);
+      (has_one ? monotonic : undecided) |= bit(k);
+    }
+    add_changes(part, monotonic);
+    return undecided;
+  }
+
+  /// Adds a change for each of the constraints that have different signs at the ends.
+  void add_changes(const SignChangeScratch::Part& part, Signs of) {
+    for (; of != 0; of &= of - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(of));
+      const auto value_at = [&](double x) {
+        evaluate<double>(x, registers_);
+        return ValueAndDerivative{registers_[constraints_[k].value], registers_[constraints_[k].derivative]};
+      };
+      const bool below = is_satisfied(value_at(part.from).value);
+      if (below == is_satisfied(value_at(part.to).value)) continue;
+      const double tolerance = 1e-16 * (std::fabs(part.from) + std::fabs(part.to));
+      const double at = refine_root_newton(
+          value_at, part.from, part.to, below, 0.5 * (part.from + part.to),
+          [&](const ValueAndDerivative&, double x, double next) { return std::fabs(next - x) <= tolerance; });
+      s_.found.push_back({at, k, below});
+    }
+  }
+
+  const expression::Program& program_;
+  std::size_t stage_;
+  std::span<const WithDerivative> constraints_;
+  std::span<double> registers_;
+  SignChangeScratch& s_;
+};
+
+}  // namespace
+
+void find_sign_changes(const expression::Program& program, std::size_t stage,
+                       std::span<const WithDerivative> constraints, double from, double to, long max_evaluations,
+                       std::span<double> registers, SignChangeScratch& scratch) {
+  scratch.found.clear();
+  scratch.undecided = 0;
+  scratch.evaluations = 0;
+  if (!constraints.empty()) Search(program, stage, constraints, registers, scratch).run(from, to, max_evaluations);
+}
+
+}  // namespace pkm::generic

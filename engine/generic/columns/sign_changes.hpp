@@ -1,0 +1,48 @@
+// Sign changes of constraints along a coordinate, by interval branch and prune: an interval is discarded if a
+// constraint has one sign in it, has one change if the constraint is monotonic in it, and is bisected otherwise. No
+// change is missed; where signs remain undecided, in intervals that are very short or after many bisections, their
+// length is told.
+#pragma once
+
+#include <vector>
+
+#include "engine/expression/program.hpp"
+#include "engine/generic/columns/endpoints.hpp"
+#include "engine/math/interval.hpp"
+
+namespace pkm::generic {
+
+/// Registers of a constraint and of its derivative with respect to the coordinate.
+struct WithDerivative {
+  std::uint32_t value, derivative;
+};
+
+struct SignChange {
+  double at;
+  std::size_t constraint;  ///< its number among those that were given
+  bool falls;              ///< it is violated beyond `at`
+};
+
+/// Result and scratch memory of find_sign_changes().
+struct SignChangeScratch {
+  std::vector<SignChange> found;  ///< in no particular order
+  double undecided = 0;           ///< total length of intervals in which signs are unknown
+  long evaluations = 0;           ///< of intervals, in the last search
+
+  struct Part {
+    double from, to;
+    Signs undecided;  ///< constraints
+  };
+  std::vector<Part> parts, halves;
+  std::vector<Interval> registers;
+};
+
+/// Finds the sign changes in [from, to] of constraints that a stage computes from a single coordinate.
+/// @param constraints      at most kMaxSurfaces
+/// @param max_evaluations  of intervals; a few more are possible
+/// @param registers        after all earlier stages; those of this stage are overwritten
+void find_sign_changes(const expression::Program& program, std::size_t stage,
+                       std::span<const WithDerivative> constraints, double from, double to, long max_evaluations,
+                       std::span<double> registers, SignChangeScratch& scratch);
+
+}  // namespace pkm::generic
