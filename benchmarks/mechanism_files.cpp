@@ -211,28 +211,32 @@ void inverse_dynamics(benchmark::State& state, const std::string& name) {
 BENCHMARK_CAPTURE(inverse_dynamics, crr, "3crr-r-cru")->Name("mechanism_file/inverse_dynamics/3crr-r-cru");
 BENCHMARK_CAPTURE(inverse_dynamics, delta, "rotary-delta")->Name("mechanism_file/inverse_dynamics/rotary-delta");
 
-// Exact volumes of mechanism files to 1e-8, relative to the loop that counts the paper's voxels (two correct digits),
-// and their gradients by all parameters (forward-mode automatic differentiation in blocks of 4), relative to the value.
-void columns(benchmark::State& state, const std::string& name, bool limited, std::optional<int> fixed_coordinate = {}) {
+// Exact volumes of mechanism files to 1e-8 and to 1e-3, relative to the loop that counts the paper's voxels (two
+// correct digits), and their gradients by all parameters (forward-mode automatic differentiation in blocks of 4),
+// relative to the value.
+void columns(benchmark::State& state, const std::string& name, bool limited,
+             const std::vector<FixedCoordinate>& fixed = {}) {
   const SerialScope alone;
   const Mechanism& mechanism = mechanism_file(name);
-  WorkspacePlan plan{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(mechanism.info())};
-  if (fixed_coordinate) plan.fixed = {{.coordinate = *fixed_coordinate}};
+  WorkspacePlan plan{.method = ColumnOptions{}, .fixed = fixed, .limits = no_limits(mechanism.info())};
   if (limited) plan.limits = plan_of(mechanism, with_limits(), kPaperGrid).limits;
   const auto evaluator = prepare_workspace(mechanism, plan, {});
+  plan.method = ColumnOptions{.tolerance = 1e-3};
+  const auto coarse = prepare_workspace(mechanism, plan, {});
   const std::vector<double> design = nominal(mechanism);
-  Scratch scratch;
-  WorkspaceResult<double> result;
+  Scratch scratch, coarse_scratch;
+  WorkspaceResult<double> result, coarse_result;
   WorkspaceResult<Dual4> with_gradient;
   std::vector<Dual4> duals(design.begin(), design.end());
   const auto original = original_design();
   const auto g = four_ppa_two_par::geometry(std::span<const double>(original));
   const peers::Voxels voxels{g.d, g.L0, {32, 34, 60}, 0, 0, kPi / 2, 0, 0, 0};
   const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
-  double loop_s = 0, value_s = 0, gradient_s = 0;
+  double loop_s = 0, value_s = 0, coarse_s = 0, gradient_s = 0;
   for (auto _ : state) {
     loop_s += seconds_of([&] { benchmark::DoNotOptimize(peers::feasible_cells(voxels, lengths)); });
     value_s += seconds_of([&] { evaluator->evaluate(design, scratch, result); });
+    coarse_s += seconds_of([&] { coarse->evaluate(design, coarse_scratch, coarse_result); });
     scratch = Scratch();  // discards cached results of the design
     gradient_s += seconds_of([&] {
       for (std::size_t first = 0; first < duals.size(); first += 4) {
@@ -245,6 +249,7 @@ void columns(benchmark::State& state, const std::string& name, bool limited, std
   }
   state.counters["analysis_s"] = value_s / static_cast<double>(state.iterations());
   state.counters["loops"] = value_s / loop_s;  // time of the analysis, in multiples of the loop's
+  state.counters["loops_1e-3"] = coarse_s / loop_s;
   state.counters["gradient"] = gradient_s / value_s;
   state.counters["slices"] = static_cast<double>(result.columns);
   state.counters["error"] = result.error;
@@ -253,7 +258,7 @@ BENCHMARK_CAPTURE(columns, planar, "3-rrr", false)->Name("mechanism_file/columns
 BENCHMARK_CAPTURE(columns, telescopes, "3-rpr", false)
     ->Name("mechanism_file/columns/3-rpr")
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(columns, upright_telescopes, "3-rpr", false, 2)
+BENCHMARK_CAPTURE(columns, upright_telescopes, "3-rpr", false, std::vector{FixedCoordinate{2}})
     ->Name("mechanism_file/columns/3-rpr_at_phi_0")
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(columns, cylinders, "three-cylinders", false)
@@ -270,6 +275,15 @@ BENCHMARK_CAPTURE(columns, cranks, "rotary-delta", false)
     ->Name("mechanism_file/columns/rotary-delta")
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(columns, jointed, "par4", false)->Name("mechanism_file/columns/par4")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, over_four, "par4", false, std::vector{FixedCoordinate{3, FixedCoordinate::Kind::integrated}})
+    ->Name("mechanism_file/columns/par4_over_four_coordinates")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, crr, "3crr-r-cru", false)
+    ->Name("mechanism_file/columns/3crr-r-cru")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, hybrid, "2t1r-p-hybrid", false)
+    ->Name("mechanism_file/columns/2t1r-p-hybrid")
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(columns, free, "4ppa-2par", false)
     ->Name("mechanism_file/columns/4ppa-2par")
     ->Unit(benchmark::kMicrosecond);

@@ -1,7 +1,9 @@
 #include "engine/generic/column_evaluator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
 
 #include "engine/generic/clearance.hpp"
@@ -100,16 +102,17 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     if (plans.empty())
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
                                   "; set workspace.method = \"voxels\"");
-    if (!request.needs_samples()) find_corner_curves(plans, columns.tolerance);
-    SlicePlan best = fastest(std::move(plans));
     // Derivatives lose digits at a kink of the measure that no change of the type indicates; with conics two more
     // digits are cheap.
-    const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
-    integral_.emplace(std::move(best), tolerance);
-    if (!request.needs_samples() && dual_registers().size() == sweep_.swept.size()) {
-      edges::EdgePlan edges(evaluation, mode_, sweep_.swept, box, tolerance);
+    const CoordinateOrder& order = plans.front().order;
+    slice_tolerance_ = (order.v ? 0.01 : 0.1) * columns.tolerance;
+    find_corner_curves(plans, columns.tolerance);
+    if (order.outer.size() + (order.v ? 2 : 1) == sweep_.swept.size()) {
+      edges::EdgePlan edges(evaluation, mode_, sweep_.swept, box, slice_tolerance_);
       if (edges.why_not().empty()) edges_.emplace(std::move(edges));
     }
+    plans_ = std::move(plans);
+    if (request.needs_samples() || (!edges_ && !corner_curves_)) slices();
     if (request.has(kConditioning)) conditioning_.emplace(evaluation, dual_registers(), mode_);
     if (request.needs_inertia()) inertia_.emplace(evaluation, dual_registers(), mode_, request.rotors);
     if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, dual_registers(), mode_);
@@ -141,9 +144,16 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     std::vector<S> formulas;
   };
 
+  /// The quadrature over slices. It is chosen at the first use, because that can take longer than many volumes by
+  /// edges.
+  const NestedIntegral& slices() const {
+    std::call_once(is_chosen_, [&] { integral_.emplace(fastest(plans_), slice_tolerance_); });
+    return *integral_;
+  }
+
   /// The swept and integrated coordinates.
   std::vector<int> dual_registers() const {
-    const CoordinateOrder& order = integral_->plan().order;
+    const CoordinateOrder& order = slices().plan().order;
     std::vector<int> all(order.outer.begin(), order.outer.end());
     if (order.v) all.push_back(static_cast<int>(*order.v));
     all.push_back(static_cast<int>(order.z));
@@ -151,10 +161,10 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   }
 
   /// The plan whose analysis of the default design at low accuracy takes the least work.
-  SlicePlan fastest(std::vector<SlicePlan> plans) const {
+  SlicePlan fastest(const std::vector<SlicePlan>& plans) const {
     const double tolerance = plans.front().order.v ? 1e-3 : 1e-2;
     const bool has_curves = std::ranges::any_of(plans.front().surfaces, &Surface::is_transcendental);
-    if ((plans.size() == 1 && !has_curves) || plans.front().order.outer.empty()) return std::move(plans.front());
+    if ((plans.size() == 1 && !has_curves) || plans.front().order.outer.empty()) return plans.front();
     std::vector<double> design;
     for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
     Room memory;
@@ -177,7 +187,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
       throw std::invalid_argument("mechanism " + mechanism_.info().name +
                                   " has no exact columns that can be computed in seconds: its constraints are no "
                                   "polynomials of degree four; use voxels");
-    return std::move(plans[best.value_or(0)]);
+    return plans[best.value_or(0)];
   }
 
   /// Among the plans that corner curves serve, the one that takes the least work for the default design.
@@ -198,26 +208,33 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     }
   }
 
-  /// By edges or corner curves if they serve the design, otherwise by slices.
+  /// By edges or corner curves if they serve the design, otherwise by slices. Samples need the slices in any case.
   Integral<double> measure(std::span<const double> inputs, Room& memory) const {
-    if (edges_)
-      if (const auto found = edges_->measure(inputs, memory.edges)) return *found;
-    if (corner_curves_)
-      if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) return *found;
-    return integral_->measure(inputs, memory.integral);
+    std::optional<Integral<double>> found;
+    if (edges_) found = edges_->measure(inputs, memory.edges);
+    if (!found && corner_curves_) found = corner_curves_->measure(inputs, memory.corner_curves);
+    if (found && !request_.needs_samples()) return *found;
+    return better_of(found, slices().measure(inputs, memory.integral));
   }
   Integral<double> measure_with_gradient(std::span<const double> inputs, std::span<double> by_input,
                                          Room& memory) const {
-    if (edges_)
-      if (const auto found = edges_->measure(inputs, memory.edges, by_input)) return *found;
-    if (corner_curves_)
-      if (const auto found = corner_curves_->measure(inputs, memory.corner_curves)) {
-        corner_curves_->add_gradient(by_input, memory.corner_curves);
-        return *found;
-      }
-    const Integral<double> found = integral_->measure_for_gradient(inputs, memory.integral);
-    integral_->add_gradient(by_input, memory.integral);
-    return found;
+    std::optional<Integral<double>> found;
+    if (edges_) found = edges_->measure(inputs, memory.edges, by_input);
+    if (!found && corner_curves_) {
+      found = corner_curves_->measure(inputs, memory.corner_curves);
+      if (found) corner_curves_->add_gradient(by_input, memory.corner_curves);
+    }
+    if (found && !request_.needs_samples()) return *found;
+    const Integral<double> by_slices = slices().measure_for_gradient(inputs, memory.integral);
+    if (!found) slices().add_gradient(by_input, memory.integral);
+    return better_of(found, by_slices);
+  }
+  /// The volume without slices, if there is one. Where slices, and thus samples, have missed a part of the workspace,
+  /// the error says so.
+  static Integral<double> better_of(const std::optional<Integral<double>>& found, const Integral<double>& by_slices) {
+    if (!found) return by_slices;
+    const double missed = std::fabs(found->value - by_slices.value) - by_slices.error;
+    return {found->value, std::max(found->error, missed), by_slices.evaluations};
   }
 
   /// The inputs, with fixed coordinates at their values.
@@ -282,7 +299,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& memory,
                    WorkspaceResult<S>& survey) const {
     const std::vector<S>& inputs = samples.inputs;
-    const CoordinateOrder& order = integral_->plan().order;
+    const CoordinateOrder& order = slices().plan().order;
     if (inertia_) {
       check_masses(e_, parameters);
       inertia_->start(inputs, memory.inertia);
@@ -292,18 +309,18 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     Pose<S> pose(e_.model.inputs.coordinates);
     std::copy_n(&inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
     std::vector<S>* const conditioning = survey.find(kConditioning);
-    integral_->for_each_node<S>(inputs, outer_rule_, inner_rule_, memory.integral,
-                                [&](const std::vector<S>& outer, const S& v, const S& z, const S& weight) {
-                                  for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
-                                  if (order.v) pose[*order.v] = v;
-                                  pose[order.z] = z;
-                                  survey.weight.push_back(weight);
-                                  if (request_.poses) survey.pose.push_back(pose);
-                                  if (conditioning)
-                                    conditioning->push_back(conditioning_->at(pose, samples.conditioning));
-                                  if (inertia_) inertia_->add(pose, memory.inertia, survey);
-                                  if (formulas_) formulas_->add(pose, samples.formulas, survey);
-                                });
+    slices().for_each_node<S>(inputs, outer_rule_, inner_rule_, memory.integral,
+                              [&](const std::vector<S>& outer, const S& v, const S& z, const S& weight) {
+                                for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
+                                if (order.v) pose[*order.v] = v;
+                                pose[order.z] = z;
+                                survey.weight.push_back(weight);
+                                if (request_.poses) survey.pose.push_back(pose);
+                                if (conditioning)
+                                  conditioning->push_back(conditioning_->at(pose, samples.conditioning));
+                                if (inertia_) inertia_->add(pose, memory.inertia, survey);
+                                if (formulas_) formulas_->add(pose, samples.formulas, survey);
+                              });
     if (inertia_) inertia_->finish(memory.inertia, survey);
   }
 
@@ -314,9 +331,12 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   const Sweep& sweep_;
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
-  std::optional<NestedIntegral> integral_;
-  std::optional<edges::EdgePlan> edges_;            ///< if the workspace without samples is a solid with edges
-  std::optional<CornerCurves> corner_curves_;       ///< if a plan without samples is served by them
+  std::vector<SlicePlan> plans_;
+  double slice_tolerance_ = 0;
+  mutable std::once_flag is_chosen_;
+  mutable std::optional<NestedIntegral> integral_;
+  std::optional<edges::EdgePlan> edges_;            ///< if the workspace is a solid with edges
+  std::optional<CornerCurves> corner_curves_;       ///< if a plan is served by them
   std::optional<SampleConditioning> conditioning_;  ///< if they are requested
   std::optional<InertiaBatch> inertia_;
   std::optional<SampleFormulas> formulas_;
