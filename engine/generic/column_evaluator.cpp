@@ -13,6 +13,7 @@
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/edge_plan.hpp"
 #include "engine/generic/inertia_batch.hpp"
+#include "engine/generic/outer_quadrature.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/sample_formulas.hpp"
 #include "engine/workspace/pose_quantities.hpp"
@@ -23,14 +24,27 @@ namespace {
 
 using Kind = FixedCoordinate::Kind;
 
+/// Integrated coordinates in excess of three coordinates in all, those that slices have to do without.
+std::vector<std::size_t> outer_coordinates(const Sweep& sweep, const WorkspacePlan& plan) {
+  std::vector<std::size_t> integrated;
+  for (const int coordinate : sweep.fixed)
+    if (how_fixed(plan, coordinate).kind == Kind::integrated)
+      integrated.push_back(static_cast<std::size_t>(coordinate));
+  const std::size_t room = 3 - std::min<std::size_t>(3, sweep.swept.size());
+  integrated.resize(integrated.size() - std::min(integrated.size(), room));
+  return integrated;
+}
+
 /// The orders of coordinates in which slices can have closed forms: each pair of swept ones as (v, z), or each one as
 /// z, with the others as outer coordinates (in a single order for lines). Integrated ones are outermost, except for the
 /// last one if a single coordinate is swept: slices of these two are planar.
 std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
   std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
+  const std::vector<std::size_t> outer_ones = outer_coordinates(sweep, plan);
   for (const int coordinate : sweep.fixed)
-    if (how_fixed(plan, coordinate).kind == Kind::integrated)
-      integrated.push_back(static_cast<std::size_t>(coordinate));
+    if (const auto i = static_cast<std::size_t>(coordinate);
+        how_fixed(plan, coordinate).kind == Kind::integrated && std::ranges::find(outer_ones, i) == outer_ones.end())
+      integrated.push_back(i);
   if (!are_lines && swept.size() == 1 && !integrated.empty()) {
     swept.push_back(integrated.back());
     integrated.pop_back();
@@ -93,7 +107,8 @@ class GenericColumns final : public WithGradients<GenericColumns> {
         sweep_(sweep_of(mechanism.info(), plan)),
         mode_(mode_index(mechanism.info(), request.mode)),
         inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
-        outer_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {
+        outer_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)),
+        outermost_(evaluation, outer_coordinates(sweep_, plan), columns.tolerance) {
     if (request.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
@@ -208,27 +223,38 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     }
   }
 
-  /// By edges or corner curves if they serve the design, otherwise by slices. Samples need the slices in any case.
-  Integral<double> measure(std::span<const double> inputs, Room& memory) const {
+  bool has_outermost() const { return !outermost_.coordinates().empty(); }
+  /// The volume over all coordinates, and its derivatives unless `by_input` is empty.
+  Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, Room& memory) const {
+    const auto inner = [&](std::span<const double> at, std::span<double> by) {
+      return by.empty() ? measure_inside(at, memory) : measure_inside_with_gradient(at, by, memory);
+    };
+    return has_outermost() ? outermost_.measure(inputs, by_input, inner) : inner(inputs, by_input);
+  }
+  /// Over at most three coordinates: by edges or corner curves if they serve the design, otherwise by slices. Samples
+  /// need the slices in any case.
+  Integral<double> measure_inside(std::span<const double> inputs, Room& memory) const {
     std::optional<Integral<double>> found;
     if (edges_) found = edges_->measure(inputs, memory.edges);
     if (!found && corner_curves_) found = corner_curves_->measure(inputs, memory.corner_curves);
-    if (found && !request_.needs_samples()) return *found;
+    if (found && !uses_slices()) return *found;
     return better_of(found, slices().measure(inputs, memory.integral));
   }
-  Integral<double> measure_with_gradient(std::span<const double> inputs, std::span<double> by_input,
-                                         Room& memory) const {
+  Integral<double> measure_inside_with_gradient(std::span<const double> inputs, std::span<double> by_input,
+                                                Room& memory) const {
     std::optional<Integral<double>> found;
     if (edges_) found = edges_->measure(inputs, memory.edges, by_input);
     if (!found && corner_curves_) {
       found = corner_curves_->measure(inputs, memory.corner_curves);
       if (found) corner_curves_->add_gradient(by_input, memory.corner_curves);
     }
-    if (found && !request_.needs_samples()) return *found;
+    if (found && !uses_slices()) return *found;
     const Integral<double> by_slices = slices().measure_for_gradient(inputs, memory.integral);
     if (!found) slices().add_gradient(by_input, memory.integral);
     return better_of(found, by_slices);
   }
+  /// Whether samples follow from the slices of the volume; with outermost coordinates they have slices of their own.
+  bool uses_slices() const { return request_.needs_samples() && !has_outermost(); }
   /// The volume without slices, if there is one. Where slices, and thus samples, have missed a part of the workspace,
   /// the error says so.
   static Integral<double> better_of(const std::optional<Integral<double>>& found, const Integral<double>& by_slices) {
@@ -266,7 +292,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     Integral<double> found;
     if constexpr (std::is_same_v<S, double>) {
       memory.known.of = nullptr;
-      found = measure(memory.inputs, memory);
+      found = measure(memory.inputs, {}, memory);
     } else {
       found = with_slopes(samples.inputs, memory);
     }
@@ -277,7 +303,29 @@ class GenericColumns final : public WithGradients<GenericColumns> {
       for (std::size_t i = 0; i < samples.inputs.size(); ++i)
         survey.volume.v = survey.volume.v + samples.inputs[i].v * memory.known.by_input[i];
     }
-    if (request_.needs_samples()) add_samples(parameters, samples, memory, survey);
+    if (request_.needs_samples()) add_all_samples(0, S(1.0), parameters, samples, memory, survey);
+  }
+
+  /// At nodes of the outermost coordinates, those of the slices there.
+  template <class S>
+  void add_all_samples(std::size_t level, const S& weight, std::span<const S> parameters, SampleRoom<S>& samples,
+                       Room& memory, WorkspaceResult<S>& survey) const {
+    if (level == outermost_.coordinates().size()) {
+      if (has_outermost()) {
+        if constexpr (std::is_same_v<S, double>)
+          slices().measure(memory.inputs, memory.integral);
+        else
+          slices().measure_for_gradient(memory.inputs, memory.integral);
+      }
+      return add_samples(weight, parameters, samples, memory, survey);
+    }
+    const std::size_t input = e_.model.inputs.coordinate(outermost_.coordinates()[level]);
+    pkm::visit_nodes(outermost_.range(level, samples.inputs), outer_rule_,
+                     [&](const S& at, const S& jacobian, double own) {
+                       samples.inputs[input] = at;
+                       memory.inputs[input] = value_of(at);
+                       add_all_samples<S>(level + 1, weight * jacobian * own, parameters, samples, memory, survey);
+                     });
   }
 
   /// The volume and its derivatives with respect to all inputs. Parameters come in blocks of four (forward mode), of
@@ -291,12 +339,12 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     known.of = this;
     known.inputs = inputs;
     known.by_input.assign(memory.inputs.size(), 0);
-    known.volume = measure_with_gradient(memory.inputs, known.by_input, memory);
+    known.volume = measure(memory.inputs, known.by_input, memory);
     return known.volume;
   }
 
   template <class S>
-  void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& memory,
+  void add_samples(const S& share, std::span<const S> parameters, SampleRoom<S>& samples, Room& memory,
                    WorkspaceResult<S>& survey) const {
     const std::vector<S>& inputs = samples.inputs;
     const CoordinateOrder& order = slices().plan().order;
@@ -314,7 +362,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
                                 for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
                                 if (order.v) pose[*order.v] = v;
                                 pose[order.z] = z;
-                                survey.weight.push_back(weight);
+                                survey.weight.push_back(share * weight);
                                 if (request_.poses) survey.pose.push_back(pose);
                                 if (conditioning)
                                   conditioning->push_back(conditioning_->at(pose, samples.conditioning));
@@ -331,6 +379,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   const Sweep& sweep_;
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
+  OuterQuadrature outermost_;  ///< coordinates beyond three
   std::vector<SlicePlan> plans_;
   double slice_tolerance_ = 0;
   mutable std::once_flag is_chosen_;

@@ -1,0 +1,55 @@
+// Volumes over more than three coordinates: the integral of volumes over three of them over the ranges of the others,
+// by adaptive Gauss-Kronrod quadrature (QUADPACK). Volumes are smooth functions of the outer coordinates, except where
+// parts of the workspace begin or end: there the subdivision becomes finer. A workspace that all nodes miss is not
+// found.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/generic/evaluation.hpp"
+#include "engine/math/quadrature.hpp"
+
+namespace pkm::generic {
+
+class OuterQuadrature {
+ public:
+  /// @param coordinates  the outermost first; their ranges are those of the model
+  /// @param tolerance    relative
+  OuterQuadrature(const Evaluation& evaluation, std::vector<std::size_t> coordinates, double tolerance)
+      : e_(evaluation), coordinates_(std::move(coordinates)), tolerance_(tolerance) {}
+
+  const std::vector<std::size_t>& coordinates() const { return coordinates_; }
+
+  /// The volume over the other coordinates at values of these. Adds its derivatives by the inputs, unless `by_input` is
+  /// empty.
+  using Inner = std::function<Integral<double>(std::span<const double> inputs, std::span<double> by_input)>;
+  /// The volume over all coordinates.
+  /// @param inputs    of the graph; those of the coordinates are overwritten
+  /// @param by_input  if not empty, the derivatives of the volume are added
+  Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, const Inner& inner) const {
+    return measure(0, inputs, by_input, inner);
+  }
+  /// The range of a coordinate. S is double or Dual4.
+  template <class S>
+  Subinterval<S> range(std::size_t level, const std::vector<S>& inputs) const {
+    const std::size_t coordinate = coordinates_[level];
+    return {outputs_of(e_.lower[coordinate], inputs).at(0), outputs_of(e_.upper[coordinate], inputs).at(0)};
+  }
+
+ private:
+  struct Part;
+
+  Integral<double> measure(std::size_t level, std::vector<double>& inputs, std::span<double> by_input,
+                           const Inner& inner) const;
+  Part part_in(std::size_t level, const Subinterval<double>& interval, std::vector<double>& inputs, bool needs_gradient,
+               const Inner& inner) const;
+  Integral<double> at(std::size_t level, double value, std::vector<double>& inputs, std::span<double> by_input,
+                      const Inner& inner) const;
+
+  const Evaluation& e_;
+  std::vector<std::size_t> coordinates_;
+  double tolerance_;
+};
+
+}  // namespace pkm::generic
