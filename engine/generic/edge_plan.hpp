@@ -26,8 +26,8 @@ class EdgePlan {
 
   struct Scratch;
 
-  /// The volume of a design, if why_not() is empty; std::nullopt if a quadric is of another kind, two faces
-  /// have an intersection without a closed form, or the edges are not closed.
+  /// The volume of a design, if why_not() is empty; std::nullopt if a quadric is of another kind, two faces are on the
+  /// same surface, or the edges are not closed.
   /// @param inputs    of the model's graph
   /// @param by_input  if not empty, the derivatives of the volume are added
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch,

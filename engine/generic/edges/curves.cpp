@@ -174,7 +174,8 @@ void on_torus(const Face& torus, const Face& other, const Quadric& absolute, con
 /// K = |P|^2 + crank^2 - rod^2 and Y = P . axis, the difference of their equations is
 /// (K_a - K_b) (4 crank^2 - K_a - K_b) - 4 crank^2 (Y_a - s Y_b) (Y_a + s Y_b), s = +-1, in which K_a - K_b and
 /// Y_a - s Y_b are linear. The first is a multiple of the second if the tori are mirror images.
-bool two_tori(const Face& a, const Face& b, std::vector<Curve>& curves) {
+/// @return false if there are no such curves
+bool add_curves_of_mirror_images(const Face& a, const Face& b, std::vector<Curve>& curves) {
   const PreparedBody &A = *a.body, &B = *b.body;
   const double l = A.crank, l_2 = l * l, size = l + A.radius;
   if (!is_same(l, B.crank) || !is_same(A.radius, B.radius)) return false;
@@ -205,6 +206,15 @@ bool two_tori(const Face& a, const Face& b, std::vector<Curve>& curves) {
     return true;
   }
   return false;
+}
+
+/// @return false if the surfaces are the same
+bool add_implicit(const Face& torus, const Face& other, std::vector<Curve>& curves) {
+  const double length = torus.body->crank + torus.body->radius;
+  const TorusFunction function(torus, other);
+  if (function.size() <= kCoincident * std::pow(length, other.surface == Surface::torus ? 4 : 2)) return false;
+  curves.push_back({.kind = Curve::Kind::implicit, .faces = {&torus, &other}, .function = function});
+  return true;
 }
 
 /// Coefficients of cos and sin of k (t - t_0), for k = 1, 2.
@@ -290,8 +300,8 @@ void merge(const Trigonometric& D, std::vector<CurveRoot>& roots) {
 bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves) {
   if (a.surface < b.surface) return add_intersection(b, a, bound, curves);
   if (a.surface == Surface::torus) {
-    if (b.surface == Surface::torus) return two_tori(a, b, curves);
-    if (b.surface == Surface::cylinder) return false;
+    if (b.surface == Surface::torus) return add_curves_of_mirror_images(a, b, curves) || add_implicit(a, b, curves);
+    if (b.surface == Surface::cylinder) return add_implicit(a, b, curves);
     on_torus(a, b, quadric_of(b), {}, curves);
   } else if (a.surface == Surface::cylinder) {
     return cylinder_and_other(a, b, curves);
@@ -368,8 +378,25 @@ bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, s
   return true;
 }
 
+CurvePoint point_on(const Face& torus, const Enclosure& q, const Enclosure& b) {
+  const PreparedBody& body = *torus.body;
+  const Vector3& c = torus.centre;
+  const double l = body.crank, rod = body.radius;
+  const SineCosine of_q = sine_cosine(q), of_b = sine_cosine(b);
+  const Enclosure along = of_b.cosine * rod + l, height = of_b.sine * rod;
+  const Enclosure x = along * of_q.cosine, y = along * of_q.sine;
+  CurvePoint at;
+  for (std::size_t i = 0; i < 3; ++i) at.p[i] = x * body.zero[i] + y * body.beside[i] + height * body.axis[i] + c[i];
+  at.square = along * (2 * l) + dot(at.p, c) * 2.0 + (rod * rod - l * l - dot(c, c));
+  return at;
+}
+
 CurvePoint point(const Arc& arc, const Enclosure& u) {
   const Curve& curve = *arc.curve;
+  if (curve.kind == Curve::Kind::implicit) {
+    const Enclosure t = u + arc.t_0, other = other_coordinate(curve.function, arc.implicit, t);
+    return arc.implicit.along == 0 ? point_on(*curve.faces[0], t, other) : point_on(*curve.faces[0], other, t);
+  }
   const Enclosure x = (arc.order == 1 ? square(u) : u) * arc.direction, t = x + arc.t_0;
   CurvePoint at;
   // p = o + s a + r b

@@ -1,4 +1,4 @@
-// Intersection curves of two surfaces, each with a parameter t in closed form.
+// Intersection curves of two surfaces, as functions of a parameter t.
 //
 //   circles, ellipses      p(t) = o + x cos t + y sin t
 //   lines                  p(t) = o + x t
@@ -6,6 +6,8 @@
 //   torus, steep plane     the same: the parallel circle at the height rod sin t in two points
 //   torus and sphere or    the meridian circle at the angle t in two points, cos b = (alpha gamma -+ beta sqrt(D)) / Q,
 //     flat plane           sin b = (beta gamma +- alpha sqrt(D)) / Q (see on_torus() in the source)
+//   torus and cylinder,    in boxes, one coordinate of the torus is an implicit function of the other one
+//     general tori           (torus_function.hpp)
 //
 // D is a trigonometric polynomial of degree two. Its roots are turning points, where the two branches meet. A curve is
 // divided into arcs, each from a turning point t_0 or without one. With t = t_0 +- u^2 at a simple root, and
@@ -15,12 +17,9 @@
 
 #include <optional>
 
-#include "engine/generic/edges/faces.hpp"
+#include "engine/generic/edges/torus_function.hpp"
 
 namespace pkm::generic::edges {
-
-/// a[0] + a[1] cos t + a[2] sin t + a[3] cos 2t + a[4] sin 2t
-using Trigonometric = std::array<double, 5>;
 
 /// Left side of the equation square |p|^2 - across (p . axis)^2 + v . p + k = 0 of a plane, sphere or cylinder.
 struct Quadric {
@@ -30,7 +29,7 @@ struct Quadric {
 };
 
 struct Curve {
-  enum class Kind : std::uint8_t { trigonometric, line, on_torus };
+  enum class Kind : std::uint8_t { trigonometric, line, on_torus, implicit };
   Kind kind = Kind::trigonometric;
   std::array<const Face*, 2> faces{};
   Vector3 o{}, x{}, y{}, w{};  ///< w: 0 without a square root
@@ -39,6 +38,7 @@ struct Curve {
   std::optional<Affine> square{};  ///< |p|^2 on a sphere
   Quadric with{};                  ///< on_torus: the other surface, relative to the centre of the torus
   std::optional<Quadric> cut{};    ///< where this vanishes, the two surfaces touch
+  TorusFunction function{};        ///< implicit: of the second surface on the first one
 };
 
 /// Part of one branch of a curve: u in [0, length].
@@ -48,11 +48,12 @@ struct Arc {
   double t_0 = 0, direction = 1;
   int order = 0;  ///< multiplicity of the root of D at u = 0
   double length = 0;
+  TorusArc implicit{};
 };
 
 /// Intersection curves of two faces.
 /// @param bound  half the length of lines
-/// @return false if they have no closed form, or if the surfaces are the same
+/// @return false if the surfaces are the same
 bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves);
 /// The circle between an end face and the fold of a slide or crank.
 Curve equator(const Face& end, const Face& fold);
@@ -63,9 +64,13 @@ struct CurveRoot {
   int order;
 };
 
+/// For curves that are not implicit.
 /// @param roots  scratch memory
 /// @return false if D vanishes identically
 bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, std::vector<Arc>& arcs);
+
+/// A point of a torus.
+CurvePoint point_on(const Face& torus, const Enclosure& q, const Enclosure& b);
 
 /// Encloses the points of an arc.
 /// @param u  Enclosure::variable(): the slope of the result is dp/du

@@ -84,17 +84,78 @@ class Evaluator {
         }
       }
     }
-    for (const Curve& curve : curves_)
-      if (!add_arcs(curve, bound_, roots_, arcs_)) result_.is_closed = false;
+    for (const Curve& curve : curves_) {
+      if (curve.kind == Curve::Kind::implicit)
+        trace(curve);
+      else if (!add_arcs(curve, bound_, roots_, arcs_))
+        result_.is_closed = false;
+    }
     return true;
+  }
+
+  /// Adds the arcs of an implicit curve on a torus that may be active.
+  void trace(const Curve& curve) {
+    const PreparedBody& torus = *curve.faces[0]->body;
+    set_tests(curve);
+    long boxes = 0;
+    constexpr double kFirst = 0.8;  // width of the first boxes
+    constexpr double kStart = 2.9;  // of b: no other angle of a symmetric solid
+    const double width = torus.to - torus.from;
+    const int along_q = static_cast<int>(width / kFirst) + 1, along_b = static_cast<int>(2 * kPi / kFirst) + 1;
+    const std::array<double, 2> half{0.5 * width / along_q, kPi / along_b};
+    for (int i = 0; i < along_q; ++i)
+      for (int j = 0; j < along_b; ++j)
+        trace(curve, {{torus.from + (2 * i + 1) * half[0], kStart + (2 * j + 1) * half[1]}, half}, boxes);
+  }
+
+  void trace(const Curve& curve, const TorusBox& box, long& boxes) {
+    constexpr long kMaxTraced = 20'000;
+    if (!result_.is_closed) return;
+    if (++boxes > kMaxTraced) {
+      result_.is_closed = false;
+      return;
+    }
+    ++result_.boxes;
+    const BoxOfCurve found = examine_box(curve.function, box, kFunctionRounding * curve.function.size());
+    if (found.state == BoxOfCurve::State::empty || is_inactive(curve, box)) return;
+    if (found.state == BoxOfCurve::State::divided) {
+      const std::size_t i = found.longer;
+      TorusBox part = box;
+      part.half[i] *= 0.5;
+      for (const double side : {-1.0, 1.0}) {
+        part.middle[i] = box.middle[i] + side * part.half[i];
+        trace(curve, part, boxes);
+      }
+    } else if (found.arc) {
+      arcs_.push_back(
+          {.curve = &curve, .t_0 = found.arc->from, .length = found.arc->to - found.arc->from, .implicit = *found.arc});
+    }
+  }
+
+  /// Whether no point of a box belongs to all bodies and faces.
+  bool is_inactive(const Curve& curve, const TorusBox& box) const {
+    const PreparedBody& torus = *curve.faces[0]->body;
+    CurvePoint at = point_on(*curve.faces[0], box.middle[0], box.middle[1]);
+    const double distance = (torus.crank + torus.radius) * box.half[0] + torus.radius * box.half[1];
+    // as functions of a variable in [-1, 1] with slope 0
+    for (Enclosure& x : at.p) x = {x.value, 0, 2 * distance, 1};
+    at.square = {at.square.value, 0, 2 * distance * (2 * norm(values(at.p)) + distance), 1};
+    std::array<Enclosure, kFunctions> values;
+    return std::ranges::any_of(tests_, [&](const Test& test) {
+      const SignSets possible = examine(test, at, values, [&](const Enclosure& f, std::size_t k) {
+        return sign(f, powers_[degree(bodies_[test.body], k)], 0);
+      });
+      return (test.rule->holds & possible) == 0;
+    });
   }
 
   // Activity of the points of arcs.
 
   using Tests = std::uint64_t;  // one bit each
 
-  void search(const Arc& arc) {
-    const auto& [a, b] = arc.curve->faces;
+  /// The conditions on the points of a curve.
+  void set_tests(const Curve& curve) {
+    const auto& [a, b] = curve.faces;
     tests_.clear();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (i != a->number && i != b->number) {
@@ -102,10 +163,14 @@ class Evaluator {
       } else if (a->number != b->number && bodies_[i].kind >= Body::Kind::slide) {
         // A curve on a torus is restricted to the range already.
         const Face& face = i == a->number ? *a : *b;
-        if (arc.curve->kind != Curve::Kind::on_torus || &face != a)
+        if (curve.kind < Curve::Kind::on_torus || &face != a)
           tests_.push_back({i, &membership(bodies_[i], &face.part)});
       }
     }
+  }
+
+  void search(const Arc& arc) {
+    set_tests(*arc.curve);
     arc_ = &arc;
     first_range_ = ranges_.size();
     // Enclosures over more than a quarter of a circle decide nothing.

@@ -39,7 +39,7 @@ struct EdgeVolume {
   double value = 0;           ///< [m^3]
   double error = 0;           ///< estimate of the absolute error: quadrature, undecided intervals, gaps, rounding
   double gap = 0;             ///< maximum distance by which the directed edges of a face fail to close [m]
-  bool is_supported = true;   ///< false: two faces are on the same surface, or their intersection has no closed form
+  bool is_supported = true;   ///< false: two faces are on the same surface
   bool is_closed = true;      ///< the edges of each face are closed to rounding errors, and no interval is undecided
   long boxes = 0, nodes = 0;  ///< intervals examined and quadrature nodes
 };

@@ -44,6 +44,28 @@ Solid rotary_delta(double base, double platform, double crank, double rod, doubl
   return solid;
 }
 
+/// Three cranks and rods, each with dimensions and directions of its own, below a plane.
+Solid asymmetric_delta(Stream& random) {
+  const auto between = [&](double low, double high) { return low + (high - low) * random.u01(); };
+  Solid solid{.bodies = {}, .bound = 1.2};
+  for (int i = 0; i < 3; ++i) {
+    const auto [s, c] = portable::sincos(2 * kPi * i / 3 + between(-0.3, 0.3));
+    const double base = between(0.1, 0.25), tilt = between(-0.2, 0.2), from = between(-1.5, 0);
+    const Vector3 axis = unit({{-s, c, tilt}});
+    const Vector3 out{{c, s, 0}};
+    solid.bodies.push_back({.kind = Kind::crank,
+                            .centre = {{base * c, base * s, between(-0.1, 0.1)}},
+                            .axis = axis,
+                            .zero = unit(out - axis * dot(out, axis)),
+                            .radius = between(0.3, 0.7),
+                            .crank = between(0.12, 0.28),
+                            .from = from,
+                            .to = from + between(0.5, 3.5)});
+  }
+  solid.bodies.push_back(half_space({{0, 0, 1}}, 0.05));
+  return solid;
+}
+
 Solid three_slides(const std::vector<Vector3>& centres, const std::vector<Vector3>& axes, double rod, double from,
                    double to) {
   Solid solid{.bodies = {}, .bound = 2};
@@ -164,11 +186,14 @@ TEST(EdgeVolume, OfRandomSolidsIsTheSumOfTheVolumesOfTheirParts) {
   const auto between = [&](double low, double high) { return low + (high - low) * random.u01(); };
   const auto direction = [&] { return unit({{between(-1, 1), between(-1, 1), between(-1, 1)}}); };
   int not_closed = 0;  // a crank nearly as long as the distance of its pivot from the middle
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 250; ++i) {
     SCOPED_TRACE(i);
     Solid solid;
     double height = 0;
-    if (i % 4 == 0) {
+    if (i >= 200) {
+      solid = asymmetric_delta(random);
+      height = -0.4;
+    } else if (i % 4 == 0) {
       const double from = between(-3, 1), base = between(0.1, 0.3), platform = between(0.03, 0.07);
       solid = rotary_delta(base, platform, between(0.12, 0.28), between(0.3, 0.7), from, from + between(0.5, 5.2));
       height = -0.4;
@@ -215,10 +240,21 @@ TEST(EdgeVolume, IsZeroOfAnEmptySolid) {
   EXPECT_EQ(found.value, 0);
 }
 
-TEST(EdgeVolume, RefusesATorusThatMeetsACylinder) {
+TEST(EdgeVolume, OfThePartsInsideAndOutsideOfACylinderAddUp) {
   Solid solid = rotary_delta(0.2, 0.05, 0.2, 0.5, -0.7, 1.6);
-  solid.bodies.push_back(cylinder({{0, 0, 1}}, 0.1));
-  EXPECT_FALSE(volume(solid, 1e-9).is_supported);
+  const EdgeVolume whole = volume(solid, 1e-12);
+  double sum = 0;
+  for (const double side : {1.0, -1.0}) {
+    Body core = cylinder(unit({{0.1, -0.05, 1}}), 0.25, side);
+    core.centre = {{0.02, 0.03, 0}};
+    solid.bodies.resize(4);
+    solid.bodies.push_back(core);
+    const EdgeVolume part = volume(solid, 1e-12);
+    EXPECT_TRUE(part.is_supported && part.is_closed);
+    EXPECT_GT(part.value, 0.01);
+    sum += part.value;
+  }
+  EXPECT_NEAR(sum, whole.value, 1e-14);
 }
 
 TEST(EdgeVolume, RefusesFacesOnTheSameSurface) {
@@ -226,6 +262,10 @@ TEST(EdgeVolume, RefusesFacesOnTheSameSurface) {
   EXPECT_FALSE(volume({{z, z, above}, 2}, 1e-9).is_supported);
   EXPECT_FALSE(volume({{ball({}, 1), ball({}, 1)}, 2}, 1e-9).is_supported);
   EXPECT_FALSE(volume({{ball({}, 1), above, above}, 2}, 1e-9).is_supported);
+  Solid twice = rotary_delta(0.2, 0.05, 0.2, 0.5, -0.7, 1.6);
+  twice.bodies.push_back(twice.bodies.front());
+  twice.bodies.back().to = 1.2;
+  EXPECT_FALSE(volume(twice, 1e-9).is_supported);
   EXPECT_TRUE(volume({{ball({}, 1), ball({}, 2)}, 2}, 1e-9).is_supported);
 }
 
@@ -287,7 +327,10 @@ TEST(EdgeVolumeGradient, AgreesWithDifferencesForSlides) {
   }
   expect_gradient(solid);
 }
-/// A single crank: two tori intersect in closed form only if they are mirror images.
+TEST(EdgeVolumeGradient, AgreesWithDifferencesForCranksOfDifferentDimensions) {
+  Stream random(3, 0, 0, Stream::Use::start);
+  expect_gradient(asymmetric_delta(random));
+}
 TEST(EdgeVolumeGradient, AgreesWithDifferencesForACrank) {
   Solid solid = rotary_delta(0.2, 0.05, 0.2, 0.5, -0.4, 1.6);
   solid.bodies.erase(solid.bodies.begin() + 1, solid.bodies.begin() + 3);

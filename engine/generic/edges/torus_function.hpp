@@ -1,0 +1,71 @@
+// The implicit function of a second surface on a torus, and the boxes in which its zero set is a smooth curve.
+//
+// On the torus p(q, b) = c + (crank + rod cos b) e_r(q) + rod sin b axis, the function of a torus or of a cylinder is a
+// trigonometric polynomial f(q, b) of degree (2, 2). Bounds of its second derivatives follow from the coefficients, so
+// that in a box of half widths h_q, h_b
+//
+//   |f - f(m)|  <= |f_q(m)| h_q + |f_b(m)| h_b + (M_qq h_q^2 + 2 M_qb h_q h_b + M_bb h_b^2) / 2
+//   |f_q - f_q(m)| <= M_qq h_q + M_qb h_b,  likewise f_b.
+//
+// Where f_b has no zero in a box, f = 0 is at most one curve b(q) there, and the other way round.
+#pragma once
+
+#include <optional>
+
+#include "engine/generic/edges/faces.hpp"
+
+namespace pkm::generic::edges {
+
+/// a[0] + a[1] cos t + a[2] sin t + a[3] cos 2t + a[4] sin 2t
+using Trigonometric = std::array<double, 5>;
+
+class TorusFunction {
+ public:
+  struct Value {
+    double f = 0;
+    std::array<double, 2> by{};  ///< derivatives by q and b
+  };
+  /// @param torus  a fold of a crank
+  /// @param other  a fold of another crank, or a cylinder
+  TorusFunction(const Face& torus, const Face& other);
+  TorusFunction() = default;
+
+  Value at(const std::array<double, 2>& q_b) const;
+  /// Bound of the second derivative by the coordinates i and j.
+  double bend(std::size_t i, std::size_t j) const { return bend_[i + j]; }
+  /// Sum of the magnitudes of the coefficients.
+  double size() const { return size_; }
+
+ private:
+  std::array<Trigonometric, 5> c_{};  ///< of products of a function of q and one of b
+  std::array<double, 3> bend_{};      ///< qq, qb, bb
+  double size_ = 0;
+};
+
+/// A box of q and b.
+struct TorusBox {
+  std::array<double, 2> middle{}, half{};
+};
+
+/// A curve along which f = 0, with one of q and b as its parameter, and bounds that hold in its box.
+struct TorusArc {
+  std::size_t along = 0;           ///< the parameter: 0: q, 1: b
+  double from = 0, to = 0;         ///< its range
+  std::array<double, 2> across{};  ///< the range of the other coordinate
+  double max_slope = 0;            ///< of the other coordinate by the parameter
+  double least = 0;                ///< least magnitude of the derivative of f by the other coordinate
+};
+
+struct BoxOfCurve {
+  enum class State : std::uint8_t { empty, divided, found };
+  State state;
+  std::size_t longer = 0;         ///< divided: the coordinate to be bisected
+  std::optional<TorusArc> arc{};  ///< found: none if the curve does not pass the box
+};
+/// Examines a box. @param rounding  of f
+BoxOfCurve examine_box(const TorusFunction& function, const TorusBox& box, double rounding);
+
+/// A point of an arc: the other coordinate, with its derivative by the parameter and a bound of the second one.
+Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, const Enclosure& parameter);
+
+}  // namespace pkm::generic::edges
