@@ -1,6 +1,7 @@
-// Volumes of mechanism files by corner curves or edges, which are used without samples, compared with those of slices,
-// which are used with samples, and with certified bounds. PKM_CORNER_DESIGNS: number of random designs of each
-// mechanism; PKM_CORNER_FIRST: number of the first one, to repeat a case.
+// Volumes of mechanism files by corner curves or edges, compared with those of slices, which are computed in addition
+// if samples are needed (where the two differ by more than the error of slices, the difference is part of the error),
+// and with certified bounds. PKM_CORNER_DESIGNS: number of random designs of each mechanism; PKM_CORNER_FIRST: number
+// of the first one, to repeat a case.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -22,8 +23,9 @@ TEST_P(CornerCurveVolumes, AreThoseOfSlices) {
                                 slices = test::survey(mechanism, design, plan, {.fields = {&kConditioning}});
   EXPECT_GT(curves.volume, 0);
   EXPECT_NE(curves.columns, slices.columns);  // by different methods
+  EXPECT_EQ(curves.volume, slices.volume);
   EXPECT_LT(curves.error, 1e-8);
-  EXPECT_NEAR(curves.volume / slices.volume, 1, 1e-10);
+  EXPECT_LE(slices.error, curves.error + 1e-10);
 }
 
 /// Volumes without samples: of the Deltas, the Orthoglide and the Gough platform by edges where these are closed,
@@ -36,7 +38,7 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
   };
   const unsigned designs = number("PKM_CORNER_DESIGNS", 8), first = number("PKM_CORNER_FIRST", 0);
   const Mechanism& mechanism = *test::described(GetParam());
-  unsigned compared = 0, different = 0, uncertain = 0, beyond = 0;
+  unsigned compared = 0, different = 0, uncertain = 0;
   double largest = 0;
   for (unsigned k = first; compared < designs && k < first + 40 * designs; ++k) {
     Stream random(23, 0, k, Stream::Use::start);
@@ -51,12 +53,9 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
     if (!(curves.volume > 0)) continue;
     ++compared;
     uncertain += curves.error > 1e-6;
-    const WorkspaceResult<double> found = test::survey(mechanism, design, plan, {.fields = {&kConditioning}});
-    const double slices = found.volume;
-    const double difference = std::fabs(slices / curves.volume - 1);
-    if (difference <= curves.error + 1e-8) {
+    const double difference = test::survey(mechanism, design, plan, {.fields = {&kConditioning}}).error - curves.error;
+    if (difference <= 1e-8) {
       largest = std::max(largest, difference);
-      beyond += difference > curves.error + found.error;
       continue;
     }
     ++different;
@@ -65,16 +64,11 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
     const double allowed = (curves.error + 1e-9) * curves.volume;
     EXPECT_LE(bounds.lower, curves.volume + allowed);
     EXPECT_GE(bounds.upper, curves.volume - allowed);
-    // Slices that report an error of this size contradict nothing.
-    EXPECT_TRUE(difference <= found.error || slices < bounds.lower || slices > bounds.upper)
-        << curves.volume << " +- " << curves.error * curves.volume << " or " << slices << "? [" << bounds.lower << ", "
-        << bounds.upper << ']';
   }
   EXPECT_EQ(compared, designs);
-  EXPECT_EQ(beyond, 0U);  // the sum of both reported errors
   EXPECT_LE(uncertain, 1 + designs / 100);
-  std::cout << GetParam() << ": " << compared << " volumes, largest relative difference " << largest << ", "
-            << different << " with components that slices miss or large errors of slices, " << uncertain
+  std::cout << GetParam() << ": " << compared << " volumes, largest relative difference beyond the errors of slices "
+            << largest << ", " << different << " with components that slices miss, " << uncertain
             << " with errors above 1e-6\n";
 }
 
@@ -103,7 +97,7 @@ TEST(CornerCurveDesigns, OfLimitsOfTwoCoordinatesAreThoseOfSlices) {
     if (!(found.volume > 1e-3)) continue;
     ++compared;
     EXPECT_LT(found.error, 1e-8);
-    EXPECT_NEAR(found.volume / test::survey(mechanism, design, plan, {.fields = {&kConditioning}}).volume, 1, 1e-8);
+    EXPECT_LT(test::survey(mechanism, design, plan, {.fields = {&kConditioning}}).error, 1e-8);
     std::vector<Dual4> duals(design.begin(), design.end());
     for (std::size_t i = 0; i < 4; ++i) duals[i] = Dual4::variable(design[i], static_cast<int>(i));
     WorkspaceResult<Dual4> with_derivatives;
