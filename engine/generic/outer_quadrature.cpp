@@ -9,7 +9,7 @@
 namespace pkm::generic {
 namespace {
 
-constexpr int kFirstParts = 2;
+constexpr double kCoarse = 1e-5;  // tolerances from here on begin with a single part
 constexpr std::size_t kMaxParts = 100;
 
 /// Adds factor times the gradient of the first output of a program of a single stage.
@@ -74,8 +74,9 @@ Integral<double> OuterQuadrature::measure(std::size_t level, std::vector<double>
   const double width = range.upper - range.lower;
   if (!(width > 0)) return {};
   std::vector<Part> parts;
-  for (int i = 0; i < kFirstParts; ++i)
-    parts.push_back(part_in(level, {range.lower + width * i / kFirstParts, range.lower + width * (i + 1) / kFirstParts},
+  const int first_parts = tolerance_ >= kCoarse ? 1 : 2;
+  for (int i = 0; i < first_parts; ++i)
+    parts.push_back(part_in(level, {range.lower + width * i / first_parts, range.lower + width * (i + 1) / first_parts},
                             inputs, !by_input.empty(), inner));
   Integral<double> sum;
   while (true) {
