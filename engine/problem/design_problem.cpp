@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "engine/core/error.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
@@ -24,6 +25,15 @@ std::vector<bool> used_analyses(const ProblemParts& parts) {
     for (const auto& q : *list)
       if (q.uses_workspace) used[q.analysis] = true;
   return used;
+}
+
+/// Throws DesignError if not even the order of magnitude of a volume is known: a search must not choose such a design.
+void refuse_unknown(double volume, double relative_error) {
+  if (!(volume > 0) || relative_error < 1) return;
+  std::ostringstream text;
+  text << "the volume of the workspace is unknown: " << volume << " with an estimated relative error of "
+       << relative_error << "; use voxels, or see 'pkmopt certify' for bounds";
+  throw DesignError(text.str());
 }
 
 }  // namespace
@@ -75,10 +85,12 @@ void DesignProblem::analyse(std::span<const S> parameters, bool all, Scratch& sc
                             WorkspaceResults<S>& results) const {
   results.resize(workspace_evaluators_.size());
   for (std::size_t k = 0; k < workspace_evaluators_.size(); ++k)
-    if (used_[k] || (all && k == 0))
+    if (used_[k] || (all && k == 0)) {
       evaluate_workspace(*workspace_evaluators_[k], parameters, scratch, results[k]);
-    else
+      refuse_unknown(value_of(results[k].volume), results[k].error);
+    } else {
       results[k].clear();
+    }
 }
 
 Status DesignProblem::compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const {
