@@ -293,9 +293,10 @@ class NormalForm {
     return disjunction(clauses((-Y).node()), disjunction(clauses((u - root).node()), clauses((-u - root).node())));
   }
   /// Bounds of a quotient or an angle by a c that does not depend on z: N / w - c >= 0 and c - N / w >= 0, where w is a
-  /// root, acos(q) - c >= 0 and c - acos(q) >= 0.
+  /// root, acos(q) - c >= 0 and c - acos(q) >= 0. Where acos(q) is defined, acos(q) >= 0.
   Clauses clauses_of_quotient(Node node) {
     const Entry entry = graph_[node];
+    if (entry.operation == &operation("acos")) return std::vector<Clause>{};
     if (!entry.operation || entry.operation->code != Code::subtract) return {};
     Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
     const bool is_lower = is_independent(y);  // c is a lower bound

@@ -151,6 +151,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     edges::EdgePlan::Scratch edges;
     InertiaScratch inertia;
     Known known;
+    bool is_sampled = false;  ///< a volume of the design is one of slices
   };
   template <class S>
   struct SampleRoom {
@@ -238,6 +239,8 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     if (edges_) found = edges_->measure(inputs, memory.edges);
     if (!found && corner_curves_) found = corner_curves_->measure(inputs, memory.corner_curves);
     if (found && !uses_slices()) return *found;
+    // a single slice is exact
+    memory.is_sampled = memory.is_sampled || (!found && !slices().plan().order.outer.empty());
     return better_of(found, slices().measure(inputs, memory.integral));
   }
   Integral<double> measure_inside_with_gradient(std::span<const double> inputs, std::span<double> by_input,
@@ -290,6 +293,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     memory.inputs.resize(samples.inputs.size());
     std::ranges::transform(samples.inputs, memory.inputs.begin(), [](const S& x) { return value_of(x); });
     Integral<double> found;
+    memory.is_sampled = false;
     if constexpr (std::is_same_v<S, double>) {
       memory.known.of = nullptr;
       found = measure(memory.inputs, {}, memory);
@@ -298,6 +302,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     }
     found.error = std::max(found.error, std::numeric_limits<double>::epsilon() * found.value);
     set_volume(found, survey);
+    survey.is_sampled = memory.is_sampled;
     if (found.value == 0 && found.error > 0) survey.error = 1;
     if constexpr (!std::is_same_v<S, double>) {
       for (std::size_t i = 0; i < samples.inputs.size(); ++i)

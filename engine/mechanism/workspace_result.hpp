@@ -26,6 +26,7 @@ struct WorkspaceResult {
   // of columns
   std::int64_t columns = 0;  ///< number of columns, or of nodes along edges, evaluated
   double error = 0;          ///< estimated relative error of the volume
+  bool is_sampled = false;   ///< parts of the workspace that lie between sampled slices may be missed
   // by feasible sample, if requested; otherwise empty
   std::vector<S> weight;
   std::vector<Pose<S>> pose;
@@ -49,7 +50,7 @@ struct WorkspaceResult {
     volume = S{};
     cells = feasible_cells = columns = 0;
     cell_volume = error = 0;
-    touches_box = false;
+    touches_box = is_sampled = false;
     weight.clear();
     pose.clear();
     std::erase_if(fields,
@@ -81,6 +82,7 @@ void copy_values(const WorkspaceResult<S>& from, WorkspaceResult<double>& to) {
   to.touches_box = from.touches_box;
   to.columns = from.columns;
   to.error = from.error;
+  to.is_sampled = from.is_sampled;
   const auto copy = [](const auto& source, auto& target) {
     target.resize(source.size());
     std::ranges::transform(source, target.begin(), [](const S& x) { return value_of(x); });

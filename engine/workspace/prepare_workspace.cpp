@@ -52,6 +52,7 @@ class AverageEvaluator final : public WithGradients<AverageEvaluator> {
       result.touches_box = result.touches_box || one.touches_box;
       result.columns += one.columns;
       result.error = std::max(result.error, one.error);
+      result.is_sampled = result.is_sampled || one.is_sampled;
       for (S& weight : one.weight) weight *= share;
       append_samples(one, result);
     }

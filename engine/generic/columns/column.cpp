@@ -141,11 +141,15 @@ void Column::merge_coincident_roots(std::span<const double> registers, double ti
     } else {
       ++i;
     }
+  const Ends& all = scratch.ends;  // in ascending order
   for (ColumnScratch::Piece& piece : pieces) {
     if (is_long(scratch)) check_stop();
-    for (auto* const end : {&piece.lower, &piece.upper})
-      for (const auto& other : scratch.ends)
-        if (other.second < end->second && are_one(*end, other)) *end = other;
+    for (auto* const end : {&piece.lower, &piece.upper}) {
+      const double first = end->first - 1e6 * tie, last = end->first + 1e6 * tie;
+      for (auto other = std::ranges::lower_bound(all, first, {}, &Ends::value_type::first);
+           other != all.end() && other->first <= last; ++other)
+        if (other->second < end->second && are_one(*end, *other)) *end = *other;
+    }
   }
 }
 

@@ -10,7 +10,7 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kNarrow = 1e-12;  // relative to the range: width below which an undecided interval is accepted
+constexpr double kNarrow = 1e-9;  // relative to the range: width below which intervals are not bisected
 
 class Search {
  public:
@@ -32,11 +32,12 @@ class Search {
         part.undecided = examine(part);
         if (part.undecided == 0) continue;
         const double middle = 0.5 * (part.from + part.to);
+        const bool is_exhausted = s_.evaluations >= max_evaluations;
         // an interval of a few ulp, or NaN, has no midpoint
-        if (part.to - part.from <= narrow || !(part.from < middle && middle < part.to) ||
-            s_.evaluations >= max_evaluations) {
-          s_.undecided += part.to - part.from;
-          add_changes(part, part.undecided);
+        if (is_exhausted || part.to - part.from <= narrow || !(part.from < middle && middle < part.to)) {
+          // a sign that changes at the end of a domain is as good as known
+          if (add_changes(part, part.undecided, !is_exhausted) < std::popcount(part.undecided) || is_exhausted)
+            s_.undecided += part.to - part.from;
           continue;
         }
         s_.halves.push_back({part.from, middle, part.undecided});
@@ -66,12 +67,15 @@ class Search {
           f.is_defined() && f.is_continuous() && slope.is_defined() && (slope.lower > 0 || slope.upper < 0);
       (has_one ? monotonic : undecided) |= bit(k);
     }
-    add_changes(part, monotonic);
+    add_changes(part, monotonic, true);
     return undecided;
   }
 
-  /// Adds a change for each of the constraints that have different signs at the ends.
-  void add_changes(const SignChangeScratch::Part& part, Signs of) {
+  /// Adds a change for each of the constraints that have different signs at the ends. @param refines  otherwise it is
+  /// placed in the middle
+  /// @return their number
+  int add_changes(const SignChangeScratch::Part& part, Signs of, bool refines) {
+    int count = 0;
     for (; of != 0; of &= of - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(of));
       const auto value_at = [&](double x) {
@@ -80,12 +84,16 @@ class Search {
       };
       const bool below = is_satisfied(value_at(part.from).value);
       if (below == is_satisfied(value_at(part.to).value)) continue;
+      double at = 0.5 * (part.from + part.to);
       const double tolerance = 1e-16 * (std::fabs(part.from) + std::fabs(part.to));
-      const double at = refine_root_newton(
-          value_at, part.from, part.to, below, 0.5 * (part.from + part.to),
-          [&](const ValueAndDerivative&, double x, double next) { return std::fabs(next - x) <= tolerance; });
+      if (refines)
+        at = refine_root_newton(
+            value_at, part.from, part.to, below, at,
+            [&](const ValueAndDerivative&, double x, double next) { return std::fabs(next - x) <= tolerance; });
       s_.found.push_back({at, k, below});
+      ++count;
     }
+    return count;
   }
 
   const expression::Program& program_;
