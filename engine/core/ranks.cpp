@@ -124,7 +124,7 @@ Header header_of(const std::string& bytes) {
 
 }  // namespace
 
-bool is_first_launched() {
+bool is_launched_as_rank_zero() {
   const auto by = launcher();
   return !by || by->rank.value_or(0) == 0;
 }

@@ -29,7 +29,7 @@ class Group {
 
 /// Whether this process is the first of those that a launcher has started, according to the environment variables of
 /// the launcher. It alone reports the error if the processes cannot communicate.
-bool is_first_launched();
+bool is_launched_as_rank_zero();
 
 /// Number of this rank; 0 without a Group or a launcher.
 int rank();

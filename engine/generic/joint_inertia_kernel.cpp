@@ -84,14 +84,15 @@ template <class L, int n>
       size += magnitude(lu.u[i][j]);
     }
   lu.run();
-  // as is_clearly_regular()
-  L beside(0.0), inverse(0.0);
+  // bound of the condition number, as in is_clearly_regular(): sums of the magnitudes above the diagonal of the factor
+  // U, and of the inverse diagonal
+  L above(0.0), inverse(0.0);
   for (int i = 0; i < n; ++i) {
-    for (int j = i + 1; j < n; ++j) beside += magnitude(lu.u[i][j]);
+    for (int j = i + 1; j < n; ++j) above += magnitude(lu.u[i][j]);
     inverse += 1.0 / magnitude(lu.u[i][i]);
   }
   L bound = static_cast<double>(n * n) * size * inverse;
-  for (int i = 1; i < n; ++i) bound = bound * (2.0 * (1.0 + beside * inverse));
+  for (int i = 1; i < n; ++i) bound = bound * (2.0 * (1.0 + above * inverse));
   if (!all<L>(bound <= 0.1 / kSingularRcond)) return false;
 
   lu.solve(half);

@@ -108,7 +108,8 @@ Status DesignProblem::compute(std::span<const double> parameters, Scratch& scrat
     satisfied = value >= 0 && satisfied;
     violated = violated || (std::isfinite(value) && value < 0);
   }
-  // A violated constraint rejects the design even if another margin is undefined, e.g. that of an unreachable motion.
+  // A violated constraint rejects the design even if another margin is undefined, for example because
+  // a motion cannot be reached.
   if (violated && result.detail == Detail::enough) return Status::rejected;
   if (!usable && !(violated && result.detail == Detail::complete)) return Status::failed;
   const bool rejected = !satisfied;

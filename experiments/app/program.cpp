@@ -178,7 +178,7 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
     if (ranks::size() > 1) stop_worker_ranks(exit_code);
     return exit_code;
   } catch (const std::exception& error) {  // the processes of an MPI run cannot connect
-    return ranks::is_first_launched() ? report_error(message_of(error), kFailure) : kFailure;
+    return ranks::is_launched_as_rank_zero() ? report_error(message_of(error), kFailure) : kFailure;
   }
 }
 

@@ -166,9 +166,9 @@ void NestedIntegral::visit_one_sided(std::size_t level, double weight, bool in_i
     return;
   }
   if (const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_)) {
-    planar_slice->add_pieces(one_sided_points.in.planar_slice, pieces);
+    planar_slice->append_smooth_intervals(one_sided_points.in.planar_slice, pieces);
     std::vector<Subinterval<double>> others;
-    if (!out_is_empty) planar_slice->add_pieces(one_sided_points.out.planar_slice, others);
+    if (!out_is_empty) planar_slice->append_smooth_intervals(one_sided_points.out.planar_slice, others);
     for (const Subinterval<double>& other : others) ends.insert(ends.end(), {other.lower, other.upper});
     for_each_node(pieces, ends, [&](double v, double own) {
       const Intervals in = planar_slice->columns(v, one_sided_points.in.registers, one_sided_points.in.planar_slice);

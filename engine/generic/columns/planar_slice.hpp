@@ -118,8 +118,8 @@ class PlanarSlice {
         }
     }
   }
-  /// Appends the intervals of v in which the columns have the same endpoints, after measure().
-  void add_pieces(const PlanarSliceScratch& scratch, std::vector<Subinterval<double>>& pieces) const;
+  /// Appends the intervals of v in which columns have the same endpoints and are smooth, after measure().
+  void append_smooth_intervals(const PlanarSliceScratch& scratch, std::vector<Subinterval<double>>& pieces) const;
   /// The feasible intervals of z at v in ascending order, after measure().
   std::vector<std::array<double, 2>> columns(double v, std::span<double> registers, PlanarSliceScratch& scratch) const;
   /// Finds the vertices that define the type, after measure().

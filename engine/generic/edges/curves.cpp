@@ -231,7 +231,7 @@ Shifted shifted(const Trigonometric& D, double t_0) {
   return at;
 }
 
-/// D(t_0 + x) / x^order, where D has a root of this multiplicity at t_0.
+/// D(t_0 + x) / x^order, where t_0 is a root of D of multiplicity `order`.
 Enclosure quotient(const Trigonometric& D, double t_0, int order, const Enclosure& x) {
   const auto [cosine, sine] = shifted(D, t_0);
   const Enclosure half = x * 0.5, twice = x * 2.0;

@@ -63,7 +63,7 @@ std::size_t degree(const Body& body, std::size_t function);
 /// Combinations of the signs of the functions, one bit each: bit c is the combination in which function i is positive
 /// if bit i of c is set.
 using SignSets = std::uint64_t;
-/// The combinations in which a function is positive.
+/// Element i: the combinations in which function i is positive.
 inline constexpr std::array<SignSets, kFunctions> kPositive{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
                                                             0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
 

@@ -116,9 +116,9 @@ class Evaluator {
       return;
     }
     ++result_.boxes;
-    const BoxOfCurve found = examine_box(curve.function, box, kFunctionRounding * curve.function.size());
-    if (found.state == BoxOfCurve::State::empty || is_inactive(curve, box)) return;
-    if (found.state == BoxOfCurve::State::divided) {
+    const CurveInBox found = find_curve_in(curve.function, box, kFunctionRounding * curve.function.size());
+    if (found.state == CurveInBox::State::absent || is_inactive(curve, box)) return;
+    if (found.state == CurveInBox::State::unresolved) {
       const std::size_t i = found.longer;
       TorusBox part = box;
       part.half[i] *= 0.5;
@@ -126,7 +126,7 @@ class Evaluator {
         part.middle[i] = box.middle[i] + side * part.half[i];
         trace(curve, part, boxes);
       }
-    } else if (found.arc) {
+    } else {
       arcs_.push_back(
           {.curve = &curve, .t_0 = found.arc->from, .length = found.arc->to - found.arc->from, .implicit = *found.arc});
     }

@@ -92,11 +92,11 @@ namespace {
 
 class Examination {
  public:
-  Examination(const TorusFunction& function, const TorusBox& box, double rounding)
-      : f_(function), box_(box), rounding_(rounding), centre_(function.at(box.middle)) {}
+  Examination(const TorusFunction& function, const TorusBox& box, double rounding_error)
+      : f_(function), box_(box), rounding_error_(rounding_error), centre_(function.at(box.middle)) {}
 
-  BoxOfCurve run() const {
-    if (std::fabs(centre_.f) > reach({true, true}) + rounding_) return {BoxOfCurve::State::empty};
+  CurveInBox run() const {
+    if (std::fabs(centre_.f) > reach({true, true}) + rounding_error_) return {CurveInBox::State::absent};
     const std::array<double, 2> least{least_slope(0), least_slope(1)};
     // the parameter is the coordinate along which the curve is flatter
     const std::size_t other = std::fabs(centre_.by[1]) >= std::fabs(centre_.by[0]) ? 1 : 0;
@@ -106,7 +106,7 @@ class Examination {
     const auto share = [&](std::size_t i) {
       return (std::fabs(centre_.by[i]) + f_.bend(i, i) * box_.half[i]) * box_.half[i];
     };
-    return {BoxOfCurve::State::divided, share(1) > share(0) ? std::size_t{1} : std::size_t{0}};
+    return {CurveInBox::State::unresolved, share(1) > share(0) ? std::size_t{1} : std::size_t{0}};
   }
 
  private:
@@ -140,13 +140,13 @@ class Examination {
     for (const double end : {low(other), high(other)}) {
       const TorusFunction::Value at = f_.at(place(i, box_.middle[i], end));
       const double reach = std::fabs(at.by[i]) * box_.half[i] + 0.5 * f_.bend(i, i) * box_.half[i] * box_.half[i];
-      if (std::fabs(at.f) <= reach + rounding_) return false;
+      if (std::fabs(at.f) <= reach + rounding_error_) return false;
     }
     return true;
   }
 
   /// The curve, cut where it passes the sides. If f can vanish on these, it is monotone along them.
-  BoxOfCurve found(std::size_t other, double least) const {
+  CurveInBox found(std::size_t other, double least) const {
     const std::size_t along = 1 - other;
     const auto is_positive = [&](double at, double across) { return f_.at(place(along, at, across)).f > 0; };
     std::array<double, 4> ends{low(along), high(along), high(along), high(along)};
@@ -169,7 +169,7 @@ class Examination {
       if (is_positive(middle, low(other)) == is_positive(middle, high(other))) continue;
       const double steepest =
           std::fabs(centre_.by[along]) + f_.bend(along, 0) * box_.half[0] + f_.bend(along, 1) * box_.half[1];
-      return {BoxOfCurve::State::found, 0,
+      return {CurveInBox::State::found, 0,
               TorusArc{.along = along,
                        .from = ends[i],
                        .to = ends[i + 1],
@@ -177,19 +177,19 @@ class Examination {
                        .max_slope = steepest / least,
                        .least = least}};
     }
-    return {BoxOfCurve::State::found};
+    return {CurveInBox::State::absent};
   }
 
   const TorusFunction& f_;
   const TorusBox& box_;
-  double rounding_;
+  double rounding_error_;
   TorusFunction::Value centre_;
 };
 
 }  // namespace
 
-BoxOfCurve examine_box(const TorusFunction& function, const TorusBox& box, double rounding) {
-  return Examination(function, box, rounding).run();
+CurveInBox find_curve_in(const TorusFunction& function, const TorusBox& box, double rounding_error) {
+  return Examination(function, box, rounding_error).run();
 }
 
 Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, const Enclosure& parameter) {

@@ -56,14 +56,15 @@ struct TorusArc {
   double least = 0;                ///< least magnitude of the derivative of f by the other coordinate
 };
 
-struct BoxOfCurve {
-  enum class State : std::uint8_t { empty, divided, found };
+struct CurveInBox {
+  enum class State : std::uint8_t { absent, unresolved, found };
   State state;
-  std::size_t longer = 0;         ///< divided: the coordinate to be bisected
-  std::optional<TorusArc> arc{};  ///< found: none if the curve does not pass the box
+  std::size_t longer = 0;         ///< unresolved: the coordinate to be bisected
+  std::optional<TorusArc> arc{};  ///< found: the curve, cut to the box
 };
-/// Examines a box. @param rounding  of f
-BoxOfCurve examine_box(const TorusFunction& function, const TorusBox& box, double rounding);
+/// Whether f = 0 has a zero in a box, and its curve if it is a function of one coordinate there.
+/// @param rounding_error  of f
+CurveInBox find_curve_in(const TorusFunction& function, const TorusBox& box, double rounding_error);
 
 /// A point of an arc: the other coordinate, with its derivative by the parameter and a bound of the second one.
 Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, const Enclosure& parameter);
