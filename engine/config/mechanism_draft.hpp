@@ -48,6 +48,8 @@ struct NamedLimb {
   std::size_t joint = 0;                        ///< index among the joints of the mechanism
   std::optional<limbs::Vector3> axis = {};      ///< of the crank's pivot, or along the slide
   std::optional<limbs::Vector3> revolute = {};  ///< the axis of its joints, if they are parallel revolutes
+  bool has_rod = false;                         ///< or is a telescope; false: a slide that carries the platform
+  bool has_links = false;                       ///< two links instead of a rod
   std::optional<limbs::Vector3> beside = {};    ///< from the middle of a pair of rods to one of them
   std::string end_on = "";                      ///< the body that carries its end; "": unspecified
 };
@@ -114,6 +116,8 @@ void read_inputs(const ConfigValue& root, MechanismDraft& draft);
 /// [[quantity]] of the file, and of a study unless it is null. Their formulas may also use "NAME_rate", the time
 /// derivative of a coordinate, an input or a quantity.
 void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
+/// Adds the transmission indices `lti`, `lti_input` and `lti_output` as quantities, if they are defined for the limbs.
+void add_transmission(const ConfigValue& root, MechanismDraft& draft);
 /// The limits of quantities in a study, as a table; std::nullopt if it has none.
 std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
 /// Adds a threshold for each limit of a quantity in the study, [workspace] limits = { NAME = { min = .. } }. It is

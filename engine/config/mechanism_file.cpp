@@ -250,6 +250,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   draft.scope.allow_motion(false);
   read_platform(platform, draft);
   read_limbs(root, draft);
+  add_transmission(root, draft);
   read_quantities(root, study.get(), draft);
   read_margins(root, draft);
   if (study) add_quantity_margins(*study, draft);

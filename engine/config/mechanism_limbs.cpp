@@ -149,7 +149,9 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
                  .drive = copy.drive,
                  .joint = copy.draft.model.joints.size() - 1,
                  .axis = driven.e,
-                 .revolute = table.has("links") ? driven.e : at.across};
+                 .revolute = table.has("links") ? driven.e : at.across,
+                 .has_rod = copy.drive != "slider" || table.has("rod"),
+                 .has_links = table.has("links")};
   const auto end_on = table.find("end_on");
   if (end_on && !table.has("end"))
     throw end_on->refusal("a limb that ends at `platform` ends on the platform; `end_on` belongs to `end`");

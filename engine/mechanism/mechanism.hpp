@@ -73,6 +73,7 @@ struct MechanismInfo {
   std::vector<LimitInfo> limits;
   std::vector<InputInfo> inputs;
   std::vector<QuantityInfo> quantities;
+  std::string why_no_transmission{};      ///< why transmission indices are not among them; "": they are
   std::string characteristic_length;      ///< formula of its default; "" if the conditioning is undefined
   std::vector<std::string> closed_forms;  ///< by joint: method of the inverse kinematics, for people; or empty
 };

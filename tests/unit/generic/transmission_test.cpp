@@ -1,0 +1,109 @@
+// Transmission indices of mechanism files against closed forms and published poses.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "engine/workspace/pose_quantities.hpp"
+#include "tests/unit/contracts/mechanism_fixtures.hpp"
+
+namespace pkm {
+namespace {
+
+struct Indices {
+  double lti, input, output;
+};
+
+/// Values of the quantities at a pose.
+Indices indices_at(const Mechanism& mechanism, const std::vector<double>& design, const Pose<double>& pose,
+                   const std::string& mode) {
+  const MechanismInfo& info = mechanism.info();
+  const PoseReport report = mechanism.inspect(design, pose, mode, no_limits(info));
+  const auto value = [&](const std::string& name) {
+    const auto at = std::ranges::find(info.quantities, name, &QuantityInfo::name);
+    return report.quantities.at(static_cast<std::size_t>(at - info.quantities.begin()));
+  };
+  return {value("lti"), value("lti_input"), value("lti_output")};
+}
+
+struct Reference {
+  const char* mechanism;
+  nlohmann::json design;
+  std::vector<double> pose;
+  double input, output;
+};
+
+/// Computed from the closed forms of planar and translational mechanisms by a program of its own. The second pose is
+/// one of an ABB IRB 340 (R. L. Williams II, "The Delta parallel robot", Ohio University), turned by 90 deg about z;
+/// the corners of the Orthoglide are those of its published design rule (Chablat and Wenger 2003).
+const std::vector<Reference> kReferences = {
+    {"rotary-delta", nlohmann::json::object(), {0.1, 0, -0.5}, .982264603, .841090820},
+    {"rotary-delta",
+     {{"R", std::sqrt(3) / 6 * .567}, {"r", std::sqrt(3) / 3 * .076}, {"l_a", .524}, {"l_b", 1.244}},
+     {-.5, .3, -1.1},
+     .8613811,
+     .6650402},
+    {"orthoglide",
+     {{"L", .31}},
+     {-.31 / std::sqrt(6), -.31 / std::sqrt(6), -.31 / std::sqrt(6)},
+     .816496581,
+     .492365964},
+    {"orthoglide",
+     {{"L", .31}},
+     {.31 / std::sqrt(18), .31 / std::sqrt(18), .31 / std::sqrt(18)},
+     .942809042,
+     .710669055},
+    {"orthoglide", {{"L", .31}}, {0, 0, 0}, 1, 1},
+    {"five-bar", {{"d", .1375}, {"l_a", .23}, {"l_b", .23}}, {0, .3}, .999568913, .674757167},
+    {"five-bar", {{"d", .1375}, {"l_a", .23}, {"l_b", .23}}, {0, .25}, .973056986, .326361634},
+    {"five-bar", {{"d", .1375}, {"l_a", .23}, {"l_b", .23}}, {.1, .3}, .923415419, .78674775},
+    {"3-rrr", {{"R", .5}, {"r", .15}, {"l_a", .3}, {"l_b", .35}}, {.02, -.05, .1}, .856347718, .940473648},
+};
+
+TEST(Transmission, HasTheReferenceValues) {
+  for (const Reference& reference : kReferences) {
+    const Mechanism& mechanism = *test::described(reference.mechanism);
+    SCOPED_TRACE(std::string(reference.mechanism) + " at " + std::to_string(reference.pose[0]));
+    const std::vector<double> design = test::design_with(mechanism.info(), reference.design);
+    Pose<double> pose(mechanism.info().coordinates.size());
+    std::ranges::copy(reference.pose, pose.begin());
+    std::string mode = mechanism.info().modes.front();
+    if (mechanism.info().name == "3-rrr") mode = "+,+,+";
+    const Indices found = indices_at(mechanism, design, pose, mode);
+    const double digits = reference.output == .6650402 ? 5e-8 : 2e-9;
+    EXPECT_NEAR(found.input, reference.input, digits);
+    EXPECT_NEAR(found.output, reference.output, digits);
+    EXPECT_EQ(found.lti, std::min(found.input, found.output));
+  }
+}
+
+TEST(Transmission, OfTelescopesHasTheInputIndexOne) {
+  const Mechanism& gough = *test::described("gough");
+  const std::vector<double> design = test::nominal(gough.info());
+  const Indices found = indices_at(gough, design, test::reference_pose(gough), gough.info().modes.front());
+  EXPECT_EQ(found.input, 1);
+  EXPECT_GT(found.output, 0.1);
+  EXPECT_LT(found.output, 1);
+}
+
+/// The area of poses with y > 0 and an index of at least 0.7, on both sides of the parallel singularity, was computed
+/// by an independent program.
+TEST(Transmission, IsAFieldOfTheWorkspaceOfAFiveBar) {
+  const Mechanism& five_bar = *test::described("five-bar");
+  const std::vector<double> design = test::design_with(five_bar.info(), {{"d", .1375}, {"l_a", .23}, {"l_b", .23}});
+  const auto lti = std::ranges::find(five_bar.info().quantities, "lti", &QuantityInfo::name)->of_pose;
+  WorkspacePlan plan{.method = VoxelOptions{.cells = {1000, 1000, 1}, .box = Box{{{-.5, .5}, {0, .5}, {0, 1}}}},
+                     .limits = no_limits(five_bar.info())};
+  const WorkspaceResult<double> result = test::survey(five_bar, design, plan, {.fields = {lti.get()}});
+  std::int64_t cells = 0;
+  for (const double value : result.field(*lti)) cells += value >= 0.7;
+  EXPECT_NEAR(static_cast<double>(cells) * result.cell_volume, 0.0366001, 3e-5);
+}
+
+TEST(Transmission, IsUndefinedForLimbsOfFormulas) {
+  const Mechanism& scara = *test::described("4ppa-2par");
+  EXPECT_THAT(scara.info().why_no_transmission, ::testing::HasSubstr("acts on the platform by no single force"));
+  EXPECT_EQ(std::ranges::find(scara.info().quantities, "lti", &QuantityInfo::name), scara.info().quantities.end());
+}
+
+}  // namespace
+}  // namespace pkm
