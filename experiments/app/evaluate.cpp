@@ -104,7 +104,9 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
     json["columns"] = survey.columns;
     json["relative_error"] = estimated ? Json(survey.error) : Json();
     rows.push_back({"columns", std::to_string(survey.columns)});
-    if (estimated) rows.push_back({"relative error", number(survey.error) + (survey.is_sampled ? ", as far as sampled" : ", estimated")});
+    if (estimated)
+      rows.push_back(
+          {"relative error", number(survey.error) + (survey.is_sampled ? ", as far as sampled" : ", estimated")});
   }
   if (!note.empty()) rows.push_back({"note", note});
   out.json["workspace"] = json;

@@ -214,7 +214,8 @@ std::array<double, 3> PlanarSlice::moments(const PlanarSliceScratch::Piece& piec
   return sum;
 }
 
-void PlanarSlice::append_smooth_intervals(const PlanarSliceScratch& scratch, std::vector<Subinterval<double>>& pieces) const {
+void PlanarSlice::append_smooth_intervals(const PlanarSliceScratch& scratch,
+                                          std::vector<Subinterval<double>>& pieces) const {
   for (const auto& piece : scratch.pieces)
     pieces.push_back({scratch.v[0] + scratch.v[1] * piece.from, scratch.v[0] + scratch.v[1] * piece.to,
                       has_sqrt_singularity(piece.from_vertex, scratch),
