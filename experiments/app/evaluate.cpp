@@ -147,8 +147,9 @@ std::string feasibility_text(const DesignProblem& problem, const DesignReport& r
 
 std::string evaluate(const Catalogues& catalogues, const Target& target, const EvaluateArguments& arguments,
                      Printout& out) {
-  const auto [problem, why_voxels] = target.study ? ProblemOfMechanism{target.study->problem, ""}
-                                                  : default_problem(target, catalogues, arguments.changes.cells);
+  const ProblemOfMechanism found = target.study ? ProblemOfMechanism{target.study->problem, ""}
+                                                : default_problem(target, catalogues, arguments.changes.cells);
+  const auto& problem = found.problem;
   const ColumnOptions* const columns = problem->parts().plan.columns();
   std::optional<double> gap = columns ? columns->certified : std::nullopt;
   if (!arguments.certified.empty()) {
@@ -183,7 +184,7 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   out.head.push_back({"feasible", feasibility_text(*problem, report)});
   report_values("parameters", "parameters", target.info().parameters, report.parameters, no_remark);
   out.json["workspace"] = nullptr;
-  if (surveyed) report_workspace(*problem, report.workspace, why_voxels, out);
+  if (surveyed) report_workspace(*problem, report.workspace, found.why_voxels, out);
   if (bounds) report_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
   report_values(
       "objectives", "objectives", problem->objectives(), report.objectives,
