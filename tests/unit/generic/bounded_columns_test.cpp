@@ -96,7 +96,9 @@ class BoundedColumns : public ::testing::TestWithParam<std::string> {
 
 TEST_P(BoundedColumns, LieWithinTheBounds) {
   const char* const asked = std::getenv("PKM_BOUNDED_DESIGNS");
-  const unsigned designs = asked ? static_cast<unsigned>(std::atoi(asked)) : 25;
+  // slices of Par4 that contain its rotation take seconds
+  const unsigned usual = GetParam() == "par4" ? 5 : 25;
+  const unsigned designs = asked ? static_cast<unsigned>(std::atoi(asked)) : usual;
   const std::vector<WorkspacePlan> all = plans();
   unsigned compared = 0, wrong = 0, vague = 0, wide = 0;
   const auto start = std::chrono::steady_clock::now();
