@@ -24,27 +24,28 @@ namespace {
 
 using Kind = FixedCoordinate::Kind;
 
-/// Integrated coordinates in excess of three coordinates in all, those that slices have to do without.
-std::vector<std::size_t> outer_coordinates(const Sweep& sweep, const WorkspacePlan& plan) {
-  std::vector<std::size_t> integrated;
-  for (const int coordinate : sweep.fixed)
-    if (how_fixed(plan, coordinate).kind == Kind::integrated)
-      integrated.push_back(static_cast<std::size_t>(coordinate));
-  const std::size_t room = 3 - std::min<std::size_t>(3, sweep.swept.size());
-  integrated.resize(integrated.size() - std::min(integrated.size(), room));
-  return integrated;
-}
+/// The integrated coordinates. Slices have at most three coordinates in all; the outermost ones in excess of these are
+/// left to OuterQuadrature.
+struct IntegratedCoordinates {
+  std::vector<std::size_t> in_excess, of_slices;
+
+  IntegratedCoordinates(const Sweep& sweep, const WorkspacePlan& plan) {
+    for (const int coordinate : sweep.fixed)
+      if (how_fixed(plan, coordinate).kind == Kind::integrated)
+        of_slices.push_back(static_cast<std::size_t>(coordinate));
+    const std::size_t room = 3 - std::min<std::size_t>(3, sweep.swept.size());
+    const auto end = of_slices.end() - static_cast<std::ptrdiff_t>(std::min(of_slices.size(), room));
+    in_excess.assign(of_slices.begin(), end);
+    of_slices.erase(of_slices.begin(), end);
+  }
+};
 
 /// The orders of coordinates in which slices can have closed forms: each pair of swept ones as (v, z), or each one as
 /// z, with the others as outer coordinates (in a single order for lines). Integrated ones are outermost, except for the
 /// last one if a single coordinate is swept: slices of these two are planar.
 std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
-  std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
-  const std::vector<std::size_t> outer_ones = outer_coordinates(sweep, plan);
-  for (const int coordinate : sweep.fixed)
-    if (const auto i = static_cast<std::size_t>(coordinate);
-        how_fixed(plan, coordinate).kind == Kind::integrated && std::ranges::find(outer_ones, i) == outer_ones.end())
-      integrated.push_back(i);
+  std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end());
+  std::vector<std::size_t> integrated = IntegratedCoordinates(sweep, plan).of_slices;
   if (!are_lines && swept.size() == 1 && !integrated.empty()) {
     swept.push_back(integrated.back());
     integrated.pop_back();
@@ -108,7 +109,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
         mode_(mode_index(mechanism.info(), request.mode)),
         inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
         outer_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)),
-        outermost_(evaluation, outer_coordinates(sweep_, plan), columns.tolerance) {
+        outermost_(evaluation, IntegratedCoordinates(sweep_, plan).in_excess, columns.tolerance) {
     if (request.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
@@ -227,33 +228,26 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   bool has_outermost() const { return !outermost_.coordinates().empty(); }
   /// The volume over all coordinates, and its derivatives unless `by_input` is empty.
   Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, Room& memory) const {
-    const auto inner = [&](std::span<const double> at, std::span<double> by) {
-      return by.empty() ? measure_inside(at, memory) : measure_inside_with_gradient(at, by, memory);
-    };
+    memory.is_sampled = false;
+    const auto inner = [&](std::span<const double> at, std::span<double> by) { return measure_inside(at, by, memory); };
     return has_outermost() ? outermost_.measure(inputs, by_input, inner) : inner(inputs, by_input);
   }
   /// Over at most three coordinates: by edges or corner curves if they serve the design, otherwise by slices. Samples
   /// need the slices in any case.
-  Integral<double> measure_inside(std::span<const double> inputs, Room& memory) const {
-    std::optional<Integral<double>> found;
-    if (edges_) found = edges_->measure(inputs, memory.edges);
-    if (!found && corner_curves_) found = corner_curves_->measure(inputs, memory.corner_curves);
-    if (found && !uses_slices()) return *found;
-    // a single slice is exact
-    memory.is_sampled = memory.is_sampled || (!found && !slices().plan().order.outer.empty());
-    return better_of(found, slices().measure(inputs, memory.integral));
-  }
-  Integral<double> measure_inside_with_gradient(std::span<const double> inputs, std::span<double> by_input,
-                                                Room& memory) const {
+  Integral<double> measure_inside(std::span<const double> inputs, std::span<double> by_input, Room& memory) const {
+    const bool needs_gradient = !by_input.empty();
     std::optional<Integral<double>> found;
     if (edges_) found = edges_->measure(inputs, memory.edges, by_input);
     if (!found && corner_curves_) {
       found = corner_curves_->measure(inputs, memory.corner_curves);
-      if (found) corner_curves_->add_gradient(by_input, memory.corner_curves);
+      if (found && needs_gradient) corner_curves_->add_gradient(by_input, memory.corner_curves);
     }
     if (found && !uses_slices()) return *found;
-    const Integral<double> by_slices = slices().measure_for_gradient(inputs, memory.integral);
-    if (!found) slices().add_gradient(by_input, memory.integral);
+    const Integral<double> by_slices = needs_gradient ? slices().measure_for_gradient(inputs, memory.integral)
+                                                      : slices().measure(inputs, memory.integral);
+    if (!found && needs_gradient) slices().add_gradient(by_input, memory.integral);
+    // a single slice is exact
+    memory.is_sampled = memory.is_sampled || (!found && !slices().plan().order.outer.empty());
     return better_of(found, by_slices);
   }
   /// Whether samples follow from the slices of the volume; with outermost coordinates they have slices of their own.
@@ -293,7 +287,6 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     memory.inputs.resize(samples.inputs.size());
     std::ranges::transform(samples.inputs, memory.inputs.begin(), [](const S& x) { return value_of(x); });
     Integral<double> found;
-    memory.is_sampled = false;
     if constexpr (std::is_same_v<S, double>) {
       memory.known.of = nullptr;
       found = measure(memory.inputs, {}, memory);

@@ -9,24 +9,26 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kCoarse = 1e-5;  // tolerances from here on begin with a single part
-constexpr std::size_t kMaxParts = 100;
+constexpr double kCoarse = 1e-5;  // tolerances from here on begin with a single cell
+constexpr std::size_t kMaxCells = 100;
 
-/// Adds factor times the gradient of the first output of a program of a single stage.
-void add_gradient(const expression::Program& program, const std::vector<double>& inputs, double factor,
+/// Adds factor() times the gradient of the first output of a program of a single stage.
+template <class Factor>
+void add_gradient(const expression::Program& program, const std::vector<double>& inputs, const Factor& factor,
                   std::span<double> by_input) {
+  if (program.stages().front().inputs.empty()) return;  // a constant
   std::vector<double> registers;
   program.run_all<double>(inputs, registers);
   std::vector<double> adjoints(registers.size());
-  adjoints[program.outputs().front()] = factor;
+  adjoints[program.outputs().front()] = factor();
   expression::backward_sweep(program, 0, registers, adjoints);
   for (const auto& input : program.stages().front().inputs) by_input[input.position] += adjoints[input.to];
 }
 
 }  // namespace
 
-/// The integral over a part of a range.
-struct OuterQuadrature::Part {
+/// The integral over a subinterval of a range.
+struct OuterQuadrature::Cell {
   Subinterval<double> interval;
   double value = 0, error = 0;
   double inner_error = 0;  ///< integral of the errors of the inner volumes
@@ -41,14 +43,14 @@ Integral<double> OuterQuadrature::at(std::size_t level, double value, std::vecto
   return level + 1 < coordinates_.size() ? measure(level + 1, inputs, by_input, inner) : inner(inputs, by_input);
 }
 
-OuterQuadrature::Part OuterQuadrature::part_in(std::size_t level, const Subinterval<double>& interval,
-                                               std::vector<double>& inputs, bool needs_gradient,
-                                               const Inner& inner) const {
+OuterQuadrature::Cell OuterQuadrature::integrate_over(std::size_t level, const Subinterval<double>& interval,
+                                                      std::vector<double>& inputs, bool needs_gradient,
+                                                      const Inner& inner) const {
   const NestedRule& rule = kronrod_rule();
   const NestedRule::Level& weights = rule.level.front();
-  Part part{.interval = interval};
-  part.by_input.resize(needs_gradient ? inputs.size() : 0);
-  std::vector<double> by_input(part.by_input.size());
+  Cell cell{.interval = interval};
+  cell.by_input.resize(needs_gradient ? inputs.size() : 0);
+  std::vector<double> by_input(cell.by_input.size());
   std::array<double, NestedRule::kNodes> term;
   double embedded = 0, spread = 0;
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
@@ -57,15 +59,15 @@ OuterQuadrature::Part OuterQuadrature::part_in(std::size_t level, const Subinter
     const Integral<double> found = at(level, point, inputs, by_input, inner);
     const double weight = jacobian * weights.weight[i];
     term[i] = jacobian * found.value;
-    part.value += weight * found.value;
-    part.inner_error += weight * found.error;
-    part.evaluations += found.evaluations;
+    cell.value += weight * found.value;
+    cell.inner_error += weight * found.error;
+    cell.evaluations += found.evaluations;
     embedded += weights.fewer[i] * term[i];
-    for (std::size_t k = 0; k < by_input.size(); ++k) part.by_input[k] += weight * by_input[k];
+    for (std::size_t k = 0; k < by_input.size(); ++k) cell.by_input[k] += weight * by_input[k];
   }
-  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) spread += weights.weight[i] * std::fabs(term[i] - part.value);
-  part.error = quadpack_error(std::fabs(part.value - embedded), spread);
-  return part;
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) spread += weights.weight[i] * std::fabs(term[i] - cell.value);
+  cell.error = quadpack_error(std::fabs(cell.value - embedded), spread);
+  return cell;
 }
 
 Integral<double> OuterQuadrature::measure(std::size_t level, std::vector<double>& inputs, std::span<double> by_input,
@@ -73,37 +75,42 @@ Integral<double> OuterQuadrature::measure(std::size_t level, std::vector<double>
   const Subinterval<double> range = this->range(level, inputs);
   const double width = range.upper - range.lower;
   if (!(width > 0)) return {};
-  std::vector<Part> parts;
-  const int first_parts = tolerance_ >= kCoarse ? 1 : 2;
-  for (int i = 0; i < first_parts; ++i)
-    parts.push_back(part_in(level, {range.lower + width * i / first_parts, range.lower + width * (i + 1) / first_parts},
-                            inputs, !by_input.empty(), inner));
+  std::vector<Cell> cells;
+  const int first_cells = tolerance_ >= kCoarse ? 1 : 2;
+  for (int i = 0; i < first_cells; ++i)
+    cells.push_back(integrate_over(level,
+                                   {range.lower + width * i / first_cells, range.lower + width * (i + 1) / first_cells},
+                                   inputs, !by_input.empty(), inner));
   Integral<double> sum;
   while (true) {
     double error = 0, inner_error = 0;
     sum.value = 0;
-    for (const Part& part : parts) {
-      sum.value += part.value;
-      error += part.error;
-      inner_error += part.inner_error;
+    for (const Cell& cell : cells) {
+      sum.value += cell.value;
+      error += cell.error;
+      inner_error += cell.inner_error;
     }
     sum.error = error + inner_error;
-    if (error <= std::max(tolerance_ * sum.value, inner_error) || parts.size() >= kMaxParts) break;
-    const auto worst = std::ranges::max_element(parts, {}, &Part::error);
+    if (error <= std::max(tolerance_ * sum.value, inner_error) || cells.size() >= kMaxCells) break;
+    const auto worst = std::ranges::max_element(cells, {}, &Cell::error);
     const auto [first, second] = halves(worst->interval);
     sum.evaluations += worst->evaluations;
-    *worst = part_in(level, first, inputs, !by_input.empty(), inner);
-    parts.push_back(part_in(level, second, inputs, !by_input.empty(), inner));
+    *worst = integrate_over(level, first, inputs, !by_input.empty(), inner);
+    cells.push_back(integrate_over(level, second, inputs, !by_input.empty(), inner));
   }
-  for (const Part& part : parts) sum.evaluations += part.evaluations;
+  for (const Cell& cell : cells) sum.evaluations += cell.evaluations;
   if (by_input.empty()) return sum;
   const std::size_t own = e_.model.inputs.coordinate(coordinates_[level]);
   const double of_coordinate = by_input[own];
-  for (const Part& part : parts)
-    for (std::size_t k = 0; k < by_input.size(); ++k) by_input[k] += part.by_input[k];
+  for (const Cell& cell : cells)
+    for (std::size_t k = 0; k < by_input.size(); ++k) by_input[k] += cell.by_input[k];
   by_input[own] = of_coordinate;
-  add_gradient(e_.upper[coordinates_[level]], inputs, at(level, range.upper, inputs, {}, inner).value, by_input);
-  add_gradient(e_.lower[coordinates_[level]], inputs, -at(level, range.lower, inputs, {}, inner).value, by_input);
+  const auto value_at = [&](double end) { return at(level, end, inputs, {}, inner).value; };
+  const std::size_t coordinate = coordinates_[level];
+  add_gradient(
+      e_.upper[coordinate], inputs, [&] { return value_at(range.upper); }, by_input);
+  add_gradient(
+      e_.lower[coordinate], inputs, [&] { return -value_at(range.lower); }, by_input);
   return sum;
 }
 

@@ -38,12 +38,12 @@ class OuterQuadrature {
   }
 
  private:
-  struct Part;
+  struct Cell;
 
   Integral<double> measure(std::size_t level, std::vector<double>& inputs, std::span<double> by_input,
                            const Inner& inner) const;
-  Part part_in(std::size_t level, const Subinterval<double>& interval, std::vector<double>& inputs, bool needs_gradient,
-               const Inner& inner) const;
+  Cell integrate_over(std::size_t level, const Subinterval<double>& interval, std::vector<double>& inputs,
+                      bool needs_gradient, const Inner& inner) const;
   Integral<double> at(std::size_t level, double value, std::vector<double>& inputs, std::span<double> by_input,
                       const Inner& inner) const;
 

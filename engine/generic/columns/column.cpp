@@ -41,14 +41,14 @@ EndLabel label_of(std::size_t surface, bool falls) { return static_cast<EndLabel
 }  // namespace
 
 Column::Column(SlicePlan plan) : plan_(std::move(plan)) {
-  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k)
-    if (const Surface& surface = plan_.surfaces[k]; surface.is_high_degree || surface.is_transcendental)
-      (surface.is_high_degree ? high_degree_ : transcendental_) |= bit(k);
-  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k)
-    if ((transcendental_ & bit(k)) != 0) {
-      curves_.push_back({plan_.surfaces[k].coefficients[0], plan_.surfaces[k].coefficients[1]});
-      curve_surfaces_.push_back(static_cast<EndLabel>(k));
-    }
+  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
+    const Surface& surface = plan_.surfaces[k];
+    if (surface.is_high_degree) high_degree_ |= bit(k);
+    if (!surface.is_transcendental) continue;
+    transcendental_ |= bit(k);
+    curves_.push_back({surface.coefficients[0], surface.coefficients[1]});
+    curve_surfaces_.push_back(static_cast<EndLabel>(k));
+  }
   positive_literals_ = high_degree_;
   for (const CrankSigns& crank : plan_.formula.cranks)
     positive_literals_ &= ~(crank.at_min | crank.at_max | crank.after_min | crank.before_max);

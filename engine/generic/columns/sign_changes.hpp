@@ -1,7 +1,7 @@
 // Sign changes of constraints along a coordinate, by interval branch and prune: an interval is discarded if a
 // constraint has one sign in it, has one change if the constraint is monotonic in it, and is bisected otherwise. No
 // change is missed; where signs remain undecided, in intervals that are very short or after many bisections, their
-// length is told.
+// length is reported.
 #pragma once
 
 #include <vector>
