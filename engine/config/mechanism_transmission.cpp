@@ -100,7 +100,17 @@ Term least(const std::vector<Term>& values) {
   return result;
 }
 
-std::string why_not(const MechanismDraft& draft) {
+constexpr const char *kLti = "lti", *kInput = "lti_input", *kOutput = "lti_output";
+
+std::string why_not(const ConfigValue& root, const MechanismDraft& draft) {
+  const auto defines = [&](const std::string& name) {
+    return draft.scope.knows(name) || std::ranges::any_of(root.tables("quantity"), [&](const ConfigValue& table) {
+             const auto own = table.find("name");
+             return own && own->text("the quantity's name") == name;
+           });
+  };
+  for (const char* const name : {kLti, kInput, kOutput})
+    if (defines(name)) return std::string("the file gives the name ") + name + " another meaning";
   constexpr std::size_t kMaxCoordinates = 6;
   const std::size_t coordinates = draft.model.inputs.coordinates;
   if (coordinates > kMaxCoordinates) return "there are more than six coordinates";
@@ -117,7 +127,7 @@ std::string why_not(const MechanismDraft& draft) {
 
 void add_transmission(const ConfigValue& root, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  model.info.why_no_transmission = why_not(draft);
+  model.info.why_no_transmission = why_not(root, draft);
   if (!model.info.why_no_transmission.empty()) return;
   expression::Graph& graph = model.graph;
   const std::size_t n = draft.limbs.size();
@@ -149,11 +159,11 @@ void add_transmission(const ConfigValue& root, MechanismDraft& draft) {
     const auto of_pose = formula_quantity(name, "1", meaning, model.quantities.size());
     model.quantities.push_back(value.node());
     model.info.quantities.push_back({.name = name, .unit = "1", .meaning = meaning, .of_pose = of_pose});
-    if (!draft.scope.knows(name)) draft.scope.add(root, name, value.node());
+    draft.scope.add(root, name, value.node());
   };
-  add("lti", least({input, output}), "local transmission index: minimum of lti_input and lti_output");
-  add("lti_input", input, "minimum over the limbs of the input transmission index, 0 at serial singularities");
-  add("lti_output", output, "minimum over the limbs of the output transmission index, 0 at parallel singularities");
+  add(kLti, least({input, output}), "local transmission index: minimum of lti_input and lti_output");
+  add(kInput, input, "minimum over the limbs of the input transmission index, 0 at serial singularities");
+  add(kOutput, output, "minimum over the limbs of the output transmission index, 0 at parallel singularities");
 }
 
 }  // namespace pkm
