@@ -260,5 +260,45 @@ TEST_F(MechanismFile, InvalidFilesAreRejected) {
   EXPECT_THAT(none.err, StartsWith("pkmopt: found 'dleta', which is neither a mechanism nor a file; expected one of "));
 }
 
+/// A volume whose error exceeds it is none.
+TEST_F(MechanismFile, WithAnUnknownVolumeIsNotEvaluated) {
+  folder_.write("comb.toml", R"toml([mechanism]
+name = "comb"
+[parameters]
+w = { default = "50 mm", min = "1 um", max = "3 m" }
+[platform]
+coordinates = { x = "along x", y = "along y" }
+[survey]
+box = { x = [0, 1], y = [0, 1] }
+[[limb]]
+name = "a"
+drive = "formula"
+joints = { p = "x", q = "y" }
+unit = "m"
+[[margin]]
+name = "comb"
+formula = "sin(2*pi*x/w)"
+unit = "1"
+)toml");
+  EXPECT_EQ(run({"evaluate", "comb.toml"}).exit_code, 0);
+  const auto found = run({"evaluate", "comb.toml", "--set", "w=1um"});
+  EXPECT_EQ(found.exit_code, 1);
+  EXPECT_THAT(found.err, HasSubstr("the volume of the workspace is unknown"));
+}
+
+TEST_F(MechanismFile, WhoseColumnsTakeTooLongIsEvaluatedByVoxels) {
+  const auto found = run({"evaluate", PKM_TEST_DATA "/robots/coaxial-spherical.toml"});
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("method          voxels"));
+  EXPECT_THAT(found.out, HasSubstr("no exact columns that can be computed in seconds"));
+}
+
+TEST_F(MechanismFile, SaysWhetherItsVolumeDependsOnSamples) {
+  const auto edges = run({"evaluate", "delta.toml"}),
+             slices = run({"evaluate", PKM_TEST_DATA "/mechanisms/linear-delta-joint-angle.toml"});
+  EXPECT_THAT(edges.out, HasSubstr(", estimated"));
+  EXPECT_THAT(slices.out, HasSubstr(", as far as sampled"));
+}
+
 }  // namespace
 }  // namespace pkm::testing
