@@ -133,8 +133,8 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
   tell(mechanism.bounds(), "certified bounds of the workspace", "pkmopt certify, by intervals", "");
   const Unsupported undefined = why_no_conditioning(mechanism.info());
   tell(!undefined, "conditioning", "", undefined.value_or(""));
-  const std::string& undefined_index = mechanism.info().why_no_transmission;
-  tell(undefined_index.empty(), "transmission indices", "quantities lti, lti_input and lti_output", undefined_index);
+  for (const UndefinedQuantity& quantity : mechanism.info().undefined_quantities)
+    tell(false, quantity.name.c_str(), "", quantity.why);
   tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
   tell(mechanism.forward(), "forward kinematics", "Newton's method from many poses: it need not find every assembly",
        "as many joints as coordinates are needed");

@@ -1,5 +1,7 @@
 // Reader of [[drive_train]].
 
+#include <algorithm>
+
 #include "engine/config/study_draft.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
@@ -14,6 +16,11 @@ void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
     if (const auto given = table.find(key))
       throw given->refusal("inertias and losses of drive trains need dynamics, and " + *no_forces +
                            "; gear and lead do without");
+}
+
+bool has_gear_or_losses(const ConfigValue& table) {
+  return std::ranges::any_of(
+      table.keys(), [](const std::string& key) { return key != "joint" && key != "stiffness" && key != "peak_force"; });
 }
 
 DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
@@ -45,6 +52,10 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
   std::vector<std::string> names = {"all"};
   for (const AxisInfo& joint : joints) names.push_back(joint.name);
   std::vector<std::optional<DriveTrain>> trains(joints.size());
+  if (std::ranges::none_of(tables, has_gear_or_losses)) {
+    for (const ConfigValue& table : tables) table.at("joint", "a joint, or \"all\"").word(names);
+    return;  // stiffness and peak_force are read with the quantities of the mechanism
+  }
   for (const ConfigValue& table : tables) {
     expect_forces(table, no_forces);
     const ConfigValue value = table.at("joint", "a joint, or \"all\"");

@@ -75,7 +75,17 @@ Keys geometry_keys() {
       passive_joint_key("joint_base", "base"),
       passive_joint_key("joint_platform", "platform"),
       text_key("joint_name", "name of the joint; default: name of the limb"),
-      text_key("end_on", "body that carries the limb's `end`: \"platform\" or the name of a [[body]]")};
+      text_key("end_on", "body that carries the limb's `end`: \"platform\" or the name of a [[body]]"),
+      formula_key("play", "m", "radial play of each passive joint at the ends of rod or leg, for `accuracy`")};
+}
+
+/// Cross-section of a leg, for its axial stiffness; masses of legs are those of `cylinder` and `piston`.
+OptionSpec leg_section_key() {
+  static const TableSpec section = {.meaning = "tube or rod of some material",
+                                    .keys = {required(formula_key("outer", "m", "outer diameter")),
+                                             formula_key("inner", "m", "inner diameter; default: 0"),
+                                             required(formula_key("young", "Pa", "Young's modulus"))}};
+  return table_key("leg_section", section, "cross-section and material of the leg, for its axial stiffness");
 }
 
 Keys all(std::initializer_list<Keys> lists) {
@@ -113,7 +123,8 @@ std::vector<TableVariant> drives() {
        .choices = {"m", "rad"},
        .meaning = "unit of the joints"},
       formulas_key("closures", "1", 0, "loop-closure equations in the pose and the joints' names, one for each joint")};
-  return {{"telescope", "leg of variable length", all({geometry_keys(), mass_keys("cylinder"), mass_keys("piston")})},
+  return {{"telescope", "leg of variable length",
+           all({geometry_keys(), mass_keys("cylinder"), mass_keys("piston"), {leg_section_key()}})},
           {"slider", "slide on a rail, alone or with a rod or two links",
            all({geometry_keys(), mass_keys("slider"), mass_keys("rod"), mass_keys("first_link"),
                 mass_keys("second_link"), slider})},
@@ -125,9 +136,10 @@ std::vector<TableVariant> drives() {
 
 std::vector<OptionSpec> mass_keys(const std::string& part) {
   static const TableSpec section = {.meaning = "tube or rod of some material",
-                                    .keys = {required(formula_key("density", "kg/m^3", "density of the material")),
+                                    .keys = {formula_key("density", "kg/m^3", "density of the material, for the mass"),
                                              required(formula_key("outer", "m", "outer diameter")),
-                                             formula_key("inner", "m", "inner diameter; default: 0")}};
+                                             formula_key("inner", "m", "inner diameter; default: 0"),
+                                             formula_key("young", "Pa", "Young's modulus, for the stiffness")}};
   std::string shown = part;
   std::ranges::replace(shown, '_', ' ');
   Keys keys = {formula_key(part + "_mass", "kg", "mass of the " + shown)};
@@ -155,7 +167,9 @@ const TableSpec& limb_keys() {
                 .required = true,
                 .choices = {"telescope", "slider", "crank", "formula"},
                 .meaning = "kind of the actuated joint"},
-               formulas_key("range", kUnitOfEntry, 2, "range [minimum, maximum] of the joint")},
+               formulas_key("range", kUnitOfEntry, 2, "range [minimum, maximum] of the joint"),
+               formula_key("drive_stiffness", kUnitOfEntry,
+                           "stiffness of the drive, measured at the joint [N/m or N m/rad]; default: rigid")},
       .choice = "drive",
       .variants = drives()};
   return spec;

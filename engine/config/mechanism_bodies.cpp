@@ -29,7 +29,9 @@ struct Mass {
 };
 
 /// Mass and inertia of a tube or rod of some material.
-Mass mass_of_profile(const ConfigValue& value, const Term& length, const std::string& what, MechanismDraft& draft) {
+/// @param number_of  such tubes, side by side
+Mass mass_of_profile(const ConfigValue& value, const Term& length, double number_of, const std::string& what,
+                     MechanismDraft& draft) {
   const ConfigValue profile = value.table();
   const auto number = [&](const char* key, const char* unit, const char* expected) {
     return checked(
@@ -40,7 +42,7 @@ Mass mass_of_profile(const ConfigValue& value, const Term& length, const std::st
   const Term density = number("density", "kg/m^3", "the material's density: \"2700 kg/m^3\"");
   const Term outer = number("outer", "m", "the outer diameter");
   const Term inner = profile.has("inner") ? number("inner", "m", "the inner diameter") : draft.zero();
-  const Term mass = density * length * (outer * outer - inner * inner) * (kPi / 4);
+  const Term mass = density * length * (outer * outer - inner * inner) * (kPi / 4 * number_of);
   return {mass, mass * (length * length / 12 + (outer * outer + inner * inner) / 16)};
 }
 
@@ -54,13 +56,18 @@ std::optional<Mass> mass_of_part(const ConfigValue& table, const LimbPart& part,
                                  MechanismDraft& draft) {
   std::optional<ConfigValue> given;
   for (const char* way : {"_mass", "_mass_per_length", "_section"}) {
-    const auto value = find_mass_key(table, part.name, way);
+    auto value = find_mass_key(table, part.name, way);
+    if (way == std::string("_section") && value && !value->table().has("density")) {
+      if (!value->table().has("young"))
+        throw value->refusal("a section needs a `density`, for the mass, or `young`, for the stiffness");
+      value.reset();
+    }
     if (value && given) throw value->refusal("the mass of the " + part.name + " is also given at " + given->line());
     if (value) given = value;
   }
   if (!given) return {};
-  if (const auto profile = find_mass_key(table, part.name, "_section"))
-    return mass_of_profile(*profile, *part.length, what, draft);
+  if (const auto profile = find_mass_key(table, part.name, "_section"); profile && profile->table().has("density"))
+    return mass_of_profile(*profile, *part.length, part.name == "rod" && table.has("pair") ? 2 : 1, what, draft);
   if (const auto per_length = find_mass_key(table, part.name, "_mass_per_length"))
     return Mass{draft.scope.positive(*per_length, "kg/m", what) * *part.length, {}};
   return Mass{draft.scope.positive(*given, "kg", what, part.name == "slider"), {}};

@@ -52,6 +52,14 @@ struct NamedLimb {
   bool has_links = false;                       ///< two links instead of a rod
   std::optional<limbs::Vector3> beside = {};    ///< from the middle of a pair of rods to one of them
   std::string end_on = "";                      ///< the body that carries its end; "": unspecified
+
+  std::optional<limbs::Term> play = {};            ///< radial play of each passive joint [m]
+  std::optional<limbs::Term> rod_compliance = {};  ///< of rods or leg along their line [m/N]; std::nullopt: rigid
+  /// Compliances of the end of a crank, clamped at its pivot [m/N].
+  struct Beam {
+    limbs::Term axial, bending;
+  };
+  std::optional<Beam> crank = {};  ///< std::nullopt: rigid
 };
 
 /// A limb with `across`: the distance of its ends along the normal is the same at every pose.
@@ -83,6 +91,7 @@ struct MechanismDraft {
   std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: x, y, z
   std::vector<SignChoice> sign_choices;                                           ///< by sign
 
+  std::vector<std::optional<limbs::Term>> drive_stiffness;  ///< by joint [N/m or N m/rad]; std::nullopt: rigid
   std::vector<OwnParameter> own;
   std::optional<ConfigValue> masses;  ///< the selected alternative of [masses]
   std::vector<ConfigValue> let;       ///< [let], and the `let` of the masses
@@ -116,8 +125,21 @@ void read_inputs(const ConfigValue& root, MechanismDraft& draft);
 /// [[quantity]] of the file, and of a study unless it is null. Their formulas may also use "NAME_rate", the time
 /// derivative of a coordinate, an input or a quantity.
 void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
+/// What a limb transmits to the platform: a force along a rod, a leg or a slide.
+struct LimbForce {
+  limbs::Vector3 force;  ///< unit vector
+  limbs::Term input;     ///< input transmission index
+  limbs::Vector3 end;    ///< where it acts on the platform: B
+};
+/// std::nullopt for limbs that are formulas or have links, which transmit more than a single force.
+std::optional<LimbForce> force_of(const NamedLimb& limb);
 /// Adds the transmission indices `lti`, `lti_input` and `lti_output` as quantities, if they are defined for the limbs.
 void add_transmission(const ConfigValue& root, MechanismDraft& draft);
+/// Adds the quantities of engine/generic/performance/performance.hpp for which the file, or the study unless it is
+/// null, has the data.
+void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
+/// Reads what makes a limb compliant: the stiffness of its drive, and Young's modulus of its sections.
+void read_elasticity(const ConfigValue& table, const limbs::Term& length, NamedLimb& limb, MechanismDraft& draft);
 /// The limits of quantities in a study, as a table; std::nullopt if it has none.
 std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
 /// Adds a threshold for each limit of a quantity in the study, [workspace] limits = { NAME = { min = .. } }. It is

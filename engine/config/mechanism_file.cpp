@@ -7,6 +7,7 @@
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/generic/equations.hpp"
 #include "engine/generic/mechanism.hpp"
 #include "engine/geometry/mixed_units.hpp"
 
@@ -16,7 +17,8 @@ namespace {
 using generic::Inputs;
 using limbs::Term;
 
-const std::vector<std::string> kUnits = {"m", "rad", "kg", "kg m^2", "kg/m", "kg/m^3", "N", "N/m", "N m/rad", "1"};
+const std::vector<std::string> kUnits = {"m", "rad", "kg",      "kg m^2", "kg/m", "kg/m^3",
+                                         "N", "N/m", "N m/rad", "Pa",     "1"};
 
 void read_names(const ConfigValue& root, MechanismDraft& draft) {
   const ConfigValue table = root.at("mechanism", "a table [mechanism] with name, title, source").table();
@@ -250,13 +252,15 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   draft.scope.allow_motion(false);
   read_platform(platform, draft);
   read_limbs(root, draft);
+  read_bodies(root, read_links(root, draft), draft);
+  if (!draft.model.bodies.empty()) draft.model.equations = generic::equations_of(draft.model);
   add_transmission(root, draft);
+  add_performance(root, study.get(), draft);
   read_quantities(root, study.get(), draft);
   read_margins(root, draft);
   if (study) add_quantity_margins(*study, draft);
   refuse_idle_signs(root, draft);
   refuse_idle_parameters(draft);
-  read_bodies(root, read_links(root, draft), draft);
   read_survey(root, draft);
   remove_undefined_conditioning(draft.model);
   draft.scope.note_domains();

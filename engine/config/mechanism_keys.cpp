@@ -260,6 +260,35 @@ const TableSpec& joint_table() {
 
 }  // namespace
 
+const TableSpec& accuracy_keys() {
+  static const TableSpec joints = {.meaning = "errors by joint",
+                                   .keys = {},
+                                   .named = {formula_key("", kUnitOfEntry, "bound of the joint's error")},
+                                   .noun = "joint"};
+  static const TableSpec of_limb = {.meaning = "errors of this limb alone",
+                                    .keys = {},
+                                    .named = {formula_key("", kUnitOfEntry, "bound of the error")},
+                                    .noun = "parameter"};
+  static const TableSpec parameters = {
+      .meaning = "errors by parameter; a table of a limb's name has errors of this limb alone",
+      .keys = {},
+      .named = {{.kind = OptionKind::any_of,
+                 .unit = kUnitOfEntry,
+                 .meaning = "bound of the error, of each limb independently",
+                 .parts = {formula_key("", kUnitOfEntry, ""), table_key("", of_limb)}}},
+      .noun = "parameter"};
+  static const TableSpec spec = {
+      .header = "[accuracy]",
+      .meaning = "errors of joints and dimensions, for the quantities `accuracy` and `accuracy_angle`",
+      .keys = {{.name = "joint_error",
+                .kind = OptionKind::any_of,
+                .unit = kUnitOfEntry,
+                .meaning = "bound of the errors of all joints, or a table by joint",
+                .parts = {formula_key("", kUnitOfEntry, ""), table_key("", joints)}},
+               table_key("parameter_error", parameters)}};
+  return spec;
+}
+
 const TableSpec& quantity_keys() {
   static const TableSpec spec = {
       .header = "[[quantity]]",
@@ -287,9 +316,10 @@ const TableSpec& mechanism_keys() {
                table_key("masses", masses_table()), required(table_key("platform", platform_table())),
                table_key("survey", survey_table()), table_key("modes", modes_table()), table_key("let", let),
                required(tables_key("limb", limb_keys())), table_key("inputs", inputs_table()),
-               tables_key("quantity", quantity_keys()), tables_key("limit", limit_table()),
-               tables_key("margin", margin_table()), tables_key("design", design_table()),
-               tables_key("link", link_table()), tables_key("body", body_table()), tables_key("joint", joint_table())},
+               table_key("accuracy", accuracy_keys()), tables_key("quantity", quantity_keys()),
+               tables_key("limit", limit_table()), tables_key("margin", margin_table()),
+               tables_key("design", design_table()), tables_key("link", link_table()), tables_key("body", body_table()),
+               tables_key("joint", joint_table())},
       .noun = "table"};
   return spec;
 }

@@ -13,6 +13,8 @@ const TableSpec& mechanism_keys();
 
 /// Keys of a [[quantity]] of a mechanism file or a study.
 const TableSpec& quantity_keys();
+/// [accuracy], of a mechanism or a study.
+const TableSpec& accuracy_keys();
 /// Keys of a parameter of a single limb: "arm2.l_b = { .. }".
 const TableSpec& limb_parameter_keys();
 

@@ -34,6 +34,10 @@ Term add_joint_variable(const ConfigValue& table, const std::string& name, const
   if (model.inputs.joints == kMaxJoints)
     throw table.refusal("a mechanism has at most " + std::to_string(kMaxJoints) + " joints");
   model.info.joints.push_back({name, unit});
+  const auto stiffness = table.find("drive_stiffness");
+  draft.drive_stiffness.push_back(
+      stiffness ? std::optional(draft.scope.positive(*stiffness, unit == "rad" ? "N m/rad" : "N/m", name))
+                : std::nullopt);
   return model.term(model.graph.input(model.inputs.joint(model.inputs.joints++), Inputs::kJoints));
 }
 

@@ -14,31 +14,23 @@
 // Reference: Wang, Wu, Liu, "Performance evaluation of parallel manipulators: motion/force transmissibility and its
 // index", Mechanism and Machine Theory 45 (2010), 1462.
 #include <algorithm>
-#include <bit>
-#include <map>
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/expression/derivative.hpp"
+#include "engine/expression/term_matrix.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm {
 namespace {
 
-using expression::Node;
+using expression::Node, expression::TermMatrix;
 using generic::Inputs;
 using limbs::Term;
 using limbs::Vector3;
 
-/// What a limb transmits.
-struct Transmission {
-  Vector3 force;  ///< unit vector f
-  Term input;     ///< input index
-  Vector3 end;    ///< B
-};
-
 Vector3 unit(const Vector3& v) { return v / limbs::length(v); }
 
-Transmission transmission_of(const NamedLimb& limb) {
+LimbForce single_force_of(const NamedLimb& limb) {
   const Vector3 &A = limb.points.at("A"), &B = limb.points.at("B"), &C = limb.points.at("C");
   const Term one(B[0].graph(), 1.0);
   if (limb.drive == "slider" && !limb.has_rod) return {unit(*limb.axis), one, B};
@@ -51,47 +43,6 @@ Transmission transmission_of(const NamedLimb& limb) {
   if (limb.drive == "telescope") return {force, one, B};
   const Vector3 motion = limb.drive == "crank" ? cross(*limb.axis, C - A) : *limb.axis;
   return {force, abs(dot(force, unit(motion))), B};
-}
-
-/// Determinants of submatrices of the first rows of a matrix, by Laplace expansion along the last of these.
-class Minors {
- public:
-  using Row = std::vector<Term>;
-  explicit Minors(std::vector<Row> rows, const Term& one) : rows_(std::move(rows)), known_{{0U, one}} {}
-
-  /// @param columns  a bit for each; as many as there are rows that count
-  Term of(unsigned columns) {
-    if (const auto found = known_.find(columns); found != known_.end()) return found->second;
-    const Row& row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
-    Term sum(row.front().graph(), 0.0);
-    bool is_negative = false;  // of the last column that is left
-    for (std::size_t j = row.size(); j-- > 0;) {
-      if ((columns >> j & 1U) == 0) continue;
-      const Term product = row[j] * of(columns & ~(1U << j));
-      sum = is_negative ? sum - product : sum + product;
-      is_negative = !is_negative;
-    }
-    known_.emplace(columns, sum);
-    return sum;
-  }
-
- private:
-  std::vector<Row> rows_;
-  std::map<unsigned, Term> known_;
-};
-
-/// Cofactors of a row of a square matrix.
-std::vector<Term> cofactors(std::vector<Minors::Row> matrix, std::size_t row, const Term& one) {
-  const std::size_t n = matrix.size();
-  matrix.erase(matrix.begin() + static_cast<std::ptrdiff_t>(row));
-  Minors minors(std::move(matrix), one);
-  std::vector<Term> result;
-  const unsigned all = (1U << n) - 1;
-  for (std::size_t j = 0; j < n; ++j) {
-    const Term minor = minors.of(all & ~(1U << j));
-    result.push_back((row + j) % 2 == 0 ? minor : -minor);
-  }
-  return result;
 }
 
 Term least(const std::vector<Term>& values) {
@@ -125,32 +76,38 @@ std::string why_not(const ConfigValue& root, const MechanismDraft& draft) {
 
 }  // namespace
 
+std::optional<LimbForce> force_of(const NamedLimb& limb) {
+  if (limb.drive == "formula" || limb.has_links) return {};
+  return single_force_of(limb);
+}
+
 void add_transmission(const ConfigValue& root, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  model.info.why_no_transmission = why_not(root, draft);
-  if (!model.info.why_no_transmission.empty()) return;
+  if (const std::string why = why_not(root, draft); !why.empty()) {
+    model.info.undefined_quantities.push_back({kLti, why});
+    return;
+  }
   expression::Graph& graph = model.graph;
   const std::size_t n = draft.limbs.size();
-  std::vector<Transmission> all;
+  std::vector<LimbForce> all;
   std::vector<std::vector<Vector3>> velocities(n);  // by limb and coordinate
-  std::vector<Minors::Row> powers(n);
+  TermMatrix powers(graph, n, n);
   for (std::size_t i = 0; i < n; ++i) {
-    all.push_back(transmission_of(draft.limbs[i]));
+    all.push_back(single_force_of(draft.limbs[i]));
     for (std::size_t j = 0; j < n; ++j) {
       const Node x = graph.input(model.inputs.coordinate(j), Inputs::coordinate_group(j));
       const auto by_x = [&](std::size_t axis) {
         return Term(graph, expression::derivative(graph, all[i].end[axis].node(), x));
       };
       velocities[i].emplace_back(by_x(0), by_x(1), by_x(2));
-      powers[i].push_back(dot(all[i].force, velocities[i].back()));
+      powers(i, j) = dot(all[i].force, velocities[i].back());
     }
   }
-  const Term one(graph, 1.0);
+  const TermMatrix adjugate = inverse_of(powers).adjugate;
   std::vector<Term> inputs, outputs;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::vector<Term> rates = cofactors(powers, i, one);
-    Vector3 v = velocities[i][0] * rates[0];
-    for (std::size_t j = 1; j < n; ++j) v = v + velocities[i][j] * rates[j];
+    Vector3 v = velocities[i][0] * adjugate(0, i);
+    for (std::size_t j = 1; j < n; ++j) v = v + velocities[i][j] * adjugate(j, i);
     inputs.push_back(all[i].input);
     outputs.push_back(abs(dot(all[i].force, v)) / limbs::length(v));
   }

@@ -193,7 +193,12 @@ const TableSpec& drive_train_keys() {
           {.name = "slow_speed",
            .unit = kUnitOfEntry,
            .meaning = "joint speed below which the Coulomb friction is smoothed [m/s or rad/s]",
-           .positive = true}}};
+           .positive = true},
+          formula_key("stiffness", kUnitOfEntry,
+                      "stiffness after the gear [N/m or N m/rad], for the quantity `stiffness`; instead of the limb's "
+                      "drive_stiffness"),
+          formula_key("peak_force", kUnitOfEntry,
+                      "maximum force or torque after the gear [N or N m], for the quantity `acceleration`")}};
   return spec;
 }
 

@@ -261,8 +261,9 @@ const TableSpec& study_keys() {
                tables_key("constraint", constraint_table()), tables_key("output", output_table()),
                tables_key("reference", reference_table()), tables_key("drive_train", drive_train_keys()),
                tables_key("obstacle", obstacle_table()), tables_key("quantity", quantity_keys()),
-               required(tables_key("stage", stage_table())), table_key("checkpoint", checkpoint_table()),
-               table_key("final", final_table()), tables_key("override", override_table())},
+               table_key("accuracy", accuracy_keys()), required(tables_key("stage", stage_table())),
+               table_key("checkpoint", checkpoint_table()), table_key("final", final_table()),
+               tables_key("override", override_table())},
       .noun = "table"};
   return spec;
 }

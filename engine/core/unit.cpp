@@ -30,18 +30,21 @@ struct Symbol {
 };
 
 constexpr Dimension kNone{0, 0, 0, 0}, kLength{1, 0, 0, 0}, kMass{0, 1, 0, 0}, kTime{0, 0, 1, 0}, kAngle{0, 0, 0, 1},
-    kForce{1, 1, -2, 0}, kEnergy{2, 1, -2, 0}, kPower{2, 1, -3, 0}, kAngularSpeed{0, 0, -1, 1};
+    kForce{1, 1, -2, 0}, kEnergy{2, 1, -2, 0}, kPower{2, 1, -3, 0}, kAngularSpeed{0, 0, -1, 1}, kPressure{-1, 1, -2, 0},
+    kFrequency{0, 0, -1, 0};
 
 constexpr Symbol kSymbols[] = {
-    {"%", {kNone, 1, 100}},    {"um", {kLength, 1, 1e6}},   {"mm", {kLength, 1, 1e3}},
-    {"cm", {kLength, 1, 100}}, {"dm", {kLength, 1, 10}},    {"m", {kLength, 1, 1}},
-    {"km", {kLength, 1e3, 1}}, {"in", {kLength, 254, 1e4}}, {"mrad", {kAngle, 1, 1e3}},
-    {"rad", {kAngle, 1, 1}},   {"deg", {kAngle, kPi, 180}}, {"\u00b0", {kAngle, kPi, 180}},
-    {"us", {kTime, 1, 1e6}},   {"ms", {kTime, 1, 1e3}},     {"s", {kTime, 1, 1}},
-    {"min", {kTime, 60, 1}},   {"h", {kTime, 3600, 1}},     {"g", {kMass, 1, 1e3}},
-    {"kg", {kMass, 1, 1}},     {"t", {kMass, 1e3, 1}},      {"mN", {kForce, 1, 1e3}},
-    {"N", {kForce, 1, 1}},     {"kN", {kForce, 1e3, 1}},    {"J", {kEnergy, 1, 1}},
-    {"W", {kPower, 1, 1}},     {"kW", {kPower, 1e3, 1}},    {"rpm", {kAngularSpeed, kPi, 30}},
+    {"%", {kNone, 1, 100}},     {"um", {kLength, 1, 1e6}},    {"mm", {kLength, 1, 1e3}},
+    {"cm", {kLength, 1, 100}},  {"dm", {kLength, 1, 10}},     {"m", {kLength, 1, 1}},
+    {"km", {kLength, 1e3, 1}},  {"in", {kLength, 254, 1e4}},  {"mrad", {kAngle, 1, 1e3}},
+    {"rad", {kAngle, 1, 1}},    {"deg", {kAngle, kPi, 180}},  {"\u00b0", {kAngle, kPi, 180}},
+    {"us", {kTime, 1, 1e6}},    {"ms", {kTime, 1, 1e3}},      {"s", {kTime, 1, 1}},
+    {"min", {kTime, 60, 1}},    {"h", {kTime, 3600, 1}},      {"g", {kMass, 1, 1e3}},
+    {"kg", {kMass, 1, 1}},      {"t", {kMass, 1e3, 1}},       {"mN", {kForce, 1, 1e3}},
+    {"N", {kForce, 1, 1}},      {"kN", {kForce, 1e3, 1}},     {"J", {kEnergy, 1, 1}},
+    {"W", {kPower, 1, 1}},      {"kW", {kPower, 1e3, 1}},     {"rpm", {kAngularSpeed, kPi, 30}},
+    {"Pa", {kPressure, 1, 1}},  {"MPa", {kPressure, 1e6, 1}}, {"GPa", {kPressure, 1e9, 1}},
+    {"Hz", {kFrequency, 1, 1}},
 };
 
 /// Whether a byte may be part of a unit symbol; true for all bytes of non-ASCII characters, such as the degree sign.

@@ -281,7 +281,7 @@ std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, st
 }
 
 std::shared_ptr<const Mechanism> make_mechanism(Model model, Accelerators accelerators) {
-  if (!model.bodies.empty()) model.equations = equations_of(model);
+  if (!model.equations && !model.bodies.empty()) model.equations = equations_of(model);
   model.jacobian = model.equations ? model.equations->J : jacobian_of(model);
   return std::make_shared<const GenericMechanism>(std::move(model), std::move(accelerators));
 }

@@ -60,6 +60,11 @@ struct QuantityInfo {
   std::shared_ptr<const PoseQuantity> of_pose = nullptr;
 };
 
+/// A quantity that other mechanisms have.
+struct UndefinedQuantity {
+  std::string name, why;  ///< "accuracy", "[accuracy] joint_error is missing"
+};
+
 struct MechanismInfo {
   std::string name;    ///< "4ppa-2par"
   std::string title;   ///< one line
@@ -73,7 +78,7 @@ struct MechanismInfo {
   std::vector<LimitInfo> limits;
   std::vector<InputInfo> inputs;
   std::vector<QuantityInfo> quantities;
-  std::string why_no_transmission{};      ///< why transmission indices are not among them; "": they are
+  std::vector<UndefinedQuantity> undefined_quantities{};
   std::string characteristic_length;      ///< formula of its default; "" if the conditioning is undefined
   std::vector<std::string> closed_forms;  ///< by joint: method of the inverse kinematics, for people; or empty
 };

@@ -28,6 +28,10 @@ const PoseQuantity& pose_quantity_called(const MechanismInfo& info, const std::s
     throw std::invalid_argument("quantity '" + name + "' depends on " +
                                 (found->of_design ? "the design alone" : "rates of the motion") +
                                 "; expected a quantity of the pose");
+  for (const UndefinedQuantity& quantity : info.undefined_quantities)
+    if (name == quantity.name || name.starts_with(quantity.name + "_"))
+      throw std::invalid_argument("quantity '" + name + "' is undefined for mechanism " + info.name + ": " +
+                                  quantity.why);
   throw std::invalid_argument("mechanism " + info.name + " has no quantity '" + name + "'; expected one of " +
                               join(known) + did_you_mean(name, known));
 }

@@ -1,0 +1,261 @@
+// Quantities that every mechanism gets as far as its file or a study has the data: transmission of velocities,
+// accuracy, stiffness, effective mass and acceleration (engine/generic/performance/performance.hpp).
+#include <algorithm>
+
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/tables.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/expression/derivative.hpp"
+#include "engine/generic/equations.hpp"
+#include "engine/generic/performance/performance.hpp"
+#include "engine/geometry/mixed_units.hpp"
+#include "engine/workspace/pose_quantities.hpp"
+
+namespace pkm {
+namespace {
+
+using expression::TermMatrix;
+using generic::NamedTerm;
+using limbs::Term, limbs::Vector3;
+
+class Performance {
+ public:
+  Performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft)
+      : root_(root), study_(study), draft_(draft), model_(draft.model), joints_(model_.joints.size()) {}
+
+  void add_all() {
+    if (const std::string why = why_not(); !why.empty()) return lack("velocity_transmission", why);
+    if (mixes_units(model_.info.joints))
+      lack("velocity_transmission", "the joints mix lengths and angles");
+    else
+      add(generic::velocity_quantities(model_));
+    add_accuracy();
+    if (model_.equations) {
+      const std::size_t n = model_.inputs.coordinates;
+      M_X_.emplace(model_.graph, n, n);
+      for (std::size_t i = 0; i < n * n; ++i) (*M_X_)(i / n, i % n) = model_.term(model_.equations->M_X[i]);
+      add(generic::inertia_quantities(model_, *M_X_));
+    } else {
+      lack("effective_mass", "the file names no masses");
+    }
+    add_stiffness();
+    add_acceleration();
+  }
+
+ private:
+  std::string why_not() const {
+    if (joints_ != model_.inputs.coordinates)
+      return "there are " + std::to_string(joints_) + " joints for " + std::to_string(model_.inputs.coordinates) +
+             " coordinates";
+    return "";
+  }
+  void lack(const std::string& name, const std::string& why) {
+    model_.info.undefined_quantities.push_back({name, why});
+  }
+
+  void add(const std::vector<NamedTerm>& terms) {
+    for (const NamedTerm& term : terms) add(term);
+  }
+  void add(const NamedTerm& term) {
+    if (draft_.scope.knows(term.name) || defines(term.name))
+      return lack(term.name, "the file gives the name " + term.name + " another meaning");
+    const auto of_pose = formula_quantity(term.name, term.unit, term.meaning, model_.quantities.size());
+    model_.quantities.push_back(term.value.node());
+    model_.info.quantities.push_back(
+        {.name = term.name, .unit = term.unit, .meaning = term.meaning, .of_pose = of_pose});
+    draft_.scope.add(root_, term.name, term.value.node());
+    draft_.scope.known_to_exist(term.value.node());
+  }
+  /// Whether a [[quantity]] has this name.
+  bool defines(const std::string& name) const {
+    const auto has = [&](const ConfigValue& file) {
+      return std::ranges::any_of(file.tables("quantity"), [&](const ConfigValue& table) {
+        const auto own = table.find("name");
+        return own && own->text("the quantity's name") == name;
+      });
+    };
+    return has(root_) || (study_ && has(*study_));
+  }
+
+  std::string force_unit(std::size_t joint) const { return model_.info.joints[joint].turns() ? "N m" : "N"; }
+  const NamedLimb* limb_of(std::size_t joint) const {
+    for (const NamedLimb& limb : draft_.limbs)
+      if (limb.drive != "formula" && limb.joint == joint) return &limb;
+    return nullptr;
+  }
+
+  // Accuracy
+
+  /// [accuracy] of the study, else of the file.
+  std::optional<ConfigValue> accuracy_table() const {
+    if (study_)
+      if (auto table = study_->find_table("accuracy")) return table;
+    return root_.find_table("accuracy");
+  }
+  void add_accuracy() {
+    const auto table = accuracy_table();
+    const bool has_play =
+        std::ranges::any_of(draft_.limbs, [](const NamedLimb& limb) { return limb.play.has_value(); });
+    if (!table && !has_play) return lack("accuracy", "[accuracy] joint_error is missing");
+    errors_ = {std::vector<Term>(joints_, draft_.zero()), std::vector<Term>(joints_, draft_.zero())};
+    if (table) read_errors(*table);
+    for (std::size_t joint = 0; joint < joints_; ++joint)
+      if (const NamedLimb* const limb = limb_of(joint); limb && limb->play)
+        for (int end = 0; end < 2; ++end) add_error(joint, *limb->play / joint_motion(*limb));
+    add(generic::accuracy_quantities(model_, errors_));
+  }
+  /// Displacement of the inner end of a rod or leg along it, by the joint coordinate.
+  Term joint_motion(const NamedLimb& limb) const {
+    const LimbForce force = *force_of(limb);
+    return limb.drive == "crank" ? force.input * limbs::length(limb.points.at("C") - limb.points.at("A")) : force.input;
+  }
+  void add_error(std::size_t joint, const Term& error) {
+    errors_.bound[joint] = errors_.bound[joint] + abs(error);
+    errors_.squared_spread[joint] = errors_.squared_spread[joint] + error * error;
+  }
+  void read_errors(const ConfigValue& table) {
+    if (const auto given = table.find("joint_error")) read_joint_errors(*given);
+    if (const auto given = table.find_table("parameter_error")) read_parameter_errors(*given);
+    if (table.keys().empty()) throw table.refusal("[accuracy] needs joint_error or parameter_error");
+  }
+  void read_joint_errors(const ConfigValue& given) {
+    const auto read = [&](const ConfigValue& value, std::size_t joint) {
+      add_error(joint, draft_.scope.positive(value, model_.info.joints[joint].unit, "joint_error", true));
+    };
+    if (!given.is_table()) {
+      if (mixes_units(model_.info.joints))
+        throw given.refusal("the joints mix lengths and angles: joint_error is a table, { " +
+                            model_.info.joints.front().name + " = .., .. }");
+      for (std::size_t joint = 0; joint < joints_; ++joint) read(given, joint);
+      return;
+    }
+    const ConfigValue by_name = given.table();
+    by_name.allow(names_of(model_.info.joints), "joint");
+    for (std::size_t joint = 0; joint < joints_; ++joint)
+      if (const auto value = by_name.find(model_.info.joints[joint].name)) read(*value, joint);
+  }
+  /// An error of a parameter of all limbs is one of each physical copy, and acts on the joint of its limb alone.
+  void read_parameter_errors(const ConfigValue& all) {
+    for (const std::string& name : all.dotted_keys(false)) {
+      const ConfigValue value = *all.find(name);
+      const auto dot = name.find('.');
+      const std::string limb = dot == std::string::npos ? "" : name.substr(0, dot);
+      const std::string parameter = dot == std::string::npos ? name : name.substr(dot + 1);
+      const Parameter* const known = find_named(model_.info.parameters, parameter);
+      if (!known)
+        throw value.error_of("the unknown parameter '" + parameter + "'",
+                             "one of " + join(names_of(model_.info.parameters)),
+                             nearest_name(parameter, names_of(model_.info.parameters)));
+      if (!limb.empty() && !find_named(draft_.limbs, limb))
+        throw value.error_of("the unknown limb '" + limb + "'", "one of " + join(names_of(draft_.limbs)),
+                             nearest_name(limb, names_of(draft_.limbs)));
+      const Term error = draft_.scope.positive(value, known->unit, name, true);
+      const auto index = static_cast<std::size_t>(known - model_.info.parameters.data());
+      bool has_effect = false;
+      for (std::size_t joint = 0; joint < joints_; ++joint) {
+        const NamedLimb* const of = limb_of(joint);
+        if (!limb.empty() && !(of && of->name == limb)) continue;
+        const Term effect = by_parameter(joint, of ? of->name : "", parameter, index);
+        has_effect = has_effect || !effect.is(0);
+        add_error(joint, effect * error);
+      }
+      if (!has_effect) throw value.refusal("an error of " + name + " has no effect: no joint depends on it");
+    }
+  }
+  /// Derivative of a joint coordinate by a parameter, of the limb itself if it has one of its own.
+  Term by_parameter(std::size_t joint, const std::string& limb, const std::string& parameter, std::size_t index) {
+    expression::Node input = model_.graph.input(index, generic::Inputs::kDesign);
+    for (const OwnParameter& own : draft_.own)
+      if (own.limb == limb && own.parameter == parameter) input = own.node;
+    return model_.term(expression::derivative(model_.graph, model_.joints[joint], input));
+  }
+
+  // Stiffness
+
+  /// Values of a key of the study's [[drive_train]]s, by joint.
+  std::vector<std::optional<ConfigValue>> by_joint(const std::string& key) const {
+    std::vector<std::optional<ConfigValue>> found(joints_);
+    if (!study_) return found;
+    for (const ConfigValue& table : study_->tables("drive_train"))
+      if (const auto value = table.find(key))
+        for (std::size_t joint = 0; joint < joints_; ++joint)
+          if (const std::string& name = table.at("joint").word();
+              name == "all" || name == model_.info.joints[joint].name)
+            found[joint] = value;
+    return found;
+  }
+  void add_stiffness() {
+    const auto given = by_joint("stiffness");
+    std::vector<generic::LimbSpring> springs;
+    bool is_rigid = true;
+    for (std::size_t joint = 0; joint < joints_; ++joint) {
+      std::optional<Term> drive = draft_.drive_stiffness[joint];
+      if (given[joint])
+        drive = draft_.scope.positive(*given[joint], force_unit(joint) + (force_unit(joint) == "N" ? "/m" : "/rad"),
+                                      "stiffness");
+      springs.push_back(spring_of(joint, drive));
+      is_rigid = is_rigid && springs.back().compliance.is(0);
+    }
+    if (is_rigid) return lack("stiffness", "no limb has `drive_stiffness`, or a section with `young`");
+    add(generic::stiffness_quantities(model_, springs, M_X_));
+    if (!M_X_) lack("natural_frequency", "the file names no masses");
+  }
+  generic::LimbSpring spring_of(std::size_t joint, const std::optional<Term>& drive) {
+    const NamedLimb* const limb = limb_of(joint);
+    const std::optional<LimbForce> force = limb ? force_of(*limb) : std::nullopt;
+    const std::size_t n = model_.inputs.coordinates;
+    const Term compliant = drive ? Term(model_.graph, 1.0) / *drive : draft_.zero();
+    if (!force) {
+      const TermMatrix J = generic::joint_jacobian(model_);
+      std::vector<Term> row;
+      for (std::size_t j = 0; j < n; ++j) row.push_back(J(joint, j));
+      return {row, compliant};
+    }
+    std::vector<Term> row;
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto by_x = [&](std::size_t axis) {
+        return model_.term(expression::derivative(
+            model_.graph, force->end[axis].node(),
+            model_.graph.input(model_.inputs.coordinate(j), generic::Inputs::coordinate_group(j))));
+      };
+      row.push_back(dot(force->force, Vector3{by_x(0), by_x(1), by_x(2)}));
+    }
+    const Term motion = joint_motion(*limb);
+    Term compliance = motion * motion * compliant;
+    if (limb->rod_compliance) compliance = compliance + *limb->rod_compliance;
+    if (limb->crank) {
+      const Vector3 crank = limb->points.at("C") - limb->points.at("A");
+      const Term along = dot(force->force, crank) / limbs::length(crank), one(model_.graph, 1.0);
+      compliance = compliance + along * along * limb->crank->axial + (one - along * along) * limb->crank->bending;
+    }
+    return {row, compliance};
+  }
+
+  void add_acceleration() {
+    const auto given = by_joint("peak_force");
+    if (std::ranges::any_of(given, [](const auto& each) { return !each; }))
+      return lack("acceleration", "it needs [[drive_train]] peak_force for every joint");
+    if (!M_X_) return lack("acceleration", "the file names no masses");
+    std::vector<Term> peak, G;
+    for (std::size_t joint = 0; joint < joints_; ++joint)
+      peak.push_back(draft_.scope.positive(*given[joint], force_unit(joint), "peak_force"));
+    for (const expression::Node node : model_.equations->G_X) G.push_back(model_.term(node));
+    if (const auto found = generic::acceleration_quantity(model_, *M_X_, G, peak)) add(*found);
+  }
+
+  const ConfigValue& root_;
+  const ConfigValue* study_;
+  MechanismDraft& draft_;
+  generic::Model& model_;
+  std::size_t joints_;
+  generic::JointErrors errors_;
+  std::optional<TermMatrix> M_X_;
+};
+
+}  // namespace
+
+void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft) {
+  Performance(root, study, draft).add_all();
+}
+
+}  // namespace pkm

@@ -1,0 +1,125 @@
+// Transmission of velocities and forces, and accuracy.
+#include "engine/expression/derivative.hpp"
+#include "engine/generic/equations.hpp"
+#include "engine/generic/performance/performance.hpp"
+
+namespace pkm::generic {
+namespace {
+
+Node coordinate(Model& model, std::size_t i) {
+  return model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
+}
+
+/// Omits rows of zeros.
+TermMatrix without_zero_rows(const TermMatrix& A) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < A.rows(); ++i)
+    for (std::size_t j = 0; j < A.columns(); ++j)
+      if (!A(i, j).is(0)) {
+        kept.push_back(i);
+        break;
+      }
+  if (kept.empty()) return {A.graph(), 0, A.columns()};
+  TermMatrix result(A.graph(), kept.size(), A.columns());
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    for (std::size_t j = 0; j < A.columns(); ++j) result(i, j) = A(kept[i], j);
+  return result;
+}
+
+Term max(const Term& x, const Term& y) { return call(expression::operation("max"), x, y); }
+
+/// Maximum of |sum +-columns| over all signs; the sign of the first column is fixed, because -v is as long as v.
+Term longest_sum(const TermMatrix& columns) {
+  std::vector<TermMatrix> sums = {columns.column(0)};
+  for (std::size_t j = 1; j < columns.columns(); ++j) {
+    const TermMatrix column = columns.column(j);
+    std::vector<TermMatrix> next;
+    for (const TermMatrix& sum : sums) {
+      next.push_back(sum + column);
+      next.push_back(sum + column * Term(columns.graph(), -1.0));
+    }
+    sums = std::move(next);
+  }
+  Term longest = squared_norm(sums[0]);
+  for (std::size_t i = 1; i < sums.size(); ++i) longest = max(longest, squared_norm(sums[i]));
+  return sqrt(longest);
+}
+
+}  // namespace
+
+PlatformRates platform_rates(Model& model) {
+  const std::size_t n = model.inputs.coordinates;
+  TermMatrix translation(model.graph, 3, n), rotation(model.graph, 3, n);
+  std::vector<std::size_t> rotations;
+  for (std::size_t j = 0; j < n; ++j) {
+    if (model.rotation_axes[j]) rotations.push_back(j);
+    for (std::size_t i = 0; i < 3; ++i) {
+      translation(i, j) = model.term(expression::derivative(model.graph, model.origin[i], coordinate(model, j)));
+      rotation(i, j) = model.term(model.rotation_directions[j][i]);
+    }
+  }
+  if (rotations.size() < 3) {
+    rotation = TermMatrix(model.graph, rotations.size(), n);
+    for (std::size_t i = 0; i < rotations.size(); ++i) rotation(i, rotations[i]) = Term(model.graph, 1.0);
+  }
+  return {without_zero_rows(translation), rotation};
+}
+
+TermMatrix joint_jacobian(Model& model) {
+  const std::size_t n = model.inputs.coordinates;
+  const std::vector<Node> elements = jacobian_of(model);
+  TermMatrix J(model.graph, model.joints.size(), n);
+  for (std::size_t i = 0; i < elements.size(); ++i) J(i / n, i % n) = model.term(elements[i]);
+  return J;
+}
+
+std::vector<NamedTerm> velocity_quantities(Model& model) {
+  const PlatformRates rates = platform_rates(model);
+  const expression::Inverse inverse = inverse_of(joint_jacobian(model));
+  const Term determinant = abs(inverse.determinant);
+  const bool turns = model.info.joints.front().turns();
+  std::vector<NamedTerm> found;
+  const auto add = [&](const TermMatrix& T, const std::string& velocity, const std::string& force,
+                       const std::string& velocity_text, const std::string& force_text, bool is_rotation) {
+    if (T.rows() == 0 || T.rows() > T.columns()) return;
+    const TermMatrix V = T * inverse.adjugate;
+    const auto [least, greatest] = eigenvalue_range(V * V.transposed());
+    const std::string unit = is_rotation == turns ? "1" : is_rotation ? "rad/m" : "m/rad";
+    const std::string inverse_unit = is_rotation == turns ? "1" : is_rotation ? "m/rad" : "rad/m";
+    found.push_back(
+        {velocity, unit, "minimum " + velocity_text + " for joint speeds of norm 1", sqrt(least) / determinant});
+    found.push_back(
+        {force, inverse_unit, "minimum " + force_text + " for joint forces of norm 1", determinant / sqrt(greatest)});
+  };
+  add(rates.translation, "velocity_transmission", "force_transmission", "speed of the platform",
+      "force at the platform", false);
+  add(rates.rotation, "angular_velocity_transmission", "moment_transmission", "angular speed of the platform",
+      "moment at the platform", true);
+  return found;
+}
+
+std::vector<NamedTerm> accuracy_quantities(Model& model, const JointErrors& errors) {
+  const PlatformRates rates = platform_rates(model);
+  const expression::Inverse inverse = inverse_of(joint_jacobian(model));
+  const Term determinant = abs(inverse.determinant);
+  std::vector<NamedTerm> found;
+  const auto add = [&](const TermMatrix& T, const std::string& name, const std::string& unit, const std::string& text) {
+    if (T.rows() == 0) return;
+    TermMatrix worst = T * inverse.adjugate, spread = worst;
+    for (std::size_t i = 0; i < worst.rows(); ++i)
+      for (std::size_t j = 0; j < worst.columns(); ++j) {
+        worst(i, j) = worst(i, j) * errors.bound[j];
+        spread(i, j) = spread(i, j) * spread(i, j) * errors.squared_spread[j];
+      }
+    Term variance(model.graph, 0.0);
+    for (std::size_t i = 0; i < spread.rows(); ++i)
+      for (std::size_t j = 0; j < spread.columns(); ++j) variance = variance + spread(i, j);
+    found.push_back({name, unit, "maximum first-order " + text, longest_sum(worst) / determinant});
+    found.push_back({name + "_rms", unit, "root mean square of the first-order " + text, sqrt(variance) / determinant});
+  };
+  add(rates.translation, "accuracy", "m", "position error of the platform");
+  add(rates.rotation, "accuracy_angle", "rad", "orientation error of the platform");
+  return found;
+}
+
+}  // namespace pkm::generic

@@ -1,0 +1,85 @@
+// Quantities that say what a pose is worth: transmission of velocities and forces, accuracy, stiffness, natural
+// frequency, effective mass, acceleration. All are formulas of the pose in the expression graph of the mechanism, so
+// that limits, statistics, maps and derivatives treat them like any [[quantity]].
+//
+// J maps the rates x' of the coordinates to those of the joints, q' = J x'. T_v x' is the velocity of the origin of the
+// platform's frame and T_w x' its angular velocity. Where J is singular, J^-1 = adj(J) / det(J) is infinite; quantities
+// whose limit is 0 there are formed such that they are 0.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/expression/term_matrix.hpp"
+#include "engine/generic/model.hpp"
+
+namespace pkm::generic {
+
+using expression::TermMatrix;
+using limbs::Term;
+
+/// A quantity of the pose that a mechanism gets without a [[quantity]].
+struct NamedTerm {
+  std::string name, unit, meaning;
+  Term value;
+};
+
+/// Velocities of the platform by the rates of the coordinates: one row for each direction, one column for each
+/// coordinate.
+struct PlatformRates {
+  TermMatrix translation;  ///< T_v without the directions in which the origin does not move; at most three rows
+  TermMatrix
+      rotation;  ///< T_w; for one or two rotation coordinates, whose axes are orthonormal, components along these
+};
+PlatformRates platform_rates(Model& model);
+
+/// J, joints x coordinates.
+TermMatrix joint_jacobian(Model& model);
+
+/// `velocity_transmission` and `force_transmission`, and for rotations `angular_velocity_transmission` and
+/// `moment_transmission`: minimum singular values of V = T J^-1, which maps joint rates to velocities of the platform,
+/// and of its inverse, 1 / sigma_max(V). They are in the units of the joints, which have to be the same for all.
+std::vector<NamedTerm> velocity_quantities(Model& model);
+
+/// Bounds of the errors that act along each joint: those of the joint itself, and those of dimensions, by the effect
+/// that they have on the joint coordinate at this pose.
+struct JointErrors {
+  std::vector<Term> bound;           ///< by joint: sum of all contributions, for the worst case
+  std::vector<Term> squared_spread;  ///< by joint: sum of their squares, the variance if each is a standard deviation
+};
+/// `accuracy` and `accuracy_rms` [m] of the origin of the platform, `accuracy_angle` and `accuracy_angle_rms` [rad] of
+/// its orientation, to first order: the error of the pose is J^-1 times the errors e of the joints.
+///
+/// The worst case is the maximum of |T J^-1 e| over |e_i| <= bound_i. The norm is convex, so that it is at a vertex of
+/// the box of errors: all 2^(n-1) pairs of vertices are compared.
+std::vector<NamedTerm> accuracy_quantities(Model& model, const JointErrors& errors);
+
+/// One limb as a spring: the force along `row`, by the rates of the coordinates, compresses it by `compliance` times
+/// its value. The row is the power of a unit force, f . (dB/dx), so that the limb's stiffness in the coordinates is
+/// row^T row / compliance.
+struct LimbSpring {
+  std::vector<Term> row;
+  Term compliance;  ///< [m/N], or [rad/(N m)] for a row of joint rates
+};
+/// `stiffness` [N/m]: the minimum over all directions of the force at the origin of the platform, divided by the
+/// deflection in its direction; `rotational_stiffness` [N m/rad] for couples. The compliance is sum c_i a_i a_i^T,
+/// where the columns a_i of A^-1 are the displacements by which limb i alone gives way. With more limbs than
+/// coordinates it is (A^T diag(1 / c) A)^-1, for which all compliances have to be positive.
+/// With `M_X`, the inertia by the coordinates, also `natural_frequency` [Hz], the lowest one: det(K - omega^2 M_X) = 0.
+std::vector<NamedTerm> stiffness_quantities(Model& model, const std::vector<LimbSpring>& springs,
+                                            const std::optional<TermMatrix>& M_X);
+
+/// `effective_mass` [kg], the maximum over all directions of the mass that a force at the origin of the platform has to
+/// accelerate, 1 / lambda_min(T_v M_X^-1 T_v^T), and `effective_mass_ratio`, its minimum divided by its maximum.
+std::vector<NamedTerm> inertia_quantities(Model& model, const TermMatrix& M_X);
+
+/// `acceleration` [m/s^2]: the acceleration of the platform's origin that the drives reach in every direction, from
+/// rest and under gravity. The accelerations for |tau_i| <= peak_i are the zonotope of the vectors
+/// w_i = peak_i T_v M_X^-1 J_i^T, moved by the weight; the result is the radius of the largest ball about 0 inside,
+/// the minimum over its faces; it is negative where the drives do not hold the weight.
+/// @param peak  by joint: maximum force or torque
+std::optional<NamedTerm> acceleration_quantity(Model& model, const TermMatrix& M_X, const std::vector<Term>& G_X,
+                                               const std::vector<Term>& peak);
+
+}  // namespace pkm::generic
