@@ -108,7 +108,8 @@ void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& war
 /// The study's document, with shared ownership, if it adds quantities or their limits to its mechanism; otherwise null.
 StudyAdditions additions_of(const ConfigValue& root, const StudyDraft& draft) {
   const auto changes_quantities = [](const ConfigValue& train) {
-    return train.has("stiffness") || train.has("peak_force");
+    return train.has("stiffness") || train.has("peak_force") || train.has("rotor_inertia") ||
+           train.has("shaft_inertia");
   };
   if (!root.has("quantity") && !root.has("accuracy") && !limits_of_quantities(root) &&
       std::ranges::none_of(root.tables("drive_train"), changes_quantities))

@@ -76,6 +76,9 @@ Keys geometry_keys() {
       passive_joint_key("joint_platform", "platform"),
       text_key("joint_name", "name of the joint; default: name of the limb"),
       text_key("end_on", "body that carries the limb's `end`: \"platform\" or the name of a [[body]]"),
+      direction_key("universal",
+                    "axis of universal joints at both ends of rod or leg, on the base's and the platform's side; "
+                    "default: ball joints"),
       formula_key("play", "m", "radial play of each passive joint at the ends of rod or leg, for `accuracy`")};
 }
 
@@ -139,7 +142,8 @@ std::vector<OptionSpec> mass_keys(const std::string& part) {
                                     .keys = {formula_key("density", "kg/m^3", "density of the material, for the mass"),
                                              required(formula_key("outer", "m", "outer diameter")),
                                              formula_key("inner", "m", "inner diameter; default: 0"),
-                                             formula_key("young", "Pa", "Young's modulus, for the stiffness")}};
+                                             formula_key("young", "Pa", "Young's modulus, for the stiffness"),
+                                             formula_key("shear", "Pa", "shear modulus; default: young/2.6")}};
   std::string shown = part;
   std::ranges::replace(shown, '_', ' ');
   Keys keys = {formula_key(part + "_mass", "kg", "mass of the " + shown)};

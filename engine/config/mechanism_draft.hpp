@@ -53,13 +53,13 @@ struct NamedLimb {
   std::optional<limbs::Vector3> beside = {};    ///< from the middle of a pair of rods to one of them
   std::string end_on = "";                      ///< the body that carries its end; "": unspecified
 
-  std::optional<limbs::Term> play = {};            ///< radial play of each passive joint [m]
-  std::optional<limbs::Term> rod_compliance = {};  ///< of rods or leg along their line [m/N]; std::nullopt: rigid
-  /// Compliances of the end of a crank, clamped at its pivot [m/N].
-  struct Beam {
-    limbs::Term axial, bending;
+  std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]
+  /// Stiffness of a round tube: axial E A [N], bending E I and torsional G J [N m^2].
+  struct Section {
+    limbs::Term EA, EI, GJ;
   };
-  std::optional<Beam> crank = {};  ///< std::nullopt: rigid
+  std::optional<Section> rod_section = {}, crank_section = {};  ///< rod_section: of one rod, or of the leg; else rigid
+  std::optional<limbs::Vector3> universal = {};  ///< axis of its universal joints, on the drive's side of each joint
 };
 
 /// A limb with `across`: the distance of its ends along the normal is the same at every pose.
@@ -138,8 +138,12 @@ void add_transmission(const ConfigValue& root, MechanismDraft& draft);
 /// Adds the quantities of engine/generic/performance/performance.hpp for which the file, or the study unless it is
 /// null, has the data.
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
-/// Reads what makes a limb compliant: the stiffness of its drive, and Young's modulus of its sections.
-void read_elasticity(const ConfigValue& table, const limbs::Term& length, NamedLimb& limb, MechanismDraft& draft);
+/// Reads what makes a limb compliant and inexact: the elastic moduli of its sections, and the play of its joints.
+void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
+/// Compliance of the limb's end along the line of its rod or leg, due to rods and crank [m/N].
+limbs::Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft);
+/// Compliance of a limb's drive at the joint [m/N or rad/(N m)]: that of the drive, and of a telescope's leg.
+std::optional<limbs::Term> drive_compliance(const NamedLimb& limb, MechanismDraft& draft);
 /// The limits of quantities in a study, as a table; std::nullopt if it has none.
 std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
 /// Adds a threshold for each limit of a quantity in the study, [workspace] limits = { NAME = { min = .. } }. It is

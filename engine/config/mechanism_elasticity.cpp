@@ -1,4 +1,6 @@
-// Reader of what makes the limbs compliant and inexact: stiffness of drives, Young's modulus of sections, play.
+// Reader of what makes limbs compliant and inexact: elastic moduli of sections, play of joints; and the compliances of
+// limbs that follow.
+#include <algorithm>
 #include <numbers>
 
 #include "engine/config/mechanism_draft.hpp"
@@ -6,55 +8,69 @@
 namespace pkm {
 namespace {
 
-using limbs::Term;
-
-/// A round tube: outer and inner diameter and Young's modulus.
-struct Tube {
-  Term outer, inner, young;
-
-  Term area() const { return (outer * outer - inner * inner) * (std::numbers::pi / 4); }
-  /// Second moment of area.
-  Term second_moment() const {
-    const auto fourth = [](const Term& d) { return d * d * d * d; };
-    return (fourth(outer) - fourth(inner)) * (std::numbers::pi / 64);
-  }
-};
+using limbs::Term, limbs::Vector3;
 
 /// std::nullopt if the section is not given, or without Young's modulus.
-std::optional<Tube> read_tube(const ConfigValue& table, const std::string& key, MechanismDraft& draft) {
+std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const std::string& key,
+                                               MechanismDraft& draft) {
   const auto section = table.find_table(key);
-  if (!section || !section->has("young")) return {};
+  if (!section) return {};
+  if (const auto shear = section->find("shear"); shear && !section->has("young"))
+    throw shear->refusal("a shear modulus needs Young's modulus, `young`, too");
+  if (!section->has("young")) return {};
   const auto positive = [&](const char* name, const char* unit) {
     return draft.scope.positive(section->at(name), unit, key);
   };
-  return Tube{positive("outer", "m"), section->has("inner") ? positive("inner", "m") : draft.zero(),
-              positive("young", "Pa")};
+  const auto to_the_fourth = [](const Term& d) { return d * d * d * d; };
+  const Term outer = positive("outer", "m"), inner = section->has("inner") ? positive("inner", "m") : draft.zero();
+  const Term young = positive("young", "Pa");
+  constexpr double kPoisson = 0.3;  // of steel and aluminium, nearly
+  const Term shear = section->has("shear") ? positive("shear", "Pa") : young / (2 * (1 + kPoisson));
+  const Term area = (outer * outer - inner * inner) * (std::numbers::pi / 4),
+             moment = (to_the_fourth(outer) - to_the_fourth(inner)) * (std::numbers::pi / 64);
+  return NamedLimb::Section{young * area, young * moment, shear * moment * 2};
 }
 
 Term length_of(const NamedLimb& limb, const std::string& part) {
-  const auto found = std::ranges::find(limb.parts, part, &LimbPart::name);
-  return found->length.value();
+  return std::ranges::find(limb.parts, part, &LimbPart::name)->length.value();
 }
 
 }  // namespace
 
-void read_elasticity(const ConfigValue& table, const Term& leg, NamedLimb& limb, MechanismDraft& draft) {
+void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft) {
   if (const auto play = table.find("play")) {
-    if (!limb.has_rod) throw play->refusal("this slide carries the platform; it has no passive joints");
+    if (!limb.has_rod) throw play->refusal("the limb has no rod or leg with passive joints at its ends");
     limb.play = draft.scope.positive(*play, "m", limb.name, true);
   }
-  const bool is_telescope = limb.drive == "telescope";
-  const std::string rod_key = is_telescope ? "leg_section" : "rod_section";
   if (limb.has_rod)
-    if (const auto tube = read_tube(table, rod_key, draft)) {
-      const double rods = limb.beside ? 2 : 1;
-      limb.rod_compliance = (is_telescope ? leg : length_of(limb, "rod")) / (tube->young * tube->area() * rods);
-    }
-  if (limb.drive == "crank")
-    if (const auto tube = read_tube(table, "crank_section", draft)) {
-      const Term r = length_of(limb, "crank");
-      limb.crank = {r / (tube->young * tube->area()), r * r * r / (tube->young * tube->second_moment() * 3)};
-    }
+    limb.rod_section = read_section(table, limb.drive == "telescope" ? "leg_section" : "rod_section", draft);
+  if (limb.drive == "crank") limb.crank_section = read_section(table, "crank_section", draft);
+}
+
+Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft) {
+  Term compliance = draft.zero();
+  if (limb.rod_section) {
+    const Term length =
+        limb.drive == "telescope" ? draft.model.term(draft.model.joints[limb.joint]) : length_of(limb, "rod");
+    compliance = length / (limb.rod_section->EA * (limb.beside ? 2.0 : 1.0));
+  }
+  if (limb.crank_section) {  // a cantilever with the rod's force at its end
+    const Term r = length_of(limb, "crank"), one(draft.model.graph, 1.0);
+    const Term along = dot(force_of(limb)->force, limb.points.at("C") - limb.points.at("A")) / r;
+    compliance = compliance + along * along * r / limb.crank_section->EA +
+                 (one - along * along) * r * r * r / (limb.crank_section->EI * 3);
+  }
+  return compliance;
+}
+
+std::optional<Term> drive_compliance(const NamedLimb& limb, MechanismDraft& draft) {
+  std::optional<Term> compliance;
+  if (const auto& stiffness = draft.drive_stiffness[limb.joint]) compliance = Term(draft.model.graph, 1.0) / *stiffness;
+  if (limb.drive == "telescope" && limb.rod_section) {
+    const Term leg = compliance_of_links(limb, draft);
+    compliance = compliance ? *compliance + leg : leg;
+  }
+  return compliance;
 }
 
 }  // namespace pkm

@@ -5,6 +5,7 @@
 //
 //   a crank's pivot       all forces and couples, the drive's about its axis among them
 //   a rod, a leg          ball joints at both ends: forces only. Its spin is fixed by a constraint without reaction
+//   with `universal`      universal joints at both ends: forces, and a couple normal to both axes of the joint
 //   a pair of rods        two of them, side by side, with half the mass each
 //   `links`, `across`     revolutes along one axis: all couples but those about it. Where the platform turns about
 //   other
@@ -94,6 +95,19 @@ class JointReader {
     return joint(name, point, on, from, JointNodes::Couples::all_but_about, {});
   }
 
+  /// An elastic beam that the joint added last holds.
+  SolidNodes::Beam beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far) const {
+    return {nodes(near), nodes(far), section.EA.node(), section.EI.node(), section.GJ.node(), joints_.size() - 1};
+  }
+  /// Makes the joint added last a universal one, if the limb has such joints: it rotates about the axis a of the body
+  /// that carries the rod, and about a x rod, and transmits a couple normal to both.
+  void make_universal(const NamedLimb& limb, const Vector3& rod, bool on_platform) {
+    if (!limb.universal) return;
+    const Vector3 a = on_platform && limb.end_on == "platform" ? draft_.turn * *limb.universal : *limb.universal;
+    joints_.back().couples = JointNodes::Couples::along;
+    joints_.back().axes = {nodes(cross(a, cross(a, rod)))};
+  }
+
   std::size_t add_part(const NamedLimb& limb, const LimbPart& part) {
     const std::string name = part.name + " of " + limb.name;
     Vector3 line = *part.line;
@@ -125,6 +139,7 @@ class JointReader {
     const bool telescope = limb.drive == "telescope", slides = limb.drive == "slider",
                has_links = first.name != "slider" && slides;
     JointNodes::Drive drive{limb.joint, nodes(telescope ? *last.line : *limb.axis), limb.drive == "crank"};
+    if (const auto compliance = drive_compliance(limb, draft_)) drive.compliance = compliance->node();
     if (slides)
       for (std::size_t i = 0; i < model_.bodies.size(); ++i)
         if (model_.bodies[i].name == "slider of " + limb.name) drive.slide = i;
@@ -133,13 +148,18 @@ class JointReader {
     if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
     if (telescope) {
       joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, {}, first.line));
+      make_universal(limb, B - A, false);
       const std::size_t piston = add_part(limb, last);
       joints_.push_back(rigid_joint(limb.name + ".slide", (A + B) * Term(model_.graph, 0.5), piston, inner));
       joints_.back().drive = drive;
       joints_.push_back(limb_joint(limb, limb.name + ".B", B, piston, carrier, {}, turns));
+      make_universal(limb, B - A, true);
       return;
     }
-    if (limb.drive == "crank") joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, {}));
+    if (limb.drive == "crank") {
+      joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, {}));
+      if (const auto& section = limb.crank_section) solids_[*inner].beam = beam_of(*section, A, C);
+    }
     if (has_links) joints_.push_back(limb_joint(limb, limb.name + ".S", S, *inner, {}, {}));
     if (inner) joints_.back().drive = drive;
     const int rods = limb.beside ? 2 : 1;
@@ -162,7 +182,10 @@ class JointReader {
         joints_.back().drive = drive;
         drive.slide = {};  // once for both rods
       }
+      make_universal(limb, far - near, false);
+      if (const auto& section = limb.rod_section) solids_[outer].beam = beam_of(*section, near, far);
       joints_.push_back(limb_joint(limb, limb.name + ".B" + number, far, outer, carrier, {}, turns));
+      make_universal(limb, far - near, true);
     }
   }
 
@@ -247,10 +270,16 @@ void add_joints(const ConfigValue& root, MechanismDraft& draft) {
   JointReader reader(draft);
   try {
     model.jointed = reader.read(tables);
+    const bool has_beam =
+        std::ranges::any_of(model.jointed->solids, [](const SolidNodes& solid) { return solid.beam.has_value(); });
+    const bool has_spring = std::ranges::any_of(
+        model.jointed->joints, [](const JointNodes& joint) { return joint.drive && joint.drive->compliance; });
+    if (!has_beam && !has_spring) model.why_no_elasticity = "no limb has `drive_stiffness`, or a section with `young`";
     if (model.bodies.empty()) throw Unsaid{"the file names no masses"};
     model.jointed = reader.with_masses();
   } catch (const Unsaid& unsaid) {
     model.why_no_reactions = unsaid.why;
+    if (!model.jointed) model.why_no_elasticity = unsaid.why;
   }
 }
 

@@ -157,6 +157,12 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
     throw end_on->refusal("a limb that ends at `platform` ends on the platform; `end_on` belongs to `end`");
   limb.end_on = end_on ? end_on->text("\"platform\" or the name of a body") : table.has("end") ? "" : "platform";
   limb.beside = read_pair(copy, limb);
+  if (const auto universal = table.find("universal")) {
+    if (!limb.has_rod || limb.revolute || limb.beside)
+      throw universal->refusal(
+          "universal joints are those of a single rod or leg, without `across`, `pair` or `links`");
+    limb.universal = copy.direction(*universal);
+  }
   return limb;
 }
 
@@ -206,7 +212,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);
   draft.limbs.push_back(named(copy, at, limb));
-  read_elasticity(copy.table, limb.joint, draft.limbs.back(), draft);
+  read_elasticity(copy.table, draft.limbs.back(), draft);
   for (const LimbPart& part : draft.limbs.back().parts) add_part_body(copy.table, copy.name, part, draft);
   add_limb_links(copy, at, limb);
   add_reach(copy, at, limb);

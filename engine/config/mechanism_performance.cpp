@@ -1,6 +1,7 @@
 // Quantities that every mechanism gets as far as its file or a study has the data: transmission of velocities,
 // accuracy, stiffness, effective mass and acceleration (engine/generic/performance/performance.hpp).
 #include <algorithm>
+#include <numbers>
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
@@ -34,6 +35,7 @@ class Performance {
       const std::size_t n = model_.inputs.coordinates;
       M_X_.emplace(model_.graph, n, n);
       for (std::size_t i = 0; i < n * n; ++i) (*M_X_)(i / n, i % n) = model_.term(model_.equations->M_X[i]);
+      add_rotors();
       add(generic::inertia_quantities(model_, *M_X_));
     } else {
       lack("effective_mass", "the file names no masses");
@@ -82,6 +84,29 @@ class Performance {
     for (const NamedLimb& limb : draft_.limbs)
       if (limb.drive != "formula" && limb.joint == joint) return &limb;
     return nullptr;
+  }
+
+  /// Adds J^T diag(reflected inertia) J to M_X, for the [[drive_train]]s of the study.
+  void add_rotors() {
+    const auto gears = by_joint("gear"), leads = by_joint("lead");
+    std::vector<double> inertia(joints_, 0.0);
+    bool has_inertia = false;
+    for (const char* const key : {"rotor_inertia", "shaft_inertia"}) {
+      const auto given = by_joint(key);
+      for (std::size_t joint = 0; joint < joints_; ++joint) {
+        if (!given[joint]) continue;
+        double ratio = gears[joint] ? gears[joint]->number() : 1;
+        if (leads[joint]) ratio *= 2 * std::numbers::pi / leads[joint]->number();
+        inertia[joint] += given[joint]->number() * ratio * ratio;
+        has_inertia = has_inertia || inertia[joint] > 0;
+      }
+    }
+    if (!has_inertia) return;
+    const TermMatrix J = generic::joint_jacobian(model_);
+    TermMatrix weighted = J;
+    for (std::size_t i = 0; i < J.rows(); ++i)
+      for (std::size_t j = 0; j < J.columns(); ++j) weighted(i, j) = J(i, j) * inertia[i];
+    *M_X_ = *M_X_ + J.transposed() * weighted;
   }
 
   // Accuracy
@@ -175,13 +200,15 @@ class Performance {
   /// Values of a key of the study's [[drive_train]]s, by joint.
   std::vector<std::optional<ConfigValue>> by_joint(const std::string& key) const {
     std::vector<std::optional<ConfigValue>> found(joints_);
+    std::vector<std::string> words = names_of(model_.info.joints);
+    words.emplace_back("all");
     if (!study_) return found;
     for (const ConfigValue& table : study_->tables("drive_train"))
-      if (const auto value = table.find(key))
+      if (const auto value = table.find(key)) {
+        const std::string& word = table.at("joint").word(words);
         for (std::size_t joint = 0; joint < joints_; ++joint)
-          if (const std::string& name = table.at("joint").word();
-              name == "all" || name == model_.info.joints[joint].name)
-            found[joint] = value;
+          if (word == "all" || word == model_.info.joints[joint].name) found[joint] = value;
+      }
     return found;
   }
   void add_stiffness() {
@@ -189,11 +216,10 @@ class Performance {
     std::vector<generic::LimbSpring> springs;
     bool is_rigid = true;
     for (std::size_t joint = 0; joint < joints_; ++joint) {
-      std::optional<Term> drive = draft_.drive_stiffness[joint];
-      if (given[joint])
-        drive = draft_.scope.positive(*given[joint], force_unit(joint) + (force_unit(joint) == "N" ? "/m" : "/rad"),
-                                      "stiffness");
-      springs.push_back(spring_of(joint, drive));
+      if (given[joint])  // of the study; also for the bodies and joints of the mechanism
+        draft_.drive_stiffness[joint] =
+            draft_.scope.positive(*given[joint], model_.info.joints[joint].turns() ? "N m/rad" : "N/m", "stiffness");
+      springs.push_back(spring_of(joint, draft_.drive_stiffness[joint]));
       is_rigid = is_rigid && springs.back().compliance.is(0);
     }
     if (is_rigid) return lack("stiffness", "no limb has `drive_stiffness`, or a section with `young`");
@@ -221,14 +247,8 @@ class Performance {
       row.push_back(dot(force->force, Vector3{by_x(0), by_x(1), by_x(2)}));
     }
     const Term motion = joint_motion(*limb);
-    Term compliance = motion * motion * compliant;
-    if (limb->rod_compliance) compliance = compliance + *limb->rod_compliance;
-    if (limb->crank) {
-      const Vector3 crank = limb->points.at("C") - limb->points.at("A");
-      const Term along = dot(force->force, crank) / limbs::length(crank), one(model_.graph, 1.0);
-      compliance = compliance + along * along * limb->crank->axial + (one - along * along) * limb->crank->bending;
-    }
-    return {row, compliance};
+    const Term compliance = motion * motion * compliant;
+    return {row, compliance + compliance_of_links(*limb, draft_)};
   }
 
   void add_acceleration() {

@@ -8,6 +8,7 @@
 #include "engine/generic/column_evaluator.hpp"
 #include "engine/generic/design_checks.hpp"
 #include "engine/generic/dynamics.hpp"
+#include "engine/generic/elastostatics.hpp"
 #include "engine/generic/equations.hpp"
 #include "engine/generic/forward.hpp"
 #include "engine/generic/kinematics.hpp"
@@ -33,6 +34,7 @@ class GenericMechanism final : public Mechanism,
                                DesignTests,
                                Size,
                                JointReactions,
+                               Elasticity,
                                PoseMarginsDispatch<GenericMechanism>,
                                DynamicsDispatch<GenericMechanism> {
  public:
@@ -99,6 +101,8 @@ class GenericMechanism final : public Mechanism,
   const Dynamics* dynamics() const override { return e_.model.equations ? this : nullptr; }
   const JointReactions* reactions() const override { return e_.model.why_no_reactions.empty() ? this : nullptr; }
   std::string why_no_reactions() const override { return e_.model.why_no_reactions; }
+  const Elasticity* elasticity() const override { return e_.model.why_no_elasticity.empty() ? this : nullptr; }
+  std::string why_no_elasticity() const override { return e_.model.why_no_elasticity; }
 
  private:
   friend DynamicsDispatch<GenericMechanism>;
@@ -128,6 +132,10 @@ class GenericMechanism final : public Mechanism,
     return contains(mass_models(), model) ? e_.model.with_masses(model) : nullptr;
   }
 
+  PlatformCompliance compliance(std::span<const double> parameters, const Pose<double>& pose,
+                                const std::string& mode) const override {
+    return platform_compliance(e_, parameters, pose, mode_index(info(), mode));
+  }
   Reactions find(std::span<const double> parameters, const std::string& mode, const MotionState<double>& state,
                  const AxisVector<double>& acceleration, const Wrench<double>& wrench) const override {
     const PoseReport report = inspect(parameters, state.pose, mode, no_limits(info()));

@@ -155,6 +155,14 @@ struct SolidNodes {
   std::optional<std::array<Node, 3>> line{};           ///< the body rotates with this direction, without spin about it
   std::optional<std::array<Node, 3>> centre_offset{};  ///< of its centre of mass from that of its bodies
   bool with_platform = false;                          ///< the body rotates with the platform
+
+  /// An elastic beam from `near` to `far`, where all joints but one load it.
+  struct Beam {
+    std::array<Node, 3> near, far;
+    Node EA, EI, GJ;         ///< axial [N], bending and torsional stiffness [N m^2]
+    std::size_t near_joint;  ///< index of the joint that holds it
+  };
+  std::optional<Beam> beam{};  ///< std::nullopt: rigid
 };
 
 /// A joint between two solids, or between a solid and the base.
@@ -166,6 +174,7 @@ struct JointNodes {
     std::array<Node, 3> axis;
     bool turns = false;                  ///< revolute; otherwise prismatic
     std::optional<std::size_t> slide{};  ///< body (a point mass) that moves with the drive
+    std::optional<Node> compliance{};    ///< [m/N or rad/(N m)]; std::nullopt: rigid
   };
   std::string name;
   std::array<Node, 3> point;
@@ -253,7 +262,7 @@ struct Model {
   std::optional<EquationNodes> equations;           ///< present if there are bodies
   std::vector<Node> jacobian;                       ///< EquationNodes::J, present without bodies, too
   std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
-  std::string why_no_reactions;
+  std::string why_no_reactions, why_no_elasticity;
   std::vector<std::string> mass_models;  ///< the first is the default
   std::string mass_model;                ///< the selected one
   /// Builds the same mechanism with another mass model.

@@ -14,6 +14,7 @@
 #include "engine/mechanism/abilities/columns.hpp"
 #include "engine/mechanism/abilities/design.hpp"
 #include "engine/mechanism/abilities/dynamics.hpp"
+#include "engine/mechanism/abilities/elasticity.hpp"
 #include "engine/mechanism/abilities/kinematics.hpp"
 #include "engine/motion/motion.hpp"
 
@@ -128,6 +129,8 @@ class Mechanism {
   virtual const Dynamics* dynamics() const { return nullptr; }
   virtual const JointReactions* reactions() const { return nullptr; }
   virtual std::string why_no_reactions() const { return ""; }  ///< "": unspecified
+  virtual const Elasticity* elasticity() const { return nullptr; }
+  virtual std::string why_no_elasticity() const { return ""; }  ///< "": unspecified
   virtual const DriveTrains* drive_trains() const { return nullptr; }
   virtual const RigorousBounds* bounds() const { return nullptr; }
 };

@@ -59,6 +59,8 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
   const Dynamics* dynamics() const override { return bare_->dynamics() ? this : nullptr; }
   const JointReactions* reactions() const override { return bare_->reactions(); }
   std::string why_no_reactions() const override { return bare_->why_no_reactions(); }
+  const Elasticity* elasticity() const override { return bare_->elasticity(); }
+  std::string why_no_elasticity() const override { return bare_->why_no_elasticity(); }
   const DriveTrains* drive_trains() const override { return &trains_; }
 
  private:

@@ -10,13 +10,15 @@
 #include "experiments/app/axes.hpp"
 #include "experiments/app/link_files.hpp"
 #include "experiments/app/motion_inputs.hpp"
+#include "experiments/app/stiffness.hpp"
 #include "experiments/app/tool_error.hpp"
 
 namespace pkm {
 namespace {
 
 struct PoseArguments : DesignArguments, MotionArguments, InputArguments, LinkFiles {
-  std::vector<std::string> joint_error;
+  std::vector<std::string> joint_error, wrench;
+  bool stiffness = false, exact_error = false;
 };
 
 /// Reports the joint positions and, if rates are given, the speeds and accelerations of the joints; also the
@@ -118,7 +120,9 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
       report.J && report.T ? twist_jacobian(*report.J, *report.T) : std::optional<AxisMatrix<double>>();
   add_jacobians(info, report, J_twist, json);
   report_joints(target, mode, at, report, out);
-  if (!arguments.joint_error.empty()) report_tool_error(target, mode, at, report.T, arguments.joint_error, out);
+  if (!arguments.joint_error.empty())
+    report_tool_error(target, mode, at, report.T, arguments.joint_error, arguments.exact_error, out);
+  if (arguments.stiffness) report_stiffness(target, mode, at.pose, report, arguments.wrench, out);
   if (report.assembles) print_jacobians(report, J_twist, out);
 
   std::vector<Row> indices, margins;
@@ -167,9 +171,19 @@ void add_pose(CLI::App& app, Session& session) {
   add_list_option(command, "--velocity", arguments.velocity, "Rates of the coordinates and of the inputs; default: 0");
   add_list_option(command, "--acceleration", arguments.acceleration,
                   "Accelerations of the same coordinates; default: 0");
-  add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
-             "Errors of the joints, 10um for all or by name: print the first-order error of the tool")
-      ->allow_extra_args(false);
+  auto* const joint_error =
+      add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
+                 "Errors of the joints, 10um for all or by name: print the first-order error of the tool");
+  joint_error->allow_extra_args(false);
+  command
+      .add_flag("--exact-error", arguments.exact_error,
+                "With --joint-error: find the poses of all extreme joint errors, and print the exact error, too")
+      ->needs(joint_error);
+  auto* const stiffness = command.add_flag("--stiffness", arguments.stiffness,
+                                           "Print compliance, stiffness and natural frequencies of the platform");
+  add_list_option(command, "--wrench", arguments.wrench,
+                  "Force and moment at the origin of the platform, Fx=100,Mz=1: print the deflection")
+      ->needs(stiffness);
   add_link_files(command, arguments);
   add_input_option(command, arguments);
 }

@@ -1,6 +1,8 @@
 #include "experiments/app/tool_error.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "engine/config/assignments.hpp"
 #include "engine/geometry/pose_error.hpp"
@@ -24,10 +26,58 @@ std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<st
   return errors;
 }
 
+/// The pose with these joint coordinates, by Newton's method; std::nullopt if it does not converge.
+std::optional<Pose<double>> pose_of_joints(const Target& target, const std::string& mode, Pose<double> pose,
+                                           const AxisVector<double>& joints) {
+  constexpr int kMaxSteps = 50;
+  double last = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
+    if (!report.assembles || !report.J || is_singular(*report.J)) return {};
+    AxisVector<double> rest = joints;
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= (*report.joints)[i];
+    const AxisVector<double> change = solve(*report.J, rest);
+    double size = 0;
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      pose[i] += change[i];
+      size = std::max(size, std::fabs(change[i]));
+    }
+    if (!(size < last)) return last < 1e-9 ? std::optional(pose) : std::nullopt;  // rounding errors, or no convergence
+    last = size;
+  }
+  return {};
+}
+
+/// The greatest errors at the corners of the box of joint errors, by coordinate and of the position; std::nullopt if
+/// the pose of a corner was not found.
+std::optional<std::vector<double>> worst_corner(const Target& target, const std::string& mode, const Pose<double>& pose,
+                                                const AxisMatrix<double>& inverse, const std::vector<double>& errors) {
+  const MechanismInfo& info = target.info();
+  const PoseReport at = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
+  std::vector<double> worst(info.coordinates.size() + 1, 0.0);
+  for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
+    AxisVector<double> joints = *at.joints, change(errors.size());
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      change[i] = (corner >> i & 1U ? 1 : -1) * errors[i];
+      joints[i] += change[i];
+    }
+    const auto found = pose_of_joints(target, mode, pose + inverse * change, joints);
+    if (!found) return {};
+    double square = 0;
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      const double error = (*found)[i] - pose[i];
+      worst[i] = std::max(worst[i], std::fabs(error));
+      if (!info.coordinates[i].turns()) square += error * error;
+    }
+    worst.back() = std::max(worst.back(), std::sqrt(square));
+  }
+  return worst;
+}
+
 }  // namespace
 
 void report_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
-                       const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists,
+                       const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists, bool exact,
                        Printout& out) {
   const MechanismInfo& info = target.info();
   const Velocities& velocities =
@@ -60,8 +110,20 @@ void report_tool_error(const Target& target, const std::string& mode, const Moti
     json["rotation"] = rotation;
     rows.push_back({"rotation", position(rotation, "rad")});
   }
+  if (exact) {
+    const auto corner = worst_corner(target, mode, at.pose, inverse, errors);
+    json["worst_corner"] = nullptr;
+    if (corner) {
+      const std::vector<double> of_coordinates(corner->begin(), corner->end() - 1);
+      json["worst_corner"] = {{"coordinates", values_by_name(info.coordinates, of_coordinates)},
+                              {"translation", corner->back()}};
+      rows.push_back({"translation, exact", with_micrometres(corner->back())});
+    } else {
+      rows.push_back({"translation, exact", "unknown: the pose of a corner of the joint errors was not found"});
+    }
+  }
   out.json["tool_error"] = json;
-  out.add_table("maximum tool error, for joint errors up to " + axes_text(info.joints, errors), rows);
+  out.add_table("maximum first-order tool error, for joint errors up to " + axes_text(info.joints, errors), rows);
 }
 
 }  // namespace pkm

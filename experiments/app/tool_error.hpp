@@ -1,4 +1,4 @@
-// First-order pose error of the tool caused by joint errors: x = J^-1 q.
+// Pose error of the tool caused by joint errors: to first order, x = J^-1 q, and exactly at the worst corner.
 #pragma once
 
 #include <string>
@@ -13,8 +13,11 @@ namespace pkm {
 /// no influence coefficients or not as many joints as coordinates.
 /// @param T      maps coordinate rates to the platform's twist (PoseReport::T); std::nullopt: unspecified
 /// @param lists  of --joint-error: one bound for all joints, or bounds by name
+/// @param exact  also finds the poses of all corners of the box of joint errors, by Newton's method from the
+/// first-order
+///               poses, and reports the greatest errors among them
 void report_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
-                       const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists,
+                       const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists, bool exact,
                        Printout& out);
 
 }  // namespace pkm

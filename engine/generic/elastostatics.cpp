@@ -1,0 +1,200 @@
+#include "engine/generic/elastostatics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Dense>
+
+#include "engine/generic/newton_euler.hpp"
+
+namespace pkm::generic {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::Vector3d;
+
+AxisMatrix<double> matrix(const MatrixXd& A) {
+  AxisMatrix<double> copy(static_cast<std::size_t>(A.rows()), static_cast<std::size_t>(A.cols()));
+  for (std::size_t i = 0; i < copy.rows(); ++i)
+    for (std::size_t j = 0; j < copy.cols(); ++j) copy(i, j) = A(static_cast<Index>(i), static_cast<Index>(j));
+  return copy;
+}
+Vector3d vector(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+/// Numbers of nodes at a pose.
+class Numbers {
+ public:
+  Numbers(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
+      : e_(e), inputs_(e.inputs(parameters, no_limits(e.model.info), mode)) {
+    std::ranges::copy(pose, inputs_.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.coordinate(0)));
+  }
+  double operator()(Node node) const { return outputs_of(expression::Program(e_.model.graph, {&node, 1}), inputs_)[0]; }
+  Vector3d operator()(const std::array<Node, 3>& nodes) const {
+    const std::vector<double> v = outputs_of(expression::Program(e_.model.graph, nodes), inputs_);
+    return {v[0], v[1], v[2]};
+  }
+
+ private:
+  const Evaluation& e_;
+  std::vector<double> inputs_;
+};
+
+/// The columns of a joint among the unknowns: three forces, then its couples.
+std::vector<Index> first_columns(const NewtonEuler& system) {
+  std::vector<Index> first = {0};
+  for (const Joint& joint : system.joints) first.push_back(first.back() + 3 + std::ssize(joint.couples));
+  return first;
+}
+
+/// Twice the complementary energy as a quadratic form of the unknowns.
+class Energy {
+ public:
+  Energy(const NewtonEuler& system, const JointedBodies& bodies, const Numbers& numbers)
+      : system_(system), bodies_(bodies), numbers_(numbers), first_(first_columns(system)) {
+    Q_ = MatrixXd::Zero(first_.back(), first_.back());
+    add_drives();
+    for (std::size_t i = 0; i < bodies.solids.size(); ++i)
+      if (bodies.solids[i].beam) add_beam(i, *bodies.solids[i].beam);
+  }
+  const MatrixXd& matrix() const { return Q_; }
+
+ private:
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  // three components, as linear forms of the unknowns
+
+  Rows no_rows() const { return Rows::Zero(3, Q_.cols()); }
+  Rows force(std::size_t joint) const {
+    Rows rows = no_rows();
+    rows.middleCols<3>(first_[joint]) = Eigen::Matrix3d::Identity();
+    return rows;
+  }
+  Rows couple(std::size_t joint) const {
+    Rows rows = no_rows();
+    for (std::size_t k = 0; k < system_.joints[joint].couples.size(); ++k)
+      rows.col(first_[joint] + 3 + static_cast<Index>(k)) = vector(system_.joints[joint].couples[k]);
+    return rows;
+  }
+  /// Joints of the same drive share its force.
+  void add_drives() {
+    std::map<std::size_t, Eigen::RowVectorXd> forces;
+    std::map<std::size_t, double> compliances;
+    for (std::size_t i = 0; i < bodies_.joints.size(); ++i) {
+      const auto& drive = bodies_.joints[i].drive;
+      if (!drive || !drive->compliance) continue;
+      const Actuator& actuator = *system_.joints[i].actuator;
+      Eigen::RowVectorXd& sum = forces.try_emplace(drive->joint, Eigen::RowVectorXd::Zero(Q_.cols())).first->second;
+      sum += vector(actuator.axis).transpose() * (actuator.turns ? couple(i) : force(i));
+      compliances[drive->joint] = numbers_(*drive->compliance);
+    }
+    for (const auto& [drive, sum] : forces) Q_ += compliances[drive] * sum.transpose() * sum;
+  }
+  /// A beam from `near`, where it is clamped, to `far`, with the loads of all other joints at its end. The moment is a
+  /// linear function of the place along the beam; the integral of its square follows from its values at both ends.
+  void add_beam(std::size_t solid, const SolidNodes::Beam& beam) {
+    const Vector3d near = numbers_(beam.near), far = numbers_(beam.far);
+    const double length = (far - near).norm();
+    const Vector3d u = (far - near) / length;
+    Rows load = no_rows(), at_near = no_rows(), at_far = no_rows();
+    for (std::size_t i = 0; i < bodies_.joints.size(); ++i) {
+      const JointNodes& joint = bodies_.joints[i];
+      if (i == beam.near_joint || (joint.on != solid && joint.from != solid)) continue;
+      const double sign = joint.on == solid ? 1 : -1;
+      const Rows F = force(i) * sign, M = couple(i) * sign;
+      const Vector3d p = vector(system_.joints[i].point);
+      load += F;
+      for (const auto& [place, moment] : {std::pair(near, &at_near), std::pair(far, &at_far)}) {
+        const Vector3d arm = p - place;
+        *moment += M;
+        for (Index k = 0; k < F.cols(); ++k) moment->col(k) += arm.cross(Vector3d(F.col(k)));
+      }
+    }
+    const Eigen::RowVectorXd axial = u.transpose() * load, torsion = u.transpose() * at_far;
+    Q_ += axial.transpose() * axial * (length / numbers_(beam.EA)) +
+          torsion.transpose() * torsion * (length / numbers_(beam.GJ));
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - u * u.transpose();
+    const Rows a = across * at_near, b = across * at_far;
+    Q_ += (a.transpose() * a + b.transpose() * b + (a.transpose() * b + b.transpose() * a) * 0.5) *
+          (length / (3 * numbers_(beam.EI)));
+  }
+
+  const NewtonEuler& system_;
+  const JointedBodies& bodies_;
+  const Numbers& numbers_;
+  std::vector<Index> first_;
+  MatrixXd Q_;
+};
+
+}  // namespace
+
+PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<const double> parameters,
+                                       const Pose<double>& pose, std::size_t mode) {
+  const JointedBodies& bodies = *evaluation.model.jointed;
+  const MotionState<double> at_rest{pose, AxisVector<double>(pose.size())};
+  NewtonEuler system = newton_euler(evaluation, parameters, mode, at_rest, AxisVector<double>(pose.size()), {});
+  const Numbers numbers(evaluation, parameters, pose, mode);
+  const MatrixXd A = equations(system).A;
+  const Energy energy(system, bodies, numbers);
+  const MatrixXd& Q = energy.matrix();
+
+  // Wrenches at the origin of the platform's frame, as loads on the platform. Lengths are divided by `size`, so that
+  // ranks do not depend on units.
+  const auto platform = static_cast<std::size_t>(std::ranges::find(bodies.solids, true, &SolidNodes::with_platform) -
+                                                 bodies.solids.begin());
+  const double size = couple_length(system);
+  MatrixXd B = MatrixXd::Zero(A.rows(), 6);
+  const Vector3d arm = numbers(evaluation.model.origin) - vector(system.bodies[platform].centre);
+  const auto row = static_cast<Index>(6 * platform);
+  for (Index k = 0; k < 3; ++k) {
+    B(row + k, k) = B(row + 3 + k, 3 + k) = -1;
+    B.block<3, 1>(row + 3, k) = -arm.cross(Vector3d(Vector3d::Unit(k)));
+  }
+  Eigen::VectorXd scale_rows = Eigen::VectorXd::Ones(A.rows()), scale_columns = Eigen::VectorXd::Ones(A.cols());
+  for (Index i = 0; i < A.rows(); ++i)
+    if (i % 6 >= 3) scale_rows[i] = 1 / size;
+  for (Index column = 0; const Joint& joint : system.joints) {
+    column += 3;
+    for (std::size_t k = 0; k < joint.couples.size(); ++k) scale_columns[column++] = size;
+  }
+  Eigen::VectorXd scale_wrench(6);
+  scale_wrench << 1, 1, 1, size, size, size;
+  const MatrixXd scaled_A = scale_rows.asDiagonal() * A * scale_columns.asDiagonal(),
+                 scaled_B = scale_rows.asDiagonal() * B * scale_wrench.asDiagonal(),
+                 scaled_Q = scale_columns.asDiagonal() * Q * scale_columns.asDiagonal();
+
+  // The wrenches that are in the column space of A: B w has no component in the left null space.
+  Eigen::JacobiSVD<MatrixXd> decomposition(scaled_A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  decomposition.setThreshold(1e-9);
+  const Index rank = decomposition.rank();
+  const MatrixXd unbalanced = decomposition.matrixU().rightCols(A.rows() - rank).transpose() * scaled_B;
+  MatrixXd supported = MatrixXd::Identity(6, 6);
+  if (unbalanced.rows() > 0) {
+    Eigen::JacobiSVD<MatrixXd> of_wrenches(unbalanced, Eigen::ComputeFullV);
+    Index blocked = 0;
+    while (blocked < of_wrenches.singularValues().size() && of_wrenches.singularValues()[blocked] > 1e-9) ++blocked;
+    supported = of_wrenches.matrixV().rightCols(6 - blocked);
+  }
+  if (supported.cols() == 0) return {AxisMatrix<double>(6, 0), {}};
+  // x = x_0 + N y with the null space N of A; y minimises the energy
+  const MatrixXd x_0 = decomposition.solve(scaled_B * supported);
+  const MatrixXd N = decomposition.matrixV().rightCols(A.cols() - rank);
+  MatrixXd x = x_0;
+  if (N.cols() > 0) {
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> of_energy(N.transpose() * scaled_Q * N);
+    x -= N * of_energy.solve(N.transpose() * scaled_Q * x_0);
+  }
+  // back from scaled wrenches to orthonormal ones in N and N m
+  const MatrixXd wrenches = scale_wrench.asDiagonal() * supported;
+  const MatrixXd basis =
+      supported.cols() == 6
+          ? MatrixXd::Identity(6, 6)
+          : MatrixXd(Eigen::HouseholderQR<MatrixXd>(wrenches).householderQ() * MatrixXd::Identity(6, wrenches.cols()));
+  const MatrixXd back = (basis.transpose() * wrenches).inverse();
+  MatrixXd C = back.transpose() * (x.transpose() * scaled_Q * x) * back;
+  C = ((C + C.transpose()) / 2).eval();
+  constexpr double kRounding = 1e-13;  // what is smaller, relative to the diagonal, is a rounding error
+  for (Index i = 0; i < C.rows(); ++i)
+    for (Index j = 0; j < C.cols(); ++j)
+      if (i != j && std::fabs(C(i, j)) < kRounding * std::sqrt(C(i, i) * C(j, j))) C(i, j) = 0;
+  return {matrix(basis), matrix(C)};
+}
+
+}  // namespace pkm::generic
