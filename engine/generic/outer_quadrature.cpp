@@ -1,7 +1,6 @@
 #include "engine/generic/outer_quadrature.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/core/stop.hpp"
 #include "engine/expression/reverse_mode.hpp"
@@ -9,10 +8,10 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kCoarse = 1e-5;  // tolerances from here on begin with a single cell
+constexpr double kCoarse = 1e-5;  // with this tolerance or a larger one, the subdivision begins with a single cell
 constexpr std::size_t kMaxCells = 100;
 
-/// Adds factor() times the gradient of the first output of a program of a single stage.
+/// Adds factor() times the gradient of the first output of a program that has a single stage.
 template <class Factor>
 void add_gradient(const expression::Program& program, const std::vector<double>& inputs, const Factor& factor,
                   std::span<double> by_input) {
@@ -25,16 +24,15 @@ void add_gradient(const expression::Program& program, const std::vector<double>&
   for (const auto& input : program.stages().front().inputs) by_input[input.position] += adjoints[input.to];
 }
 
-}  // namespace
-
 /// The integral over a subinterval of a range.
-struct OuterQuadrature::Cell {
+struct OuterCell {
   Subinterval<double> interval;
   double value = 0, error = 0;
   double inner_error = 0;  ///< integral of the errors of the inner volumes
-  long evaluations = 0;
-  std::vector<double> by_input;
+  std::vector<double> by_input{};
 };
+
+}  // namespace
 
 Integral<double> OuterQuadrature::at(std::size_t level, double value, std::vector<double>& inputs,
                                      std::span<double> by_input, const Inner& inner) const {
@@ -43,66 +41,55 @@ Integral<double> OuterQuadrature::at(std::size_t level, double value, std::vecto
   return level + 1 < coordinates_.size() ? measure(level + 1, inputs, by_input, inner) : inner(inputs, by_input);
 }
 
-OuterQuadrature::Cell OuterQuadrature::integrate_over(std::size_t level, const Subinterval<double>& interval,
-                                                      std::vector<double>& inputs, bool needs_gradient,
-                                                      const Inner& inner) const {
-  const NestedRule& rule = kronrod_rule();
-  const NestedRule::Level& weights = rule.level.front();
-  Cell cell{.interval = interval};
-  cell.by_input.resize(needs_gradient ? inputs.size() : 0);
-  std::vector<double> by_input(cell.by_input.size());
-  std::array<double, NestedRule::kNodes> term;
-  double embedded = 0, spread = 0;
-  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
-    const auto [point, jacobian] = map_node(interval, rule.node[i]);
-    std::ranges::fill(by_input, 0);
-    const Integral<double> found = at(level, point, inputs, by_input, inner);
-    const double weight = jacobian * weights.weight[i];
-    term[i] = jacobian * found.value;
-    cell.value += weight * found.value;
-    cell.inner_error += weight * found.error;
-    cell.evaluations += found.evaluations;
-    embedded += weights.fewer[i] * term[i];
-    for (std::size_t k = 0; k < by_input.size(); ++k) cell.by_input[k] += weight * by_input[k];
-  }
-  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) spread += weights.weight[i] * std::fabs(term[i] - cell.value);
-  cell.error = quadpack_error(std::fabs(cell.value - embedded), spread);
-  return cell;
-}
-
 Integral<double> OuterQuadrature::measure(std::size_t level, std::vector<double>& inputs, std::span<double> by_input,
                                           const Inner& inner) const {
   const Subinterval<double> range = this->range(level, inputs);
   const double width = range.upper - range.lower;
   if (!(width > 0)) return {};
-  std::vector<Cell> cells;
-  const int first_cells = tolerance_ >= kCoarse ? 1 : 2;
-  for (int i = 0; i < first_cells; ++i)
-    cells.push_back(integrate_over(level,
-                                   {range.lower + width * i / first_cells, range.lower + width * (i + 1) / first_cells},
-                                   inputs, !by_input.empty(), inner));
+  std::vector<OuterCell> cells;
   Integral<double> sum;
+  const NestedRule& rule = kronrod_rule();
+  const NestedRule::Level& weights = rule.level.front();
+  std::vector<double> by_input_there(by_input.size());
+  const auto integrate = [&](OuterCell& cell) {
+    cell.value = cell.inner_error = 0;
+    cell.by_input.assign(by_input.size(), 0);
+    std::array<double, NestedRule::kNodes> term;
+    for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+      const auto [point, jacobian] = map_node(cell.interval, rule.node[i]);
+      std::ranges::fill(by_input_there, 0);
+      const Integral<double> found = at(level, point, inputs, by_input_there, inner);
+      const double weight = jacobian * weights.weight[i];
+      term[i] = jacobian * found.value;
+      cell.value += weight * found.value;
+      cell.inner_error += weight * found.error;
+      sum.evaluations += found.evaluations;
+      for (std::size_t k = 0; k < by_input.size(); ++k) cell.by_input[k] += weight * by_input_there[k];
+    }
+    cell.error = rule_error(weights, term, cell.value);
+  };
+  const int first_cells = tolerance_ >= kCoarse ? 1 : 2;
+  for (int i = 0; i < first_cells; ++i) {
+    cells.push_back({{range.lower + width * i / first_cells, range.lower + width * (i + 1) / first_cells}});
+    integrate(cells.back());
+  }
   while (true) {
     double error = 0, inner_error = 0;
     sum.value = 0;
-    for (const Cell& cell : cells) {
+    for (const OuterCell& cell : cells) {
       sum.value += cell.value;
       error += cell.error;
       inner_error += cell.inner_error;
     }
     sum.error = error + inner_error;
     if (error <= std::max(tolerance_ * sum.value, inner_error) || cells.size() >= kMaxCells) break;
-    const auto worst = std::ranges::max_element(cells, {}, &Cell::error);
-    const auto [first, second] = halves(worst->interval);
-    sum.evaluations += worst->evaluations;
-    *worst = integrate_over(level, first, inputs, !by_input.empty(), inner);
-    cells.push_back(integrate_over(level, second, inputs, !by_input.empty(), inner));
+    const auto worst = std::ranges::max_element(cells, {}, &OuterCell::error);
+    bisect_cell(cells, static_cast<std::size_t>(worst - cells.begin()), integrate);
   }
-  for (const Cell& cell : cells) sum.evaluations += cell.evaluations;
   if (by_input.empty()) return sum;
   const std::size_t own = e_.model.inputs.coordinate(coordinates_[level]);
   const double of_coordinate = by_input[own];
-  for (const Cell& cell : cells)
+  for (const OuterCell& cell : cells)
     for (std::size_t k = 0; k < by_input.size(); ++k) by_input[k] += cell.by_input[k];
   by_input[own] = of_coordinate;
   const auto value_at = [&](double end) { return at(level, end, inputs, {}, inner).value; };

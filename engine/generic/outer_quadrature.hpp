@@ -1,7 +1,6 @@
-// Volumes over more than three coordinates: the integral of volumes over three of them over the ranges of the others,
-// by adaptive Gauss-Kronrod quadrature (QUADPACK). Volumes are smooth functions of the outer coordinates, except where
-// parts of the workspace begin or end: there the subdivision becomes finer. A workspace that all nodes miss is not
-// found.
+// Adaptive Gauss-Kronrod quadrature (QUADPACK) for volumes over more than three coordinates: the integrand is the
+// volume over three inner coordinates as a function of the outer ones. This function is smooth except where parts of
+// the workspace begin or end: there the subdivision becomes finer. A workspace that all nodes miss is not found.
 #pragma once
 
 #include <functional>
@@ -14,15 +13,15 @@ namespace pkm::generic {
 
 class OuterQuadrature {
  public:
-  /// @param coordinates  the outermost first; their ranges are those of the model
+  /// @param coordinates  the outer coordinates, the outermost first; their ranges are those of the model
   /// @param tolerance    relative
   OuterQuadrature(const Evaluation& evaluation, std::vector<std::size_t> coordinates, double tolerance)
       : e_(evaluation), coordinates_(std::move(coordinates)), tolerance_(tolerance) {}
 
   const std::vector<std::size_t>& coordinates() const { return coordinates_; }
 
-  /// The volume over the other coordinates at values of these. Adds its derivatives by the inputs, unless `by_input` is
-  /// empty.
+  /// Returns the volume over the inner coordinates at the values of the outer ones in `inputs`. Adds its derivatives by
+  /// the inputs, unless `by_input` is empty.
   using Inner = std::function<Integral<double>(std::span<const double> inputs, std::span<double> by_input)>;
   /// The volume over all coordinates.
   /// @param inputs    of the graph; those of the coordinates are overwritten
@@ -38,12 +37,9 @@ class OuterQuadrature {
   }
 
  private:
-  struct Cell;
-
   Integral<double> measure(std::size_t level, std::vector<double>& inputs, std::span<double> by_input,
                            const Inner& inner) const;
-  Cell integrate_over(std::size_t level, const Subinterval<double>& interval, std::vector<double>& inputs,
-                      bool needs_gradient, const Inner& inner) const;
+  /// The integral over the coordinates after coordinates_[level], at a value of the latter.
   Integral<double> at(std::size_t level, double value, std::vector<double>& inputs, std::span<double> by_input,
                       const Inner& inner) const;
 

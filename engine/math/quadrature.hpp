@@ -116,6 +116,21 @@ inline double quadpack_error(double difference, double spread) {
   return ratio > 0 ? spread * std::fmin(1.0, ratio * std::sqrt(ratio)) : 0;
 }
 
+/// quadpack_error() of one rule.
+/// @param term   integrand times Jacobian at the nodes
+/// @param value  result of the rule: the sum of weight * term
+template <class S>
+double rule_error(const NestedRule::Level& level, const std::array<S, NestedRule::kNodes>& term, double value,
+                  Between between = Between::smooth) {
+  double embedded = 0, spread = 0;
+  for (std::size_t i = 0; i < level.nodes; ++i) {
+    embedded += level.fewer[i] * value_of(term[i]);
+    spread += level.weight[i] * std::fabs(value_of(term[i]) - value);
+  }
+  const double difference = std::fabs(value - embedded);
+  return between == Between::kinks ? difference : quadpack_error(difference, spread);
+}
+
 /// A subinterval of the adaptive subdivision, with the integrand at its nodes and its integral.
 template <class S>
 struct QuadratureCell {
@@ -140,19 +155,14 @@ void apply_rule(const F& f, const Quadrature& how, QuadratureCell<S>& cell) {
   const NestedRule::Level& level = how.rule.level[cell.levels++];
   Integral<S>& result = cell.integral;
   result.value = S(0.0);
-  double embedded = 0, spread = 0;
   for (std::size_t i = 0; i < level.nodes; ++i) {
     if (i >= known) {
       const auto [point, jacobian] = map_node(cell.interval, how.rule.node[i]);
       cell.term[i] = f(point) * jacobian;
     }
     result.value += cell.term[i] * level.weight[i];
-    embedded += value_of(cell.term[i]) * level.fewer[i];
   }
-  const double mean = value_of(result.value);
-  for (std::size_t i = 0; i < level.nodes; ++i) spread += level.weight[i] * std::fabs(value_of(cell.term[i]) - mean);
-  const double difference = std::fabs(mean - embedded);
-  result.error = how.between == Between::kinks ? difference : quadpack_error(difference, spread);
+  result.error = rule_error(level, cell.term, value_of(result.value), how.between);
   result.evaluations += static_cast<long>(level.nodes - known);
 }
 
@@ -162,6 +172,20 @@ std::array<Subinterval<S>, 2> halves(const Subinterval<S>& interval) {
   const S middle = (interval.lower + interval.upper) * 0.5;
   return {Subinterval<S>{interval.lower, middle, interval.sqrt_at_lower, false},
           Subinterval<S>{middle, interval.upper, false, interval.sqrt_at_upper}};
+}
+
+/// One step of globally adaptive quadrature (QUADPACK's QAG): replaces a cell by its halves. Its lower half takes its
+/// place, its upper half is appended.
+/// @param cells      have a member `interval`, a Subinterval
+/// @param integrate  computes the other members of a cell, whatever values they have
+template <class Cell, class Integrate>
+void bisect_cell(std::vector<Cell>& cells, std::size_t index, const Integrate& integrate) {
+  const auto [lower, upper] = halves(cells[index].interval);
+  cells.push_back(cells[index]);
+  cells[index].interval = lower;
+  cells.back().interval = upper;
+  integrate(cells[index]);
+  integrate(cells.back());
 }
 
 /// Refines a subinterval until its error estimate is at most `tolerance` (absolute): first by the higher rules, then by

@@ -48,7 +48,7 @@ class CellCurves {
               is_cut() ? std::array<double, 2>{} : cut_of(segment.curves, range.second)},
         branch_(range.branch) {
     std::array<double, kPoints> tau{};
-    for (std::size_t q = 0; q < kRule; ++q) tau[q] = map_node(cell.tau, kronrod_rule().node[q]).point;
+    for (std::size_t q = 0; q < kRule; ++q) tau[q] = map_node(cell.interval, kronrod_rule().node[q]).point;
     evaluate_at_points(first_.series, first_.terms, tau.data(), values_[0].data());
     if (!is_cut()) evaluate_at_points(second_.series, second_.terms, tau.data(), values_[1].data());
   }
@@ -89,7 +89,7 @@ void visit_cell(const SegmentIntegral& segment, const RangeCell& cell, const Vis
   const NestedRule& rule = kronrod_rule();
   const double kappa = segment.decomposition.ranges[cell.range].weight;
   for (std::size_t q = 0; q < kRule; ++q) {
-    const auto [tau, jacobian] = map_node(cell.tau, rule.node[q]);
+    const auto [tau, jacobian] = map_node(cell.interval, rule.node[q]);
     visit(q, tau, kappa * jacobian * outer_derivative(segment.outer, tau));
   }
 }
@@ -98,17 +98,13 @@ void integrate_cell(const SegmentIntegral& segment, RangeCell& cell) {
   const CellCurves curves(segment, segment.decomposition.ranges[cell.range], cell);
   const NestedRule::Level& level = kronrod_rule().level[0];
   std::array<double, kRule> term;
-  double sum = 0, embedded = 0, size = 0, spread = 0;
+  cell.value = cell.size = 0;
   visit_cell(segment, cell, [&](std::size_t q, double, double weight) {
     term[q] = weight * curves.value(curves.at(q));
-    sum += level.weight[q] * term[q];
-    embedded += level.fewer[q] * term[q];
-    size += level.weight[q] * std::fabs(term[q]);
+    cell.value += level.weight[q] * term[q];
+    cell.size += level.weight[q] * std::fabs(term[q]);
   });
-  for (std::size_t q = 0; q < kRule; ++q) spread += level.weight[q] * std::fabs(term[q] - sum);
-  cell.value = sum;
-  cell.size = size;
-  cell.error = quadpack_error(std::fabs(sum - embedded), spread);
+  cell.error = rule_error(level, term, cell.value);
 }
 
 }  // namespace
@@ -126,20 +122,13 @@ void SegmentIntegral::start() {
 
 bool SegmentIntegral::refine() {
   constexpr double kShortest = 1e-10;
-  std::size_t worst = cells.size();
-  double largest = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (cells[i].error > largest && cells[i].tau.upper - cells[i].tau.lower > kShortest) {
-      largest = cells[i].error;
-      worst = i;
-    }
-  if (worst == cells.size()) return false;
-  const auto [lower, upper] = halves(cells[worst].tau);
-  cells[worst].tau = lower;
-  cells.push_back(cells[worst]);
-  cells.back().tau = upper;
-  integrate_cell(*this, cells[worst]);
-  integrate_cell(*this, cells.back());
+  const auto reducible_error = [](const RangeCell& cell) {
+    return cell.interval.upper - cell.interval.lower > kShortest ? cell.error : 0;
+  };
+  const auto worst = std::ranges::max_element(cells, {}, reducible_error);
+  if (worst == cells.end() || reducible_error(*worst) == 0) return false;
+  bisect_cell(cells, static_cast<std::size_t>(worst - cells.begin()),
+              [&](RangeCell& cell) { integrate_cell(*this, cell); });
   sum();
   return true;
 }

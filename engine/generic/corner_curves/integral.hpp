@@ -23,8 +23,8 @@ inline double outer_derivative(const OuterRange& range, double tau) {
 /// A subinterval of an active range.
 struct RangeCell {
   std::uint32_t range;
-  Subinterval<double> tau;
-  double value, error, size;  ///< size: integral of the magnitude
+  Subinterval<double> interval;  ///< of tau
+  double value, error, size;     ///< size: integral of the magnitude
 };
 
 /// A segment of the outer coordinate.

@@ -11,7 +11,8 @@ constexpr double kFunctionRounding = 4e-15;  // relative to the size of the soli
 constexpr int kMaxBisections = 36;
 constexpr long kMaxBoxes = 400'000;
 
-/// A condition on the points of a curve: they belong to a body, or to the face of a body on whose surface they lie.
+/// A condition on the points of a curve: they have to belong to a body, or, if they lie on the surface of one of its
+/// faces, to that face.
 struct Test {
   std::size_t body;
   const Rule* rule;
@@ -24,10 +25,10 @@ struct Range {
   double sign;  ///< 1: the first face is on the left in the direction of increasing u; -1: the second one is
 };
 
-/// A quadrature interval.
+/// A quadrature interval of an active part.
 struct Panel {
   std::size_t range;
-  double from, to;
+  Subinterval<double> interval;
   double value = 0, error = 0;
   std::array<Moments, 2> moments{};  ///< of the two faces
 };
@@ -99,7 +100,7 @@ class Evaluator {
     set_tests(curve);
     long boxes = 0;
     constexpr double kFirst = 0.8;  // width of the first boxes
-    constexpr double kStart = 2.9;  // of b: no other angle of a symmetric solid
+    constexpr double kStart = 2.9;  // arbitrary angle b, at which a symmetric solid has no special point
     const double width = torus.to - torus.from;
     const int along_q = static_cast<int>(width / kFirst) + 1, along_b = static_cast<int>(2 * kPi / kFirst) + 1;
     const std::array<double, 2> half{0.5 * width / along_q, kPi / along_b};
@@ -149,11 +150,11 @@ class Evaluator {
     });
   }
 
-  // Activity of the points of arcs.
+  // Search for the active parts of arcs.
 
   using Tests = std::uint64_t;  // one bit each
 
-  /// The conditions on the points of a curve.
+  /// Collects the conditions on the points of a curve.
   void set_tests(const Curve& curve) {
     const auto& [a, b] = curve.faces;
     tests_.clear();
@@ -173,7 +174,7 @@ class Evaluator {
     set_tests(*arc.curve);
     arc_ = &arc;
     first_range_ = ranges_.size();
-    // Enclosures over more than a quarter of a circle decide nothing.
+    // Enclosures over more than a quarter of a circle are too wide to decide any condition.
     const int parts = std::max(1, static_cast<int>(arc.length / 1.6));
     for (int i = 0; i < parts; ++i)
       search(arc.length * i / parts, arc.length * (i + 1) / parts, 0, (Tests{1} << tests_.size()) - 1);
@@ -241,7 +242,8 @@ class Evaluator {
       if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), tests)) emit(ends[i], ends[i + 1]);
   }
 
-  /// The possible combinations of signs, as far as they matter.
+  /// The combinations of signs that are possible at a point or on an interval. Functions on which the rule does not
+  /// depend are not evaluated.
   template <class Sign>
   SignSets examine(const Test& test, const CurvePoint& at, std::array<Enclosure, kFunctions>& values,
                    const Sign& sign_of) const {
@@ -256,7 +258,8 @@ class Evaluator {
     return possible;
   }
 
-  /// A function that vanishes on the whole curve does not change its sign there, so that either sign is right.
+  /// Sign of a function on an interval; 0: unknown. A function that vanishes on the whole curve counts as positive: it
+  /// has no change of sign there, so that either sign is right.
   static int sign(const Enclosure& f, double power, double half) {
     const double reach = f.reach();
     if (f.value - reach > kFunctionRounding * power) return 1;
@@ -315,8 +318,9 @@ class Evaluator {
       ranges_.push_back({arc_, from, to, sign});
   }
 
-  // Sums over the active ranges.
+  // Sums over the active parts.
 
+  /// Checks that the directed edges of each face form closed curves.
   void close() {
     std::vector<Vector3>& gaps = gaps_;
     gaps.assign(faces_.size(), {});
@@ -334,7 +338,7 @@ class Evaluator {
     return static_cast<std::size_t>(range.arc->curve->faces[which] - faces_.data());
   }
 
-  /// The pole of a whole sphere is placed far from the edges on it.
+  /// Places the pole of each whole sphere far from the edges on it.
   void choose_poles() {
     for (Face& face : faces_) {
       if (face.body->kind != Body::Kind::sphere) continue;
@@ -375,7 +379,7 @@ class Evaluator {
     }
     std::vector<Panel>& panels = panels_;
     panels.clear();
-    for (std::size_t i = 0; i < ranges_.size(); ++i) panels.push_back({i, ranges_[i].from, ranges_[i].to});
+    for (std::size_t i = 0; i < ranges_.size(); ++i) panels.push_back({i, {ranges_[i].from, ranges_[i].to}});
     for (Panel& panel : panels) evaluate(panel);
     const auto total = [&](auto member) {
       double all = 0;
@@ -389,13 +393,10 @@ class Evaluator {
     constexpr std::size_t kMaxPanels = 2000;
     while (error > std::max(tolerance * std::fabs(sum), 1e-15 * magnitude) && panels.size() < kMaxPanels) {
       const auto worst = std::ranges::max_element(panels, {}, &Panel::error);
-      const double middle = 0.5 * (worst->from + worst->to);
-      Panel left{worst->range, worst->from, middle}, right{worst->range, middle, worst->to};
-      evaluate(left);
-      evaluate(right);
-      sum += left.value + right.value - worst->value;
-      *worst = left;
-      panels.push_back(right);
+      const auto index = static_cast<std::size_t>(worst - panels.begin());
+      const double before = worst->value;
+      bisect_cell(panels, index, [&](Panel& panel) { evaluate(panel); });
+      sum += panels[index].value + panels.back().value - before;
       error = total(&Panel::error);
     }
     for (const Panel& panel : panels)
@@ -411,10 +412,11 @@ class Evaluator {
     const NestedRule::Level& level = rule.level.front();
     const auto& faces = range.arc->curve->faces;
     std::array<double, NestedRule::kNodes> f{};
-    double fewer = 0, spread = 0;
-    const double length = panel.to - panel.from;
+    const double length = panel.interval.upper - panel.interval.lower;
+    panel.value = 0;
+    panel.moments = {};
     for (std::size_t i = 0; i < level.nodes; ++i) {
-      const Enclosure3 at = point(*range.arc, Enclosure::variable(panel.from + length * rule.node[i], 0)).p;
+      const Enclosure3 at = point(*range.arc, Enclosure::variable(panel.interval.lower + length * rule.node[i], 0)).p;
       const Vector3 p = values(at), dp = slopes(at) * (length * range.sign);
       for (std::size_t k = 0; k < 2; ++k) {
         const double sign = k == 0 ? 1 : -1;
@@ -423,10 +425,8 @@ class Evaluator {
         f[i] += sign * three_volumes(*faces[k], m) / 3;
       }
       panel.value += level.weight[i] * f[i];
-      fewer += level.fewer[i] * f[i];
     }
-    for (std::size_t i = 0; i < level.nodes; ++i) spread += level.weight[i] * std::fabs(f[i] - panel.value);
-    panel.error = quadpack_error(std::fabs(panel.value - fewer), spread);
+    panel.error = rule_error(level, f, panel.value);
     result_.nodes += static_cast<long>(level.nodes);
   }
 
@@ -481,7 +481,7 @@ class Evaluator {
   double undecided_ = 0;
   EdgeVolume result_;
 
-  // of the arc that is searched
+  // members of the search along one arc
   const Arc* arc_ = nullptr;
   std::vector<Test> tests_;
   std::vector<Undecided> undecided_functions_;
