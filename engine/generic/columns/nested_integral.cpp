@@ -15,7 +15,7 @@ constexpr double kMinWidth = 1e-12;  // relative to the range: shorter intervals
 constexpr double kMinResolvableWidth =
     1e-6;  // relative to the range: shorter intervals can have types that rounding mixes
 constexpr double kBlurredInLines = 1e-4;
-constexpr std::size_t kMostParts = 3000;
+constexpr std::size_t kMaxIntervals = 3000;
 constexpr int kBisectionsOfJump = 5;    // consecutive ones that leave nearly all of a change in one half
 constexpr double kEndTolerance = 1e-7;  // relative to the largest slice, if derivatives will be computed
 
@@ -53,7 +53,8 @@ double missed_at_ends(const SmoothInterval& part, const std::array<Slice, Nested
   return std::max(std::fabs(at_lower - part.below.measure), std::fabs(at_upper - part.above.measure));
 }
 
-/// Whether nearly all of a change is in one half, as at a discontinuity; for a square root it is 71 %.
+/// Whether nearly all of the change across an interval is in one half, as at a discontinuity. At a square-root
+/// singularity it is 71 %.
 bool is_one_sided(const Slice& below, const Slice& middle, const Slice& above) {
   const double first = std::fabs(middle.measure - below.measure), second = std::fabs(above.measure - middle.measure);
   return std::max(first, second) > 0.95 * (first + second);
@@ -236,7 +237,7 @@ Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) con
     sum.error += part.error + part.irreducible_error;
     if (part.below.hash != last) hash.add(part.below.hash);
     last = part.below.hash;
-    // The bound of an interval can change, and the measure be discontinuous, while the intervals stay the same.
+    // The measure can also be discontinuous because another constraint bounds an interval, which keeps its type.
     for (const IntervalBound closing : {part.lower, part.upper})
       if (closing != kCriticalValue) hash.add(closing);
   }
@@ -268,7 +269,8 @@ void NestedIntegral::add_intervals(std::size_t level, const CriticalValues& crit
   }
 }
 
-/// Integrates over an interval; if its nodes differ in type, over the intervals between the critical values.
+/// Integrates over an interval by the Gauss-Kronrod rule. If its nodes differ in type, it is first divided at the
+/// critical values between them; this is why this folder does not use refine() of math/quadrature.hpp.
 void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double whole, int depth,
                                   IntegralScratch& scratch) const {
   IntegralScratch::Level& own = scratch.levels[level];
@@ -296,14 +298,14 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
   } else {
     find_slices(level, part.at, slices, scratch);
   }
-  double less = 0, add_samples = 0;
+  double embedded = 0, spread = 0;
   bool same = part.below.hash == part.above.hash;
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
     const double jacobian = jacobians[i];
     part.weight[i] = jacobian * weights.weight[i];
     part.value += part.weight[i] * slices[i].measure;
     part.irreducible_error += part.weight[i] * slices[i].error;
-    less += jacobian * weights.fewer[i] * slices[i].measure;
+    embedded += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
   if (!same && depth < kMaxDepth && width > (ends_in_lines() ? kBlurredInLines : kMinResolvableWidth) * whole &&
@@ -321,9 +323,10 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     critical_values.push_back({part.piece.upper, part.piece.sqrt_at_upper, part.above, above, part.upper == kBox});
     return add_intervals(level, critical_values, whole, depth + 1, scratch);
   }
+  // As rule_error(), but in an order of operations that decides which of two symmetric intervals is bisected first.
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
-    add_samples += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
-  part.error = quadpack_error(std::fabs(part.value - less), add_samples);
+    spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
+  part.error = quadpack_error(std::fabs(part.value - embedded), spread);
   if (scratch.for_gradient && same) part.missed_at_ends = missed_at_ends(part, slices);
   if (!same) {
     const auto [least, largest] = std::ranges::minmax(slices, {}, &Slice::measure);
@@ -332,7 +335,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
   own.parts.push_back(part);
 }
 
-/// Bisects the interval with the largest error until the sum is small enough, then those inaccurate at their endpoints.
+/// Bisects the interval with the largest error until the total error is small enough, then the intervals whose
+/// polynomial is inaccurate at the endpoints.
 void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& scratch) const {
   IntegralScratch::Level& own = scratch.levels[level];
   // The error of an inner integral need not be below what the largest one allows.
@@ -342,7 +346,7 @@ void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& sc
   const auto misses = [&](const SmoothInterval& part) {
     return part.missed_at_ends > may_miss && part.piece.upper - part.piece.lower > kMinWidth * whole;
   };
-  while (own.parts.size() < kMostParts && !is_exhausted(scratch)) {
+  while (own.parts.size() < kMaxIntervals && !is_exhausted(scratch)) {
     double value = 0, error = 0;
     for (const SmoothInterval& part : own.parts) {
       value += part.value;
