@@ -9,12 +9,9 @@
 
 namespace pkm::generic {
 
-/// Throws std::invalid_argument, with a sentence, if columns cannot serve the plan.
-std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
-                                                          const WorkspacePlan& plan, const ColumnOptions& columns,
-                                                          const FieldRequest& request);
-
-/// Why the default analysis of the mechanism has no columns; empty if it has.
-std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluation);
+/// Makes the evaluator of columns for a plan. Throws std::invalid_argument with a message if they do not support it.
+/// @param evaluation  must outlive the evaluator
+std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Evaluation& evaluation, const WorkspacePlan& plan,
+                                                          const ColumnOptions& columns, const FieldRequest& request);
 
 }  // namespace pkm::generic

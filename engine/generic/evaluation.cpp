@@ -1,7 +1,6 @@
 #include "engine/generic/evaluation.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "engine/core/error.hpp"
 
@@ -113,6 +112,23 @@ void Evaluation::fill_inputs(std::span<const S> parameters, const LimitSpec& lim
 }
 
 template <class S>
+void Evaluation::fill_inputs(std::span<const S> parameters, const WorkspacePlan& plan, std::size_t mode,
+                             std::vector<S>& values) const {
+  using Kind = FixedCoordinate::Kind;
+  values.resize(model.inputs.count());
+  fill_inputs<S>(parameters, plan.limits, mode, values);
+  for (const int coordinate : sweep_of(model.info, plan).fixed) {
+    const auto i = static_cast<std::size_t>(coordinate);
+    const FixedCoordinate fixed = how_fixed(plan, coordinate);
+    if (fixed.kind == Kind::integrated) continue;
+    std::optional<S> value = S(fixed.kind == Kind::listed ? fixed.values.front() : fixed.value);
+    if (fixed.kind == Kind::default_value) value = of_design<S>(default_values[i], parameters);
+    if (!value) throw_no_default_value(model.info, coordinate);
+    values[model.inputs.coordinate(i)] = *value;
+  }
+}
+
+template <class S>
 std::optional<S> Evaluation::of_design(const Program& program, std::span<const S> parameters) const {
   if (program.outputs().empty()) return {};
   const Inputs& at = model.inputs;
@@ -168,6 +184,10 @@ template void Evaluation::fill_inputs(std::span<const Dual4>, const LimitSpec&, 
 template void Evaluation::fill_inputs(std::span<const Taylor>, const LimitSpec&, std::size_t, std::span<Taylor>) const;
 template void Evaluation::fill_inputs(std::span<const Interval>, const LimitSpec&, std::size_t,
                                       std::span<Interval>) const;
+template void Evaluation::fill_inputs(std::span<const double>, const WorkspacePlan&, std::size_t,
+                                      std::vector<double>&) const;
+template void Evaluation::fill_inputs(std::span<const Dual4>, const WorkspacePlan&, std::size_t,
+                                      std::vector<Dual4>&) const;
 template std::optional<double> Evaluation::of_design(const Program&, std::span<const double>) const;
 template std::optional<Dual4> Evaluation::of_design(const Program&, std::span<const Dual4>) const;
 template std::optional<Taylor> Evaluation::of_design(const Program&, std::span<const Taylor>) const;

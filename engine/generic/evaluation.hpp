@@ -34,6 +34,11 @@ struct Evaluation {
   /// @param values  size Inputs::count()
   template <class S>
   void fill_inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode, std::span<S> values) const;
+  /// The graph's inputs for a workspace analysis, with the fixed coordinates at their values; integrated ones are 0.
+  /// Throws std::invalid_argument with a message if a fixed coordinate has no value.
+  template <class S>
+  void fill_inputs(std::span<const S> parameters, const WorkspacePlan& plan, std::size_t mode,
+                   std::vector<S>& values) const;
   template <class S>
   std::vector<S> inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode) const {
     std::vector<S> values(model.inputs.count());

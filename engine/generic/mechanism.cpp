@@ -6,6 +6,7 @@
 #include "engine/generic/bounds.hpp"
 #include "engine/generic/clearance.hpp"
 #include "engine/generic/column_evaluator.hpp"
+#include "engine/generic/column_volume.hpp"
 #include "engine/generic/design_checks.hpp"
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/elastostatics.hpp"
@@ -41,7 +42,7 @@ class GenericMechanism final : public Mechanism,
   GenericMechanism(Model model, Accelerators accelerators)
       : e_(std::move(model)),
         accelerators_(std::move(accelerators)),
-        why_no_columns_(accelerators_.columns ? "" : generic::why_no_columns(*this, e_)) {}
+        why_no_columns_(accelerators_.columns ? "" : generic::why_no_columns(e_)) {}
 
   const Evaluation& evaluation() const { return e_; }
 
@@ -151,7 +152,7 @@ class GenericMechanism final : public Mechanism,
     if (const auto of_file = accelerated_plan(plan, request);
         accelerators_.voxels && of_file && accelerators_.voxels->serves(*of_file, voxels, request))
       return accelerators_.voxels->prepare(*of_file, voxels, request);
-    return prepare_voxels(*this, e_, plan, voxels, request, accelerated_box(plan, request));
+    return prepare_voxels(e_, plan, voxels, request, accelerated_box(plan, request));
   }
   /// The plan without the limits of quantities, which accelerators do not have.
   WorkspacePlan without_quantities(WorkspacePlan plan) const {
@@ -199,7 +200,7 @@ class GenericMechanism final : public Mechanism,
     if (const auto of_file = accelerated_plan(plan, request);
         accelerators_.columns && of_file && accelerators_.columns->serves(*of_file, columns, request))
       return accelerators_.columns->prepare(*of_file, columns, request);
-    return prepare_columns(*this, e_, plan, columns, request);
+    return prepare_columns(e_, plan, columns, request);
   }
   bool supports_box() const override { return true; }
   void require_bounds(const WorkspacePlan& plan) const override { generic::require_bounds(e_.model, plan); }

@@ -22,20 +22,19 @@ namespace {
 
 class GenericVoxels final : public GridEvaluator<GenericVoxels> {
  public:
-  GenericVoxels(const Mechanism& mechanism, const Evaluation& evaluation, const WorkspacePlan& plan,
-                const VoxelOptions& voxels, const FieldRequest& request, BoxOfDesign default_box)
+  GenericVoxels(const Evaluation& evaluation, const WorkspacePlan& plan, const VoxelOptions& voxels,
+                const FieldRequest& request, BoxOfDesign default_box)
       : GridEvaluator(request),
-        mechanism_(mechanism),
         e_(evaluation),
         plan_(plan),
         voxels_(voxels),
         request_(request),
-        sweep_(sweep_of(mechanism.info(), plan)),
-        mode_(mode_index(mechanism.info(), request.mode)),
+        sweep_(sweep_of(evaluation.model.info, plan)),
+        mode_(mode_index(evaluation.model.info, request.mode)),
         default_box_(std::move(default_box)),
         test_(CellPlan::fastest(evaluation, sweep_.swept, voxels.cells, mode_)) {
     if (request.characteristic_length)
-      throw std::invalid_argument("mechanism " + mechanism.info().name +
+      throw std::invalid_argument("mechanism " + evaluation.model.info.name +
                                   " has its own characteristic length only; leave out characteristic_length");
     if (request.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, request.rotors);
     if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, sweep_.swept, mode_);
@@ -81,7 +80,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
           return e_.required_range(parameters, plan_.limits, mode_, static_cast<std::size_t>(coordinate));
         },
         common.fixed);
-    fill_inputs(parameters, common.inputs);
+    e_.fill_inputs<double>(parameters, plan_, mode_, common.inputs);
     for (WorkerScratch& scratch : buffers.per_worker) scratch.number.reset();
     return {{grid, test_.shape(grid)[0], common.fixed}, parameters, common};
   }
@@ -117,15 +116,6 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     if (inertia_) inertia_->start(scratch.inputs, scratch.inertia);
     if (formulas_) formulas_->start(scratch.inputs, scratch.formulas);
     if (clearance_) clearance_->start(scratch.inputs, scratch.clearance);
-  }
-  /// The graph's inputs with the fixed coordinates.
-  void fill_inputs(std::span<const double> parameters, std::vector<double>& inputs) const {
-    inputs.resize(e_.model.inputs.count());
-    e_.fill_inputs<double>(parameters, plan_.limits, mode_, inputs);
-    for (const int coordinate : sweep_.fixed)
-      if (how_fixed(plan_, coordinate).kind != FixedCoordinate::Kind::integrated)
-        inputs[e_.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
-            fixed_value(mechanism_, parameters, plan_, coordinate);
   }
 
   /// Calls visit(column, cell) for the feasible cells of a slice, in order.
@@ -224,7 +214,6 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     add_report(report, e_.model.inputs.joints, to);
   }
 
-  const Mechanism& mechanism_;
   const Evaluation& e_;
   WorkspacePlan plan_;
   VoxelOptions voxels_;
@@ -241,10 +230,10 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
 
 }  // namespace
 
-std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism, const Evaluation& evaluation,
-                                                     const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                     const FieldRequest& request, BoxOfDesign default_box) {
-  return std::make_unique<GenericVoxels>(mechanism, evaluation, plan, voxels, request, std::move(default_box));
+std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Evaluation& evaluation, const WorkspacePlan& plan,
+                                                     const VoxelOptions& voxels, const FieldRequest& request,
+                                                     BoxOfDesign default_box) {
+  return std::make_unique<GenericVoxels>(evaluation, plan, voxels, request, std::move(default_box));
 }
 
 }  // namespace pkm::generic

@@ -12,11 +12,12 @@ namespace pkm::generic {
 /// Search box as a function of the design, for plans that do not give one.
 using BoxOfDesign = std::function<Box(std::span<const double> parameters)>;
 
-/// Throws std::invalid_argument with a message if the mechanism does not support the plan.
-/// @param mechanism, evaluation  must outlive the evaluator
-/// @param default_box            null: the box of the file
-std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism, const Evaluation& evaluation,
-                                                     const WorkspacePlan& plan, const VoxelOptions& voxels,
-                                                     const FieldRequest& request, BoxOfDesign default_box = {});
+/// Makes the evaluator of voxels for a plan. Throws std::invalid_argument with a message if the mechanism does not
+/// support the plan.
+/// @param evaluation   must outlive the evaluator
+/// @param default_box  null: the box of the file
+std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Evaluation& evaluation, const WorkspacePlan& plan,
+                                                     const VoxelOptions& voxels, const FieldRequest& request,
+                                                     BoxOfDesign default_box = {});
 
 }  // namespace pkm::generic

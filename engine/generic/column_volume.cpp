@@ -1,0 +1,207 @@
+#include "engine/generic/column_volume.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace pkm::generic {
+namespace {
+
+/// The integrated coordinates. The quadrature over slices has at most three coordinates in all; OuterQuadrature has the
+/// outermost integrated coordinates beyond three.
+struct IntegratedCoordinates {
+  std::vector<std::size_t> beyond_three, of_slices;
+
+  IntegratedCoordinates(const Sweep& sweep, const WorkspacePlan& plan) {
+    for (const int coordinate : sweep.fixed)
+      if (how_fixed(plan, coordinate).kind == FixedCoordinate::Kind::integrated)
+        of_slices.push_back(static_cast<std::size_t>(coordinate));
+    const std::size_t available = 3 - std::min<std::size_t>(3, sweep.swept.size());
+    const auto end = of_slices.end() - static_cast<std::ptrdiff_t>(std::min(of_slices.size(), available));
+    beyond_three.assign(of_slices.begin(), end);
+    of_slices.erase(of_slices.begin(), end);
+  }
+};
+
+/// The orders of coordinates in which slices can have closed forms. For planar slices they include each pair of swept
+/// coordinates as (v, z), for lines each swept coordinate as z; the others are outer coordinates, for lines in a single
+/// order. Integrated coordinates are outermost, except for the last one if a single coordinate is swept: slices of
+/// these two are planar.
+std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
+  std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end());
+  std::vector<std::size_t> integrated = IntegratedCoordinates(sweep, plan).of_slices;
+  if (!are_lines && swept.size() == 1 && !integrated.empty()) {
+    swept.push_back(integrated.back());
+    integrated.pop_back();
+  }
+  std::ranges::sort(swept);
+  std::vector<CoordinateOrder> orders;
+  do {
+    CoordinateOrder order{.outer = integrated, .v = {}, .z = swept.back()};
+    std::span<const std::size_t> outer = std::span(swept).first(swept.size() - 1);
+    if (!are_lines && !outer.empty()) {
+      order.v = outer.back();
+      outer = outer.first(outer.size() - 1);
+    }
+    order.outer.insert(order.outer.end(), outer.begin(), outer.end());
+    if (!are_lines || std::ranges::is_sorted(outer)) orders.push_back(order);
+  } while (std::ranges::next_permutation(swept).found);
+  return orders;
+}
+
+CoordinateRanges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& columns) {
+  CoordinateRanges box(coordinates);
+  if (columns.box)
+    for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+      box[static_cast<std::size_t>(sweep.swept[axis])] = (*columns.box)[axis];
+  return box;
+}
+
+struct Plans {
+  std::vector<SlicePlan> all;
+  std::string why_not;  ///< if there are no plans
+};
+
+/// Planar slices bounded by conics if possible, otherwise lines bounded by polynomials, otherwise any lines.
+/// @param max_plans  maximum number of plans
+Plans plans_of(const Evaluation& evaluation, std::size_t mode, const WorkspacePlan& plan, const ColumnOptions& columns,
+               std::size_t max_plans = 100) {
+  const Sweep& sweep = sweep_of(evaluation.model.info, plan);
+  const CoordinateRanges box = box_of(sweep, evaluation.model.inputs.coordinates, columns);
+  Plans plans;
+  for (const auto& [are_lines, curves] : {std::pair{false, false}, {true, false}, {true, true}}) {
+    if (!plans.all.empty()) break;
+    for (const CoordinateOrder& order : orders_of(sweep, plan, are_lines)) {
+      if (plans.all.size() == max_plans) return plans;
+      SlicePlan made = plan_slices(evaluation, mode, order, curves, box);
+      if (made.why_not.empty())
+        plans.all.push_back(std::move(made));
+      else
+        plans.why_not = made.why_not;
+    }
+  }
+  return plans;
+}
+
+}  // namespace
+
+std::string why_no_columns(const Evaluation& evaluation) {
+  const MechanismInfo& info = evaluation.model.info;
+  const WorkspacePlan plan{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(info)};
+  const Plans plans = plans_of(evaluation, 0, plan, {}, 1);
+  return plans.all.empty() ? plans.why_not : "";
+}
+
+ColumnVolume::ColumnVolume(const Evaluation& evaluation, const WorkspacePlan& plan, const ColumnOptions& columns,
+                           std::size_t mode, bool needs_samples)
+    : e_(evaluation),
+      plan_(plan),
+      mode_(mode),
+      needs_samples_(needs_samples),
+      outermost_(evaluation, IntegratedCoordinates(sweep_of(evaluation.model.info, plan), plan).beyond_three,
+                 columns.tolerance) {
+  Plans plans = plans_of(evaluation, mode, plan, columns);
+  if (plans.all.empty())
+    throw std::invalid_argument("mechanism " + evaluation.model.info.name + " has no exact columns: " + plans.why_not +
+                                "; set workspace.method = \"voxels\"");
+  plans_ = std::move(plans.all);
+  // Derivatives lose digits at a kink of the measure that no change of the type indicates; with conics two more digits
+  // are cheap.
+  const CoordinateOrder& order = plans_.front().order;
+  slice_tolerance_ = (order.v ? 0.01 : 0.1) * columns.tolerance;
+  choose_corner_curves(columns.tolerance);
+  const Sweep& sweep = sweep_of(evaluation.model.info, plan);
+  if (order.outer.size() + (order.v ? 2 : 1) == sweep.swept.size()) {
+    edges::EdgePlan edges(evaluation, mode, sweep.swept, box_of(sweep, evaluation.model.inputs.coordinates, columns),
+                          slice_tolerance_);
+    if (edges.why_not().empty()) edges_.emplace(std::move(edges));
+  }
+  if (needs_samples || (!edges_ && !corner_curves_)) slices();
+}
+
+const NestedIntegral& ColumnVolume::slices() const {
+  std::call_once(is_chosen_, [&] { slices_.emplace(choose_slices(), slice_tolerance_); });
+  return *slices_;
+}
+
+std::vector<double> ColumnVolume::inputs_of_default_design() const {
+  std::vector<double> design, inputs;
+  for (const Parameter& p : e_.model.info.parameters) design.push_back(p.nominal);
+  e_.fill_inputs<double>(design, plan_, mode_, inputs);
+  return inputs;
+}
+
+/// The plan whose analysis of the default design at low accuracy takes the least work.
+SlicePlan ColumnVolume::choose_slices() const {
+  const SlicePlan& first = plans_.front();
+  const double tolerance = first.order.v ? 1e-3 : 1e-2;
+  const bool has_curves = std::ranges::any_of(first.surfaces, &Surface::is_transcendental);
+  if ((plans_.size() == 1 && !has_curves) || first.order.outer.empty()) return first;
+  const std::vector<double> inputs = inputs_of_default_design();
+  IntegralScratch scratch;
+  const SlicePlan* best = nullptr;
+  // interval operations, or surfaces in slices: about a second
+  long least = has_curves ? 100'000'000 : 10'000'000;
+  for (const SlicePlan& plan : plans_) {
+    const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
+    NestedIntegral::Budget budget;
+    (has_curves ? budget.operations : budget.evaluations) = has_curves ? least : std::max(1L, least / per_slice);
+    NestedIntegral(plan, tolerance).measure(inputs, scratch, budget);
+    const long work = has_curves ? scratch.column.operations : scratch.evaluations * per_slice;
+    if (work >= least) continue;
+    best = &plan;
+    least = work;
+  }
+  if (!best && has_curves)
+    throw std::invalid_argument("mechanism " + e_.model.info.name +
+                                " has no exact columns that can be computed in seconds: its constraints are no "
+                                "polynomials of degree four; use voxels");
+  return best ? *best : first;
+}
+
+/// Among the plans that corner curves serve, the one that takes the least work for the default design.
+void ColumnVolume::choose_corner_curves(double tolerance) {
+  corner_curves::Volume::Scratch scratch;
+  double least = std::numeric_limits<double>::infinity();
+  for (const SlicePlan& plan : plans_) {
+    corner_curves::Volume curves(plan, tolerance);
+    if (!curves.why_not().empty() || !curves.measure(inputs_of_default_design(), scratch)) continue;
+    const double work = scratch.work();
+    if (work >= least) continue;
+    least = work;
+    corner_curves_.emplace(std::move(curves));
+  }
+}
+
+Integral<double> ColumnVolume::measure(std::vector<double>& inputs, std::span<double> by_input,
+                                       Scratch& scratch) const {
+  scratch.is_sampled = false;
+  const auto inner = [&](std::span<const double> at, std::span<double> by) { return measure_inside(at, by, scratch); };
+  return has_outermost() ? outermost_.measure(inputs, by_input, inner) : inner(inputs, by_input);
+}
+
+/// Over at most three coordinates.
+Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, std::span<double> by_input,
+                                              Scratch& scratch) const {
+  const bool needs_gradient = !by_input.empty();
+  std::optional<Integral<double>> found;
+  if (edges_) found = edges_->measure(inputs, scratch.edges, by_input);
+  if (!found && corner_curves_) {
+    found = corner_curves_->measure(inputs, scratch.corner_curves);
+    if (found && needs_gradient) corner_curves_->add_gradient(by_input, scratch.corner_curves);
+  }
+  // Samples need the slices in any case, but with outermost coordinates they have slices of their own.
+  if (found && !(needs_samples_ && !has_outermost())) return *found;
+  const Integral<double> by_slices = needs_gradient ? slices().measure_for_gradient(inputs, scratch.integral)
+                                                    : slices().measure(inputs, scratch.integral);
+  if (found) {  // the error includes the part of the workspace that the slices, and thus the samples, have missed
+    const double missed = std::fabs(found->value - by_slices.value) - by_slices.error;
+    return {found->value, std::max(found->error, missed), by_slices.evaluations};
+  }
+  if (needs_gradient) slices().add_gradient(by_input, scratch.integral);
+  scratch.is_sampled = scratch.is_sampled || !slices().plan().order.outer.empty();  // a single slice is exact
+  return by_slices;
+}
+
+}  // namespace pkm::generic

@@ -1,0 +1,66 @@
+// Volume of a workspace by columns: from the edges of a solid or from corner curves, where these serve the constraints
+// and the design, and otherwise by nested quadrature over slices. More than three coordinates are integrated by an
+// outer quadrature.
+#pragma once
+
+#include <mutex>
+
+#include "engine/generic/columns/nested_integral.hpp"
+#include "engine/generic/corner_curves/volume.hpp"
+#include "engine/generic/edge_plan.hpp"
+#include "engine/generic/outer_quadrature.hpp"
+
+namespace pkm::generic {
+
+/// Why the default analysis of a mechanism has no columns; empty if it has.
+std::string why_no_columns(const Evaluation& evaluation);
+
+/// Shared by threads.
+class ColumnVolume {
+ public:
+  /// Scratch memory of one thread.
+  struct Scratch {
+    IntegralScratch integral;
+    corner_curves::Volume::Scratch corner_curves;
+    edges::EdgePlan::Scratch edges;
+    bool is_sampled = false;  ///< the last volume is one of slices, which can miss a component
+  };
+
+  /// Throws std::invalid_argument with a message if the workspace has no exact columns.
+  /// @param evaluation     must outlive this object
+  /// @param needs_samples  the nodes of slices() will be visited after measure()
+  ColumnVolume(const Evaluation& evaluation, const WorkspacePlan& plan, const ColumnOptions& columns, std::size_t mode,
+               bool needs_samples);
+
+  /// The volume over all swept and integrated coordinates.
+  /// @param inputs    of the graph; those of the outermost coordinates are overwritten
+  /// @param by_input  if not empty, the derivatives of the volume are added
+  Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, Scratch& scratch) const;
+
+  /// The quadrature over slices. It is chosen at the first use, because that can take longer than many volumes from
+  /// edges.
+  const NestedIntegral& slices() const;
+  /// The quadrature over the coordinates beyond three.
+  const OuterQuadrature& outermost() const { return outermost_; }
+  bool has_outermost() const { return !outermost_.coordinates().empty(); }
+
+ private:
+  SlicePlan choose_slices() const;
+  void choose_corner_curves(double tolerance);
+  std::vector<double> inputs_of_default_design() const;
+  Integral<double> measure_inside(std::span<const double> inputs, std::span<double> by_input, Scratch& scratch) const;
+
+  const Evaluation& e_;
+  WorkspacePlan plan_;
+  std::size_t mode_;
+  bool needs_samples_;
+  OuterQuadrature outermost_;
+  std::vector<SlicePlan> plans_;
+  double slice_tolerance_ = 0;
+  mutable std::once_flag is_chosen_;
+  mutable std::optional<NestedIntegral> slices_;
+  std::optional<edges::EdgePlan> edges_;                ///< if the workspace is a solid with edges
+  std::optional<corner_curves::Volume> corner_curves_;  ///< if they serve a plan
+};
+
+}  // namespace pkm::generic
