@@ -19,25 +19,27 @@ void describe_problem(Archive& archive, Study& study) {
   auto& problem = study.problem;
   archive.group("/problem", "The optimisation problem");
   archive.attribute("/problem", "mechanism", problem.mechanism);
-  records(archive, "/problem/parameters", "All parameters of the mechanism, in its order", problem.parameters,
-          Field{"name", &ParameterRecord::name, "1", "Name"}, Field{"unit", &ParameterRecord::unit, "1", "SI unit"},
-          Field{"value", &ParameterRecord::value, "see unit", "Fixed value; nominal value of a variable"},
-          Field{"variable", &ParameterRecord::variable, "1", "Index into variables; -1: fixed"});
-  records(archive, "/problem/variables", "Design variables: the columns of every design", problem.variables,
-          Field{"name", &Variable::name, "1", "Name of the parameter"}, Field{"unit", &Variable::unit, "1", "SI unit"},
-          Field{"lower", &Variable::lower, "see unit", "Lower bound"},
-          Field{"upper", &Variable::upper, "see unit", "Upper bound"},
-          Field{"step", &Variable::step, "see unit", "Increment between allowed values; 0: continuous"});
-  records(archive, "/problem/objectives", "Objectives: the columns of every objective", problem.objectives,
-          Field{"name", &ObjectiveInfo::name, "1", "Name"}, Field{"unit", &ObjectiveInfo::unit, "1", "Unit"},
-          Field{"meaning", &ObjectiveInfo::meaning, "1", "Meaning"},
-          Field{"direction", &ObjectiveInfo::direction, "1", "minimise or maximise"});
-  records(archive, "/problem/margins", "Constraints: the columns of every margin; satisfied if margin >= 0",
-          problem.margins, Field{"name", &MarginInfo::name, "1", "Name"}, Field{"unit", &MarginInfo::unit, "1", "Unit"},
-          Field{"meaning", &MarginInfo::meaning, "1", "Meaning"});
-  records(archive, "/problem/reports", "Outputs, computed but not optimised: the columns of every report",
-          problem.reports, Field{"name", &OutputInfo::name, "1", "Name"}, Field{"unit", &OutputInfo::unit, "1", "Unit"},
-          Field{"meaning", &OutputInfo::meaning, "1", "Meaning"});
+  visit_records(archive, "/problem/parameters", "All parameters of the mechanism, in its order", problem.parameters,
+                Field{"name", &ParameterRecord::name, "1", "Name"},
+                Field{"unit", &ParameterRecord::unit, "1", "SI unit"},
+                Field{"value", &ParameterRecord::value, "see unit", "Fixed value; nominal value of a variable"},
+                Field{"variable", &ParameterRecord::variable, "1", "Index into variables; -1: fixed"});
+  visit_records(archive, "/problem/variables", "Design variables: the columns of every design", problem.variables,
+                Field{"name", &Variable::name, "1", "Name of the parameter"},
+                Field{"unit", &Variable::unit, "1", "SI unit"},
+                Field{"lower", &Variable::lower, "see unit", "Lower bound"},
+                Field{"upper", &Variable::upper, "see unit", "Upper bound"},
+                Field{"step", &Variable::step, "see unit", "Increment between allowed values; 0: continuous"});
+  visit_records(archive, "/problem/objectives", "Objectives: the columns of every objective", problem.objectives,
+                Field{"name", &ObjectiveInfo::name, "1", "Name"}, Field{"unit", &ObjectiveInfo::unit, "1", "Unit"},
+                Field{"meaning", &ObjectiveInfo::meaning, "1", "Meaning"},
+                Field{"direction", &ObjectiveInfo::direction, "1", "minimise or maximise"});
+  visit_records(archive, "/problem/margins", "Constraints: the columns of every margin; satisfied if margin >= 0",
+                problem.margins, Field{"name", &MarginInfo::name, "1", "Name"},
+                Field{"unit", &MarginInfo::unit, "1", "Unit"}, Field{"meaning", &MarginInfo::meaning, "1", "Meaning"});
+  visit_records(archive, "/problem/reports", "Outputs, computed but not optimised: the columns of every report",
+                problem.reports, Field{"name", &OutputInfo::name, "1", "Name"},
+                Field{"unit", &OutputInfo::unit, "1", "Unit"}, Field{"meaning", &OutputInfo::meaning, "1", "Meaning"});
 }
 
 /// Names and units of the columns of `slope`: "workspace-ratio", "d workspace-ratio / d a", ...
@@ -56,40 +58,41 @@ std::vector<OutputInfo> slope_columns(const Problem& problem) {
 
 template <class Archive, class Starts>
 void describe_starts(Archive& archive, const std::string& group, Starts& starts) {
-  records(archive, group, "Finished multistart runs of the solver", starts,
-          Field{"origin", &StartOutcome::origin, "1", "Origin of the starting point"},
-          Field{"first_row", &StartOutcome::first_row, "1", "First row (0-based) in evaluations: the starting point"},
-          Field{"rows", &StartOutcome::rows, "1", "Number of evaluations"},
-          Field{"end_row", &StartOutcome::end_row, "1", "Row of the result: the best evaluation of the run"},
-          Field{"stop", &StartOutcome::stop, "1", "converged, evaluation limit, time limit or failed"},
-          Field{"message", &StartOutcome::message, "1", "Message of the solver"},
-          Field{"optimality", &StartOutcome::optimality, "1",
-                "KKT residual of the result, relative to the objective; NaN: no derivatives"});
+  visit_records(
+      archive, group, "Finished multistart runs of the solver", starts,
+      Field{"origin", &StartOutcome::origin, "1", "Origin of the starting point"},
+      Field{"first_row", &StartOutcome::first_row, "1", "First row (0-based) in evaluations: the starting point"},
+      Field{"rows", &StartOutcome::rows, "1", "Number of evaluations"},
+      Field{"end_row", &StartOutcome::end_row, "1", "Row of the result: the best evaluation of the run"},
+      Field{"stop", &StartOutcome::stop, "1", "converged, evaluation limit, time limit or failed"},
+      Field{"message", &StartOutcome::message, "1", "Message of the solver"},
+      Field{"optimality", &StartOutcome::optimality, "1",
+            "KKT residual of the result, relative to the objective; NaN: no derivatives"});
 }
 
 template <class Archive, class Record>
 void describe_optimality(Archive& archive, const std::string& group, Record& record) {
   archive.group(group, "First-order optimality (KKT conditions) of the stage's best design");
   archive.attribute(group, "optimality", record.optimality);
-  records(archive, group + "/active", "Active bounds and constraints", record.active,
-          Field{"name", &ActiveRecord::name, "1", "Variable or constraint"},
-          Field{"kind", &ActiveRecord::kind, "1", "lower bound, upper bound or constraint"},
-          Field{"multiplier", &ActiveRecord::multiplier, "objective/unit",
-                "Improvement of the objective per unit by which the bound or constraint is relaxed"},
-          Field{"unit", &ActiveRecord::unit, "1", "Unit of the bound or constraint"});
-  records(archive, group + "/sensitivity", "Derivatives of the objective by each parameter", record.sensitivities,
-          Field{"parameter", &SensitivityRecord::parameter, "1", "Name"},
-          Field{"unit", &SensitivityRecord::unit, "1", "Unit of the parameter"},
-          Field{"as_built", &SensitivityRecord::as_built, "objective/unit", "All other parameters unchanged"},
-          Field{"reoptimised", &SensitivityRecord::reoptimised, "objective/unit",
-                "Variables re-optimised; NaN for variables"});
+  visit_records(archive, group + "/active", "Active bounds and constraints", record.active,
+                Field{"name", &ActiveRecord::name, "1", "Variable or constraint"},
+                Field{"kind", &ActiveRecord::kind, "1", "lower bound, upper bound or constraint"},
+                Field{"multiplier", &ActiveRecord::multiplier, "objective/unit",
+                      "Improvement of the objective per unit by which the bound or constraint is relaxed"},
+                Field{"unit", &ActiveRecord::unit, "1", "Unit of the bound or constraint"});
+  visit_records(archive, group + "/sensitivity", "Derivatives of the objective by each parameter", record.sensitivities,
+                Field{"parameter", &SensitivityRecord::parameter, "1", "Name"},
+                Field{"unit", &SensitivityRecord::unit, "1", "Unit of the parameter"},
+                Field{"as_built", &SensitivityRecord::as_built, "objective/unit", "All other parameters unchanged"},
+                Field{"reoptimised", &SensitivityRecord::reoptimised, "objective/unit",
+                      "Variables re-optimised; NaN for variables"});
 }
 
 template <class Archive, class Problem, class Table>
 void describe_evaluations(Archive& archive, const std::string& group, const Problem& problem, Table& table) {
   archive.group(group, "Every evaluation of the stage, one row each, in the order of the optimiser's requests");
   Detail detail = table.shape().detail;  // schema 1: always Detail::enough
-  if (has_items_since(archive, 2)) enum_attribute(archive, group, "detail", detail);
+  if (has_items_since(archive, 2)) visit_enum(archive, group, "detail", detail);
   if constexpr (Archive::kReads) table = EvaluationTable(problem.shape(detail));
   const Leaf status{group + "/status", "0 feasible, 1 infeasible, 2 rejected before the workspace analysis, 3 failed"};
   std::vector<std::uint8_t> codes;
@@ -103,15 +106,16 @@ void describe_evaluations(Archive& archive, const std::string& group, const Prob
     }
   }
   const Extent rows = {codes.size()};
-  matrix(archive, group + "/design", "Values of the variables", problem.variables, table.designs, rows);
-  matrix(archive, group + "/objective", "Objectives, not negated; NaN: not computed", problem.objectives,
-         table.objectives, rows);
-  matrix(archive, group + "/margin", "Margins, satisfied if >= 0; NaN: not computed", problem.margins, table.margins,
-         rows);
-  matrix(archive, group + "/report", "Outputs; NaN: not computed", problem.reports, table.reports, rows);
+  visit_matrix(archive, group + "/design", "Values of the variables", problem.variables, table.designs, rows);
+  visit_matrix(archive, group + "/objective", "Objectives, not negated; NaN: not computed", problem.objectives,
+               table.objectives, rows);
+  visit_matrix(archive, group + "/margin", "Margins, satisfied if >= 0; NaN: not computed", problem.margins,
+               table.margins, rows);
+  visit_matrix(archive, group + "/report", "Outputs; NaN: not computed", problem.reports, table.reports, rows);
   if (detail == Detail::derivatives)
-    matrix(archive, group + "/slope", "Per objective, then per margin: smooth value, derivatives by the variables",
-           slope_columns(problem), table.derivatives, rows);
+    visit_matrix(archive, group + "/slope",
+                 "Per objective, then per margin: smooth value, derivatives by the variables", slope_columns(problem),
+                 table.derivatives, rows);
   archive.array(Leaf{group + "/seconds", "Evaluation time", {"s"}}, table.seconds, rows);
 }
 
@@ -156,8 +160,8 @@ void describe_front(Archive& archive, const std::string& group, const Problem& p
       std::ranges::copy(stage.table.objective_row(static_cast<std::size_t>(row)), std::back_inserter(objectives));
     }
     const Extent rows = {front.rows.size()};
-    matrix(archive, group + "/design", "Values of the variables", problem.variables, designs, rows);
-    matrix(archive, group + "/objective", "Objectives, not negated", problem.objectives, objectives, rows);
+    visit_matrix(archive, group + "/design", "Values of the variables", problem.variables, designs, rows);
+    visit_matrix(archive, group + "/objective", "Objectives, not negated", problem.objectives, objectives, rows);
     const Scores scores = scores_of(problem.objectives, stage.table, front.rows);
     std::vector<std::uint8_t> knee(front.rows.size(), 0);
     for (const std::size_t point : knees(scores)) knee[point] = 1;
@@ -216,9 +220,9 @@ void describe_stages(Archive& archive, Study& study) {
     if constexpr (Archive::kReads) has_starts = archive.has(group + "/starts");
     if (has_starts) describe_starts(archive, group + "/starts", stage.starts);
     describe_runs_ahead(archive, group + "/ahead", study.problem, stage.ahead);
-    if (optional_item(archive, group + "/optimality", stage.optimality))
+    if (visit_optional(archive, group + "/optimality", stage.optimality))
       describe_optimality(archive, group + "/optimality", *stage.optimality);
-    if (optional_item(archive, group + "/front", stage.front))
+    if (visit_optional(archive, group + "/front", stage.front))
       describe_front(archive, group + "/front", study.problem, stage, *stage.front);
   }
 }
@@ -233,7 +237,7 @@ void describe_best(Archive& archive, Study& study) {
     const auto& table = study.best_stage().table;
     const auto row = static_cast<std::size_t>(study.best.row);
     const auto copy = [&](const char* name, const char* description, const auto& items, std::span<const double> span) {
-      matrix(archive, "/best/" + std::string(name), description, items, std::vector(span.begin(), span.end()));
+      visit_matrix(archive, "/best/" + std::string(name), description, items, std::vector(span.begin(), span.end()));
     };
     copy("design", "Values of the variables", study.problem.variables, table.design(row));
     copy("objective", "Objectives", study.problem.objectives, table.objective_row(row));
@@ -246,22 +250,23 @@ template <class Archive, class Problem, class Record>
 void describe_design(Archive& archive, const std::string& group, const char* description, const Problem& problem,
                      Record& design) {
   archive.group(group, description);
-  enum_attribute(archive, group, "status", design.status);
+  visit_enum(archive, group, "status", design.status);
   archive.attribute(group, "reason", design.reason);
   archive.attribute(group, "volume", design.volume);
   archive.attribute(group, "cells", design.cells);
   archive.attribute(group, "feasible_cells", design.feasible_cells);
   archive.attribute(group, "cell_volume", design.cell_volume);
   archive.attribute(group, "touches_box", design.touches_box);
-  if (const std::string bounds = group + "/certain"; optional_item(archive, bounds, design.certified)) {
+  if (const std::string bounds = group + "/certain"; visit_optional(archive, bounds, design.certified)) {
     archive.group(bounds, "Certified bounds of the volume");
     archive.attribute(bounds, "lower", design.certified->lower);
     archive.attribute(bounds, "upper", design.certified->upper);
   }
-  matrix(archive, group + "/parameter", "All parameters of the mechanism", problem.parameters, design.parameters);
-  matrix(archive, group + "/objective", "Objectives; NaN: not computed", problem.objectives, design.objectives);
-  matrix(archive, group + "/margin", "Margins, satisfied if >= 0; NaN: not computed", problem.margins, design.margins);
-  matrix(archive, group + "/report", "Outputs; NaN: not computed", problem.reports, design.reports);
+  visit_matrix(archive, group + "/parameter", "All parameters of the mechanism", problem.parameters, design.parameters);
+  visit_matrix(archive, group + "/objective", "Objectives; NaN: not computed", problem.objectives, design.objectives);
+  visit_matrix(archive, group + "/margin", "Margins, satisfied if >= 0; NaN: not computed", problem.margins,
+               design.margins);
+  visit_matrix(archive, group + "/report", "Outputs; NaN: not computed", problem.reports, design.reports);
 }
 
 template <class Archive, class Map>
@@ -270,9 +275,11 @@ void describe_map(Archive& archive, Map& map) {
   archive.group(group, "Voxel map of the best design's workspace");
   archive.array(Leaf{group + "/axis", "Names of the axes, outermost first"}, map.axes, {3});
   archive.array(Leaf{group + "/unit", "Their units"}, map.units, {3});
-  array_of_three(archive, Leaf{group + "/lower", "Lower corner of the box", map.units, map.axes}, map.voxels.lower);
-  array_of_three(archive, Leaf{group + "/upper", "Upper corner of the box", map.units, map.axes}, map.voxels.upper);
-  array_of_three(archive, Leaf{group + "/cells", "Number of cells along each axis"}, map.voxels.cells);
+  visit_array_of_three(archive, Leaf{group + "/lower", "Lower corner of the box", map.units, map.axes},
+                       map.voxels.lower);
+  visit_array_of_three(archive, Leaf{group + "/upper", "Upper corner of the box", map.units, map.axes},
+                       map.voxels.upper);
+  visit_array_of_three(archive, Leaf{group + "/cells", "Number of cells along each axis"}, map.voxels.cells);
   archive.array(Leaf{group + "/feasible", "1 if the centre of the cell is feasible; axes as in axis"},
                 map.voxels.feasible, Extent(std::begin(map.voxels.cells), std::end(map.voxels.cells)));
 }
@@ -284,14 +291,14 @@ void describe_final(Archive& archive, const Problem& problem, Final& final) {
   archive.array(Leaf{"/final/active", "Active bounds and constraints of the best design"}, final.active, {kAnyRows});
   const auto design = [&](const std::string& name, const char* description, auto& record) {
     const std::string group = "/final/" + name;
-    if (optional_item(archive, group, record)) describe_design(archive, group, description, problem, *record);
+    if (visit_optional(archive, group, record)) describe_design(archive, group, description, problem, *record);
   };
   design("best", "The best design", final.best);
   design("rounded", "The best design, rounded and re-evaluated", final.rounded);
   design("baseline", "The baseline design", final.baseline);
   design("best_exact", "The best design, evaluated by the exact method (columns)", final.best_exact);
   design("baseline_exact", "The baseline, evaluated by the exact method (columns)", final.baseline_exact);
-  if (optional_item(archive, "/final/map", final.map)) describe_map(archive, *final.map);
+  if (visit_optional(archive, "/final/map", final.map)) describe_map(archive, *final.map);
 }
 
 template <class Archive, class Text>
@@ -323,24 +330,24 @@ void describe(Archive& archive, Study& study) {
   archive.attribute("/", "machine", study.machine);
   archive.attribute("/", "created", study.created);
   archive.attribute("/", "updated", study.updated);
-  enum_attribute(archive, "/", "state", study.state);
+  visit_enum(archive, "/", "state", study.state);
   archive.attribute("/", "seconds", study.seconds);
   if constexpr (!Archive::kReads) archive.attribute("/", "reproducible", study.reproducible());
 
   std::vector<std::string> text = {study.toml};
   archive.array(Leaf{"/toml", "Text of the study"}, text, {});
   if constexpr (Archive::kReads) study.toml = text[0];
-  if (optional_item(archive, "/mechanism", study.description)) describe_mechanism_file(archive, *study.description);
-  records(archive, "/extensions", "Limits changed by `pkmopt resume`, in chronological order", study.extensions,
-          Field{"stage", &Extension::stage, "1", "Stage (0-based)"},
-          Field{"limit", &Extension::limit, "1", "generations, evaluations or time"},
-          Field{"value", &Extension::value, "1 or s", "New limit"});
+  if (visit_optional(archive, "/mechanism", study.description)) describe_mechanism_file(archive, *study.description);
+  visit_records(archive, "/extensions", "Limits changed by `pkmopt resume`, in chronological order", study.extensions,
+                Field{"stage", &Extension::stage, "1", "Stage (0-based)"},
+                Field{"limit", &Extension::limit, "1", "generations, evaluations or time"},
+                Field{"value", &Extension::value, "1 or s", "New limit"});
   if (has_items_since(archive, 2))
     archive.array(Leaf{"/notes", "Remarks on the course of the study, one sentence each"}, study.notes, {kAnyRows});
   describe_problem(archive, study);
   describe_stages(archive, study);
   describe_best(archive, study);
-  if (optional_item(archive, "/final", study.final)) describe_final(archive, study.problem, *study.final);
+  if (visit_optional(archive, "/final", study.final)) describe_final(archive, study.problem, *study.final);
 }
 
 }  // namespace pkm::schema

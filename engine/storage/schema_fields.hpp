@@ -45,7 +45,7 @@ void from_stored(T& value, const Stored& stored, const std::string& where) {
 
 /// An enumeration, stored as a text attribute.
 template <class Archive, class Enum>
-void enum_attribute(Archive& archive, const std::string& group, const std::string& name, Enum& value) {
+void visit_enum(Archive& archive, const std::string& group, const std::string& name, Enum& value) {
   std::string text = to_stored(value);
   archive.attribute(group, name, text);
   if constexpr (Archive::kReads) from_stored(value, text, group + "@" + name);
@@ -63,7 +63,7 @@ bool has_items_since(const Archive& archive, int schema) {
 /// An optional item, which is present if its group exists. A reader creates it with default values.
 /// @return true if the item is present and its members are to be visited
 template <class Archive, class Optional>
-bool optional_item(Archive& archive, const std::string& group, Optional& item) {
+bool visit_optional(Archive& archive, const std::string& group, Optional& item) {
   if constexpr (Archive::kReads) {
     if (!archive.has(group)) return false;
     item.emplace();
@@ -86,7 +86,8 @@ Field(const char*, Member Record::*, const char*, const char*) -> Field<Record, 
 /// One member of all records, stored as one dataset.
 /// @param first  true for the first member; its dataset determines the number of records to be read
 template <class Archive, class Items, class Record, class Member>
-void member(Archive& archive, const std::string& group, Items& items, bool first, const Field<Record, Member>& field) {
+void visit_member(Archive& archive, const std::string& group, Items& items, bool first,
+                  const Field<Record, Member>& field) {
   std::vector<decltype(to_stored(Member{}))> values;
   for (const Record& item : items) values.push_back(to_stored(item.*field.member));
   const Leaf leaf{group + "/" + field.name, field.description, {field.unit}};
@@ -99,11 +100,11 @@ void member(Archive& archive, const std::string& group, Items& items, bool first
 
 /// A list of records, stored as a group with one dataset per member, which MATLAB and NumPy can read directly.
 template <class Archive, class Items, class... Fields>
-void records(Archive& archive, const std::string& group, const std::string& description, Items& items,
-             const Fields&... fields) {
+void visit_records(Archive& archive, const std::string& group, const std::string& description, Items& items,
+                   const Fields&... fields) {
   archive.group(group, description);
   bool first = true;
-  ((member(archive, group, items, first, fields), first = false), ...);
+  ((visit_member(archive, group, items, first, fields), first = false), ...);
 }
 
 /// A dataset with one named column per item (variable, objective, margin ..).
@@ -111,8 +112,8 @@ void records(Archive& archive, const std::string& group, const std::string& desc
 /// @param values  row by row
 /// @param extent  {number of rows}; {}: a single row, stored as a one-dimensional dataset
 template <class Archive, class Items, class Values>
-void matrix(Archive& archive, const std::string& path, const char* description, const Items& items, Values&& values,
-            Extent extent = {}) {
+void visit_matrix(Archive& archive, const std::string& path, const char* description, const Items& items,
+                  Values&& values, Extent extent = {}) {
   Leaf leaf{path, description, {}};
   for (const auto& item : items) {
     leaf.units.push_back(item.unit);
@@ -124,7 +125,7 @@ void matrix(Archive& archive, const std::string& path, const char* description, 
 
 /// A C array of three values, as in VoxelMap; the archives handle vectors only.
 template <class Archive, class Array>
-void array_of_three(Archive& archive, const Leaf& leaf, Array& values) {
+void visit_array_of_three(Archive& archive, const Leaf& leaf, Array& values) {
   std::vector copy(std::begin(values), std::end(values));
   archive.array(leaf, copy, {3});
   if constexpr (Archive::kReads) std::copy(copy.begin(), copy.end(), values);
