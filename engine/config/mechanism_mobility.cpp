@@ -32,10 +32,9 @@ std::string mobility_text(const Mechanism& mechanism, std::span<const double> pa
            " of the coordinates' motions";
   const std::size_t assumed = found.of_joints - described;
   if (assumed == 0) return determined(coordinates);
-  return determined(coordinates + assumed) + (loose.empty() ? ": " : "; ") +
-         "no joint that the file describes prevents " +
-         (found.assumed.empty() ? std::to_string(assumed) + " others" : join(found.assumed)) +
-         ", and the platform is assumed not to move so";
+  return determined(coordinates + assumed) + (loose.empty() ? ": " : "; ") + "the joints of the file do not prevent " +
+         (found.assumed.empty() ? std::to_string(assumed) + " other motions" : join(found.assumed)) +
+         ", which is assumed to be impossible";
 }
 
 }  // namespace pkm

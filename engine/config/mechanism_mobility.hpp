@@ -1,4 +1,4 @@
-// The line on mobility of `pkmopt check`.
+// Text of the line "mobility" of `pkmopt check`.
 #pragma once
 
 #include <span>
@@ -8,7 +8,8 @@
 
 namespace pkm {
 
-/// How many degrees of freedom the drives determine at a pose, and whether joints prevent the platform's others.
+/// States how many degrees of freedom the drives determine at a pose, and whether the joints prevent all other motions
+/// of the platform.
 /// @param rank  of the Jacobian at the pose
 std::string mobility_text(const Mechanism& mechanism, std::span<const double> parameters, const Pose<double>& pose,
                           std::size_t rank);

@@ -91,8 +91,8 @@ const TableSpec& workspace_keys() {
                           .kind = OptionKind::any_of,
                           .unit = "s",
                           .meaning =
-                              "voxels: compute values by columns for the best design and the baseline, within this "
-                              "time (true: 10 s, the default), or not at all (false)",
+                              "voxels: whether columns compute exact values of the best design and the baseline; a "
+                              "time limits the computation (true: 10 s, the default)",
                           .parts = {{.kind = OptionKind::flag}, {.unit = "s", .positive = true}}});
     return table;
   }();

@@ -95,8 +95,8 @@ std::vector<OptionSpec> expression_options() {
       {.name = "expression",
        .kind = OptionKind::word,
        .required = true,
-       .meaning = "a formula in SI units and radians, of the names that `pkmopt list mechanisms NAME` prints; it may "
-                  "contain " +
+       .meaning = "a formula in SI units and radians. It may contain the names that `pkmopt list mechanisms NAME` "
+                  "prints, " +
                   formula_help()},
       {.name = "unit",
        .kind = OptionKind::word,

@@ -132,7 +132,8 @@ void add_coupling(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<CouplingArguments>(
       app, session, "coupling", "Compute statistics of the dynamic coupling indices over a box of poses.",
       "A cell counts if its centre is feasible under the study's limits; a mechanism without a study has none. The\n"
-      "maximum depends on the permitted distance from singularities of the limbs (s_min): state it with the result.\n"
+      "maximum depends on how close the limbs may be to their singularities (limit s_min): state s_min with the "
+      "result.\n"
       "Example: pkmopt coupling 3crr-r-cru --box x=60mm:240mm,y=110mm:290mm,z=150mm:270mm --phi 0,30deg",
       coupling);
   add_grid_options(command, arguments, kDefaultCouplingCells);

@@ -112,8 +112,8 @@ TEST(Mobility, ThreeLegsDoNotHoldTheRotations) {
   const std::string translations = "{ x = \"along x\", y = \"along y\", z = \"along z\" }";
   EXPECT_EQ(mobility_of(three_legs(translations)),
             kDrives +
-                "3 of 6 degrees of freedom there: no joint that the file describes prevents rotation about x, rotation "
-                "about y, rotation about z, and the platform is assumed not to move so");
+                "3 of 6 degrees of freedom there: the joints of the file do not prevent rotation about x, rotation "
+                "about y, rotation about z, which is assumed to be impossible");
 }
 
 TEST(Mobility, JointsThatHoldThePlatformAreCounted) {
@@ -126,14 +126,13 @@ TEST(Mobility, JointsThatHoldThePlatformAreCounted) {
 
 TEST(Mobility, SingleRodsDoNotHoldTheRotationsOfADelta) {
   EXPECT_THAT(mobility_of(rewritten(test::text_of_mechanism("rotary-delta"), "\npair [^\n]*", "")),
-              HasSubstr("3 of 6 degrees of freedom there: no joint that the file describes prevents rotation about x"));
+              HasSubstr("3 of 6 degrees of freedom there: the joints of the file do not prevent rotation about x"));
 }
 
 TEST(Mobility, LegsInAPlaneHoldThePlatformIfTheirJointsAreParallel) {
   const std::string balls = test::text_of_mechanism("3-rpr");
-  EXPECT_THAT(mobility_of(balls),
-              HasSubstr("3 of 6 degrees of freedom there: no joint that the file describes prevents "
-                        "translation along z, rotation about x, rotation about y"));
+  EXPECT_THAT(mobility_of(balls), HasSubstr("3 of 6 degrees of freedom there: the joints of the file do not prevent "
+                                            "translation along z, rotation about x, rotation about y"));
   EXPECT_EQ(mobility_of(rewritten(balls, "\nradius ", "\nacross = [0, 0, 1]\nradius ")),
             kDrives + "3 of 3 degrees of freedom there");
 }
