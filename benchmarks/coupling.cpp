@@ -25,7 +25,7 @@ WorkspacePlan plan_of(const std::variant<ColumnOptions, VoxelOptions>& method) {
 }
 
 constexpr std::array<std::int64_t, 3> kCells = {40, 40, 40};
-constexpr Box kInside = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
+constexpr Box kInside = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};  // completely feasible
 
 FieldRequest coupling() {
   FieldRequest request;
@@ -33,29 +33,11 @@ FieldRequest coupling() {
   return request;
 }
 
-/// Workspace analysis on 40 x 40 x 40 voxels of the whole search box. The counter per_pose is the time per feasible
-/// pose.
-void voxels(benchmark::State& state, const char* name) {
+/// Workspace analysis on voxels. The counter per_pose is the time per feasible pose.
+void voxels(benchmark::State& state, const char* name, const VoxelOptions& options) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
-  const auto evaluator = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells}), coupling());
-  Scratch scratch;
-  WorkspaceResult<double> result;
-  for (auto _ : state) {
-    evaluator->evaluate(parameters, scratch, result);
-    benchmark::DoNotOptimize(result.field(kCouplingIndex, 0).data());
-  }
-  state.counters["feasible"] = static_cast<double>(result.weight.size());
-  state.counters["per_pose"] =
-      benchmark::Counter(static_cast<double>(result.weight.size()),
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-}
-
-/// The same number of voxels in a box that is completely feasible: 64000 poses.
-void full_box(benchmark::State& state, const char* name) {
-  const Mechanism& m = mechanism_named(name);
-  const auto parameters = nominal(m);
-  const auto evaluator = prepare_workspace(m, plan_of(VoxelOptions{.cells = kCells, .box = kInside}), coupling());
+  const auto evaluator = prepare_workspace(m, plan_of(options), coupling());
   Scratch scratch;
   WorkspaceResult<double> result;
   for (auto _ : state) {
@@ -112,10 +94,10 @@ void inverse_dynamics(benchmark::State& state, const char* name) {
       static_cast<double>(states), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void jointed_voxels(benchmark::State& state) { voxels(state, "3crr-r-cru"); }
-void rigid_voxels(benchmark::State& state) { voxels(state, "quadrupteron"); }
-void jointed_box(benchmark::State& state) { full_box(state, "3crr-r-cru"); }
-void rigid_box(benchmark::State& state) { full_box(state, "quadrupteron"); }
+void jointed_voxels(benchmark::State& state) { voxels(state, "3crr-r-cru", {.cells = kCells}); }
+void rigid_voxels(benchmark::State& state) { voxels(state, "quadrupteron", {.cells = kCells}); }
+void jointed_box(benchmark::State& state) { voxels(state, "3crr-r-cru", {.cells = kCells, .box = kInside}); }
+void rigid_box(benchmark::State& state) { voxels(state, "quadrupteron", {.cells = kCells, .box = kInside}); }
 void jointed_forces(benchmark::State& state) { inverse_dynamics(state, "3crr-r-cru"); }
 void rigid_forces(benchmark::State& state) { inverse_dynamics(state, "quadrupteron"); }
 

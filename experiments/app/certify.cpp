@@ -5,11 +5,11 @@
 #include <map>
 #include <stdexcept>
 
-#include "engine/config/assignments.hpp"
 #include "engine/core/team.hpp"
 #include "engine/runner/stop_request.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/grid.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/target.hpp"
 
@@ -52,11 +52,7 @@ std::vector<std::array<double, 2>> ranges_of(const Target& target, const Workspa
                                              const std::vector<std::string>& box) {
   const MechanismInfo& info = target.info();
   const Sweep& sweep = sweep_of(info, plan);
-  std::vector<Assignable> swept;
-  for (const int coordinate : sweep.swept) {
-    const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
-    swept.push_back({axis.name, axis.unit});
-  }
+  const std::vector<Assignable> swept = assignable_coordinates(info, sweep);
   const auto given = parse_ranges(box, "--box", swept);
   std::vector<std::array<double, 2>> ranges(info.coordinates.size());
   for (std::size_t i = 0; i < swept.size(); ++i) ranges[static_cast<std::size_t>(sweep.swept[i])] = given[i];

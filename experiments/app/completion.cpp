@@ -1,7 +1,6 @@
 // `pkmopt completion`: prints a completion script for bash, zsh or fish, generated from the declared options.
 
 #include <algorithm>
-#include <functional>
 #include <iostream>
 #include <map>
 

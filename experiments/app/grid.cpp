@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/config/assignments.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
@@ -38,15 +37,20 @@ Box reachable_box(const WorkspacePlan& plan, const Target& target) {
   return box;
 }
 
-std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,
-                             std::int64_t default_cells, double max_cells) {
-  const MechanismInfo& info = target.info();
-  const Sweep& sweep = sweep_of(info, plan);
+std::vector<Assignable> assignable_coordinates(const MechanismInfo& info, const Sweep& sweep) {
   std::vector<Assignable> swept;
   for (const int coordinate : sweep.swept) {
     const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
     swept.push_back({axis.name, axis.unit});
   }
+  return swept;
+}
+
+std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,
+                             std::int64_t default_cells, double max_cells) {
+  const MechanismInfo& info = target.info();
+  const Sweep& sweep = sweep_of(info, plan);
+  const std::vector<Assignable> swept = assignable_coordinates(info, sweep);
   VoxelOptions voxels = equal_cells(sweep, default_cells);
   voxels.box = plan.box();
   if (plan.voxels()) voxels = *plan.voxels();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/config/assignments.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -18,6 +19,9 @@ struct GridArguments {
 /// Declares --box and --cells.
 /// @param default_cells  cells along each axis if neither the command line nor a study specifies them
 void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t default_cells);
+
+/// The swept coordinates as names that --box and --cells may assign.
+std::vector<Assignable> assignable_coordinates(const MechanismInfo& info, const Sweep& sweep);
 
 /// A grid with the same number of cells along each swept coordinate.
 VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells);

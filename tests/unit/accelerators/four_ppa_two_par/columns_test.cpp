@@ -48,19 +48,22 @@ TEST(FourPpaColumns, SliceAreaEqualsTheSumOverX) {
   EXPECT_GT(positive, 100);
 }
 
-// The rule with its pieces against a fine midpoint rule over theta that knows of no breaks.
+/// Volume by the midpoint rule over the whole range of theta, without critical values.
+double midpoint_volume(const Case& c, int steps) {
+  const auto g = geometry(std::span<const double>(c.p));
+  const auto f = sliced_design(g, limits(g, c.limits), c.y);
+  const double last = acos(f.l.cos_theta_min);
+  double sum = 0;
+  for (int i = 0; i < steps && !f.empty; ++i) {
+    const auto [s, co] = sincos(last * (i + 0.5) / steps);
+    sum += area(f, slice(f, s, co));
+  }
+  return 2 * sum * last / steps;
+}
+
 TEST(FourPpaColumns, VolumeEqualsAFineMidpointSum) {
   for (const Case& c : random_cases(120, 5)) {
-    const auto g = geometry(std::span<const double>(c.p));
-    const auto f = sliced_design(g, limits(g, c.limits), c.y);
-    constexpr int kSteps = 10000;
-    const double last = acos(f.l.cos_theta_min);
-    double sum = 0;
-    for (int i = 0; i < kSteps && !f.empty; ++i) {
-      const auto [s, co] = sincos(last * (i + 0.5) / kSteps);
-      sum += area(f, slice(f, s, co));
-    }
-    const double expected = 2 * sum * last / kSteps;
+    const double expected = midpoint_volume(c, 10000);
     const auto found = survey(c.p, columns(c.limits, at_y(c.y)));
     EXPECT_NEAR(found.volume, expected, 3e-6 * (1 + expected));
   }
@@ -83,16 +86,7 @@ std::vector<Case> strong_cases(int count, unsigned seed) {
 TEST(FourPpaColumns, StrongLimitsTogetherLoseNothing) {
   int compared = 0;
   for (const Case& c : strong_cases(400, 11)) {
-    const auto g = geometry(std::span<const double>(c.p));
-    const auto f = sliced_design(g, limits(g, c.limits), c.y);
-    constexpr int kSteps = 4000;
-    const double last = acos(f.l.cos_theta_min);
-    double sum = 0;
-    for (int i = 0; i < kSteps && !f.empty; ++i) {
-      const auto [s, co] = sincos(last * (i + 0.5) / kSteps);
-      sum += area(f, slice(f, s, co));
-    }
-    const double expected = 2 * sum * last / kSteps;
+    const double expected = midpoint_volume(c, 4000);
     const auto found = survey(c.p, columns(c.limits, at_y(c.y)));
     EXPECT_NEAR(found.volume, expected, 1e-5);
     compared += expected > 1e-3;
