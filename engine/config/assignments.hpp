@@ -21,7 +21,7 @@ struct Assignable {
 
 /// The parameters of a mechanism as assignable names.
 std::vector<Assignable> assignable_parameters(const MechanismInfo& info);
-/// Its limits of poses as assignable names.
+/// The limits of poses of a mechanism as assignable names.
 std::vector<Assignable> assignable_limits(const MechanismInfo& info);
 /// Coordinates or joints as assignable names.
 /// @param per  "s" for rates, "s^2" for accelerations

@@ -13,7 +13,7 @@
 namespace pkm {
 namespace {
 
-/// The accelerators of a mechanism with one of its mass models.
+/// The accelerators for a mechanism with the given mass model.
 using MakeAccelerators = Accelerators (*)(const std::string& mass_model);
 
 std::shared_ptr<const Mechanism> build(const std::string& name, MakeAccelerators accelerators,

@@ -8,14 +8,16 @@
 
 namespace pkm {
 
-/// In the order in which `pkmopt list` shows them. Each is read from its file when it is first used.
+/// All built-in mechanisms, in the order in which `pkmopt list` shows them. Each is read from its file when it is first
+/// used.
 const MechanismList& all_mechanisms();
 
-/// One of them with what a study adds. Throws std::invalid_argument with a sentence if a mechanism of this name is none
-/// of them: it is written in C++.
+/// A built-in mechanism with the quantities and limits that a study adds. Throws std::invalid_argument with a message
+/// if there is no built-in mechanism file of this name.
 std::shared_ptr<const Mechanism> built_in_mechanism(const std::string& name, const StudyAdditions& study);
 
-/// The file of one of them: what `pkmopt list NAME --file` prints. Throws std::invalid_argument for other names.
+/// The text of the file of a built-in mechanism, which `pkmopt list NAME --file` prints. Throws std::invalid_argument
+/// for other names.
 const std::string& mechanism_file_text(const std::string& name);
 
 }  // namespace pkm

@@ -117,7 +117,7 @@ class ConfigValue {
   SourceLocation place() const { return {file_, value_->line, path_}; }
   /// "line 12", for a message about another place.
   std::string line() const { return "line " + std::to_string(value_->line); }
-  /// found: the value as written.
+  /// An error that names the value as written, what is expected, and the nearest known name.
   ConfigError error(std::string_view expected, std::string_view nearest = {}) const;
   ConfigError error_of(std::string_view found, std::string_view expected, std::string_view nearest = {}) const;
   /// A message that is a sentence of its own.

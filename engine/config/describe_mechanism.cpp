@@ -1,7 +1,6 @@
 // Text of `pkmopt check` for a mechanism file: how it was interpreted, and which analyses it supports.
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <sstream>
 

@@ -1,6 +1,5 @@
 #include "engine/config/json_schema.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <list>
 

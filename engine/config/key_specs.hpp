@@ -21,6 +21,7 @@ inline OptionSpec tables_key(const std::string& name, const TableSpec& table) {
           .parts = {{.kind = OptionKind::table, .meaning = table.meaning, .table = &table}}};
 }
 
+/// The description of a key that must be present.
 inline OptionSpec required(OptionSpec key) {
   key.required = true;
   return key;

@@ -48,10 +48,10 @@ struct NamedLimb {
   std::size_t joint = 0;                        ///< index among the joints of the mechanism
   std::optional<limbs::Vector3> axis = {};      ///< of the crank's pivot, or along the slide
   std::optional<limbs::Vector3> revolute = {};  ///< the axis of its joints, if they are parallel revolutes
-  bool has_rod = false;                         ///< or is a telescope; false: a slide that carries the platform
+  bool has_rod = false;                         ///< a rod or telescope; false: a slide that carries the platform
   bool has_links = false;                       ///< two links instead of a rod
-  std::optional<limbs::Vector3> beside = {};    ///< from the middle of a pair of rods to one of them
-  std::string end_on = "";                      ///< the body that carries its end; "": unspecified
+  std::optional<limbs::Vector3> beside = {};    ///< vector from the middle of a pair of rods to one of them
+  std::string end_on = "";                      ///< the body to which its end is attached; "": unspecified
 
   std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]
   /// Stiffness of a round tube: axial E A [N], bending E I and torsional G J [N m^2].
@@ -75,8 +75,8 @@ struct OwnParameter : LimbParameter {
 
 /// The values of a sign of the working modes, and their names in the names of modes.
 struct SignChoice {
-  std::string signs;               ///< "+-": the file's first is the default
-  std::vector<std::string> names;  ///< of each
+  std::string signs;               ///< "+-": the first is the default
+  std::vector<std::string> names;  ///< by sign
   bool is_branch = false;          ///< appended to the name of a mode after a "/", unless it is the default
 };
 
@@ -156,7 +156,7 @@ void add_quantity_margins(const ConfigValue& study, MechanismDraft& draft);
 void read_modes(const ConfigValue& root, MechanismDraft& draft);
 /// [[limb]]: joints, loop-closure equations, constraints, ranges, angles, links, bodies.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
-/// Refuses `across` if the limb's end leaves its plane at some poses.
+/// Refuses `across` if the end of the limb leaves the limb's plane at some poses.
 void refuse_changing_planes(MechanismDraft& draft);
 /// [[margin]] and [[design]]
 void read_margins(const ConfigValue& root, MechanismDraft& draft);

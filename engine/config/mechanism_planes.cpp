@@ -33,7 +33,7 @@ struct Extent {
   }
 };
 
-/// Random inputs of the graph: a design, and poses in the box of [survey].
+/// Generator of random inputs of the graph: one design, and poses in the box of [survey].
 class RandomPoses {
  public:
   RandomPoses(const generic::Model& model, std::uint32_t design)

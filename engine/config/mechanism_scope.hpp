@@ -48,7 +48,8 @@ class MechanismScope {
   /// Refuses a range that is empty for the default parameters.
   void refuse_empty(const ConfigValue& range, const limbs::Term& from, const limbs::Term& to) const;
 
-  /// Marks the roots in `node` as defined: the constraints of the limb state where they exist.
+  /// Marks the square roots in `node` as defined wherever the constraints of the limb are satisfied, so that they get
+  /// no margins of their own.
   void known_to_exist(expression::Node node);
   /// Adds domains for the operations in joints and margins of the model that may be undefined; margins for those that
   /// only limits of quantities use.

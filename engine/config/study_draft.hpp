@@ -26,9 +26,9 @@ struct StudyDraft {
   const MechanismInfo& info() const { return parts.mechanism->info(); }
 };
 
-/// [[override]]
+/// [[override]]: changes by the command line
 void read_overrides(const ConfigValue& root, StudyDraft& draft);
-/// Apply their changes of fixed parameters, and of limits.
+/// Apply the overrides of fixed parameters, and of limits.
 void override_parameters(const ConfigValue& root, StudyDraft& draft);
 void override_limits(StudyDraft& draft);
 /// [mechanism]: type or file, masses, fixed parameters.
@@ -43,9 +43,10 @@ void read_baseline(const ConfigValue& root, StudyDraft& draft);
 void read_workspace(const ConfigValue& root, StudyDraft& draft);
 /// Sets the default cells or accuracy of the method of `plan`.
 void set_defaults(const MechanismInfo& info, WorkspacePlan& plan);
-/// The [[constraint]]s of poses. They complete the plan of the workspace analysis, so they precede all that uses it.
+/// The [[constraint]]s that limit poses. They become part of the plan of the workspace analysis, and are therefore read
+/// before all tables that use this plan.
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
-/// [[obstacle]]: bodies fixed in the base, from which links keep the clearance.
+/// [[obstacle]]: bodies fixed to the base; the clearance limit also applies to their distance from the links.
 void read_obstacles(const ConfigValue& root, StudyDraft& draft);
 /// [[region]]: named parts of the workspace with analyses of their own, under the study's limits.
 void read_regions(const ConfigValue& root, StudyDraft& draft);

@@ -28,8 +28,8 @@ struct TomlValue {
   const TomlValue* find(const std::string& key) const;
 };
 
-/// Parses `text`. Throws ConfigError with the line for whatever TOML does not allow (duplicate keys, bytes that are not
-/// UTF-8, ...). `file` and `expected`, what it should contain, are for messages.
+/// Parses `text`. Throws ConfigError with the line if it is not valid TOML (duplicate keys, bytes that are not UTF-8,
+/// ...). `file` and `expected`, a description of the contents, are for messages.
 TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected = "a study in TOML");
 
 }  // namespace pkm

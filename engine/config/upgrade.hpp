@@ -20,7 +20,7 @@ struct UpgradedText {
   std::vector<ReplacedKey> replaced;  ///< in the order of the text; empty: `text` is unchanged
 };
 
-/// Upgrades any text. Text that is not TOML is possibly changed in a meaningless way, but remains not TOML.
+/// Upgrades a text without checking that it is valid TOML: invalid text may be changed, but does not become valid.
 UpgradedText upgraded(const std::string& text, TextKind kind);
 
 /// Upgrades the text of a file on disk, whose kind is recognised from its contents. Throws ConfigError if the text is

@@ -30,7 +30,8 @@ std::vector<std::string> names_with_cells(const MechanismInfo& info, const Works
   return names;
 }
 
-/// Sets the cells of a plan of voxels to cells_of(name). @return the product along the swept coordinates
+/// Sets the numbers of cells along all axes of a plan of voxels to cells_of(name). @return the product along the swept
+/// coordinates
 template <class CellsOf>
 std::int64_t set_cells(const MechanismInfo& info, WorkspacePlan& plan, const CellsOf& cells_of) {
   const std::vector<int>& swept = sweep_of(info, plan).swept;
@@ -99,7 +100,7 @@ void read_nodes(const ConfigValue& given, const MechanismInfo& info, const Sweep
     columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer());
 }
 
-/// Reads certified = true, or a gap.
+/// Reads `certified`: true, or the relative gap of the bounds.
 std::optional<double> read_certified(const ConfigValue& value, const Mechanism& mechanism) {
   const std::string expected = "true, false, or the gap of the bounds: a number between 0 and 2";
   if (value.is_flag() && !value.flag()) return {};
@@ -113,12 +114,14 @@ std::optional<double> read_certified(const ConfigValue& value, const Mechanism& 
   return gap;
 }
 
-/// Reads exact = false, true or a time [s]. @return 0 for false
-double read_exact(const ConfigValue& value, const Mechanism& mechanism, double usual) {
+/// Reads `exact`: false, true, or a time.
+/// @param default_seconds  time for true
+/// @return the time that exact values may take [s]; 0: they are not computed
+double read_exact(const ConfigValue& value, const Mechanism& mechanism, double default_seconds) {
   if (value.is_flag() && !value.flag()) return 0;
   const std::string expected = "true, false, or the time that exact values may take: a time > 0 s, such as \"10 s\"";
   if (value.is_list() || value.is_table()) throw value.error(expected);
-  const double seconds = value.is_flag() ? usual : value.number("s");
+  const double seconds = value.is_flag() ? default_seconds : value.number("s");
   if (!(seconds > 0)) throw value.error(expected);
   if (!mechanism.columns())
     throw value.refusal("mechanism " + mechanism.info().name + " has no exact columns" +

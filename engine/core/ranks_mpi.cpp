@@ -21,7 +21,8 @@ namespace {
 // Maximum size of an MPI message in bytes: MPI counts with int.
 constexpr std::size_t kMaxMessage = std::size_t{1} << 30;
 
-/// Serialises all MPI calls: MPI is initialised with MPI_THREAD_SERIALIZED, which every implementation supports.
+/// Serialises all MPI calls. Several threads call MPI, so the constructor requests MPI_THREAD_SERIALIZED, and throws if
+/// the implementation provides less and there are several ranks.
 std::mutex mpi_mutex;
 
 /// Waits until the request is complete. Other threads may call MPI meanwhile.

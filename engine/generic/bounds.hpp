@@ -6,13 +6,17 @@
 
 namespace pkm::generic {
 
-/// Throws std::invalid_argument with a message if bounds do not support a plan.
+/// Throws std::invalid_argument with a message if certified bounds do not support a plan.
 void require_bounds(const Model& model, const WorkspacePlan& plan);
+/// Bounds of the workspace volume of a design.
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& evaluation, std::span<const double> parameters,
                           const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options);
+/// Decides whether all poses of a box are feasible and regular.
+/// @param ranges  by coordinate
 PoseCertificate certify_box(const Evaluation& evaluation, std::span<const double> parameters, const WorkspacePlan& plan,
                             std::size_t mode, std::span<const std::array<double, 2>> ranges,
                             const BoundsOptions& options);
+/// Decides whether all poses of a motion are feasible and regular.
 PoseCertificate certify_motion(const Evaluation& evaluation, std::span<const double> parameters,
                                const LimitSpec& limits, std::size_t mode, const Motion& motion,
                                const BoundsOptions& options);

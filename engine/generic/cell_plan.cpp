@@ -23,7 +23,7 @@ struct NormalisedConstraints {
   };
   std::vector<Crank> cranks;
 
-  /// All nodes, in the order of the members; of polynomials the coefficients.
+  /// All nodes in the order of the members, with the coefficients of polynomials.
   std::vector<Node> outputs() const {
     std::vector<Node> all = plain;
     const auto add = [&all](const expression::Polynomial& q) { all.insert(all.end(), q.c.begin(), q.c.begin() + 3); };

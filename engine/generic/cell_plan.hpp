@@ -22,7 +22,7 @@ struct CellPlan {
   using Registers = std::vector<std::uint32_t>;
   using Disjunction = std::vector<ColumnConstraint>;  ///< at least one of them has to be satisfied
 
-  /// limbs::CrankRange
+  /// limbs::CrankRange, as constraints along the innermost loop.
   struct Crank {
     ColumnConstraint at_min, at_max, after_min, before_max;
     std::uint32_t half_turn, reach;  ///< registers
@@ -39,7 +39,7 @@ struct CellPlan {
 
   std::vector<std::size_t> order;
   expression::Program program;
-  Registers outer_constraints, middle_constraints, inner_constraints;  ///< by loop; outer: and those before all loops
+  Registers outer_constraints, middle_constraints, inner_constraints;  ///< by loop; outer: also those of stage 0
   Registers passed_to_inner;              ///< registers of the middle loop that the inner loop reads
   std::vector<ColumnConstraint> columns;  ///< linear ones first, which are the cheapest
   std::vector<Disjunction> disjunctions;

@@ -10,7 +10,7 @@ namespace pkm::generic {
 /// end, which are joined there. Ascending.
 std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<LinkNodes>& links);
 
-/// The links that move and whose clearance is tested.
+/// Indices of the links that move and whose clearance is tested.
 std::vector<std::size_t> moving_links(const Graph& graph, const std::vector<LinkNodes>& links);
 
 /// For each link, the links from which its clearance is not tested; empty if no clearance is tested.
@@ -40,6 +40,7 @@ template <class S>
 std::optional<NearestBodies<S>> nearest_bodies(const Evaluation& evaluation, const std::vector<S>& inputs,
                                                const Obstacles& obstacles);
 
+/// Scratch memory of ClearanceBatch.
 struct ClearanceScratch {
   PoseBatchScratch poses;
   std::vector<Capsule<double>> links;

@@ -1,6 +1,5 @@
 #include "engine/generic/conditioning.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/SVD>

@@ -28,6 +28,7 @@ template <class S>
 std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths<S>& lengths, const Pose<S>& pose,
                                  const AxisMatrix<S>& J);
 
+/// Scratch memory of SampleConditioning.
 template <class S>
 struct ConditioningScratch {
   CharacteristicLengths<S> lengths;

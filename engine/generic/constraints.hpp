@@ -7,24 +7,26 @@
 
 namespace pkm::generic {
 
-/// Nodes of a graph of their own, in which the signs of the working mode are constants.
+/// The constraints as nodes of a separate graph, in which the signs of the working mode are constants.
 struct PoseConstraints {
   Graph graph;
-  std::vector<Node> all;  ///< satisfied if >= 0: Model::domains, margins, defined
+  std::vector<Node> all;  ///< satisfied if >= 0: those of Model::domains, then margins, then defined
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
   std::vector<RodAndPathNodes> paths;
   std::vector<std::optional<std::array<Node, 2>>> box;  ///< by coordinate
 };
 
+/// The constraints of a model in one working mode.
 PoseConstraints constraints_of(const Model& model, std::size_t mode);
 
-/// Constraints that are satisfied if all subexpressions of a constraint that do not depend on some coordinates are
-/// finite: 0 times the subexpression. The polynomial normal form along these coordinates requires them in addition,
-/// because a constraint that is not finite is violated.
+/// A constraint that is not finite is violated, but its polynomial normal form along some coordinates does not show
+/// this for subexpressions that are constant along them. For each of these subexpressions this function returns a
+/// constraint, 0 times the subexpression, which is satisfied if it is finite.
 /// @param along  groups of the coordinates
 std::vector<Node> finiteness_constraints(Graph& graph, Node constraint, Groups along);
 
+/// Name of a constraint for messages.
 /// @param constraint  index in PoseConstraints::all
 std::string constraint_name(const Model& model, std::size_t constraint);
 

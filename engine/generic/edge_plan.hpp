@@ -26,28 +26,29 @@ class EdgePlan {
 
   struct Scratch;
 
-  /// The volume of a design, if why_not() is empty; std::nullopt if a quadric is of another kind, two faces are on the
-  /// same surface, or the edges are not closed.
+  /// The volume of a design, if why_not() is empty; std::nullopt if a quadric is no plane, sphere or cylinder, two
+  /// faces are on the same surface, or the edges are not closed.
   /// @param inputs    of the model's graph
   /// @param by_input  if not empty, the derivatives of the volume are added
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch,
                                           std::span<double> by_input = {}) const;
 
  private:
-  /// Positions of the first of the 10 coefficients of each quadric, among the outputs of the program. At least one of
-  /// the quadrics is >= 0.
+  /// A disjunction of quadric constraints: at least one of the quadrics is >= 0. Each element is the index of an output
+  /// of the program, the first of the 10 coefficients of a quadric.
   using Clause = std::vector<std::size_t>;
   struct Rod {
-    std::size_t output;  ///< first of B - A at the origin, axis, zero, rod, crank, from, to
+    std::size_t output;  ///< index of the first output: B - A at the origin, axis, zero, rod, crank, from, to
     bool is_crank, is_first_root;
   };
-  /// What a body is made from.
+  /// Origin of a body of the solid: a rod, a quadric constraint, or a face of the search box.
   struct Source {
     enum class Kind { rod, quadric, box };
     Kind kind;
-    std::size_t output;  ///< first one
+    std::size_t output;  ///< index of the first output that describes it
     double side = 0;     ///< box: 1: upper bound
   };
+  /// The solid of one design.
   struct Design {
     std::vector<double> registers, outputs;
     Vector3 origin;
@@ -58,12 +59,12 @@ class EdgePlan {
     /// Bound on the distance of the solid from the origin of the coordinates.
     double reach() const { return solid.bound + norm(origin); }
   };
-  /// @return false if a quadric is of another kind
+  /// Builds the solid of a design. @return false if a quadric is no plane, sphere or cylinder
   bool build(std::span<const double> inputs, Design& design) const;
   void add_gradient(Scratch& scratch, std::span<double> by_input) const;
 
   expression::Program program_;
-  std::size_t constants_ = 0;  ///< first of the last outputs: constraints of the design, >= 0
+  std::size_t constants_ = 0;  ///< first of the last outputs: constraints that depend on the design only, >= 0
   std::size_t box_ = 0;        ///< first of the outputs of the box: lower and upper bound of each coordinate
   std::vector<Rod> rods_;
   std::vector<Clause> clauses_;

@@ -14,6 +14,7 @@
 
 namespace pkm::generic {
 
+/// Adds the equations of motion to the graph of a model with bodies.
 EquationNodes equations_of(Model& model);
 
 /// EquationNodes::J only, for models without bodies.

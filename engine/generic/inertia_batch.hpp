@@ -5,6 +5,7 @@
 
 namespace pkm::generic {
 
+/// Scratch memory of InertiaBatch.
 struct InertiaScratch {
   PoseBatchScratch poses;
   std::vector<double> found;
@@ -21,7 +22,7 @@ class InertiaBatch {
 
   /// As PoseBatch::start().
   void start(const std::vector<double>& inputs, InertiaScratch& scratch) const;
-  /// Adds a pose, whose values are appended to the fields of the survey when the batch is full or finish() is called.
+  /// Adds a pose, whose values are appended to the fields of the result when the batch is full or finish() is called.
   void add(const Pose<double>& pose, InertiaScratch& scratch, WorkspaceResult<double>& to) const;
   void finish(InertiaScratch& scratch, WorkspaceResult<double>& to) const;
   /// With derivatives: poses are evaluated one by one.

@@ -7,8 +7,8 @@
 
 namespace pkm::generic {
 
-/// Input and output of the kernel. A plain struct, so that kernels share no inline functions with files that are
-/// compiled for another instruction set.
+/// Arguments and results of find_joint_inertia(). A plain struct, so that kernels share no inline functions with files
+/// that are compiled for another instruction set.
 struct InertiaKernelData {
   const expression::Operand *J, *M_X;  ///< n x n, row-major
   const double *registers, *rows;      ///< as for expression::BatchStage

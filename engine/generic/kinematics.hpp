@@ -7,9 +7,11 @@
 
 namespace pkm::generic {
 
+/// Joint coordinates, margins, Jacobians and quantities of a pose.
 PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                         std::size_t mode, const LimitSpec& limits);
 
+/// @return true if all joints have a solution
 /// @param inputs  of the graph, with the pose
 bool assembles_at(const Evaluation& evaluation, const std::vector<double>& inputs);
 
@@ -23,7 +25,7 @@ PoseReport inspect_sample(const Evaluation& evaluation, std::span<const double> 
 std::vector<double> quantities_at(const Evaluation& evaluation, std::span<const double> parameters, std::size_t mode,
                                   const LimitSpec& limits, const MotionSample& at);
 
-/// std::nullopt if the pose does not assemble, or if the coefficients are infinite.
+/// The influence coefficients at a pose; std::nullopt if it does not assemble, or if the coefficients are infinite.
 std::optional<Influence<double>> influence_at(const Evaluation& evaluation, std::span<const double> parameters,
                                               const Pose<double>& pose, std::size_t mode);
 

@@ -1,4 +1,5 @@
-// A mechanism as described by its file: names, and the nodes of all formulas in one expression graph.
+// A mechanism as described by its file: names, and all formulas as nodes of one expression graph. The structs whose
+// names end in Nodes hold such nodes.
 #pragma once
 
 #include <functional>
@@ -39,16 +40,16 @@ struct Inputs {
   std::size_t count() const { return extra_acceleration(kMaxExtras); }
 };
 
-/// A named number of a pose or of a design.
+/// A named value of a pose or of a design.
 struct Result {
   std::string name;
   std::string unit;
   Node node{};
-  std::string consequence{};  ///< of a violated domain: "limb1 cannot reach the pose"
+  std::string consequence{};  ///< of a domain: what its violation means, such as "limb1 cannot reach the pose"
 };
 
-/// Margins [first, first + count) that are reported as one: the value of `shown` if there is one, otherwise their
-/// minimum.
+/// Margins [first, first + count) of a model that are reported as a single margin: the value of `shown` if there is
+/// one, otherwise their minimum.
 struct ReportedMargin {
   std::string name;
   std::size_t first = 0, count = 1;
@@ -71,6 +72,7 @@ struct ReportLimit {
 /// Name of the limit on the clearance of links.
 inline constexpr const char* kClearanceLimit = "clearance_min";
 
+/// A link as a capsule: the ends of its axis and its radius.
 struct LinkNodes {
   std::string name, part;
   std::array<Node, 3> from, to;
@@ -79,20 +81,20 @@ struct LinkNodes {
   bool has_clearance = true;        ///< false: the link is only drawn
 };
 
-/// limbs::CrankRange, and the constraints of poses that are equivalent to it.
+/// The terms of limbs::CrankRange, and the constraints of poses that are equivalent to it.
 struct CrankRangeNodes {
   Node at_min, at_max, after_min, before_max, half_turn, reach, branch;
   std::vector<Node> constraints;
 };
 
-/// limbs::Annulus, and the constraints of poses that are equivalent to it.
+/// The two surfaces of limbs::Annulus, and the constraints of poses that are equivalent to it.
 struct AnnulusNodes {
   std::array<Node, 2> surfaces;
   std::vector<Node> constraints;
-  std::optional<std::size_t> crank_range;  ///< of the same limb
+  std::optional<std::size_t> crank_range;  ///< index in Model::crank_ranges of that of the same limb
 };
 
-/// limbs::RodAndPath with the range of the joint, and the constraints of poses that are equivalent to both.
+/// The terms of limbs::RodAndPath, the range of the joint, and the constraints of poses that are equivalent to both.
 struct RodAndPathNodes {
   bool is_circle;
   std::array<Node, 3> v, axis, zero;
@@ -100,7 +102,8 @@ struct RodAndPathNodes {
   std::vector<Node> constraints;
 };
 
-/// The rod or telescope of a limb. C is fixed for given joints; B is fixed to the platform, or given by a formula.
+/// The ends C and B of the rod or telescope of a limb. C is fixed for given joints; B is fixed to the platform, or
+/// given by a formula.
 struct RodNodes {
   std::array<Node, 3> C, B;
 };
@@ -111,7 +114,7 @@ struct SizeNodes {
   std::string unit, meaning;
 };
 
-/// limbs::Arm, with the end B of its rod.
+/// The vectors of limbs::Arm, and the end B of its rod.
 struct ArmNodes {
   std::array<Node, 3> arm, axis, rod, B;
   std::optional<Node> joint;  ///< the joint coordinate, if the arm is driven
@@ -172,19 +175,20 @@ struct JointNodes {
   struct Drive {
     std::size_t joint;
     std::array<Node, 3> axis;
-    bool turns = false;                  ///< revolute; otherwise prismatic
+    bool turns = false;                  ///< true: revolute; false: prismatic
     std::optional<std::size_t> slide{};  ///< body (a point mass) that moves with the drive
     std::optional<Node> compliance{};    ///< [m/N or rad/(N m)]; std::nullopt: rigid
   };
   std::string name;
   std::array<Node, 3> point;
-  std::size_t on;                   ///< solid
-  std::optional<std::size_t> from;  ///< the other solid; std::nullopt: the base
+  std::size_t on;                   ///< index of one solid
+  std::optional<std::size_t> from;  ///< index of the other solid; std::nullopt: the base
   Couples couples;
   std::vector<std::array<Node, 3>> axes;
   std::optional<Drive> drive{};
 };
 
+/// All bodies and joints, for reactions in the joints and for the mobility of the platform.
 struct JointedBodies {
   std::vector<SolidNodes> solids;
   std::vector<JointNodes> joints;
@@ -249,9 +253,9 @@ struct Model {
 
   // links
   std::vector<LinkNodes> links;
-  std::vector<LinkPair> link_pairs;            ///< whose clearance is tested
-  std::vector<std::size_t> moving_links;       ///< whose clearance from obstacles is tested
-  std::optional<std::size_t> clearance_limit;  ///< index among the limits, behind those of the graph
+  std::vector<LinkPair> link_pairs;            ///< pairs whose clearance is tested
+  std::vector<std::size_t> moving_links;       ///< links whose clearance from obstacles is tested
+  std::optional<std::size_t> clearance_limit;  ///< index among the limits, after those that are inputs of the graph
   std::vector<RodNodes> rods;                  ///< of the limbs that have one
 
   // dynamics

@@ -6,7 +6,7 @@
 
 namespace pkm::generic {
 
-/// Throws DesignError if a mass is not positive.
+/// The equations at a state of motion. Throws DesignError if a mass is not positive.
 /// @param evaluation  of a model with Model::jointed
 /// @param state       its pose assembles
 /// @param wrench      on the platform, at Model::wrench_point

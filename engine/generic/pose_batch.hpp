@@ -10,6 +10,7 @@
 
 namespace pkm::generic {
 
+/// Scratch memory of PoseBatch.
 struct PoseBatchScratch {
   std::vector<double> registers;
   expression::Rows rows;

@@ -1,6 +1,5 @@
 #include "engine/generic/pose_margins.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "engine/generic/clearance.hpp"

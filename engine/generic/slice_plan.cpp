@@ -173,7 +173,7 @@ class Planner {
     for (std::size_t i = 0; i < known_.all.size(); ++i)
       covered_[i] = covered_[i] || std::ranges::find(conditions, known_.all[i]) != conditions.end();
   }
-  /// A surface for each; std::nullopt if they are not all of this kind.
+  /// The bits of surfaces for these functions; std::nullopt if one of them cannot be a surface.
   std::optional<std::vector<Signs>> bits_of(std::initializer_list<Node> surfaces) {
     std::vector<NodeSurface> found;
     for (const Node surface : surfaces) {

@@ -17,7 +17,7 @@ struct Surface {
   std::array<std::uint32_t, 6> coefficients;
   bool has_z;              ///< for a conic
   bool is_high_degree;     ///< for a polynomial: its degree is three or four
-  bool is_transcendental;  ///< transcendental
+  bool is_transcendental;  ///< for a line: the constraint is no polynomial in z
 };
 
 /// Roles of the coordinates.
@@ -31,7 +31,7 @@ using CoordinateRanges = std::vector<std::optional<std::array<double, 2>>>;
 
 struct SlicePlan {
   CoordinateOrder order;
-  expression::Program program;  ///< stages: the design, each outer coordinate, v; with transcendental constraints z
+  expression::Program program;  ///< stages: the design, each outer coordinate, v; z if a surface is transcendental
   std::vector<Surface> surfaces;
   Formula formula;
   std::vector<std::vector<std::uint32_t>>
@@ -46,6 +46,8 @@ struct SlicePlan {
   std::string why_not;                              ///< if not empty: why these slices have no closed form
 };
 
+/// Plans the slices of a workspace for one order of the coordinates. If they have no closed form, SlicePlan::why_not is
+/// not empty.
 /// @param curves  whether transcendental constraints are allowed in lines
 /// @param box     by coordinate; std::nullopt: the range of the model
 SlicePlan plan_slices(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,

@@ -22,7 +22,6 @@ struct Formula {
   std::vector<Signs> any;  ///< of each of these at least one has to be set
   std::vector<CrankSigns> cranks;
 
-  bool is_simple() const { return any.empty() && cranks.empty(); }
   /// @param registers  of the program
   bool holds(Signs signs, const double* registers) const {
     if ((signs & all) != all) return false;

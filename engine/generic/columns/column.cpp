@@ -63,7 +63,7 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
   if (!(high > low)) return false;
   range = {low - beyond, high + beyond};  // the faces of the box are constraints, too
   std::array<Roots, kMaxSurfaces> roots;
-  std::array<bool, kMaxSurfaces> is_positive;  // below their roots
+  std::array<bool, kMaxSurfaces> is_positive;  // sign of each constraint below its roots
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
     if (((high_degree_ | transcendental_) & bit(k)) != 0) continue;
     const auto& at = plan_.surfaces[k].coefficients;
@@ -101,7 +101,8 @@ void Column::find_high_degree_roots(std::span<const double> registers, double fr
     const Quartic c = in_range(coefficients_of(plan_.surfaces[k], registers), from, to);
     std::array<double, 8> places{};
     const std::size_t count = sign_changes(c, places);
-    // not at the lower end, where rounding may give it another sign than sign_changes() starts with
+    // The sign is evaluated between the lower end and the first change: at the lower end itself rounding may give the
+    // opposite of the sign from which sign_changes() starts.
     const double first = 0.5 * (count > 0 ? places[0] - 1 : 0);
     bool is = c[0] + first * (c[1] + first * (c[2] + first * (c[3] + first * c[4]))) >= 0;
     if (is) signs |= bit(k);

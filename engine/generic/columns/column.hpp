@@ -17,15 +17,15 @@ struct ColumnScratch {
     std::pair<double, EndLabel> lower, upper;
   };
   std::vector<Piece> pieces;
-  Ends ends;  ///< all relevant sign changes of constraints
-  Ends quadratic,
-      high_degree;  ///< of quadratic and transcendental constraints, in order; of other ones between two of those
+  Ends ends;                     ///< all relevant sign changes of constraints
+  Ends quadratic;                ///< sign changes of quadratic and transcendental constraints, in ascending order
+  Ends high_degree;              ///< sign changes of constraints of degree three and four between two of those
   std::vector<EndLabel> labels;  ///< of the endpoints of pieces
   SliceType type = 0;
-  double error = 0;  ///< length in which the signs of transcendental constraints are unknown
+  double error = 0;  ///< total length of intervals in which the sign of a transcendental constraint is unknown
   SignChangeScratch sign_changes;
-  long operations = 0;      ///< with intervals so far, in all columns
-  long max_operations = 0;  ///< afterwards, what is not known counts as error
+  long operations = 0;      ///< interval operations so far, in all columns
+  long max_operations = 0;  ///< after so many, intervals with unknown signs are not bisected, but count as error
 };
 
 /// Whether a column has so many endpoints that it takes much longer than a microsecond.
@@ -33,19 +33,19 @@ inline bool is_long(const ColumnScratch& scratch) { return scratch.ends.size() >
 
 class Column {
  public:
-  /// @param plan  of a SectionOrder without v
+  /// @param plan  of lines: its CoordinateOrder has no v
   explicit Column(SlicePlan plan);
 
   const SlicePlan& plan() const { return plan_; }
-  /// Computes the length, the type and the pieces. @param registers  after all stages but that of z
+  /// Computes the length, the type and the pieces. @param registers  of the program, after all stages but that of z
   double measure(std::span<double> registers, ColumnScratch& scratch) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
   void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
                     const ColumnScratch& scratch) const;
   /// An endpoint with its derivatives, after measure(). @param dual_registers  after all stages but that of z
   Dual4 differentiable_end(const std::pair<double, EndLabel>& end, std::span<Dual4> dual_registers) const;
-  /// Calls visit(z, weight) at quadrature nodes inside the column, after measure(). @param end_of  returns an endpoint
-  /// as S
+  /// Calls visit(z, weight) at quadrature nodes inside the column, after measure().
+  /// @param end_of  end_of(pair of position and label) returns an endpoint of a piece as S
   template <class S, class EndOf, class Visit>
   void for_each_node(const GaussRule& along_z, const ColumnScratch& scratch, const EndOf& end_of,
                      const Visit& visit) const {

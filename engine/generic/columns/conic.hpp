@@ -1,8 +1,6 @@
 // Conics P(t, s) = 0 in the square [-1, 1]^2: their intersections, and integrals along their arcs.
 #pragma once
 
-#include <span>
-
 #include "engine/generic/columns/polynomial.hpp"
 
 namespace pkm::generic {
@@ -34,10 +32,10 @@ struct Arc {
   double from, to;
 };
 
-/// s of an arc at t.
+/// The root s number `root` of P(t, s) = 0 at t.
 double place_on(const Conic& P, int root, double t);
 
-/// Integral of s dt.
+/// Integral of s dt along an arc.
 double area_below(const Conic& P, const Arc& arc);
 
 /// Adds the derivatives of factor * area_below() with respect to the coefficients.

@@ -24,7 +24,7 @@ void CriticalValueSolver::reset(bool features_persist) {
   extrapolations_ = 0;
 }
 
-/// Finds the keys and features that only one side has.
+/// Finds the keys whose number of occurrences differs between the sides, and the features with these keys.
 void CriticalValueSolver::compare() {
   for (std::size_t i = 0; i < 2; ++i) {
     keys_[i].clear();
@@ -78,7 +78,7 @@ void CriticalValueSolver::add_size(double at, bool is_upper, double size) {
   add(sides_[0], {at, size});
 }
 
-/// Minimum distance of two features that the other side does not have; signed for two endpoints.
+/// Minimum distance of two features of one side that the other side does not have; signed for two endpoints.
 double CriticalValueSolver::distance_of_two() {
   const BoundaryFeatures& features = changed_features_[is_upper_];
   const bool are_two = changed_.size() == 2;
@@ -138,7 +138,7 @@ std::optional<double> CriticalValueSolver::zero_between(double low, double high,
   return at;
 }
 
-double CriticalValueSolver::next_sample(double low, double high, double near) {
+double CriticalValueSolver::next_sample(double low, double high, double tolerance) {
   const double middle = 0.5 * (low + high);
   if (extrapolations_ >= kMaxExtrapolations) return middle;
   bool is_upper = is_upper_;
@@ -148,18 +148,18 @@ double CriticalValueSolver::next_sample(double low, double high, double near) {
   if (!at) {
     // The extrapolation is close to an endpoint of the bracket, but the sample beside it was of another type.
     if (!last_ || offset_ == 0) return middle;
-    offset_ = std::fmax(16 * offset_, near);
+    offset_ = std::fmax(16 * offset_, tolerance);
     const double beyond = *last_ - low < high - *last_ ? low + offset_ : high - offset_;
     return beyond > low && beyond < high ? beyond : middle;
   }
   // Sample on the side with the feature, at the estimated error from the extrapolation; once that is small, on the
   // other side.
   const double from = is_upper ? high : low, there = std::fabs(*at - from);
-  const double off = std::fmax(last_ ? std::fmin(std::fabs(*at - *last_), 0.1 * there) : 0.1 * there, 0.5 * near);
+  const double off = std::fmax(last_ ? std::fmin(std::fabs(*at - *last_), 0.1 * there) : 0.1 * there, 0.5 * tolerance);
   last_ = at;
   offset_ = off;
   const double back = is_upper == (there > 2 * off) ? off : -off;
-  return std::fmax(low + 0.25 * near, std::fmin(high - 0.25 * near, *at + back));
+  return std::fmax(low + 0.25 * tolerance, std::fmin(high - 0.25 * tolerance, *at + back));
 }
 
 }  // namespace pkm::generic

@@ -12,11 +12,11 @@
 
 namespace pkm::generic {
 
-/// A feature of the boundary of a slice: a vertex of a planar slice or an endpoint of a column.
+/// A feature of the boundary of a slice: a vertex of a planar slice or an endpoint of a column, with its position.
 struct BoundaryFeature {
   std::uint64_t key;   ///< identical in all slices of one type
-  std::uint64_t of;    ///< constraint surface; two features of one surface merge like a square root
-  double t, s = 0;     ///< s: of planar slices only
+  std::uint64_t of;    ///< constraint surface; the distance of two features of one surface vanishes like a square root
+  double t, s = 0;     ///< position; s: in planar slices only
   bool bounds = true;  ///< false: a redundant root, not part of the boundary
 };
 using BoundaryFeatures = std::vector<BoundaryFeature>;
@@ -42,10 +42,12 @@ class CriticalValueSolver {
   }
   /// Adds a sample of a function that changes its sign at the critical value.
   void add_size(double at, bool is_upper, double size);
-  /// Abscissa in (low, high) of the next sample. @param near  required accuracy of the critical value
-  double next_sample(double low, double high, double near);
+  /// Abscissa in (low, high) of the next sample.
+  /// @param tolerance  absolute accuracy required of the critical value
+  double next_sample(double low, double high, double tolerance);
 
  private:
+  /// A sample: size of the degenerating feature at a value of the coordinate.
   struct Point {
     double at, size;
   };

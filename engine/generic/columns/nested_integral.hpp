@@ -52,7 +52,7 @@ struct SmoothInterval {
   double missed_at_ends =
       0;  ///< error of the polynomial through the nodes at the endpoints, if derivatives will be computed
   int one_sided_bisections = 0;  ///< consecutive bisections that left nearly all of a change in this half
-  std::size_t kept = 0;          ///< index of its first node in `kept`
+  std::size_t kept = 0;          ///< index in IntegralScratch::kept of the entry of its first node
 };
 
 inline constexpr int kMaxDepth = 10;        ///< depth of subdivision
@@ -75,7 +75,7 @@ struct IntegralScratch {
       std::vector<std::array<double, 2>> parts;
     };
     std::vector<ExpectedIntervals> seen;
-    std::size_t seen_count = 0;
+    std::size_t seen_count = 0;    ///< elements of `seen` in use
     std::vector<double> hints;     ///< where components are expected
     std::vector<double> places;    ///< of the first samples
     std::vector<Slice> scanned;    ///< slices at these samples
@@ -87,7 +87,8 @@ struct IntegralScratch {
   PlanarSliceScratch planar_slice;
   ColumnScratch column;
   SearchScratch search;
-  std::vector<double> registers, adjoints, own;
+  std::vector<double> registers, adjoints;
+  std::vector<double> own;         ///< derivatives of one constraint with respect to the registers
   std::vector<double> univariate;  ///< registers of SlicePlan::univariate
   SignChangeScratch changes;       ///< of its constraints along the first coordinate
   std::vector<double> ends;        ///< the sorted abscissas of these changes, and the ends of the range
@@ -103,7 +104,7 @@ struct IntegralScratch {
   std::vector<std::vector<SmoothInterval>> kept;
   std::unique_ptr<IntegralScratch> other;  ///< for the other side of a critical value
   long evaluations = 0;
-  long max_evaluations = 0;  ///< maximum number of evaluations; what is unknown then counts as error
+  long max_evaluations = 0;  ///< after so many, the search for critical values ends; undecided parts count as error
 };
 
 class NestedIntegral {
@@ -114,10 +115,10 @@ class NestedIntegral {
   const SlicePlan& plan() const {
     return std::visit([](const auto& each) -> const SlicePlan& { return each.plan(); }, innermost_);
   }
-  /// Limits, after which what is not known counts as error.
+  /// Limits of the work. When one is reached, undecided parts of the workspace count as error.
   struct Budget {
-    long evaluations = 0;             ///< of slices; 0: more than are usually of use
-    long operations = 1'000'000'000;  ///< with intervals, for transcendental constraints: some ten seconds
+    long evaluations = 0;             ///< evaluations of slices; 0: a limit that is rarely reached
+    long operations = 1'000'000'000;  ///< interval operations for transcendental constraints: about ten seconds
   };
   /// @param inputs  of the graph, with fixed coordinates
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
@@ -150,10 +151,11 @@ class NestedIntegral {
   /// Finds all sign changes of constraints along the first coordinate. @return bound of the measure that those which
   /// remain unknown can affect
   double find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const;
-  /// The slice, with the coordinates before `level` set.
+  /// The measure over the coordinates from `level` on, with the coordinates before `level` set.
   Slice inside(std::size_t level, IntegralScratch& scratch) const;
+  /// Sets the coordinate of `level`. @return the slice there
   Slice slice(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// The same, with the coordinate set.
+  /// The same, if the coordinate is set already.
   Slice set_slice(std::size_t level, double at, IntegralScratch& scratch) const;
   /// Computes several slices.
   void find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
@@ -187,8 +189,8 @@ class NestedIntegral {
   double slope_of_independent(std::size_t level, IntervalBound closing, double at, IntegralScratch& scratch) const;
 
   struct OneSided;
-  /// visit(weight, slope): of a point, with the derivative of the constraint that is violated beyond the critical value
-  /// with respect to the coordinate; scratch.own: with respect to the registers.
+  /// visit(weight, slope): weight of a point, and derivative with respect to the coordinate of the constraint that the
+  /// point violates beyond the critical value. scratch.own has its derivatives with respect to the registers.
   using OneSidedVisitor = std::function<void(double, double)>;
   static bool may_jump(std::size_t level, const SmoothInterval& part, bool upper, const IntegralScratch& scratch);
   /// Visits quadrature nodes in the set that is feasible on one side of an endpoint only, if the measure is

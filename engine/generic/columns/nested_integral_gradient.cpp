@@ -11,7 +11,7 @@ void NestedIntegral::add_gradient(std::span<double> by_input, IntegralScratch& s
   for (const auto& input : plan().program.stages()[0].inputs) by_input[input.position] += scratch.adjoints[input.to];
 }
 
-/// To be called after inside(level). Uses up the intervals that were kept.
+/// To be called after inside(level). Takes the intervals out of scratch.kept.
 void NestedIntegral::add_gradient(std::size_t level, double factor, IntegralScratch& scratch) const {
   if (level == levels()) {
     if (const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_))

@@ -91,8 +91,8 @@ void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   }
 }
 
-/// A workspace that few samples have found is small, and can have other components: boxes that can contain them are
-/// sampled in every slice.
+/// If only few samples are in the workspace, it is small, and may have further components: boxes that can contain them
+/// are sampled in every slice.
 void NestedIntegral::search_sparse_components(IntegralScratch& scratch) const {
   constexpr std::size_t kMost = 6000, kManyBoxes = 1500;
   constexpr int kPlaces = 9;
@@ -168,8 +168,8 @@ void NestedIntegral::add_samples_between_changes(double low, double high, Integr
   std::ranges::sort(places);
 }
 
-/// Intervals are expected as at the two nearest values of the next outer coordinate on either side, and by linear
-/// extrapolation through those.
+/// Adds samples in the intervals that are expected here: those at the two nearest values of the next outer coordinate
+/// on either side, and their linear extrapolations.
 void NestedIntegral::add_expected_samples(double outside, IntegralScratch::Level& own) {
   using ExpectedIntervals = IntegralScratch::Level::ExpectedIntervals;
   const std::size_t known = own.places.size();

@@ -79,6 +79,7 @@ bool PlanarSlice::independent_hold(double t, std::span<double> registers, const 
   return std::ranges::all_of(plan_.independent.back(), [&](std::uint32_t at) { return is_satisfied(registers[at]); });
 }
 
+/// Finds the pieces between consecutive vertices.
 /// @param independent  whether constraints that are independent of z are evaluated, too
 void PlanarSlice::find_pieces(bool independent, std::span<double> registers, PlanarSliceScratch& scratch) const {
   scratch.pieces.clear();
@@ -113,7 +114,7 @@ void PlanarSlice::find_pieces(bool independent, std::span<double> registers, Pla
 
 void PlanarSlice::find_combinatorial_type(PlanarSliceScratch& scratch) const {
   SliceType& type = scratch.type;
-  Signs round = 0, cut = 0;  // surfaces whose arcs continue beyond turning points, and those that have other vertices
+  Signs round = 0, cut = 0;  // surfaces with an arc that ends at a turning point, and at another vertex
   const auto add = [&](std::size_t surface, std::size_t first, double t) {
     const std::uint32_t label = vertex_of(surface, first, t, scratch);
     if ((label & kKind) == kTurningPoint) {
@@ -143,7 +144,7 @@ void PlanarSlice::find_features(const PlanarSliceScratch& scratch, BoundaryFeatu
         std::find_if(scratch.vertices.begin() + static_cast<std::ptrdiff_t>(first), scratch.vertices.end(),
                      [&](const PlanarSliceScratch::Vertex& each) { return each.label == label; });
     if (vertex != scratch.vertices.end() && ((label & kKind) == kCrossing || (label & kKind) == kTurningPoint)) {
-      // common to both of its arcs
+      // a vertex is common to two arcs, but listed once
       const BoundaryFeature feature{label, label, vertex->t, vertex->s};
       if (std::ranges::none_of(features, [&](const BoundaryFeature& m) {
             return m.key == label && m.t == feature.t && m.s == feature.s;

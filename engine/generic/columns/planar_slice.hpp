@@ -15,17 +15,20 @@ namespace pkm::generic {
 
 /// Scratch memory of PlanarSlice, in coordinates t, s in [-1, 1] for v and z.
 struct PlanarSliceScratch {
+  /// A point at which arcs can end.
   struct Vertex {
     double t;
     std::uint32_t label;
     bool touches = false;  ///< an intersection of conics that are tangent there
     double s = 0;          ///< of intersections and turning points
   };
+  /// A feasible interval of the columns of a piece, by the labels of its endpoints.
   struct Span {
     EndLabel lower, upper;
 
     bool operator==(const Span&) const = default;
   };
+  /// An interval of t in which all columns have the same endpoints.
   struct Piece {
     double from, to;
     std::size_t from_vertex, to_vertex;  ///< the first vertex at this t; after the last one: the sides of the slice

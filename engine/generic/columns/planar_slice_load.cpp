@@ -18,7 +18,7 @@ Conic in_box(const std::array<double, 6>& C, const std::array<double, 2>& v, con
          vh * zh * C[4],
          zh * zh * C[5]};
   for (const double c : P.c) P.scale += std::fabs(c);
-  // A conic that depends on z by rounding only is a vertical line.
+  // A conic whose terms in z are rounding errors is a vertical line.
   constexpr double kRounding = 1e-14;
   if (std::fabs(P.c[2]) + std::fabs(P.c[4]) + std::fabs(P.c[5]) <= kRounding * P.scale) P.c[2] = P.c[4] = P.c[5] = 0;
   return P;

@@ -20,29 +20,31 @@ Components<4> tangent(std::span<const double> by, std::span<const Dual4> registe
 }
 
 PlanarSliceSensitivity::Boundary PlanarSliceSensitivity::boundary(std::uint32_t of, double t, double s) const {
-  const SlicePlan& plan = section_.plan();
+  const SlicePlan& plan = slice_.plan();
   const std::uint32_t number = of & ~kKind;
-  if ((of & kKind) == kSide) return {1, 0, moving_[plan.range[plan.range.size() - 2][number]].v * (-1 / room_.v[1])};
+  if ((of & kKind) == kSide)
+    return {1, 0, dual_registers_[plan.range[plan.range.size() - 2][number]].v * (-1 / scratch_.v[1])};
   if ((of & kKind) == kIndependent) {
     std::vector<double> by;
-    const double slope = section_.slope_of_independent(number, t, registers_, room_, by);
-    return {slope * room_.v[1], 0, tangent(by, moving_)};
+    const double slope = slice_.slope_of_independent(number, t, registers_, scratch_, by);
+    return {slope * scratch_.v[1], 0, tangent(by, dual_registers_)};
   }
-  const auto [along_t, along_s] = gradient(room_.conics[number], t, s);
-  const double v = room_.v[0] + room_.v[1] * t, z = room_.z[0] + room_.z[1] * s;
+  const auto [along_t, along_s] = gradient(scratch_.conics[number], t, s);
+  const double v = scratch_.v[0] + scratch_.v[1] * t, z = scratch_.z[0] + scratch_.z[1] * s;
   const double powers[6] = {1, v, z, v * v, v * z, z * z};
   Components<4> change;
-  for (std::size_t i = 0; i < 6; ++i) change = change + moving_[plan.surfaces[number].coefficients[i]].v * powers[i];
+  for (std::size_t i = 0; i < 6; ++i)
+    change = change + dual_registers_[plan.surfaces[number].coefficients[i]].v * powers[i];
   return {along_t, along_s, change};
 }
 
 Dual4 PlanarSliceSensitivity::vertex(std::size_t first, double t) const {
-  if (const std::uint32_t label = vertex_of(kMaxSurfaces, first, t, room_)) {
+  if (const std::uint32_t label = vertex_of(kMaxSurfaces, first, t, scratch_)) {
     const bool is_surface = (label & kKind) == kVertical;
-    const Boundary side = boundary(is_surface ? label & ~kKind : label, t, -room_.z[0] / room_.z[1]);
+    const Boundary side = boundary(is_surface ? label & ~kKind : label, t, -scratch_.z[0] / scratch_.z[1]);
     return differentiable_root(t, side.change, side.t);
   }
-  const PlanarSliceScratch::Vertex& at = room_.vertices[first];
+  const PlanarSliceScratch::Vertex& at = scratch_.vertices[first];
   return {t, ((at.label & kKind) == kCrossing ? crossing(at) : turning_point(at.label & ~kKind, at)).v};
 }
 
@@ -53,7 +55,7 @@ Dual4 PlanarSliceSensitivity::crossing(const PlanarSliceScratch::Vertex& at) con
 }
 
 Dual4 PlanarSliceSensitivity::turning_point(std::uint32_t surface, const PlanarSliceScratch::Vertex& at) const {
-  const Conic& P = room_.conics[surface];
+  const Conic& P = scratch_.conics[surface];
   const auto change = [&](double s) { return boundary(surface, at.t, s).change; };
   if (!P.is_straight()) return differentiable_root(at.t, change(at.s), gradient(P, at.t, at.s)[0]);
   // The root is infinite there: P_s = 0 for every s.
@@ -61,7 +63,7 @@ Dual4 PlanarSliceSensitivity::turning_point(std::uint32_t surface, const PlanarS
 }
 
 Dual4 PlanarSliceSensitivity::end(EndLabel end, const Dual4& t) const {
-  const double s = end_at(end, t.a, room_);
+  const double s = end_at(end, t.a, scratch_);
   const Boundary at = boundary(end >> 1U, t.a, s);
   return differentiable_root(s, at.change + t.v * at.t, at.s);
 }

@@ -1,4 +1,4 @@
-// Sensitivities of the vertices and columns of a planar slice; the quadrature nodes between them are functions of them.
+// Sensitivities of the vertices and columns of a planar slice. The quadrature nodes between them move with them.
 #pragma once
 
 #include <vector>
@@ -19,12 +19,12 @@ class PlanarSliceSensitivity {
  public:
   using Scalar = Dual4;
 
-  /// @param scratch       after measure()
-  /// @param differentiable     registers after all stages but that of v
-  /// @param registers  their values
+  /// @param scratch         after measure()
+  /// @param dual_registers  registers with derivatives, after all stages but that of v
+  /// @param registers       their values
   PlanarSliceSensitivity(const PlanarSlice& planar_slice, const PlanarSliceScratch& scratch,
                          std::span<const Dual4> dual_registers, std::span<double> registers)
-      : section_(planar_slice), room_(scratch), moving_(dual_registers), registers_(registers) {}
+      : slice_(planar_slice), scratch_(scratch), dual_registers_(dual_registers), registers_(registers) {}
 
   /// @param first  the first vertex at t
   Dual4 vertex(std::size_t first, double t) const;
@@ -35,16 +35,16 @@ class PlanarSliceSensitivity {
     double t, s;
     Components<4> change;
   };
-  /// @param of  a surface, or the label of a vertex at a side or a independent condition
+  /// @param of  a surface, or the label of a vertex on a side of the slice or on an independent constraint
   Boundary boundary(std::uint32_t of, double t, double s) const;
 
  private:
   Dual4 crossing(const PlanarSliceScratch::Vertex& at) const;
   Dual4 turning_point(std::uint32_t surface, const PlanarSliceScratch::Vertex& at) const;
 
-  const PlanarSlice& section_;
-  const PlanarSliceScratch& room_;
-  std::span<const Dual4> moving_;
+  const PlanarSlice& slice_;
+  const PlanarSliceScratch& scratch_;
+  std::span<const Dual4> dual_registers_;
   std::span<double> registers_;
 };
 

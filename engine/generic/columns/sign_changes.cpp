@@ -35,7 +35,7 @@ class Search {
         const bool is_exhausted = s_.evaluations >= max_evaluations;
         // an interval of a few ulp, or NaN, has no midpoint
         if (is_exhausted || part.to - part.from <= narrow || !(part.from < middle && middle < part.to)) {
-          // a sign that changes at the end of a domain is as good as known
+          // a change of sign at the end of a domain is located to the width of the interval
           if (add_changes(part, part.undecided, !is_exhausted) < std::popcount(part.undecided) || is_exhausted)
             s_.undecided += part.to - part.from;
           continue;
@@ -54,7 +54,7 @@ class Search {
     program_.run<S>(stage_, registers);
   }
 
-  /// Adds the changes of monotonic constraints. @return those that are undecided
+  /// Adds the changes of the constraints that are monotonic on an interval. @return the undecided constraints
   Signs examine(const SignChangeScratch::Part& part) {
     ++s_.evaluations;
     evaluate<Interval>({part.from, part.to}, s_.registers);
@@ -71,9 +71,9 @@ class Search {
     return undecided;
   }
 
-  /// Adds a change for each of the constraints that have different signs at the ends. @param refines  otherwise it is
-  /// placed in the middle
-  /// @return their number
+  /// Adds a change for each of the constraints that have different signs at the ends of an interval.
+  /// @param refines  whether the change is located by root refinement; otherwise it is placed in the middle
+  /// @return number of these constraints
   int add_changes(const SignChangeScratch::Part& part, Signs of, bool refines) {
     int count = 0;
     for (; of != 0; of &= of - 1) {

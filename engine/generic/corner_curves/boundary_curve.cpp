@@ -40,7 +40,7 @@ bool BoundaryCurve::interpolate(double tolerance) {
     const double scale = is_circle() ? 1 + size[f] : 1;
     const double own_tail = interpolation_error(series[f], 0);
     has_converged = has_converged && own_tail <= tolerance * scale;
-    // The coefficients of the rounding errors of the values are left out.
+    // Coefficients that rounding errors of the values can explain are not used.
     const double rounding = 8 * kUnitRoundoff * scale;
     tail = std::fmax(tail, own_tail);
     error = std::fmax(error, own_tail + rounding);

@@ -34,6 +34,7 @@ struct CurveAt {
   Vector gradient(const Vector& p) const { return is_circle ? Vector{2 * (p.x - u), 2 * (p.y - w)} : Vector{u, w}; }
 };
 
+/// A curve as a function of tau.
 struct BoundaryCurve {
   enum class Kind : std::uint8_t {
     circle,
@@ -55,7 +56,7 @@ struct BoundaryCurve {
             evaluate_series(series[2].data(), terms, tau)};
   }
   CurveAt at_node(std::size_t n) const { return {is_circle(), values[0][n], values[1][n], values[2][n]}; }
-  /// Computes everything else from kind and values.
+  /// Computes all other members from `kind` and `values`.
   /// @param tolerance  relative tail of an interpolant that is accepted
   /// @return false if the interpolant has not converged
   bool interpolate(double tolerance);

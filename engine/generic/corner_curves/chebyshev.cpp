@@ -1,7 +1,5 @@
 #include "engine/generic/corner_curves/chebyshev.hpp"
 
-#include <algorithm>
-
 #include "engine/math/portable.hpp"
 
 namespace pkm::generic::corner_curves {

@@ -22,8 +22,8 @@ bool is_outside(const CurveAt& curve, const CurveAt& other) {
   return largest > 0;
 }
 
-/// The case that two of the curves touch.
-/// @param touching  the pair of them, whose crossings are not followed
+/// Resolves a triple of which two curves touch.
+/// @param touching  index of the pair that touches, whose crossings are not followed
 void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                      const std::array<CurvePair*, 3>& pairs, std::size_t touching) {
   constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};  // of each pair
@@ -38,10 +38,11 @@ void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<
   }
 }
 
-/// The signs at the crossing of one pair if all three curves cross each other.
+/// Finds the sign of the third curve at the crossings of one pair, if all three curves cross each other.
+/// @param moved  the curve that the perturbation moves outward
 bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std::size_t third, std::size_t moved,
                   std::vector<Root>& roots) {
-  constexpr double kWellConditioned = 0.01;  // of the maximum discriminant
+  constexpr double kWellConditioned = 0.01;  // minimum discriminant of samples, relative to the maximum
   constexpr double kCoincide = 1e-11;
   const Samples& d = pair.discriminant.values;
   const double smallest = pair.has_branches ? kWellConditioned * *std::ranges::max_element(d) : 0;
@@ -59,7 +60,7 @@ bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std
       if (pair.has_branches && d[n] < smallest) continue;
       largest = std::fmax(largest, std::fabs(h.values[n]));
       ++samples;
-      // The curve that is not moved keeps its place; the crossing moves along it, to h + epsilon = 0 of the other one.
+      // The crossing moves along the curve that is not moved, to its crossing with h + epsilon = 0 of the moved one.
       const Vector along = curves[fixed].at_node(n).gradient(p);
       outside += third == moved || determinant(along, curves[third].at_node(n).gradient(p)) *
                                            determinant(along, curves[moved].at_node(n).gradient(p)) <

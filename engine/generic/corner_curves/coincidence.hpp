@@ -1,5 +1,5 @@
-// Degenerate triples: three boundary curves that pass through one point for all tau, as those of the root A + sqrt(Q)
-// do (A = 0, Q = 0 and Q = A^2).
+// Degenerate triples: three boundary curves that pass through one point for all tau, for example A = 0, Q = 0 and
+// Q = A^2, to which a constraint A + sqrt(Q) >= 0 is reduced.
 //
 // They are resolved by an infinitesimal perturbation of the curves (simulation of simplicity, Edelsbrunner and Mucke
 // 1990), which does not change the volume: curves that touch are moved apart, and of others the last one is moved

@@ -13,9 +13,9 @@ namespace {
 constexpr double kTiny = 1e-13;       // of tau: shorter intervals are not sampled
 constexpr double kShort = 1e-7;       // of tau: signs in shorter intervals are uncertain
 constexpr double kParallel = 1e-13;   // relative distance of the centres, or sine of the angle, of parallel curves
-constexpr double kUnresolved = 1e-9;  // relative error of a function that is not accepted
+constexpr double kUnresolved = 1e-9;  // maximum relative error of a function
 
-/// Constraints that have to be satisfied: curves that have nothing feasible on one side.
+/// Constraints that have to be satisfied: curves on one side of which no point is feasible.
 struct Necessary {
   Signs inside = 0, outside = 0;
 
@@ -82,7 +82,8 @@ class Builder {
 
   int& pair_of(std::size_t i, std::size_t j) { return s_.pair_of[i * curves_.size() + j]; }
 
-  /// The angle of a circle is 0 in a direction in which the circle bounds nothing feasible, if there is one.
+  /// Adds the cut of each circle, the direction of angle 0: preferably one in which the circle does not bound the
+  /// feasible part at any sample.
   void add_cuts() {
     constexpr std::size_t kDirections = 7, kSampleNodes = 5;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -120,7 +121,7 @@ class Builder {
   CurveAt curve_at(std::size_t k, const Place& place) const {
     return place.node < kNodes ? curves_[k].at_node(place.node) : curves_[k].at(place.tau);
   }
-  /// A place inside a range: a node, whose values are known, if one is near its middle.
+  /// A place inside a range: a node near its middle, where values are known already, if there is one.
   static Place place_in(double low, double high) {
     const Samples& nodes = chebyshev_nodes();
     const double middle = 0.5 * (low + high);
@@ -196,7 +197,7 @@ class Builder {
     }
     return true;
   }
-  /// Parallel curves do not cross, but may coincide at single values of tau.
+  /// Finds the values of tau at which two parallel curves coincide. @return false if they are not resolved
   bool add_parallel(std::size_t i, std::size_t j) {
     const auto& first = curves_[i].values;
     const auto& second = curves_[j].values;
@@ -208,6 +209,7 @@ class Builder {
       s_.meetings.push_back({root.at, root.width, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)});
     return true;
   }
+  /// Where two parallel curves coincide, each of them passes through the crossings of the other one.
   void add_meetings() {
     for (const auto& [at, width, i, j] : s_.meetings)
       for (std::size_t k = 0; k < curves_.size(); ++k)
@@ -216,7 +218,7 @@ class Builder {
             s_.pairs[static_cast<std::size_t>(pair_of(own, k))].events.push_back({at, width, other, 0});
   }
 
-  /// Moves undecided roots to roots within their width, so that what happens at one tau is at one place on all curves.
+  /// Moves each undecided root to the nearest root within its width, so that an event has the same tau on all curves.
   void align_undecided_roots() {
     if (out_.undecided == 0) return;
     const std::span<Pair> pairs = std::span(s_.pairs).first(s_.pair_count);
@@ -245,8 +247,9 @@ class Builder {
     }
   }
 
-  /// Whether one constraint is violated wherever the curves cross: then nothing depends on the crossing. One sample of
-  /// each range in which they cross suffices if the constraint's curve never passes through a crossing.
+  /// Whether a constraint that has to hold is violated wherever two curves cross; then their crossings are not
+  /// followed. One sample in each range in which they cross is sufficient if the curve of this constraint never passes
+  /// through a crossing.
   bool is_infeasible(Pair& pair) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
@@ -300,7 +303,7 @@ class Builder {
       }
     return true;
   }
-  /// A third curve passes through the crossings of a pair.
+  /// Adds the event that a third curve passes through a crossing of a pair.
   void add_event(int pair, const Root& root, std::size_t third) {
     s_.pairs[static_cast<std::size_t>(pair)].events.push_back(
         {root.at, root.width, static_cast<std::uint8_t>(third), 0});
@@ -315,7 +318,7 @@ class Builder {
       ++out_.functions;
       return resolve_coincidence(curves_, {i, j, k}, {pair(pairs[0]), pair(pairs[1]), pair(pairs[2])}, s_.roots);
     }
-    // Curves that touch for all tau without crossing each other meet a third one at the same tau, without effect.
+    // Two curves that touch for all tau, but do not cross, both meet a third one at the same tau: this has no effect.
     if (pairs[0] < 0 || pairs[1] < 0 || pairs[2] < 0) return true;
     if (!find_roots(function_, s_.roots)) return false;
     for (const Root& root : s_.roots) {
@@ -352,7 +355,8 @@ class Builder {
     }
   }
 
-  /// Curves whose changes of sign at the crossing are not among the events, because these are infeasible.
+  /// The curves whose changes of sign at the crossings of a pair are not among the events, because their own crossings
+  /// with one of the pair are infeasible.
   Signs unknown_signs(std::size_t i, std::size_t j) {
     Signs unknown = 0;
     for (std::size_t k = 0; k < count_; ++k)
@@ -360,7 +364,8 @@ class Builder {
     return unknown;
   }
 
-  /// @param low, high  the crossing exists between them, or does not
+  /// Adds the active ranges of the crossings of a pair between two consecutive roots of the discriminant.
+  /// @param low, high  these roots: the curves cross everywhere between them or nowhere
   void add_ranges_between(const Pair& pair, double low, double high, bool root_at_low, bool root_at_high) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
@@ -420,7 +425,7 @@ class Builder {
       for (const auto& event : pair.events) {
         if (event.at <= low || event.at >= high || (event.branches != 0 && event.branches != static_cast<int>(branch)))
           continue;
-        // Close to an undecided interval nothing is sampled.
+        // No sample is taken close to an undecided interval.
         if (event.at - from > std::max({kTiny, width, event.width})) {
           sample(event.at);
           from = event.at;
@@ -441,7 +446,8 @@ class Builder {
     }
   }
 
-  /// Whether signs that were followed through all events are those at a place: no event was missed.
+  /// Whether the signs that were followed through all events equal those at a place; otherwise an event was missed.
+  /// @param which  the signs to compare
   bool are_signs(std::size_t i, std::size_t j, double branch, const Place& place, Signs which, Signs signs) const {
     constexpr double kUncertain = 1e-9;
     const Vector p = crossing(curve_at(i, place), curve_at(j, place), branch);
@@ -487,7 +493,7 @@ class Builder {
   }
 
   std::vector<BoundaryCurve>& curves_;
-  std::size_t count_;  ///< without cuts
+  std::size_t count_;  ///< number of curves without cuts
   const SliceFormula& formula_;
   Necessary necessary_;
   Decomposition& out_;

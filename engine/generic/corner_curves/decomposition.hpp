@@ -21,9 +21,9 @@ namespace pkm::generic::corner_curves {
 
 /// A maximal range of tau in which a crossing is a vertex of constant weight.
 struct ActiveRange {
-  std::uint8_t first, second;  ///< curves; the second one may be a cut
-  std::int8_t branch, weight;  ///< kappa; of a cut point: +-1, positive if the disc is feasible
-  double low, high;
+  std::uint8_t first, second;      ///< curves; the second one may be a cut
+  std::int8_t branch, weight;      ///< kappa; of a cut point: +-1, positive if the disc is feasible
+  double low, high;                ///< range of tau
   bool root_at_low, root_at_high;  ///< the discriminant vanishes there
 };
 
@@ -36,25 +36,28 @@ struct Decomposition {
 
 /// Scratch memory of decompose().
 struct DecompositionScratch {
+  /// A root of a concurrence function of a pair and a third curve.
   struct Event {
     double at, width;      ///< as of a Root
     std::uint8_t third;    ///< curve whose sign may change
     std::int8_t branches;  ///< 0: on both
   };
+  /// A third curve that passes through a crossing for all tau, and the side of it on which the perturbed crossing lies.
   struct Constant {
     std::uint8_t third;
     std::int8_t branch;  ///< 0: both
     bool outside;
   };
+  /// Two curves that cross for some tau.
   struct Pair {
     std::uint8_t first, second;
     bool has_branches;
     Sampled discriminant;
     std::vector<Root> ends;  ///< roots of the discriminant
     std::vector<Event> events;
-    std::vector<Constant> constants;  ///< signs of curves through the crossing for all tau
+    std::vector<Constant> constants;
   };
-  /// Where two parallel curves coincide.
+  /// A value of tau at which two parallel curves coincide.
   struct Meeting {
     double at, width;
     std::uint8_t first, second;
@@ -65,6 +68,7 @@ struct DecompositionScratch {
   std::vector<Meeting> meetings;
   std::vector<Root> roots;
   std::vector<double> places;
+  /// Change of the number of vertices of a curve, weighted by sign, at a value of tau.
   struct Step {
     double at;
     std::uint8_t curve;
@@ -73,6 +77,7 @@ struct DecompositionScratch {
   std::vector<Step> balance;
 };
 
+/// Finds the ranges in which the crossings are vertices.
 /// @param curves  at most kMaxCurves, without cuts, which are appended, one for each circle
 /// @return false if the slices have a degeneracy that is not supported, or the functions are not resolved
 bool decompose(std::vector<BoundaryCurve>& curves, const SliceFormula& formula, Decomposition& result,

@@ -72,7 +72,7 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   add_end_gradient(segment.upper, true, by_upper, scratch);
 }
 
-/// Adjoints of the surfaces' coefficients at a node, from those of u, w and c of the curves.
+/// Adds the adjoints of the surfaces' coefficients at a node, from those of u, w and c of the curves.
 void Volume::add_node_gradient(const Segment& segment, std::size_t node, double tau, Scratch& scratch) const {
   using Kind = CurveSource::Kind;
   const auto& registers = scratch.segments.registers;
@@ -131,7 +131,7 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
   }
 }
 
-/// v of a root moves by the implicit function theorem. To be called after run_limits().
+/// Adds the adjoint of a root v of a limit, by the implicit function theorem. To be called after run_limits().
 void Volume::add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const {
   LimitScratch& s = scratch.segments.limits;
   run_limits_at(plan_, v, s);
@@ -141,7 +141,7 @@ void Volume::add_limit_gradient(std::size_t limit, double v, double adjoint, Scr
   for (const auto& input : plan_.limits.stages()[2].inputs) s.adjoints[input.to] = 0;
 }
 
-/// The endpoint of a segment moves by the implicit function theorem.
+/// Adds the contribution of an endpoint of a segment, by the implicit function theorem.
 void Volume::add_end_gradient(const SegmentEnd& end, bool upper, double derivative, Scratch& scratch) const {
   auto& own = scratch.own;
   if (end.kind == SegmentEnd::Kind::division || derivative == 0) return;

@@ -1,4 +1,5 @@
-// Which plans of slices corner curves can serve, and the functions of the outer coordinate that divide its range.
+// Decides whether the slices of a plan can be integrated by corner curves, and finds the functions of the outer
+// coordinate whose roots divide its range.
 //
 // The coefficients of all boundary curves must be analytic functions of the outer coordinate t between the roots of
 // known functions: arguments of square roots, absolute values, inverse sines and cosines, differences of the arguments
@@ -29,10 +30,11 @@ struct OuterFunction {
 /// Shape of a surface in a slice.
 enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_along_z };
 
+/// The shapes and functions of a plan.
 struct OuterPlan {
   std::vector<Shape> shapes;  ///< by surface
   std::vector<OuterFunction> functions;
-  std::string why_not;  ///< not "": the plan is not served
+  std::string why_not;  ///< why corner curves cannot integrate the slices; "" if they can
 
   explicit OuterPlan(const SlicePlan& plan);
 };

@@ -20,14 +20,14 @@ struct SeriesInterval {
 /// Markov's bound of the derivative of a polynomial of `terms` coefficients on [-1, 1], relative to its maximum.
 double markov(std::size_t terms) { return static_cast<double>((terms - 1) * (terms - 1)); }
 
-/// With a bound of its rounding error.
+/// Upper bound of the sum of |c[k]|, including its rounding error.
 double sum_of_magnitudes(const double* c, std::size_t from, std::size_t terms) {
   double sum = 0;
   for (std::size_t k = from; k < terms; ++k) sum += std::fabs(c[k]);
   return sum * (1 + 2 * kUnitRoundoff * static_cast<double>(kNodes));
 }
 
-/// The value at -1 or 1.
+/// The value of the series at -1 or 1.
 double end_value(const SeriesInterval& interval, bool upper) {
   double sum = 0;
   for (std::size_t k = interval.terms; k-- > 0;) sum += upper || k % 2 == 0 ? interval.c[k] : -interval.c[k];

@@ -69,7 +69,8 @@ std::size_t SliceCurves::add_curve(const BoundaryCurve& curve, const CurveSource
   return curves.size() - 1;
 }
 
-/// A line in a direction that does not depend on its sign, so that opposite constraints share it.
+/// Adds a line with a normal direction that does not depend on the sign of its equation, so that opposite constraints
+/// share one curve.
 void SliceCurves::add_line(BoundaryCurve& line, CurveSource source, Signs positive, std::size_t* number) {
   const double u = line.values[0][kMiddle], w = line.values[1][kMiddle];
   const bool flips = std::fabs(u) >= std::fabs(w) ? u < 0 : w < 0;
@@ -158,14 +159,14 @@ bool SliceCurves::add_surface(std::size_t surface, Shape shape, const std::array
   return true;
 }
 
-/// v is between its bounds.
+/// Adds a bound of v as a line.
 void SliceCurves::add_bound(BoundaryCurve& line, bool upper) {
   std::size_t at = 0;
   add_line(line, {CurveSource::Kind::v_bound, upper ? std::size_t{1} : 0, 1}, 0, &at);
   formula.bounds.push_back({at, !upper});
 }
 
-/// Nothing is feasible in the intervals of v in which a limit is violated.
+/// Adds the roots of limits as lines: no point is feasible in the intervals of v in which a limit is violated.
 bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
   std::size_t before = 0;  // the line of the previous root
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -187,7 +188,7 @@ bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
   return true;
 }
 
-/// Replaces a curve by its constant sign; the curve stays, without a literal.
+/// Replaces a curve in the formula by its constant sign. The curve itself remains in the list, without a literal.
 void SliceCurves::remove_constant(std::size_t i, bool outside) {
   auto& literal = formula.literals[i];
   formula.constant |= outside ? literal.outside : literal.inside;
@@ -213,7 +214,7 @@ void SliceCurves::remove_constant(std::size_t i, bool outside) {
 
 SliceCurves::Status SliceCurves::simplify() {
   Formula& f = formula.formula;
-  // A rectangle around what satisfies the constraints that have to hold.
+  // Find a rectangle around the points that satisfy all constraints that have to hold.
   constexpr double kFar = 1e6;
   Range x{-kFar, kFar}, y{-kFar, kFar};
   const auto bound = [&](std::size_t i, bool outside) {

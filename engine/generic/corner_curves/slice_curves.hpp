@@ -32,6 +32,7 @@ struct NodeValues {
   std::array<Samples, 2> v;                      ///< the range of v
 };
 
+/// The boundary curves of a segment's slices, and the formula of feasibility.
 struct SliceCurves {
   Frame frame;
   std::vector<BoundaryCurve> curves;

@@ -23,7 +23,7 @@ struct SliceFormula {
     bool is_inside;
   };
 
-  /// A curve that has nothing feasible on one side, in addition to the formula.
+  /// A curve on one side of which no point is feasible, in addition to the formula.
   struct Bound {
     std::size_t curve;
     bool outside;  ///< where the feasible points are: h > 0

@@ -54,7 +54,8 @@ class LimitRootFinder {
   std::uint32_t at(std::size_t limit, std::size_t derivative) const {
     return program_.outputs()[3 * limit + derivative];
   }
-  /// A root may leave the range of v in the segment, but should not pass the end of the search there.
+  /// The end of the interval that is searched, beyond an end of the range of v: a root may leave the range within the
+  /// segment, but must not pass the end of the search. The limit has a certified sign there, if possible.
   double end_of_search(std::size_t limit, double end, double outwards) {
     for (const double margin : {0.03, 0.05, 0.08})
       if (sign_beside(cell_of(limit, end + margin * outwards, end + margin * outwards)) != 0)
@@ -73,7 +74,8 @@ class LimitRootFinder {
     }
     return cell;
   }
-  /// Appends the subintervals of an interval of v. @return false if one in the range of v is undecided
+  /// Bisects an interval of v and appends its subintervals to the cells. @return false if one in the range of v is
+  /// undecided
   bool bisect(std::size_t limit, double lower, double upper, int bisections) {
     const Cell cell = cell_of(limit, lower, upper);
     const bool is_decided =
@@ -86,7 +88,7 @@ class LimitRootFinder {
     return bisect(limit, lower, middle, bisections + 1) && bisect(limit, middle, upper, bisections + 1);
   }
 
-  /// Finds the groups of cells with roots. @return false if their number is not known
+  /// Finds the groups of adjacent cells that contain roots. @return false if the number of roots is unknown
   bool add_searches(std::size_t limit) {
     const std::vector<Cell>& cells = s_.cells;
     int sign = 0, first_sign = 0;  // beyond the cells so far, and the first one in the range of v; 0: unknown
@@ -121,7 +123,7 @@ class LimitRootFinder {
   }
   static int sign_beside(const Cell& cell) { return cell.is_undefined ? 0 : cell.sign; }
 
-  /// Finds the roots at a node, after run_limits().
+  /// Finds the roots at node n of the segment. run_limits() must have been called for this node.
   void solve(Search& search, std::size_t n) {
     const auto guess = [&](const Samples& v) { return n > 0 ? v[n - 1] : 0.5 * (search.lower + search.upper); };
     if (search.curvature == 0) {

@@ -1,5 +1,5 @@
-// Constraints f(t, v) >= 0 that depend on the outer coordinate t and on v, but not on z. In a slice they are satisfied
-// between lines v = v_k(t), whatever functions they are.
+// Limits: constraints f(t, v) >= 0 that depend on the outer coordinate t and on v, but not on z. Whatever function f
+// is, its boundary in a slice consists of lines v = v_k(t).
 //
 // On a segment of t the range of v is bisected until interval arithmetic proves for each subinterval that f has one
 // sign, or that f or df/dv is monotone along v (interval branch and prune). Neighbouring monotone subintervals contain
@@ -30,6 +30,7 @@ struct LimitFold {
   double t, v;
 };
 
+/// Result and scratch memory of find_limit_roots().
 struct LimitScratch {
   std::vector<double> registers, adjoints;
   std::vector<std::size_t> active;  ///< limits that are not certified to be satisfied by the design everywhere
@@ -65,10 +66,11 @@ struct LimitScratch {
 void start_limits(const SlicePlan& plan, std::span<const double> inputs, const std::array<Interval, 2>& box,
                   LimitScratch& scratch);
 
-/// Runs the stages of the outer coordinate, and of v.
+/// Evaluates the stage of the outer coordinate of SlicePlan::limits at t, or, after that, the stage of v.
 void run_limits(const SlicePlan& plan, double t, LimitScratch& scratch);
 void run_limits_at(const SlicePlan& plan, double v, LimitScratch& scratch);
 
+/// Result of find_limit_roots().
 enum class LimitState { resolved, violated, divided, unresolved };
 
 /// Finds the roots of the active limits on a segment.

@@ -20,7 +20,7 @@ class Volume {
   /// @param tolerance  relative
   Volume(SlicePlan plan, double tolerance) : plan_(std::move(plan)), outer_(plan_), tolerance_(tolerance) {}
 
-  /// Empty if the plan is served.
+  /// Why corner curves cannot integrate the plan; empty if they can.
   const std::string& why_not() const { return outer_.why_not; }
   const SlicePlan& plan() const { return plan_; }
 

@@ -5,7 +5,7 @@
 namespace pkm::generic::edges {
 namespace {
 
-// Relative to quantities of order one; coincidences of this size are taken as exact.
+// Relative difference of quantities of order one that are considered equal.
 constexpr double kCoincident = 1e-12;
 
 bool is_same(double a, double b) { return std::fabs(a - b) <= kCoincident * (std::fabs(a) + std::fabs(b)); }
@@ -132,10 +132,10 @@ bool cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Cur
   return true;
 }
 
-/// Curves on a torus, on its meridians: cos b alpha + sin b beta = gamma on the meridian at the angle q, where, with xi
-/// = v . e_r(q), alpha = xi + 2 square crank, beta = v . axis, gamma = -(square (crank^2 + rod^2) + k + crank xi) /
-/// rod. D = alpha^2
-/// + beta^2 - gamma^2.
+/// Curves on a torus as points of its meridians. On the meridian at the angle q they satisfy
+///
+///   cos b alpha + sin b beta = gamma,   alpha = xi + 2 square crank,   beta = v . axis,   xi = v . e_r(q),
+///   gamma = -(square (crank^2 + rod^2) + k + crank xi) / rod,   D = alpha^2 + beta^2 - gamma^2.
 void on_torus(const Face& torus, const Face& other, const Quadric& absolute, const std::optional<Quadric>& cut,
               std::vector<Curve>& curves) {
   const PreparedBody& body = *torus.body;
@@ -143,8 +143,8 @@ void on_torus(const Face& torus, const Face& other, const Quadric& absolute, con
   const double l = body.crank, rod = body.radius, beta = dot(q.v, body.axis);
   const Vector3 across = q.v - body.axis * beta;
   if (q.square == 0 && dot(across, across) > beta * beta) {
-    // A steep plane meets the parallel circle at the height rod sin b, of radius |crank + rod cos b|, in two points. On
-    // meridians, a plane through the axis would be singular.
+    // A steep plane meets the parallel circle at the height rod sin b, of radius |crank + rod cos b|, in two points.
+    // Points of meridians would be singular for a plane through the axis.
     const double size = norm(across);
     const Vector3 e = across * (1 / size);
     const Linear radius{l, rod, 0}, along{-q.k / size, 0, -rod * beta / size};
@@ -339,7 +339,8 @@ bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, s
   double size = 0;
   for (const double d : curve.D) size = std::max(size, std::fabs(d));
   if (!(size > 0)) return false;
-  // Meridians of a torus outside of its range are left out. Otherwise, no turning point is at the arbitrary start.
+  // Meridians outside of the range of a torus are not needed. On other surfaces the start is arbitrary; this number
+  // makes it unlikely that a turning point is exactly there.
   const bool on_torus = curve.kind == Curve::Kind::on_torus;
   const double start = on_torus ? curve.faces[0]->body->from : 0.1234;
   const double length = on_torus ? curve.faces[0]->body->to - start : 2 * kPi;

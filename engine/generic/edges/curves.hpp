@@ -3,7 +3,7 @@
 //   circles, ellipses      p(t) = o + x cos t + y sin t
 //   lines                  p(t) = o + x t
 //   cylinder and quadric   p(t) = o + x cos t + y sin t +- sqrt(D(t)) w: the generator at the angle t in two points
-//   torus, steep plane     the same: the parallel circle at the height rod sin t in two points
+//   torus and steep plane  the same: the parallel circle at the height rod sin t in two points
 //   torus and sphere or    the meridian circle at the angle t in two points, cos b = (alpha gamma -+ beta sqrt(D)) / Q,
 //     flat plane           sin b = (beta gamma +- alpha sqrt(D)) / Q (see on_torus() in the source)
 //   torus and cylinder,    in boxes, one coordinate of the torus is an implicit function of the other one
@@ -28,12 +28,13 @@ struct Quadric {
   double k = 0;
 };
 
+/// An intersection curve; o, x, y, w and D as in the table above.
 struct Curve {
   enum class Kind : std::uint8_t { trigonometric, line, on_torus, implicit };
   Kind kind = Kind::trigonometric;
   std::array<const Face*, 2> faces{};
   Vector3 o{}, x{}, y{}, w{};  ///< w: 0 without a square root
-  bool has_root = false;
+  bool has_root = false;       ///< the curve has two branches, +- sqrt(D)
   Trigonometric D{};
   std::optional<Affine> square{};  ///< |p|^2 on a sphere
   Quadric with{};                  ///< on_torus: the other surface, relative to the centre of the torus
@@ -64,7 +65,7 @@ struct CurveRoot {
   int order;
 };
 
-/// For curves that are not implicit.
+/// Divides a curve that is not implicit into arcs.
 /// @param roots  scratch memory
 /// @return false if D vanishes identically
 bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, std::vector<Arc>& arcs);

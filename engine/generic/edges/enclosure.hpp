@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/math/portable.hpp"
 #include "engine/math/small_matrix.hpp"

@@ -9,7 +9,7 @@ bool is_up_to_half_turn(const Body& body) { return body.kind == Body::Kind::slid
 
 using Bits = std::array<bool, kFunctions>;
 
-/// As limbs::CrankRange; the range of a slide is one of less than half a revolution.
+/// The rule of limbs::CrankRange. A slide has the rule of a crank whose range is less than half a revolution.
 bool is_in_body(const Bits& is, bool is_first_root, bool half_turn) {
   const bool after_from = is[2], before_to = !is[3];
   if (is[0] != is[1]) return is_first_root == is[0];
@@ -123,7 +123,7 @@ Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoin
 
 const Rule& membership(const Body& body, const Part* face) {
   static const Rule single = rule_of([](const Bits& is) { return is[0]; });
-  // By root, half turn, and the body or the part of its boundary.
+  // By first or second root, by range up to half a turn or more, and by body (0) or part of its boundary (1 + Part).
   static const auto rules = [] {
     std::array<std::array<std::array<Rule, 4>, 2>, 2> all;
     for (const bool first : {false, true})

@@ -21,7 +21,7 @@ struct Affine {
   double k = 0;
 };
 
-/// A body with what its functions need.
+/// A body with the vectors and affine functions from which its implicit functions are computed.
 struct PreparedBody : Body {
   explicit PreparedBody(const Body& body);
   Vector3 beside{};                       ///< crank: axis x zero
@@ -34,7 +34,7 @@ struct PreparedBody : Body {
 
 struct Face {
   const PreparedBody* body;
-  std::size_t number;  ///< of the body
+  std::size_t number;  ///< index of the body
   Part part = Part::first;
   Surface surface = Surface::plane;
   Vector3 centre{};          ///< plane: the foot point of the origin
@@ -45,10 +45,10 @@ struct Face {
 /// The faces of a body, as far as they are not empty.
 void add_faces(const PreparedBody& body, std::size_t number, std::vector<Face>& faces);
 
-/// A point of a curve, and |p|^2, of which curves know tighter enclosures than the sum of the squares.
+/// A point p of a curve.
 struct CurvePoint {
   Enclosure3 p;
-  Enclosure square;
+  Enclosure square;  ///< |p|^2: for many curves tighter than the sum of the squares
 };
 
 /// The implicit functions of a body. Planes, spheres and cylinders have one, positive inside. Slides and cranks, with
@@ -70,8 +70,10 @@ inline constexpr std::array<SignSets, kFunctions> kPositive{0xaaaaaaaaaaaaaaaa, 
 /// Whether a point belongs to a body or, if it lies on the surface of one of its faces, to that face.
 struct Rule {
   SignSets holds = 0;
-  std::array<SignSets, kFunctions> depends{};  ///< the combinations in which that depends on the sign of a function
+  /// By function: the combinations in which its sign decides.
+  std::array<SignSets, kFunctions> depends{};
 };
+/// The rule of a body, or of one of its faces.
 /// @param face  null: the body
 const Rule& membership(const Body& body, const Part* face);
 

@@ -13,7 +13,7 @@ double factor_of(QuadricCoefficients f, Body::Kind kind) {
   return (f[4] + f[5] + f[6]) / (kind == Body::Kind::sphere ? 3 : 2);
 }
 
-/// The axis of a cylinder, if A is that of one.
+/// Finds the axis of a cylinder. @return false if A is not the matrix of a cylinder
 bool find_axis(const Matrix<double, 3, 3>& A, double factor, Vector3& axis) {
   Matrix<double, 3, 3> square = Matrix<double, 3, 3>::identity() - A * (1 / factor);  // axis axis^T
   std::size_t largest = 0;

@@ -134,7 +134,7 @@ class Examination {
   double low(std::size_t i) const { return box_.middle[i] - box_.half[i]; }
   double high(std::size_t i) const { return box_.middle[i] + box_.half[i]; }
 
-  /// Whether f has no zero on the two sides of the box at the ends of a coordinate.
+  /// Whether f has no zero on the two sides of the box at which coordinate `other` is extreme.
   bool has_fixed_sides(std::size_t other) const {
     const std::size_t i = 1 - other;
     for (const double end : {low(other), high(other)}) {
@@ -145,7 +145,8 @@ class Examination {
     return true;
   }
 
-  /// The curve, cut where it passes the sides. If f can vanish on these, it is monotone along them.
+  /// The curve inside the box. It ends where it leaves the box through a side; f is monotone along sides on which it
+  /// can vanish.
   CurveInBox found(std::size_t other, double least) const {
     const std::size_t along = 1 - other;
     const auto is_positive = [&](double at, double across) { return f_.at(place(along, at, across)).f > 0; };

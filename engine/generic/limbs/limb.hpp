@@ -14,7 +14,7 @@
 
 namespace pkm::limbs {
 
-/// margin >= 0
+/// A constraint margin >= 0.
 struct Constraint {
   std::string name;  ///< "reaches"
   std::string unit;
@@ -59,6 +59,7 @@ struct RodAndPath {
   Term crank, rod, branch;
 };
 
+/// The closed form of a limb.
 struct Limb {
   Term joint;                           ///< joint coordinate; undefined if a constraint is violated
   std::vector<Constraint> constraints;  ///< under which the limb assembles
@@ -72,12 +73,14 @@ struct Limb {
   std::optional<RodAndPath> path{};  ///< of a rod with ball joints, without Ends::across
 };
 
+/// The joints of a limb on the base and on the platform.
 struct Ends {
   Vector3 A, B;
   std::optional<Vector3> across;  ///< unit vector: rod and crank stay normal to it
 };
 
-// In all of these, q is the joint as a variable of the closure, and the result is Limb::joint.
+// In the following functions the argument q is the joint as a variable of the closure; the formula q = .. is
+// Limb::joint.
 
 /// q = |v|
 Limb telescope(const Ends& ends, const Term& q);

@@ -13,7 +13,7 @@ struct Vector3 : std::array<Term, 3> {
   Vector3(const Term& x, const Term& y, const Term& z) : std::array<Term, 3>{{x, y, z}} {}
 };
 struct Rotation : std::array<Vector3, 3> {
-  /// By rows.
+  /// @param x, y, z  the rows of the matrix
   Rotation(const Vector3& x, const Vector3& y, const Vector3& z) : std::array<Vector3, 3>{{x, y, z}} {}
 };
 

@@ -50,7 +50,7 @@ ColumnPruner::Root ColumnPruner::enclose_root(std::size_t constraint, const Segm
   const Interval by_z = over_box.by_axis[z];
   root.is_enclosed = over_box.is_known_by_last && !by_z.holds(0);
   root.is_increasing = by_z.lower > 0;
-  // Choose z_c: near the root over the centre, or the end of the segment that is nearer to it.
+  // Choose z_c: near the root at the centre of the box, or the end of the segment that is nearer to it.
   const auto value_at = [&](double height) {
     return constraints_.value(constraint, Interval(height), scratch.centre).middle();
   };
@@ -89,7 +89,7 @@ ColumnPruner::Root ColumnPruner::enclose_root(std::size_t constraint, const Segm
   return root;
 }
 
-/// @return true if the constraint has different signs at the ends of a segment, over the centre of the box
+/// @return true if the constraint has different signs at the two ends of a segment, with x at the centre of the box
 bool ColumnPruner::changes_sign_at_centre(std::size_t constraint, const Interval& segment, Scratch& scratch) const {
   const auto is_negative_at = [&](double height) {
     return constraints_.value(constraint, Interval(height), scratch.centre).middle() < 0;
@@ -97,8 +97,8 @@ bool ColumnPruner::changes_sign_at_centre(std::size_t constraint, const Interval
   return is_negative_at(segment.lower) != is_negative_at(segment.upper);
 }
 
-/// 1.5 times the first-order displacement of the root over the box from its position over the centre,
-/// sum_i |G_i| width(X_i) / (2 |G_z|); infinity if G_z vanishes.
+/// Bound of the displacement of a root z*(x) over the box from its position at the centre of the box: 1.5 times the
+/// first-order estimate sum_i |G_i| width(X_i) / (2 |G_z|); infinity if G_z vanishes.
 double ColumnPruner::root_displacement(std::size_t constraint, std::int64_t expansion, const IntervalBox& sides,
                                        Scratch& scratch) const {
   const std::size_t z = constraints_.axes() - 1;

@@ -44,6 +44,7 @@ struct ColumnGrid {
   std::int64_t step_above(double z, std::int64_t from, std::int64_t to) const;
 };
 
+/// An interval of z over a box.
 struct Segment {
   std::int64_t from, to;
   OpenConstraints open;  ///< constraints that are undecided; all others are satisfied
@@ -64,6 +65,7 @@ struct Step {
   std::int64_t from = 0, to = 0, expansion = 0;  ///< steps of the ColumnGrid
 };
 
+/// A box of the outer coordinates, with its segments.
 struct ColumnBox {
   std::array<std::array<double, 2>, kMaxOuterAxes> side{};
   Interval feasible_length{0.0};  ///< length of z that is feasible over the whole box
@@ -71,6 +73,7 @@ struct ColumnBox {
   Interval volume{0.0};           ///< enclosure of the volume over the box
 };
 
+/// Prunes the columns over boxes.
 class ColumnPruner {
  public:
   ColumnPruner(const Constraints& constraints, const ColumnGrid& grid,

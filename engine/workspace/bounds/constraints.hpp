@@ -50,7 +50,7 @@ class Constraints {
   Constraints(expression::Graph graph, const std::vector<NamedConstraint>& constraints, std::vector<std::size_t> axes,
               std::vector<Interval> inputs);
 
-  /// Number of different constraints: identical ones are merged.
+  /// Number of distinct constraints: identical ones are merged.
   std::size_t size() const { return all_.size(); }
   std::size_t axes() const { return axes_.size(); }
   const std::string& name(std::size_t k) const { return all_[k].name; }
