@@ -1,25 +1,22 @@
-// Outline of a workspace over two coordinates, by marching squares.
-//
-// Every grid node is classified as feasible or infeasible. Each vertex of the outline lies on an edge between a
-// feasible and an infeasible node, where the minimum margin of the pose changes sign; it is located by bisection.
-// Features smaller than a grid square can be missed.
+// Outline of a workspace over two coordinates: the boundary of its mesh.
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include "engine/workspace/workspace_fields.hpp"
+#include "engine/export/slice_mesh.hpp"
 
 namespace pkm {
 
 struct SliceOutline {
-  using Loop = std::vector<std::array<double, 2>>;
+  using Loop = std::vector<PlanePoint>;
   std::array<WorkspaceAxis, 2> axes;  ///< horizontal and vertical
   std::vector<Loop> loops;  ///< closed polygons: counter-clockwise around feasible regions, clockwise around holes
   double area = 0;          ///< of the polygons, in the product of the axes' units
 };
 
-/// @param workspace  over two swept coordinates; gives their ranges and the values of the fixed coordinates
-SliceOutline trace_outline(const WorkspaceFields& workspace, const PoseMargin& margin);
+SliceOutline trace_outline(const SliceMesh& mesh);
+
+/// Twice the signed area of a polygon (shoelace formula); positive if it is counter-clockwise.
+double twice_area(const SliceOutline::Loop& loop);
 
 }  // namespace pkm

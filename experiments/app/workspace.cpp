@@ -59,7 +59,8 @@ void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
 
 /// Draws a workspace over two coordinates, and adds its area to the output.
 Picture slice_picture(const Target& target, const WorkspaceFields& workspace, Printout& out) {
-  const auto outline = trace_outline(workspace, PoseMargin(*target.mechanism, target.parameters, target.limits));
+  const SliceMesh mesh = slice_mesh(workspace, PoseMargin(*target.mechanism, target.parameters, target.limits));
+  const SliceOutline outline = trace_outline(mesh);
   const std::string& unit = workspace.volume_unit;
   out.add("area", outline.area, number(outline.area, unit) + ", within the outline drawn");
   std::vector<std::string> fixed;
