@@ -5,27 +5,11 @@
 #include <numbers>
 
 #include "engine/core/formatted.hpp"
+#include "engine/export/plot_frame.hpp"
+#include "engine/export/stroke_font.hpp"
 
 namespace pkm {
 namespace {
-
-/// Maps a coordinate of the slice to pixels; labelled in mm or degrees.
-struct PlotAxis {
-  std::string title;
-  double unit = 1;               ///< SI value of the unit of the labels
-  double lower = 0, upper = 0;   ///< range [SI]
-  double pixel = 0, length = 0;  ///< position of `lower`, and signed length up to `upper`, in pixels
-
-  double to_pixels(double value) const { return pixel + length * (value - lower) / (upper - lower); }
-  /// Four to ten round numbers within the range, in the unit of the labels.
-  std::vector<double> ticks() const {
-    const double span = (upper - lower) / unit, power = std::pow(10, std::floor(std::log10(span / 5)));
-    const double step = power * (span / power >= 20 ? 5 : span / power >= 8 ? 2 : 1);
-    std::vector<double> values;
-    for (double k = std::ceil(lower / unit / step); k * step <= upper / unit; ++k) values.push_back(k * step + 0.0);
-    return values;
-  }
-};
 
 /// The range is the extent of the outline plus a margin of 10 %; the whole axis if nothing is feasible.
 PlotAxis plot_axis(const SliceOutline& outline, std::size_t i) {
@@ -44,12 +28,48 @@ PlotAxis plot_axis(const SliceOutline& outline, std::size_t i) {
   return plot;
 }
 
+/// Divides a text at blanks into lines of limited width.
+std::vector<std::string> wrapped(const std::string& text, double width) {
+  constexpr double kUnit = 1.35;  // pixels per unit of the stroke font: width of an average letter of 13 pixels
+  std::vector<std::string> lines = {""};
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at),
+                      longer = lines.back() + (lines.back().empty() ? "" : " ") + word;
+    if (lines.back().empty() || kUnit * text_strokes(longer).width <= width)
+      lines.back() = longer;
+    else
+      lines.push_back(word);
+    at = end + 1;
+  }
+  return lines;
+}
+
 }  // namespace
 
-Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& lines) {
+std::vector<double> PlotAxis::ticks() const {
+  const double span = (upper - lower) / unit, power = std::pow(10, std::floor(std::log10(span / 5)));
+  const double step = power * (span / power >= 20 ? 5 : span / power >= 8 ? 2 : 1);
+  std::vector<double> values;
+  for (double k = std::ceil(lower / unit / step); k * step <= upper / unit; ++k) values.push_back(k * step + 0.0);
+  return values;
+}
+
+std::vector<PlanePoint> PlotFrame::to_pixels(const std::vector<PlanePoint>& points) const {
+  std::vector<PlanePoint> drawn;
+  for (const PlanePoint& point : points) drawn.push_back({across.to_pixels(point[0]), up.to_pixels(point[1])});
+  return drawn;
+}
+
+std::vector<SliceOutline::Loop> PlotFrame::to_pixels(const std::vector<SliceOutline::Loop>& loops) const {
+  std::vector<SliceOutline::Loop> drawn;
+  for (const SliceOutline::Loop& loop : loops) drawn.push_back(to_pixels(loop));
+  return drawn;
+}
+
+PlotFrame plot_frame(const SliceOutline& outline, const std::vector<std::string>& lines, double right) {
   using Anchor = Picture::Anchor;
-  constexpr double kLeft = 90, kRight = 30, kBelow = 64, kLine = 20, kMaxLength = 560, kMinLength = 160;  // pixels
-  const double above = 24 + kLine * static_cast<double>(lines.size());
+  constexpr double kLeft = 90, kBelow = 64, kLine = 20, kMaxLength = 560, kMinLength = 160, kMinText = 460;  // pixels
   PlotAxis across = plot_axis(outline, 0), up = plot_axis(outline, 1);
   double width = kMaxLength, height = 0.75 * kMaxLength;
   if (outline.axes[0].unit == outline.axes[1].unit) {  // same scale on both axes, unless the drawing becomes too thin
@@ -57,12 +77,18 @@ Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& 
     width = std::max(kMaxLength * wide / longer, kMinLength);
     height = std::max(kMaxLength * high / longer, kMinLength);
   }
+  const double text_width = std::max(width + right - 16, kMinText);
+  std::vector<Picture::Text> head;
+  for (const std::string& text : lines)
+    for (const std::string& line : wrapped(text, text_width))
+      head.push_back(
+          {kLeft, 24 + kLine * static_cast<double>(head.size()), line, Anchor::begin, &text == &lines.front()});
+  const double above = 24 + kLine * static_cast<double>(head.size());
   across.pixel = kLeft, across.length = width;
   up.pixel = above + height, up.length = -height;
 
-  Picture picture{.width = kLeft + width + kRight, .height = above + height + kBelow};
-  for (std::size_t k = 0; k < lines.size(); ++k)
-    picture.texts.push_back({kLeft, 24 + kLine * static_cast<double>(k), lines[k], Anchor::begin, k == 0});
+  Picture picture{.width = kLeft + std::max(width + right, kMinText + 16), .height = above + height + kBelow};
+  picture.texts = std::move(head);
   for (const double tick : across.ticks()) {
     const double x = across.to_pixels(tick * across.unit);
     picture.grid.push_back({x, up.pixel, x, above});
@@ -73,14 +99,17 @@ Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& 
     picture.grid.push_back({kLeft, y, kLeft + width, y});
     picture.texts.push_back({kLeft - 8, y + 4, formatted("%.6g", tick), Anchor::end});
   }
-  for (const SliceOutline::Loop& loop : outline.loops) {
-    SliceOutline::Loop& drawn = picture.outline.emplace_back();
-    for (const auto& point : loop) drawn.push_back({across.to_pixels(point[0]), up.to_pixels(point[1])});
-  }
   picture.frame = {kLeft, above, width, height};
   picture.texts.push_back({kLeft + width / 2, up.pixel + 44, across.title, Anchor::middle});
-  picture.texts.push_back({24, above + height / 2, up.title, Anchor::middle, false, true});
-  return picture;
+  picture.texts.push_back({24, above + height / 2, up.title, Anchor::middle, false, 90});
+  return {std::move(picture), across, up};
+}
+
+Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& lines) {
+  constexpr double kRight = 30;  // pixels
+  PlotFrame plot = plot_frame(outline, lines, kRight);
+  plot.picture.outline = plot.to_pixels(outline.loops);
+  return plot.picture;
 }
 
 }  // namespace pkm

@@ -2,36 +2,58 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/export/colour_scale.hpp"
 #include "engine/export/slice_outline.hpp"
 
 namespace pkm {
 
-/// Coordinates are pixels from the upper left corner. Drawing order: grid and texts, outline, frame.
+/// Coordinates are pixels from the upper left corner. Drawing order: grid, areas, lines, outline, texts, frame.
 struct Picture {
   enum class Anchor { begin, middle, end };
   struct Text {
     double x, y;  ///< position of the anchor, on the baseline
     std::string content;
     Anchor anchor = Anchor::begin;
-    bool bold = false, vertical = false;  ///< vertical: reads from bottom to top
+    bool bold = false;
+    double angle = 0;                                 ///< of the baseline, counter-clockwise [deg]
+    Colour colour = {0, 0, 0};                        ///< of the letters
+    std::optional<Colour> background = std::nullopt;  ///< of a border around the letters
   };
   struct Line {
     double x1, y1, x2, y2;
+  };
+  struct Area {
+    std::vector<SliceOutline::Loop> loops;  ///< closed, filled by the even-odd rule
+    Colour colour;
+  };
+  struct Polyline {
+    std::vector<PlanePoint> points;
+    Colour colour;
   };
 
   double width = 0, height = 0;
   std::vector<Text> texts;
   std::vector<Line> grid;
-  std::vector<SliceOutline::Loop> outline;  ///< closed, filled by the even-odd rule
+  std::vector<Area> areas;
+  std::vector<Polyline> lines;
+  std::vector<SliceOutline::Loop> outline;  ///< closed
+  bool outline_is_filled = true;            ///< by the even-odd rule, in one colour
   std::array<double, 4> frame{};            ///< left, top, width, height
 };
 
 /// Draws a slice with axes labelled in mm or degrees.
 /// @param lines  text above the drawing, the title first
 Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& lines);
+
+/// Draws a field on a slice as filled contours, with labelled contour lines and a colour bar. Angles are labelled in
+/// degrees, lengths in mm or, if all are below 1 mm, in um. Areas where the field is undefined are grey.
+/// @param field  its values are those at the vertices of the mesh
+/// @param lines  text above the drawing, the title first; meaning and range of the field are appended
+Picture draw_map(const SliceMesh& mesh, const WorkspaceField& field, std::vector<std::string> lines);
 
 /// Contents of an SVG file.
 std::string svg_file(const Picture& picture);

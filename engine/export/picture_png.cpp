@@ -1,3 +1,6 @@
+#include <cmath>
+#include <numbers>
+
 #include "engine/export/picture.hpp"
 #include "engine/export/raster_image.hpp"
 #include "engine/export/stroke_font.hpp"
@@ -8,9 +11,10 @@ namespace {
 constexpr double kDots = 2;                           // per pixel
 constexpr double kFontScale = 1.5;                    // pixels per unit of the stroke font
 constexpr double kHalfWidth = 0.5, kHalfBold = 0.85;  // half line widths, of normal and of bold lines [pixel]
+constexpr double kHalfBorder = 2.0;                   // half line width of letters with a border
 
 constexpr RasterImage::Colour kGrid = {0xdd, 0xdd, 0xdd}, kFill = {0x4a, 0x7f, 0xb5}, kOutline = {0x1f, 0x4e, 0x79},
-                              kFrame = {0x22, 0x22, 0x22}, kText = {0, 0, 0};
+                              kFrame = {0x22, 0x22, 0x22};
 
 void draw_text(const Picture::Text& text, RasterImage& image) {
   const TextStrokes letters = text_strokes(text.content);
@@ -18,15 +22,25 @@ void draw_text(const Picture::Text& text, RasterImage& image) {
   const double offset = text.anchor == Picture::Anchor::begin ? 0
                         : text.anchor == Picture::Anchor::end ? length
                                                               : length / 2;
-  const auto to_pixels = [&](double x, double y) -> std::array<double, 2> {
+  const double turn = text.angle * std::numbers::pi / 180, right = std::cos(turn), up = std::sin(turn);
+  const auto to_dots = [&](double x, double y) -> std::array<double, 2> {
     const double along = kFontScale * x - offset, below = kFontScale * y;
-    return text.vertical ? std::array{text.x + below, text.y - along} : std::array{text.x + along, text.y + below};
+    return {kDots * (text.x + right * along + up * below), kDots * (text.y - up * along + right * below)};
   };
-  for (const auto& [x1, y1, x2, y2] : letters.strokes) {
-    const auto a = to_pixels(x1, y1), b = to_pixels(x2, y2);
-    image.draw_line(kDots * a[0], kDots * a[1], kDots * b[0], kDots * b[1],
-                    kDots * (text.bold ? kHalfBold : kHalfWidth), kText);
-  }
+  const auto draw = [&](double half_width, const RasterImage::Colour& colour) {
+    for (const auto& [x1, y1, x2, y2] : letters.strokes) {
+      const auto a = to_dots(x1, y1), b = to_dots(x2, y2);
+      image.draw_line(a[0], a[1], b[0], b[1], kDots * half_width, colour);
+    }
+  };
+  if (text.background) draw(kHalfBorder, *text.background);
+  draw(text.bold ? kHalfBold : kHalfWidth, text.colour);
+}
+
+std::vector<SliceOutline::Loop> in_dots(std::vector<SliceOutline::Loop> loops) {
+  for (SliceOutline::Loop& loop : loops)
+    for (auto& point : loop) point = {kDots * point[0], kDots * point[1]};
+  return loops;
 }
 
 }  // namespace
@@ -37,17 +51,20 @@ std::string png_file(const Picture& picture) {
     image.draw_line(kDots * x1, kDots * y1, kDots * x2, kDots * y2, kDots * kHalfWidth, colour);
   };
   for (const auto& [x1, y1, x2, y2] : picture.grid) line(x1, y1, x2, y2, kGrid);
-  for (const Picture::Text& text : picture.texts) draw_text(text, image);
-  std::vector<SliceOutline::Loop> loops = picture.outline;
-  for (SliceOutline::Loop& loop : loops)
-    for (auto& point : loop) point = {kDots * point[0], kDots * point[1]};
+  for (const Picture::Area& area : picture.areas) image.fill_polygons(in_dots(area.loops), area.colour, 1);
+  for (const Picture::Polyline& polyline : picture.lines)
+    for (std::size_t k = 0; k + 1 < polyline.points.size(); ++k) {
+      const auto &a = polyline.points[k], &b = polyline.points[k + 1];
+      line(a[0], a[1], b[0], b[1], polyline.colour);
+    }
   constexpr double kOpacity = 0.45;
-  image.fill_polygons(loops, kFill, kOpacity);
+  if (picture.outline_is_filled) image.fill_polygons(in_dots(picture.outline), kFill, kOpacity);
   for (const SliceOutline::Loop& loop : picture.outline)
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const auto &a = loop[k], &b = loop[(k + 1) % loop.size()];
       line(a[0], a[1], b[0], b[1], kOutline);
     }
+  for (const Picture::Text& text : picture.texts) draw_text(text, image);
   const auto [left, top, width, height] = picture.frame;
   line(left, top, left + width, top, kFrame);
   line(left, top + height, left + width, top + height, kFrame);

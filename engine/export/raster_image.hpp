@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/export/colour_scale.hpp"
+
 namespace pkm {
 
 /// The image is white initially. Coordinates are in pixels, x to the right and y downwards from the upper left corner.
 class RasterImage {
  public:
-  using Colour = std::array<double, 3>;  ///< red, green, blue, 0 to 255
+  using Colour = pkm::Colour;
   using Polygon = std::vector<std::array<double, 2>>;
 
   /// Both sizes are rounded to whole pixels.

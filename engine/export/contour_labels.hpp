@@ -1,0 +1,28 @@
+// Positions of the labels on contour lines.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/export/slice_mesh.hpp"
+
+namespace pkm {
+
+/// A label on a line: centre [pixel] and direction [deg, counter-clockwise, between -90 and 90] of the text, and the
+/// line without the part behind the label.
+struct LabelPlace {
+  PlanePoint at;
+  double angle;
+  std::vector<PlanePoint> before, after;
+};
+
+/// Chooses the place nearest to the middle of a line where the line is nearly straight over the length of the label,
+/// and neither other labels nor the outline are close. @return std::nullopt if there is none
+/// @param line     [pixel], y downwards
+/// @param length   of the label [pixel]
+/// @param labels   centres of other labels
+/// @param outline  its points, which must be close to each other
+std::optional<LabelPlace> place_label(const std::vector<PlanePoint>& line, double length,
+                                      const std::vector<PlanePoint>& labels, const std::vector<PlanePoint>& outline);
+
+}  // namespace pkm
