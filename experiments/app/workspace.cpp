@@ -1,12 +1,12 @@
 // `pkmopt workspace`: evaluates the workspace of one design on a voxel grid; prints a summary and writes files for
 // other programs.
 
+#include <filesystem>
 #include <numbers>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/export/picture.hpp"
-#include "engine/export/slice_outline.hpp"
 #include "engine/export/tables.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/mechanism/availability.hpp"
@@ -25,12 +25,21 @@ namespace pkm {
 namespace {
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, CubeArguments {
-  std::vector<std::string> fixed, cut;
+  std::vector<std::string> fixed, cut, fields;
   std::string csv, html, svg, png;
   int threads = 0;
 
   /// The option that requests a picture; "": none.
   std::string picture() const { return !svg.empty() ? "--svg" : !png.empty() ? "--png" : ""; }
+  /// The names of the pictures: one for the outline or a single field, otherwise one for each field.
+  std::vector<std::string> pictures(const std::string& file) const {
+    if (file.empty() || fields.size() < 2) return file.empty() ? std::vector<std::string>() : std::vector{file};
+    const std::filesystem::path path = file;
+    std::vector<std::string> names;
+    for (const std::string& field : fields)
+      names.push_back(path.parent_path() / (path.stem().string() + "-" + field + path.extension().string()));
+    return names;
+  }
 };
 
 /// Whether a feasible cell lies at an end of a range that the user has given.
@@ -57,8 +66,28 @@ void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
   expect_surface(arguments, names);
 }
 
-/// Draws a workspace over two coordinates, and adds its area to the output.
-Picture slice_picture(const Target& target, const WorkspaceFields& workspace, Printout& out) {
+/// Throws ConfigError if a field cannot be drawn.
+void expect_drawn_fields(const Target& target, const WorkspaceArguments& arguments, const std::string& mode) {
+  if (arguments.fields.empty()) return;
+  const SourceLocation place{"", 0, "--field"};
+  if (arguments.picture().empty() && arguments.csv.empty() && arguments.html.empty() && !arguments.any())
+    throw ConfigError(place, "no file", "a picture to draw the field in, such as -o map.svg");
+  const std::vector<std::string> known =
+      names_of(fields_at(*target.mechanism, target.parameters, target.limits, mode, {}));
+  for (const std::string& field : arguments.fields) {
+    if (!contains(known, field))
+      throw ConfigError(place, "'" + field + "'", "one of " + join(known), nearest_name(field, known));
+    if (std::ranges::count(arguments.fields, field) > 1)
+      throw ConfigError(place, "'" + field + "' twice", "each field once");
+    if (const Unsupported undefined = why_no_conditioning(target.info()); undefined && field == kConditioning.name)
+      throw ConfigError(place, *undefined);
+  }
+}
+
+/// Draws a workspace over two coordinates, one picture for each field or one of the outline only, and adds its area to
+/// the output.
+std::vector<Picture> slice_pictures(const Target& target, const WorkspaceFields& workspace,
+                                    const WorkspaceArguments& arguments, const std::string& mode, Printout& out) {
   const SliceMesh mesh = slice_mesh(workspace, PoseMargin(*target.mechanism, target.parameters, target.limits));
   const SliceOutline outline = trace_outline(mesh);
   const std::string& unit = workspace.volume_unit;
@@ -70,7 +99,13 @@ Picture slice_picture(const Target& target, const WorkspaceFields& workspace, Pr
                                         : formatted("%.6g mm", 1e3 * axis.lower)));
   std::vector<std::string> lines = {workspace_title(target), "area " + formatted("%.4g", outline.area) + " " + unit};
   if (!fixed.empty()) lines.insert(lines.begin() + 1, join(fixed));
-  return draw_slice(outline, lines);
+  if (arguments.fields.empty()) return {draw_slice(outline, lines)};
+  std::vector<Pose<double>> poses;
+  for (const auto& [x, y] : mesh.points) poses.push_back(workspace.pose({x, y, 0}));
+  const auto fields = fields_at(*target.mechanism, target.parameters, target.limits, mode, poses);
+  std::vector<Picture> pictures;
+  for (const std::string& name : arguments.fields) pictures.push_back(draw_map(mesh, *find_named(fields, name), lines));
+  return pictures;
 }
 
 void report_workspace(const Target& target, const WorkspaceFields& workspace, Printout& out) {
@@ -146,8 +181,10 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
 
 std::string workspace(const Target& target, const WorkspaceArguments& arguments, Printout& out) {
   std::vector<std::string> files = output_files(arguments, target);
-  for (const std::string& file : {arguments.csv, arguments.html, arguments.svg, arguments.png})
+  for (const std::string& file : {arguments.csv, arguments.html})
     if (!file.empty()) files.push_back(file);
+  for (const std::string& file : {arguments.svg, arguments.png})
+    for (const std::string& picture : arguments.pictures(file)) files.push_back(picture);
   const Existing existing = if_forced(arguments.force);
   if (!arguments.html.empty()) page_assets();  // throws now, before any evaluation, if this build has no page
   with_team(arguments.threads, [&] {
@@ -161,6 +198,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     expect_axes(swept_axes(plan, target.info(), slices), arguments);
     apply_slices(plan, target, slices, ranges_given);
     const std::string mode = parse_mode(target.info(), arguments);
+    expect_drawn_fields(target, arguments, mode);
     check_outputs(files, target.files, existing);
     WorkspaceFields found = compute_fields(target, plan, mode);
     found.touches_box = touches(found, ranges_given);
@@ -177,9 +215,10 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     report_workspace(target, found, out);
     report_largest_cube(found, arguments, out);
     if (arguments.picture().empty()) return;
-    const Picture picture = slice_picture(target, found, out);
-    if (!arguments.svg.empty()) write_file(arguments.svg, svg_file(picture), existing);
-    if (!arguments.png.empty()) write_file(arguments.png, png_file(picture), existing);
+    const std::vector<Picture> pictures = slice_pictures(target, found, arguments, mode, out);
+    const std::vector<std::string> svg = arguments.pictures(arguments.svg), png = arguments.pictures(arguments.png);
+    for (std::size_t i = 0; i < svg.size(); ++i) write_file(svg[i], svg_file(pictures[i]), existing);
+    for (std::size_t i = 0; i < png.size(); ++i) write_file(png[i], png_file(pictures[i]), existing);
   });
   out.json["files"] = files;
   for (const std::string& file : files) out.text += "wrote " + file + '\n';
@@ -193,7 +232,7 @@ void add_workspace(CLI::App& app, Session& session) {
       app, session, "workspace", "Compute the workspace of one design, and export it to ParaView, tables and CAD.",
       "A cell is feasible if its centre satisfies the limits of the study; a mechanism without a study has no limits.\n"
       "Files are in SI units: axes of lengths in m, axes of angles in rad.\n"
-      "Example: pkmopt workspace 4ppa-2par --cut theta=20deg -o slice.svg",
+      "Example: pkmopt workspace 4ppa-2par --cut theta=20deg --field conditioning -o map.svg",
       workspace);
   add_grid_options(command, arguments, kPictureCells);
   add_list_option(command, "--fixed", arguments.fixed,
@@ -206,6 +245,10 @@ void add_workspace(CLI::App& app, Session& session) {
   add_option(command, "--svg FILE", arguments.svg,
              "Draw a workspace over two coordinates, such as a slice, to this file");
   add_option(command, "--png FILE", arguments.png, "Draw the same picture to a PNG file");
+  add_option(command, "--field NAME", arguments.fields,
+             "Draw these fields as maps with contour lines: a picture each (separated by commas, repeatable)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   add_output_by_extension(command, {{".csv", &arguments.csv},
                                     {".html", &arguments.html},
                                     {".png", &arguments.png},

@@ -83,6 +83,62 @@ TEST_F(CliSlice, PictureHasAxesUnitsAndArea) {
   EXPECT_THAT(text("f.svg"), HasSubstr(">theta [deg]<"));
 }
 
+TEST_F(CliSlice, MapShowsAFieldWithUnitAndRange) {
+  const json one =
+      workspace({"4ppa-2par", "--cut", "theta=20deg", "--cells", "12", "--field", "alpha_1", "-o", "f.svg"});
+  EXPECT_EQ(one["files"], json::array({"f.svg"}));
+  const std::string svg = text("f.svg");
+  for (const char* const part :
+       {">x [mm]<", ">alpha_1 [deg]<", ">alpha_1: angle of limb 1's upper bars with the rail<",
+        ">from 0 deg to 90 deg<", "theta = 20 deg", ">80<", "class=\"area\"", "class=\"line\""})
+    EXPECT_THAT(svg, HasSubstr(part));
+  EXPECT_LT(svg.size(), 300000u);
+}
+
+TEST_F(CliSlice, EachFieldHasItsOwnMap) {
+  const std::vector<std::string> maps = {PKM_EXPERIMENTS "/mechanisms/quantities/rotary-delta.toml",
+                                         "--cut",
+                                         "y=0",
+                                         "--cells",
+                                         "6",
+                                         "--field",
+                                         "lti,conditioning",
+                                         "--field",
+                                         "lti_input",
+                                         "-o",
+                                         "m.svg",
+                                         "-o",
+                                         "m.png",
+                                         "-o",
+                                         "m.csv"};
+  EXPECT_EQ(workspace(maps)["files"], json::array({"m.csv", "m-lti.svg", "m-conditioning.svg", "m-lti_input.svg",
+                                                   "m-lti.png", "m-conditioning.png", "m-lti_input.png"}));
+  EXPECT_THAT(text("m-lti.svg"), HasSubstr(">lti: "));
+  EXPECT_THAT(text("m-conditioning.svg"), HasSubstr(">conditioning<"));
+  EXPECT_THAT(text("m-lti.png"), ::testing::StartsWith("\x89PNG"));
+  EXPECT_THAT(text("m.csv"), HasSubstr(",lti,lti_input"));
+  const std::string serial = text("m-lti.svg");
+  auto threads = maps;
+  threads.insert(threads.end(), {"--threads", "2"});
+  workspace(threads);
+  EXPECT_EQ(text("m-lti.svg"), serial);
+}
+
+TEST_F(CliSlice, MapsOfUnknownFieldsAreRefused) {
+  EXPECT_THAT(refusal({"4ppa-2par", "--cut", "theta=0", "--field", "conditionin", "-o", "f.svg"}),
+              ::testing::AllOf(::testing::StartsWith("pkmopt: --field: found 'conditionin'; expected one of margin, "
+                                                     "conditioning, "),
+                               ::testing::EndsWith("; did you mean 'conditioning'?\n")));
+  EXPECT_EQ(refusal({"4ppa-2par", "--cut", "theta=0", "--field", "q1,q1", "-o", "f.svg"}),
+            "pkmopt: --field: found 'q1' twice; expected each field once\n");
+  EXPECT_EQ(refusal({"4ppa-2par", "--cut", "theta=0", "--field", "q1"}),
+            "pkmopt: --field: found no file; expected a picture to draw the field in, such as -o map.svg\n");
+  EXPECT_EQ(
+      refusal({"4ppa-2par", "--cells", "8", "--field", "q1", "-o", "f.svg"}),
+      "pkmopt: --svg: found a workspace over x, z, theta; expected a slice of it, such as that of --cut theta=0\n");
+  EXPECT_EQ(workspace({"4ppa-2par", "--cells", "8", "--field", "q1", "-o", "f.csv"})["files"], json::array({"f.csv"}));
+}
+
 TEST_F(CliSlice, FixingACoordinateMoreIsASlice) {
   const json fixed = workspace({"4ppa-2par", "--fixed", "y=1.25,theta=20deg", "--cells", "20", "--csv", "fixed.csv"});
   const json cut = workspace({"4ppa-2par", "--cut", "theta=20deg", "--cells", "20", "--csv", "cut.csv"});
