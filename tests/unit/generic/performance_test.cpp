@@ -8,6 +8,9 @@
 
 #include <Eigen/Dense>
 
+#include "engine/config/config_value.hpp"
+#include "engine/config/study_keys.hpp"
+#include "engine/config/toml.hpp"
 #include "engine/dynamics/pose_dynamics.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
@@ -34,6 +37,18 @@ std::string without(const std::string& text, const std::string& word) {
 
 std::shared_ptr<const Mechanism> read(const std::string& text) { return read_mechanism_toml(text, "test.toml"); }
 
+/// The mechanism with the tables that a study adds.
+std::shared_ptr<const Mechanism> with_study(const std::string& text, const std::string& study) {
+  struct Document {
+    TomlValue toml;
+    ConfigValue root;
+  };
+  const TomlValue toml = parse_toml(study, "study.toml", "a study");
+  const auto document = std::make_shared<Document>(Document{toml, ConfigValue(toml, "study.toml", "")});
+  document->root = ConfigValue(document->toml, "study.toml", "").described_by(study_keys());
+  return read_mechanism_toml(text, "test.toml", {}, StudyAdditions(document, &document->root));
+}
+
 /// Value of a quantity at a pose.
 double value_at(const Mechanism& mechanism, const std::vector<double>& design, const std::vector<double>& at,
                 const std::string& name, const std::string& mode = "") {
@@ -47,6 +62,14 @@ double value_at(const Mechanism& mechanism, const std::vector<double>& design, c
     return std::nan("");
   }
   return report.quantities.at(static_cast<std::size_t>(found - info.quantities.begin()));
+}
+
+Eigen::MatrixXd eigen_of(const AxisMatrix<double>& A) {
+  Eigen::MatrixXd result(A.rows(), A.cols());
+  for (std::size_t i = 0; i < A.rows(); ++i)
+    for (std::size_t j = 0; j < A.cols(); ++j)
+      result(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = A(i, j);
+  return result;
 }
 
 constexpr double kL = .3106;
@@ -113,6 +136,77 @@ TEST(Performance, OfAFiveBar) {
   }
 }
 
+/// The platform's compliance by the equilibrium of all bodies, against the same references, and the torsion of rods
+/// with universal joints, G J / L.
+TEST(Performance, ComplianceOfTheOrthoglideWithUniversalJoints) {
+  std::string text = test::text_of_mechanism("orthoglide");
+  for (const char* const word : {"pair", "slider_mass", "rod_mass_per_length"}) text = without(text, word);
+  text = replaced(text, "mass = \"0.6 kg\"", "mass = \"3 kg\"");
+  const std::string drive = "drive     = \"slider\"\n";
+  const char* const axes[] = {"[0, 1, 0]", "[0, 0, 1]", "[1, 0, 0]"};
+  std::size_t at = text.find(drive);
+  for (const char* const axis : axes) {
+    const std::string more = std::string("universal = ") + axis +
+                             "\ndrive_stiffness = 5e6\n"
+                             "rod_section = { outer = \"20 mm\", young = \"70 GPa\", shear = \"26 GPa\" }\n";
+    text.insert(at + drive.size(), more);
+    at = text.find(drive, at + 1);
+  }
+  const auto mechanism = read(text);
+  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kL}});
+  const auto at_diagonal = [&](double x) {
+    Pose<double> pose(3);
+    for (std::size_t i = 0; i < 3; ++i) pose[i] = x;
+    return mechanism->elasticity()->compliance(design, pose, mechanism->info().modes.front());
+  };
+  const PlatformCompliance centre = at_diagonal(0);
+  ASSERT_TRUE(centre.is_complete());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(1 / centre.compliance(i, i), 4670194.062, 1e-3);
+    EXPECT_NEAR(1 / centre.compliance(i + 3, i + 3), 1314.897118, 1e-6);
+  }
+  EXPECT_NEAR(centre.compliance(0, 0) * 100, 21.412386e-6, 1e-12);
+  const PlatformCompliance corner = at_diagonal(-kL / std::sqrt(6));
+  EXPECT_NEAR(corner.compliance(0, 0) * 100, 60.826094e-6, 1e-12);
+  // a parallel singularity: the platform is free in some direction, and not every wrench is carried
+  EXPECT_FALSE(at_diagonal(kL / std::sqrt(3)).is_complete());
+}
+
+TEST(Performance, ComplianceWithBallJointsCarriesForcesOnly) {
+  const auto mechanism = orthoglide();
+  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kL}});
+  const PlatformCompliance found =
+      mechanism->elasticity()->compliance(design, Pose<double>(3), mechanism->info().modes.front());
+  ASSERT_EQ(found.supported.cols(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(1 / found.compliance(i, i), 4670194.062, 1e-3);
+}
+
+/// With pairs of rods a Delta carries moments, too; the quantity, which holds the other degrees of freedom, cannot be
+/// below the stiffness of the whole mechanism. A crank's bending is that of a cantilever.
+TEST(Performance, ComplianceOfADeltaWithElasticLinks) {
+  std::string text = test::text_of_mechanism("rotary-delta");
+  text = replaced(text, "drive    = \"crank\"",
+                  "drive = \"crank\"\ndrive_stiffness = 1e4\n"
+                  "rod_section = { outer = \"8 mm\", inner = \"6 mm\", young = \"70 GPa\" }");
+  text = replaced(text, "outer = \"30 mm\", inner = \"26 mm\" }",
+                  "outer = \"30 mm\", inner = \"26 mm\", young = \"70 GPa\" }");
+  const auto mechanism = read(text);
+  const std::vector<double> design = test::nominal(mechanism->info());
+  for (const double x : {0.0, 0.1, -0.15}) {
+    Pose<double> pose(3);
+    pose[0] = x;
+    pose[2] = -.5;
+    const PlatformCompliance found = mechanism->elasticity()->compliance(design, pose, mechanism->info().modes.front());
+    ASSERT_TRUE(found.is_complete());
+    const Eigen::MatrixXd C = eigen_of(found.compliance);
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C).eigenvalues()[0], 0);
+    const double whole = 1 / Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C.topLeftCorner<3, 3>()).eigenvalues()[2];
+    const double quantity = value_at(*mechanism, design, {x, 0, -.5}, "stiffness");
+    EXPECT_LE(whole, quantity * (1 + 1e-9));
+    EXPECT_GT(whole, quantity * .9);
+  }
+}
+
 /// A cubic hexapod of edge a: legs along three orthogonal directions, 2 k I, and its rotational stiffness
 /// k a^2 [[1, .5, .5], [.5, 1, .5], [.5, .5, 1]] about the centre.
 TEST(Performance, OfACubicHexapod) {
@@ -146,14 +240,6 @@ inertia = [0.2, 0.2, 0.2]
   EXPECT_NEAR(value_at(*mechanism, design, origin, "stiffness"), 2e6, 1e-3);
   EXPECT_NEAR(value_at(*mechanism, design, origin, "rotational_stiffness"), 1e6 * .09 * .5, 1e-6);
   EXPECT_NEAR(value_at(*mechanism, design, origin, "natural_frequency"), 71.176254, 1e-6);
-}
-
-Eigen::MatrixXd eigen_of(const AxisMatrix<double>& A) {
-  Eigen::MatrixXd result(A.rows(), A.cols());
-  for (std::size_t i = 0; i < A.rows(); ++i)
-    for (std::size_t j = 0; j < A.cols(); ++j)
-      result(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = A(i, j);
-  return result;
 }
 
 /// The nonzero rows of the map from coordinate rates to velocities, or to angular velocities.
@@ -228,6 +314,85 @@ TEST(Performance, AgreesWithNumericLinearAlgebra) {
     }
   }
   EXPECT_GT(compared, 300);
+}
+
+/// Margins under limits of all quantities have the derivatives of the quantities: against central differences, at
+/// random poses of random designs. Quantities that are minima over limbs have kinks, where the differences do not
+/// converge.
+TEST(Performance, HasDerivatives) {
+  std::mt19937 random(2);
+  int compared = 0, kinks = 0;
+  for (const char* const name :
+       {"rotary-delta", "linear-delta", "orthoglide", "five-bar", "3-rpr", "3-rrr", "gough", "par4"}) {
+    SCOPED_TRACE(name);
+    std::string text = test::text_of_mechanism(name);
+    std::istringstream lines(text);
+    text.clear();
+    for (std::string line; std::getline(lines, line);) {
+      text += line + "\n";
+      if (line.starts_with("drive ")) text += "drive_stiffness = 1e5\n";
+    }
+    const bool turns = test::described(name)->info().joints.front().turns();
+    text += std::string("\n[accuracy]\njoint_error = \"") + (turns ? "1 mrad" : "1 mm") + "\"\n";
+    std::vector<std::string> quantities;
+    for (const QuantityInfo& quantity : read(text)->info().quantities)
+      if (quantity.of_pose) quantities.push_back(quantity.name);
+    std::string limits = "[workspace]\nlimits = { ";
+    for (const std::string& quantity : quantities) limits += quantity + " = { min = 0 }, ";
+    limits = limits.substr(0, limits.size() - 2) + " }\n";
+    const auto mechanism = with_study(text, limits);
+    const MechanismInfo& info = mechanism->info();
+    LimitSpec spec = no_limits(info);
+    for (std::size_t i = 0; i < info.limits.size(); ++i)
+      if (info.limits[i].group == kQuantityLimit) spec.given[i] = 0;
+    const std::vector<double> nominal = test::nominal(info);
+    for (int trial = 0; trial < 100; ++trial) {
+      std::vector<double> design = nominal;
+      for (double& p : design) p *= std::uniform_real_distribution<double>(.97, 1.03)(random);
+      Pose<double> pose = test::reference_pose(*mechanism);
+      for (double& x : pose) x += std::uniform_real_distribution<double>(-.02, .02)(random);
+      const auto margins = [&](const std::vector<double>& at) {
+        std::vector<double> values;
+        Scratch scratch;
+        mechanism->pose_margins()->append(std::span<const double>(at), info.modes.front(), spec, {&pose, 1}, scratch,
+                                          values);
+        return values;
+      };
+      const std::size_t parameter = trial % std::min<std::size_t>(4, design.size());
+      std::vector<Dual4> seeded(design.begin(), design.end());
+      seeded[parameter].v[0] = 1;
+      std::vector<Dual4> exact;
+      Scratch scratch;
+      mechanism->pose_margins()->append(std::span<const Dual4>(seeded), info.modes.front(), spec, {&pose, 1}, scratch,
+                                        exact);
+      const std::vector<double> value = margins(design);
+      const auto difference = [&](double h) {
+        std::vector<double> up = design, down = design;
+        up[parameter] += h;
+        down[parameter] -= h;
+        std::vector<double> above = margins(up), below = margins(down);
+        for (std::size_t i = 0; i < above.size(); ++i) above[i] = (above[i] - below[i]) / (2 * h);
+        return above;
+      };
+      const double h = 1e-4 * std::fabs(design[parameter]) + 1e-6;
+      const std::vector<double> coarse = difference(h), fine = difference(h / 2);
+      ASSERT_EQ(value.size(), exact.size());
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        if (!std::isfinite(value[i])) continue;
+        const double extrapolated = (4 * fine[i] - coarse[i]) / 3;
+        const double scale = std::fabs(extrapolated) + std::fabs(value[i] / design[parameter]);
+        EXPECT_EQ(exact[i].a, value[i]);
+        if (std::fabs(fine[i] - coarse[i]) > 1e-3 * scale) {
+          ++kinks;
+          continue;
+        }
+        ++compared;
+        EXPECT_NEAR(exact[i].v[0], extrapolated, 1e-6 * scale) << i;
+      }
+    }
+  }
+  EXPECT_GT(compared, 5000);
+  EXPECT_LT(kinks, compared / 50);
 }
 
 }  // namespace
