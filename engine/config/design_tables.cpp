@@ -6,6 +6,7 @@
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/mechanism_file.hpp"
+#include "engine/config/study_additions.hpp"
 #include "engine/config/study_draft.hpp"
 #include "engine/config/study_keys.hpp"
 #include "engine/core/unit.hpp"
@@ -114,13 +115,7 @@ StudyAdditions additions_of(const ConfigValue& root, const StudyDraft& draft) {
   if (!root.has("quantity") && !root.has("accuracy") && !limits_of_quantities(root) &&
       std::ranges::none_of(root.tables("drive_train"), changes_quantities))
     return nullptr;
-  struct Document {
-    TomlValue toml;
-    ConfigValue root;
-  };
-  const auto document = std::make_shared<Document>(Document{root.toml(), root});
-  document->root = ConfigValue(document->toml, draft.study.file_name, "").described_by(study_keys());
-  return {document, &document->root};
+  return study_additions(root.toml(), draft.study.file_name);
 }
 
 /// The mechanism that `type` or `file` names.

@@ -25,12 +25,14 @@ class Performance {
       : root_(root), study_(study), draft_(draft), model_(draft.model), joints_(model_.joints.size()) {}
 
   void add_all() {
-    if (const std::string why = why_not(); !why.empty()) return lack("velocity_transmission", why);
-    if (mixes_units(model_.info.joints))
-      lack("velocity_transmission", "the joints mix lengths and angles");
-    else
-      add(generic::velocity_quantities(model_));
-    add_accuracy();
+    if (const std::string why = why_no_inverse(); !why.empty()) {
+      lack("velocity_transmission", why);
+      lack("accuracy", why);
+      if (const auto table = accuracy_table()) throw table->refusal("the accuracy is undefined: " + why);
+    } else {
+      add_velocities();
+      add_accuracy();
+    }
     if (model_.equations) {
       const std::size_t n = model_.inputs.coordinates;
       M_X_.emplace(model_.graph, n, n);
@@ -45,11 +47,11 @@ class Performance {
   }
 
  private:
-  std::string why_not() const {
-    if (joints_ != model_.inputs.coordinates)
-      return "there are " + std::to_string(joints_) + " joints for " + std::to_string(model_.inputs.coordinates) +
-             " coordinates";
-    return "";
+  /// Why J has no inverse; "": it has one.
+  std::string why_no_inverse() const {
+    if (joints_ == model_.inputs.coordinates) return "";
+    return "there are " + std::to_string(joints_) + " joints for " + std::to_string(model_.inputs.coordinates) +
+           " coordinates";
   }
   void lack(const std::string& name, const std::string& why) {
     model_.info.undefined_quantities.push_back({name, why});
@@ -107,6 +109,13 @@ class Performance {
     for (std::size_t i = 0; i < J.rows(); ++i)
       for (std::size_t j = 0; j < J.columns(); ++j) weighted(i, j) = J(i, j) * inertia[i];
     *M_X_ = *M_X_ + J.transposed() * weighted;
+  }
+
+  void add_velocities() {
+    if (mixes_units(model_.info.joints))
+      lack("velocity_transmission", "the joints mix lengths and angles");
+    else
+      add(generic::velocity_quantities(model_));
   }
 
   // Accuracy
@@ -223,6 +232,11 @@ class Performance {
       is_rigid = is_rigid && springs.back().compliance.is(0);
     }
     if (is_rigid) return lack("stiffness", "no limb has `drive_stiffness`, or a section with `young`");
+    if (joints_ < model_.inputs.coordinates)
+      return lack("stiffness", "the drives do not determine all coordinates: " + why_no_inverse());
+    const auto rigid = [](const generic::LimbSpring& spring) { return spring.compliance.is(0); };
+    if (joints_ > model_.inputs.coordinates && std::ranges::any_of(springs, rigid))
+      return lack("stiffness", "there are more drives than coordinates, and not all of their limbs are elastic");
     add(generic::stiffness_quantities(model_, springs, M_X_));
     if (!M_X_) lack("natural_frequency", "the file names no masses");
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "engine/config/mechanism_file.hpp"
+#include "engine/config/study_additions.hpp"
 #include "engine/config/study_draft.hpp"
 #include "engine/config/study_keys.hpp"
 #include "engine/config/text_file.hpp"
@@ -201,7 +202,10 @@ MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogu
   const std::string expected = "a study or a mechanism in TOML";
   const SourceText source{read_text_file(path, expected), path};
   const TomlValue document = parse_toml(source.text, path, expected);
-  if (describes_mechanism(document)) return read_mechanism_toml(source.text, path, limb_parameters(changes));
+  if (describes_mechanism(document))
+    return read_mechanism_toml(source.text, path, limb_parameters(changes), joint_error_addition(changes.joint_error));
+  if (!changes.joint_error.empty())
+    throw ConfigError({"", 0, "--joint-error"}, "a study", "a mechanism; a study has [accuracy] joint_error");
   return read_document(document, source, catalogues, load_description, changes);
 }
 

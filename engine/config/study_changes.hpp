@@ -20,6 +20,7 @@ struct StudyChanges {
   /// Parameters of single limbs, "arm2.l_b", that the mechanism has to have besides those that the study names. They do
   /// not change the study.
   std::vector<std::string> limb_parameters;
+  std::vector<std::string> joint_error;  ///< [accuracy] joint_error of a mechanism without a study
 
   /// Values of parameters and bounds of variables that a study file records; they replace those that its text gives,
   /// without a change of the text.

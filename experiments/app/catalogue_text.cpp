@@ -1,5 +1,6 @@
 #include "experiments/app/catalogue.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <utility>
@@ -35,6 +36,32 @@ std::string sweep_summary(const Json& sweeps) {
   return join(words) + "; --json lists them";
 }
 
+/// The names of expressions with one entry for all statistics of a quantity: "lti_mean, _std, _min, _max".
+Json with_joined_statistics(const Json& names, const Json& quantities) {
+  Json joined = Json::array();
+  const std::string* last = nullptr;  // the quantity of the last entry
+  for (const Json& entry : names) {
+    const std::string& name = entry["name"].get_ref<const std::string&>();
+    const std::size_t end = name.rfind('_');
+    const auto is_base = [&](const Json& quantity) { return quantity["name"] == name.substr(0, end); };
+    const auto found = std::ranges::find_if(quantities, is_base);
+    if (end == std::string::npos || found == quantities.end()) {
+      joined.push_back(entry);
+      last = nullptr;
+      continue;
+    }
+    const std::string& quantity = (*found)["name"].get_ref<const std::string&>();
+    if (last && *last == quantity) {
+      joined.back()["name"].get_ref<std::string&>() += ", " + name.substr(end);
+      continue;
+    }
+    last = &quantity;
+    joined.push_back(entry);
+    joined.back()["meaning"] = "statistics of " + quantity + " over the poses; undefined if no pose is feasible";
+  }
+  return joined;
+}
+
 /// An entry of a catalogue, prepared for text: its single values, and its lists as tables with their titles.
 struct Details {
   std::vector<Row> head;  ///< name and value
@@ -47,6 +74,8 @@ Details details(const Json& entry) {
   for (const auto& [key, value] : entry.items()) {
     if (key == "other_sweeps" && value.size() > kMaxListedSweeps) {
       found.head.push_back({key, sweep_summary(value)});
+    } else if (key == "expression_names" && entry.contains("quantities")) {
+      found.tables.emplace_back(key, table(with_joined_statistics(value, entry["quantities"])));
     } else if (is_list(value)) {
       found.tables.emplace_back(key, table(value));
     } else if (value.is_object()) {

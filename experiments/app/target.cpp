@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "engine/config/assignments.hpp"
+#include "engine/config/built_in_mechanisms.hpp"
 #include "engine/config/motion_table.hpp"
+#include "engine/config/study_additions.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
@@ -44,7 +46,9 @@ MechanismOrStudy find_by_name(const Catalogues& catalogues, const std::string& n
   std::vector<std::string> known;
   for (const auto& mechanism : catalogues.mechanisms) {
     known.push_back(mechanism.name());
-    if (known.back() == name) return mechanism.get();
+    if (known.back() == name)
+      return changes.joint_error.empty() ? mechanism.get()
+                                         : built_in_mechanism(name, joint_error_addition(changes.joint_error));
   }
   if (looks_like_file(name)) return load_mechanism_or_study(name, catalogues, changes);
   throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",

@@ -249,6 +249,9 @@ void add_workspace(CLI::App& app, Session& session) {
              "Draw these fields as maps with contour lines: a picture each (separated by commas, repeatable)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.changes.joint_error,
+             "Errors of the joints, for the field accuracy; a study gives them by [accuracy]")
+      ->allow_extra_args(false);
   add_output_by_extension(command, {{".csv", &arguments.csv},
                                     {".html", &arguments.html},
                                     {".png", &arguments.png},

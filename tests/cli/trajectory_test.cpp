@@ -99,11 +99,13 @@ TEST(CliTrajectory, TablesHaveAColumnForEachQuantity) {
             "time,x,y,z,phi,x_speed,y_speed,z_speed,phi_speed,x_acceleration,y_acceleration,z_acceleration,"
             "phi_acceleration,rho1,rho2,rho3,rho4,rho1_speed,rho2_speed,rho3_speed,rho4_speed,rho1_acceleration,"
             "rho2_acceleration,rho3_acceleration,rho4_acceleration,conditioning,feasible,reason,rho1_force,rho2_force,"
-            "rho3_force,rho4_force,rho1_power,rho2_power,rho3_power,rho4_power,power,det_J,kappa_p,sin_theta_12,"
+            "rho3_force,rho4_force,rho1_power,rho2_power,rho3_power,rho4_power,power,"
+            "velocity_transmission,force_transmission,angular_velocity_transmission,moment_transmission,effective_mass,"
+            "effective_mass_ratio,det_J,kappa_p,sin_theta_12,"
             "theta_11,theta_12,sin_theta_22,theta_21,theta_22,sin_theta_32,theta_31,theta_32,sin_theta_42,theta_41,"
             "theta_42");
   EXPECT_THAT(lines[1], StartsWith("0,0.2,0.18000000000000002,0.22,0,0.0628"));
-  for (const auto& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 50);
+  for (const auto& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 56);
 }
 
 TEST(CliTrajectory, TablesOverwriteNoExistingFileAndNoInput) {
