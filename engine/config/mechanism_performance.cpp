@@ -7,7 +7,6 @@
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/expression/derivative.hpp"
-#include "engine/generic/equations.hpp"
 #include "engine/generic/performance/performance.hpp"
 #include "engine/geometry/mixed_units.hpp"
 #include "engine/workspace/pose_quantities.hpp"
@@ -22,7 +21,12 @@ using limbs::Term, limbs::Vector3;
 class Performance {
  public:
   Performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft)
-      : root_(root), study_(study), draft_(draft), model_(draft.model), joints_(model_.joints.size()) {}
+      : root_(root),
+        study_(study),
+        draft_(draft),
+        model_(draft.model),
+        joints_(model_.joints.size()),
+        at_(first_order_kinematics(model_)) {}
 
   void add_all() {
     if (const std::string why = why_no_inverse(); !why.empty()) {
@@ -38,7 +42,7 @@ class Performance {
       M_X_.emplace(model_.graph, n, n);
       for (std::size_t i = 0; i < n * n; ++i) (*M_X_)(i / n, i % n) = model_.term(model_.equations->M_X[i]);
       add_rotors();
-      add(generic::inertia_quantities(model_, *M_X_));
+      add(generic::inertia_quantities(at_, *M_X_));
     } else {
       lack("effective_mass", "the file names no masses");
     }
@@ -104,7 +108,7 @@ class Performance {
       }
     }
     if (!has_inertia) return;
-    const TermMatrix J = generic::joint_jacobian(model_);
+    const TermMatrix& J = at_.J;
     TermMatrix weighted = J;
     for (std::size_t i = 0; i < J.rows(); ++i)
       for (std::size_t j = 0; j < J.columns(); ++j) weighted(i, j) = J(i, j) * inertia[i];
@@ -115,7 +119,7 @@ class Performance {
     if (mixes_units(model_.info.joints))
       lack("velocity_transmission", "the joints mix lengths and angles");
     else
-      add(generic::velocity_quantities(model_));
+      add(generic::velocity_quantities(model_, at_));
   }
 
   // Accuracy
@@ -136,7 +140,7 @@ class Performance {
     for (std::size_t joint = 0; joint < joints_; ++joint)
       if (const NamedLimb* const limb = limb_of(joint); limb && limb->play)
         for (int end = 0; end < 2; ++end) add_error(joint, *limb->play / joint_motion(*limb));
-    add(generic::accuracy_quantities(model_, errors_));
+    add(generic::accuracy_quantities(at_, errors_));
   }
   /// Displacement of the inner end of a rod or leg along it, by the joint coordinate.
   Term joint_motion(const NamedLimb& limb) const {
@@ -237,7 +241,7 @@ class Performance {
     const auto rigid = [](const generic::LimbSpring& spring) { return spring.compliance.is(0); };
     if (joints_ > model_.inputs.coordinates && std::ranges::any_of(springs, rigid))
       return lack("stiffness", "there are more drives than coordinates, and not all of their limbs are elastic");
-    add(generic::stiffness_quantities(model_, springs, M_X_));
+    add(generic::stiffness_quantities(at_, springs, M_X_));
     if (!M_X_) lack("natural_frequency", "the file names no masses");
   }
   generic::LimbSpring spring_of(std::size_t joint, const std::optional<Term>& drive) {
@@ -246,9 +250,8 @@ class Performance {
     const std::size_t n = model_.inputs.coordinates;
     const Term compliant = drive ? Term(model_.graph, 1.0) / *drive : draft_.zero();
     if (!force) {
-      const TermMatrix J = generic::joint_jacobian(model_);
       std::vector<Term> row;
-      for (std::size_t j = 0; j < n; ++j) row.push_back(J(joint, j));
+      for (std::size_t j = 0; j < n; ++j) row.push_back(at_.J(joint, j));
       return {row, compliant};
     }
     std::vector<Term> row;
@@ -274,7 +277,7 @@ class Performance {
     for (std::size_t joint = 0; joint < joints_; ++joint)
       peak.push_back(draft_.scope.positive(*given[joint], force_unit(joint), "peak_force"));
     for (const expression::Node node : model_.equations->G_X) G.push_back(model_.term(node));
-    if (const auto found = generic::acceleration_quantity(model_, *M_X_, G, peak)) add(*found);
+    if (const auto found = generic::acceleration_quantity(at_, *M_X_, G, peak)) add(*found);
   }
 
   const ConfigValue& root_;
@@ -282,6 +285,7 @@ class Performance {
   MechanismDraft& draft_;
   generic::Model& model_;
   std::size_t joints_;
+  generic::FirstOrderKinematics at_;
   generic::JointErrors errors_;
   std::optional<TermMatrix> M_X_;
 };

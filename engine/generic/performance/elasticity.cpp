@@ -12,9 +12,9 @@ struct Compliance {
   Term denominator;
 };
 
-Compliance compliance_of(Model& model, const std::vector<LimbSpring>& springs) {
-  const std::size_t n = model.inputs.coordinates;
-  TermMatrix A(model.graph, springs.size(), n);
+Compliance compliance_of(const std::vector<LimbSpring>& springs) {
+  const std::size_t n = springs.front().row.size();
+  TermMatrix A(springs.front().compliance.graph(), springs.size(), n);
   for (std::size_t i = 0; i < springs.size(); ++i)
     for (std::size_t j = 0; j < n; ++j) A(i, j) = springs[i].row[j];
   if (springs.size() == n) {
@@ -33,17 +33,16 @@ Compliance compliance_of(Model& model, const std::vector<LimbSpring>& springs) {
 
 }  // namespace
 
-std::vector<NamedTerm> stiffness_quantities(Model& model, const std::vector<LimbSpring>& springs,
+std::vector<NamedTerm> stiffness_quantities(const FirstOrderKinematics& at, const std::vector<LimbSpring>& springs,
                                             const std::optional<TermMatrix>& M_X) {
-  const Compliance C = compliance_of(model, springs);
-  const PlatformRates rates = platform_rates(model);
+  const Compliance C = compliance_of(springs);
   std::vector<NamedTerm> found;
   const auto add = [&](const TermMatrix& T, const std::string& name, const std::string& unit, const std::string& text) {
     if (T.rows() > 0)
       found.push_back({name, unit, text, C.denominator / eigenvalue_range(T * C.numerator * T.transposed())[1]});
   };
-  add(rates.translation, "stiffness", "N/m", "minimum over all directions of force by deflection");
-  add(rates.rotation, "rotational_stiffness", "N m/rad", "minimum over all directions of moment by rotation");
+  add(at.translation, "stiffness", "N/m", "minimum over all directions of force by deflection");
+  add(at.rotation, "rotational_stiffness", "N m/rad", "minimum over all directions of moment by rotation");
   if (M_X) {
     const TermMatrix L = cholesky_factor(*M_X);
     const Term omega = sqrt(C.denominator / greatest_eigenvalue(L.transposed() * C.numerator * L));

@@ -47,9 +47,11 @@ Term longest_sum(const TermMatrix& columns) {
 
 }  // namespace
 
-PlatformRates platform_rates(Model& model) {
+FirstOrderKinematics first_order_kinematics(Model& model) {
   const std::size_t n = model.inputs.coordinates;
-  TermMatrix translation(model.graph, 3, n), rotation(model.graph, 3, n);
+  TermMatrix J(model.graph, model.joints.size(), n), translation(model.graph, 3, n), rotation(model.graph, 3, n);
+  const std::vector<Node> elements = model.equations ? model.equations->J : jacobian_of(model);
+  for (std::size_t i = 0; i < elements.size(); ++i) J(i / n, i % n) = model.term(elements[i]);
   std::vector<std::size_t> rotations;
   for (std::size_t j = 0; j < n; ++j) {
     if (model.rotation_axes[j]) rotations.push_back(j);
@@ -62,27 +64,17 @@ PlatformRates platform_rates(Model& model) {
     rotation = TermMatrix(model.graph, rotations.size(), n);
     for (std::size_t i = 0; i < rotations.size(); ++i) rotation(i, rotations[i]) = Term(model.graph, 1.0);
   }
-  return {without_zero_rows(translation), rotation};
+  return {J, without_zero_rows(translation), rotation, J.rows() == n ? std::optional(inverse_of(J)) : std::nullopt};
 }
 
-TermMatrix joint_jacobian(Model& model) {
-  const std::size_t n = model.inputs.coordinates;
-  const std::vector<Node> elements = jacobian_of(model);
-  TermMatrix J(model.graph, model.joints.size(), n);
-  for (std::size_t i = 0; i < elements.size(); ++i) J(i / n, i % n) = model.term(elements[i]);
-  return J;
-}
-
-std::vector<NamedTerm> velocity_quantities(Model& model) {
-  const PlatformRates rates = platform_rates(model);
-  const expression::Inverse inverse = inverse_of(joint_jacobian(model));
-  const Term determinant = abs(inverse.determinant);
+std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& at) {
+  const Term determinant = abs(at.inverse->determinant);
   const bool turns = model.info.joints.front().turns();
   std::vector<NamedTerm> found;
   const auto add = [&](const TermMatrix& T, const std::string& velocity, const std::string& force,
                        const std::string& velocity_text, const std::string& force_text, bool is_rotation) {
     if (T.rows() == 0 || T.rows() > T.columns()) return;
-    const TermMatrix V = T * inverse.adjugate;
+    const TermMatrix V = T * at.inverse->adjugate;
     const auto [least, greatest] = eigenvalue_range(V * V.transposed());
     const std::string unit = is_rotation == turns ? "1" : is_rotation ? "rad/m" : "m/rad";
     const std::string inverse_unit = is_rotation == turns ? "1" : is_rotation ? "m/rad" : "rad/m";
@@ -91,34 +83,32 @@ std::vector<NamedTerm> velocity_quantities(Model& model) {
     found.push_back(
         {force, inverse_unit, "minimum " + force_text + " for joint forces of norm 1", determinant / sqrt(greatest)});
   };
-  add(rates.translation, "velocity_transmission", "force_transmission", "speed of the platform",
-      "force at the platform", false);
-  add(rates.rotation, "angular_velocity_transmission", "moment_transmission", "angular speed of the platform",
+  add(at.translation, "velocity_transmission", "force_transmission", "speed of the platform", "force at the platform",
+      false);
+  add(at.rotation, "angular_velocity_transmission", "moment_transmission", "angular speed of the platform",
       "moment at the platform", true);
   return found;
 }
 
-std::vector<NamedTerm> accuracy_quantities(Model& model, const JointErrors& errors) {
-  const PlatformRates rates = platform_rates(model);
-  const expression::Inverse inverse = inverse_of(joint_jacobian(model));
-  const Term determinant = abs(inverse.determinant);
+std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& at, const JointErrors& errors) {
+  const Term determinant = abs(at.inverse->determinant);
   std::vector<NamedTerm> found;
   const auto add = [&](const TermMatrix& T, const std::string& name, const std::string& unit, const std::string& text) {
     if (T.rows() == 0) return;
-    TermMatrix worst = T * inverse.adjugate, spread = worst;
+    TermMatrix worst = T * at.inverse->adjugate, spread = worst;
     for (std::size_t i = 0; i < worst.rows(); ++i)
       for (std::size_t j = 0; j < worst.columns(); ++j) {
         worst(i, j) = worst(i, j) * errors.bound[j];
         spread(i, j) = spread(i, j) * spread(i, j) * errors.squared_spread[j];
       }
-    Term variance(model.graph, 0.0);
+    Term variance(T.graph(), 0.0);
     for (std::size_t i = 0; i < spread.rows(); ++i)
       for (std::size_t j = 0; j < spread.columns(); ++j) variance = variance + spread(i, j);
     found.push_back({name, unit, "maximum first-order " + text, longest_sum(worst) / determinant});
     found.push_back({name + "_rms", unit, "root mean square of the first-order " + text, sqrt(variance) / determinant});
   };
-  add(rates.translation, "accuracy", "m", "position error of the platform");
-  add(rates.rotation, "accuracy_angle", "rad", "orientation error of the platform");
+  add(at.translation, "accuracy", "m", "position error of the platform");
+  add(at.rotation, "accuracy_angle", "rad", "orientation error of the platform");
   return found;
 }
 
