@@ -1,0 +1,111 @@
+// `pkmopt pose --stiffness`: compliance, stiffness, natural frequencies and deflection, against published and
+// independently computed values; and the exact error of --joint-error.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+/// Three slides along x, y, z with rods of 310.6 mm that have universal joints: a 3-PUU translator like the Orthoglide.
+std::string translator() {
+  std::string text = R"([mechanism]
+name = "3-puu"
+[parameters]
+L = { default = "310.6 mm", min = "0.1 m", max = "1 m" }
+[platform]
+coordinates = { x = "along x", y = "along y", z = "along z" }
+mass = "3 kg"
+[survey]
+box = { x = ["-L", "L"], y = ["-L", "L"], z = ["-L", "L"] }
+)";
+  const char* const directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
+  for (int i = 0; i < 3; ++i)
+    text += "[[limb]]\nname = \"limb" + std::to_string(i + 1) + "\"\ndrive = \"slider\"\nbase = [0, 0, 0]\n" +
+            "direction = " + directions[i] + "\nuniversal = " + directions[(i + 1) % 3] +
+            "\nrod = \"L\"\nplatform = [0, 0, 0]\nbranch = \"+\"\ndrive_stiffness = 5e6\n"
+            "rod_section = { outer = \"20 mm\", young = \"70 GPa\", shear = \"26 GPa\" }\n";
+  return text;
+}
+
+TEST(CliStiffness, OfATranslatorWithUniversalJoints) {
+  const StudyFolder folder;
+  const std::string file = folder.write("3-puu.toml", translator());
+  const auto at = [&](const std::string& pose) {
+    return pkmopt({"pose", file, "--at", pose, "--stiffness", "--wrench", "Fx=100N", "--json"}).json()["stiffness"];
+  };
+  const json centre = at("x=0,y=0,z=0");
+  EXPECT_EQ(centre["carried_wrenches"], 6);
+  EXPECT_NEAR(centre["translation"].get<double>(), 4670194.062, 1e-3);
+  EXPECT_NEAR(centre["rotation"].get<double>(), 1314.897118, 1e-6);
+  EXPECT_NEAR(centre["deflection"][0].get<double>(), 21.412386e-6, 1e-12);
+  EXPECT_EQ(centre["deflection"][1], 0);
+  ASSERT_EQ(centre["natural_frequencies"].size(), 3U);
+  for (const double frequency : centre["natural_frequencies"]) EXPECT_NEAR(frequency, 198.576096, 1e-6);
+  const json corner = at("x=-126.8019193mm,y=-126.8019193mm,z=-126.8019193mm");  // -L/sqrt(6)
+  EXPECT_NEAR(corner["matrix"][0][0].get<double>(), 6781628.944, 2e-1);
+  EXPECT_NEAR(corner["matrix"][0][1].get<double>(), 5651357.453, 2e-1);
+  EXPECT_NEAR(corner["deflection"][0].get<double>(), 60.826094e-6, 1e-11);
+  const auto printed = pkmopt({"pose", file, "--at", "x=0,y=0,z=0", "--stiffness", "--wrench", "Fx=100N"});
+  EXPECT_THAT(printed.out, HasSubstr("(21.4124 um)"));
+}
+
+TEST(CliStiffness, SaysWhichWrenchesAreNotCarried) {
+  const StudyFolder folder;
+  std::string text = translator();
+  for (std::size_t at = text.find("universal"); at != std::string::npos; at = text.find("universal"))
+    text.erase(at, text.find('\n', at) - at + 1);
+  const std::string file = folder.write("balls.toml", text);
+  const auto printed = pkmopt({"pose", file, "--at", "x=0,y=0,z=0", "--stiffness"});
+  EXPECT_THAT(printed.out, HasSubstr("the joints carry only 3 of 6 independent wrenches"));
+  EXPECT_THAT(printed.out, HasSubstr("4670194.06222 N/m"));
+  EXPECT_THAT(printed.out, HasSubstr("none is carried"));
+  const auto refused = pkmopt({"pose", file, "--at", "x=0,y=0,z=0", "--stiffness", "--wrench", "Mx=1"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("does not carry every wrench"));
+}
+
+TEST(CliStiffness, IsRefusedForRigidMechanisms) {
+  const auto refused =
+      pkmopt({"pose", PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml", "--at", "x=0,y=0,z=-0.5", "--stiffness"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("no limb has `drive_stiffness`, or a section with `young`"));
+}
+
+/// The dimensions of a public five-bar; the poses of all four extreme joint errors were computed independently.
+TEST(CliToolError, IsExactAtTheWorstCorner) {
+  const auto error = [](const std::string& at) {
+    return pkmopt({"pose", PKM_EXPERIMENTS "/mechanisms/five-bar.toml", "--set", "d=137.5mm,l_a=230mm,l_b=230mm",
+                   "--at", at, "--joint-error", "0.01deg", "--exact-error", "--json"})
+        .json()["tool_error"];
+  };
+  const json near = error("x=0,y=0.3"), far = error("x=0,y=0.25"), beside = error("x=0.1,y=0.3");
+  EXPECT_NEAR(near["translation"].get<double>(), .11087032e-3, 1e-11);
+  EXPECT_NEAR(near["worst_corner"]["translation"].get<double>(), .11093631e-3, 1e-11);
+  EXPECT_NEAR(far["worst_corner"]["translation"].get<double>(), .23672869e-3, 1e-11);
+  EXPECT_NEAR(beside["worst_corner"]["translation"].get<double>(), .0878738e-3, 1e-10);
+}
+
+TEST(CliWorkspace, HasTheAccuracyForJointErrorsOfAnOption) {
+  const StudyFolder folder;
+  const std::string delta = PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml";
+  const auto drawn = pkmopt({"workspace", delta, "--cut", "y=0", "--field", "accuracy", "--joint-error", "0.01deg",
+                             "--cells", "20", "-o", folder.path() + "/map.svg"});
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() + "/map.svg"));
+  const auto refused =
+      pkmopt({"workspace", delta, "--cut", "y=0", "--field", "accuracy", "-o", folder.path() + "/map.png"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("[accuracy] joint_error is missing"));
+  const auto wrong = pkmopt({"workspace", delta, "--joint-error", "10um"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("joint_error"));
+}
+
+}  // namespace
+}  // namespace pkm::testing
