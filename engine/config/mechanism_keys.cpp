@@ -134,7 +134,7 @@ const TableSpec& modes_table() {
                {.name = "branch",
                 .kind = OptionKind::flag,
                 .initial = false,
-                .meaning = "the sign is selected by --branch; at most one sign has this key"}}};
+                .meaning = "the option --branch selects this sign; only one sign may set the key"}}};
   static const TableSpec spec = {.header = "[modes]",
                                  .meaning = "signs, +1 or -1 in formulas, which select working modes",
                                  .keys = {},

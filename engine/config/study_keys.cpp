@@ -136,7 +136,7 @@ const TableSpec& constraint_table() {
 const TableSpec& output_table() {
   static const TableSpec spec = {
       .header = "[[output]]",
-      .meaning = "value that is computed and stored, but not optimised; otherwise as an objective",
+      .meaning = "value that is computed and stored, but not optimised; it has the keys of an objective",
       .keys = {type_key("objectives"), name_key(), region_key()}};
   return spec;
 }

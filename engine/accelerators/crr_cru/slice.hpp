@@ -143,7 +143,7 @@ const S& end_of(const IntervalSet<S>& set, std::size_t end) {
   return end % 2 == 0 ? set.interval[end / 2].lower : set.interval[end / 2].upper;
 }
 
-/// Squared radius of circle number 2 annulus + (0 inner, 1 outer).
+/// Squared radius of a circle. @param circle  2 annulus + (0: the inner, 1: the outer circle)
 template <class S>
 const S& radius2(const Slice<S>& s, std::size_t circle) {
   return circle % 2 == 0 ? s.annulus[circle / 2].in2 : s.annulus[circle / 2].out2;

@@ -183,6 +183,7 @@ struct SampleContents {
 
 /// A survey to which samples are added.
 template <class S>
+/// Where the samples of a workspace analysis are stored.
 struct SampleTarget {
   explicit SampleTarget(WorkspaceResult<S>& to) : survey(to), conditioning(to.find(kConditioning)) {}
   WorkspaceResult<S>& survey;

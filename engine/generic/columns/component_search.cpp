@@ -29,14 +29,14 @@ bool cut(const std::array<double, 3>& c, double& from, double& to) {
   return from <= to;
 }
 
-/// Contracts a side to where c + slope t + square t^2, with t in [-1, 1] on it, can be >= 0. @return false if it is
-/// empty
-bool narrow(double c, const Interval& slope, double square, Interval& side) {
+/// Replaces an interval by the part of it in which c + slope t + curvature t^2 can be >= 0, where t runs from -1 to 1
+/// over the interval. @return false if there is no such part
+bool narrow(double c, const Interval& slope, double curvature, Interval& side) {
   constexpr double kBeyond = 1e-9, kWorthIt = 1.8;
-  if (!std::isfinite(c + magnitude_of(slope) + square)) return true;
+  if (!std::isfinite(c + magnitude_of(slope) + curvature)) return true;
   double near = 0, far = 0, near_below = 0, far_below = 0;
-  const bool above = cut({c, slope.upper, square}, near, far);
-  const bool below = cut({c, -slope.lower, square}, near_below, far_below);
+  const bool above = cut({c, slope.upper, curvature}, near, far);
+  const bool below = cut({c, -slope.lower, curvature}, near_below, far_below);
   if (!above && !below) return false;
   const double from = below ? -far_below : near, to = above ? far : -near_below;
   if (to - from > kWorthIt) return true;

@@ -30,6 +30,7 @@ class TorusFunction {
   TorusFunction(const Face& torus, const Face& other);
   TorusFunction() = default;
 
+  /// @param q_b  the angles q of the crank and b around its fold
   Value at(const std::array<double, 2>& q_b) const;
   /// Bound of the second derivative by the coordinates i and j.
   double bend(std::size_t i, std::size_t j) const { return bend_[i + j]; }
