@@ -121,6 +121,20 @@ void add_transmission(const ConfigValue& root, MechanismDraft& draft) {
   add(kLti, least({input, output}), "local transmission index: minimum of lti_input and lti_output");
   add(kInput, input, "minimum over the limbs of the input transmission index, 0 at serial singularities");
   add(kOutput, output, "minimum over the limbs of the output transmission index, 0 at parallel singularities");
+  const auto add_of_limb = [&](const std::string& name, const std::string& unit, const Term& value,
+                               const std::string& meaning) {
+    model.quantities.push_back(value.node());
+    model.info.quantities.push_back({.name = name, .unit = unit, .meaning = meaning});
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::string& limb = draft.limbs[i].name;
+    if (!inputs[i].is(1)) {
+      add_of_limb("lti_input_" + limb, "1", inputs[i], "input transmission index of limb " + limb);
+      add_of_limb("pressure_angle_" + limb, "rad", acos(inputs[i]),
+                  "angle between the rod's force and the motion of the drive's end, limb " + limb);
+    }
+    add_of_limb("lti_output_" + limb, "1", outputs[i], "output transmission index of limb " + limb);
+  }
 }
 
 }  // namespace pkm

@@ -57,7 +57,7 @@ struct QuantityInfo {
   bool of_design = false;  ///< depends on parameters and limits alone
   bool of_motion = false;  ///< depends on inputs or on time derivatives
   /// The pose quantity of workspace analyses, with inputs at their default values; null if the quantity depends on the
-  /// design alone, or on time derivatives.
+  /// design alone or on time derivatives, or belongs to a single limb and is listed at single poses only.
   std::shared_ptr<const PoseQuantity> of_pose = nullptr;
 };
 

@@ -25,9 +25,11 @@ const PoseQuantity& pose_quantity_called(const MechanismInfo& info, const std::s
     known.emplace_back(quantity->name);
   }
   if (const QuantityInfo* const found = find_named(info.quantities, name))
-    throw std::invalid_argument("quantity '" + name + "' depends on " +
-                                (found->of_design ? "the design alone" : "rates of the motion") +
-                                "; expected a quantity of the pose");
+    throw std::invalid_argument("quantity '" + name + "' " +
+                                (found->of_design   ? "depends on the design alone"
+                                 : found->of_motion ? "depends on rates of the motion"
+                                                    : "belongs to a single limb, and is listed at single poses only") +
+                                "; expected a quantity of the workspace");
   for (const UndefinedQuantity& quantity : info.undefined_quantities)
     if (name == quantity.name || name.starts_with(quantity.name + "_"))
       throw std::invalid_argument("quantity '" + name + "' is undefined for mechanism " + info.name + ": " +

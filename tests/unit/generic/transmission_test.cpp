@@ -76,6 +76,34 @@ TEST(Transmission, HasTheReferenceValues) {
   }
 }
 
+/// The same sources, by limb.
+TEST(Transmission, HasTheReferenceValuesOfEachLimb) {
+  const Mechanism& delta = *test::described("rotary-delta");
+  const MechanismInfo& info = delta.info();
+  const auto expect = [&](const nlohmann::json& parameters, const std::array<double, 3>& at,
+                          const std::array<double, 3>& input, const std::array<double, 3>& output, double digits) {
+    const std::vector<double> design = test::design_with(info, parameters);
+    Pose<double> pose(3);
+    std::ranges::copy(at, pose.begin());
+    const PoseReport report = delta.inspect(design, pose, info.modes.front(), no_limits(info));
+    const auto value = [&](const std::string& name) {
+      const auto found = std::ranges::find(info.quantities, name, &QuantityInfo::name);
+      return report.quantities.at(static_cast<std::size_t>(found - info.quantities.begin()));
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::string limb = "arm" + std::to_string(i + 1);
+      EXPECT_NEAR(value("lti_input_" + limb), input[i], digits) << limb;
+      EXPECT_NEAR(value("lti_output_" + limb), output[i], digits) << limb;
+      EXPECT_NEAR(std::cos(value("pressure_angle_" + limb)), input[i], digits) << limb;
+    }
+  };
+  expect(nlohmann::json::object(), {.1, 0, -.5}, {.982264603, .984171606, .984171606},
+         {.892441203, .841090820, .841090820}, 1e-9);
+  // limbs at -90, 30 and 150 deg there, at 0, 120 and 240 deg here
+  expect({{"R", std::sqrt(3) / 6 * .567}, {"r", std::sqrt(3) / 3 * .076}, {"l_a", .524}, {"l_b", 1.244}},
+         {-.5, .3, -1.1}, {.96469944, .92915288, .8613811}, {.6650402, .74891493, .6811163}, 5e-8);
+}
+
 TEST(Transmission, OfTelescopesHasTheInputIndexOne) {
   const Mechanism& gough = *test::described("gough");
   const std::vector<double> design = test::nominal(gough.info());

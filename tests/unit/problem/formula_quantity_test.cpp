@@ -217,7 +217,7 @@ TEST(FormulaQuantity, MistakesAreNamed) {
             "inertia_condition, height, push; did you mean "
             "'height'?");
   EXPECT_THAT(complaint(kColumns + statistic("twice", "mean")),
-              HasSubstr("quantity 'twice' depends on the design alone; expected a quantity of the pose"));
+              HasSubstr("quantity 'twice' depends on the design alone; expected a quantity of the workspace"));
   EXPECT_THAT(complaint(kColumns + statistic("speed", "mean")), HasSubstr("depends on rates of the motion"));
   EXPECT_THAT(complaint(kColumns + statistic("height", "median")),
               HasSubstr("expected one of mean, std, min, max, p5"));
