@@ -31,12 +31,14 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
   Analyses(Platform platform, MassModel mass_model) : platform_(platform), mass_model_(mass_model) {}
 
  private:
-  bool serves(const WorkspacePlan& plan, const ColumnOptions&, const FieldRequest&) const override {
-    return serves(plan);
+  bool serves(const WorkspacePlan& plan, const ColumnOptions&, const FieldRequest& request) const override {
+    return serves(plan) && stores_poses(request);
   }
-  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest&) const override {
-    return serves(plan);
+  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest& request) const override {
+    return serves(plan) && stores_poses(request);
   }
+  /// Only the samples of inertia are poses; the conditioning is constant in a slice.
+  static bool stores_poses(const FieldRequest& request) { return !request.poses || request.needs_inertia(); }
   static bool serves(const WorkspacePlan& plan) {
     const int fixed = fixed_coordinate(plan);
     return plan.fixed.size() <= 1 && fixed >= 0 && how_fixed(plan, fixed).kind != FixedCoordinate::Kind::integrated &&

@@ -208,11 +208,11 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 };
 
 class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
-  bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest&) const override {
-    return serves(plan) && !columns.box;
+  bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest& request) const override {
+    return serves(plan) && !columns.box && !request.poses;
   }
-  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest&) const override {
-    return serves(plan);
+  bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest& request) const override {
+    return serves(plan) && !request.poses;
   }
   static bool serves(const WorkspacePlan& plan) {
     return sweeps(plan, {0, 2, 3}) && !requires_clearance(plan, kClearanceMin);
