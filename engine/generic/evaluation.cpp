@@ -35,7 +35,10 @@ std::vector<Program> programs_of(const Graph& graph, const std::vector<std::opti
 }  // namespace
 
 Evaluation::Evaluation(Model source) : model(std::move(source)) {
+  std::optional<limbs::Term> mass;
+  for (const BodyNodes& body : model.bodies) mass = mass ? *mass + model.term(body.mass) : model.term(body.mass);
   const Graph& graph = model.graph;
+  if (mass) total_mass = program_of(graph, mass->node());
   std::vector<Node> nodes = model.joints;
   for (const auto* const list : {&model.domains, &model.margins, &model.angles}) append(nodes, *list);
   constraints = Program(graph, nodes);

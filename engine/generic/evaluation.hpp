@@ -24,6 +24,7 @@ struct Evaluation {
   // Programs of a design. Those of values that the file does not define have no outputs.
   expression::Program requirements;  ///< both ends of each range, required
   expression::Program tests, masses, size, length, radius;
+  expression::Program total_mass;                                                           ///< of all bodies
   std::vector<expression::Program> derived;                                                 ///< by limit
   std::vector<expression::Program> lower, upper, default_values, reach_lower, reach_upper;  ///< by coordinate
 

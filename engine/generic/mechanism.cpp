@@ -19,6 +19,7 @@
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/voxels.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
+#include "engine/mechanism/with_drive_trains.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -287,6 +288,11 @@ std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, st
   const auto* const generic_mechanism = dynamic_cast<const GenericMechanism*>(&mechanism);
   if (!generic_mechanism || !generic_mechanism->evaluation().model.jointed) return {};
   return mobility_at(generic_mechanism->evaluation(), parameters, pose, mode_index(mechanism.info(), mode));
+}
+
+const Evaluation* evaluation_of(const Mechanism& mechanism) {
+  const auto* const of_file = dynamic_cast<const GenericMechanism*>(&without_drive_trains(mechanism));
+  return of_file ? &of_file->evaluation() : nullptr;
 }
 
 std::shared_ptr<const Mechanism> make_mechanism(Model model, Accelerators accelerators) {

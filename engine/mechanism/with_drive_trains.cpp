@@ -16,6 +16,8 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
     PKM_EXPECTS(trains_.size() == bare_->info().joints.size());
   }
 
+  const Mechanism& bare() const { return *bare_; }
+
   const MechanismInfo& info() const override { return bare_->info(); }
   Unsupported refuse(std::span<const double> parameters) const override { return bare_->refuse(parameters); }
   PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
@@ -121,6 +123,11 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
 
 std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains) {
   return std::make_shared<MechanismWithDriveTrains>(std::move(mechanism), std::move(trains));
+}
+
+const Mechanism& without_drive_trains(const Mechanism& mechanism) {
+  const auto* const decorated = dynamic_cast<const MechanismWithDriveTrains*>(&mechanism);
+  return decorated ? decorated->bare() : mechanism;
 }
 
 }  // namespace pkm
