@@ -56,12 +56,14 @@ void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest
       throw table.refusal("conditioning is requested with two different characteristic lengths; a study has one");
     request.characteristic_length = own.characteristic_length;
   }
-  if (own.needs_inertia()) {
-    if (request.needs_inertia() && own.mode != request.mode)
-      throw table.refusal("the inertia is requested in two different working modes, " + request.mode + " and " +
-                          own.mode + "; a survey has one (name another [[region]] for the other)");
+  const auto uses_mode = [](const FieldRequest& of) { return of.needs_inertia() || of.poses; };
+  if (uses_mode(own)) {
+    if (uses_mode(request) && own.mode != request.mode)
+      throw table.refusal("the workspace is requested in two different working modes, " + request.mode + " and " +
+                          own.mode + "; an analysis has one (name another [[region]] for the other)");
     request.mode = own.mode;
   }
+  request.poses = request.poses || own.poses;
   for (const PoseQuantity* const quantity : own.fields) request.add(*quantity);
 }
 
@@ -90,6 +92,9 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
   entries.push_back({entry.name, name, "", entry.options, options});
   expect_served(table, entry, draft);
   const std::size_t survey = survey_read(table, entry, draft);
+  if (survey > 0 && options.has("motion"))
+    throw table.find("region")->refusal("the objective " + entry.name +
+                                        " is evaluated along a motion or in a region; found both");
   Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
   const EntryContext context{*draft.parts.mechanism, region ? region->plan : draft.parts.plan, options,
                              draft.parts.regions, draft.study.motions};
@@ -140,7 +145,7 @@ void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entr
   made.meaning = "margin of " + role + ": " + made.meaning;
   draft.study.constraints.back().role = role;
   // Constraints without a workspace analysis come first: the analysis is skipped if they are violated.
-  (entry.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
+  (made.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
 /// Reads a constraint with a margin, of the design alone or of its workspace analysis.

@@ -28,7 +28,7 @@ inline Options test_options(const std::vector<OptionSpec>& specs, const Mechanis
     if (spec.name == "expression") options.set(spec.name, expression);
     if (spec.name == "quantity") options.set(spec.name, some_quantity(info));
     if (spec.name == "region") options.set(spec.name, std::string("task"));
-    if (spec.name == "motion") options.set(spec.name, std::string("swing"));
+    if (spec.name == "motion" && spec.required) options.set(spec.name, std::string("swing"));
     if (spec.name == "samples") options.set(spec.name, std::int64_t{5});
   }
   return options;

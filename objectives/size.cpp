@@ -1,0 +1,151 @@
+// Size and mass of a mechanism: volume, base area and height of the installation space, the axis-parallel bounding box
+// of all links over the workspace or along a motion (engine/workspace/installation_box.hpp); and the mass of the moving
+// bodies.
+//
+// The poses are those of the workspace analysis: the centres of all feasible cells (voxels) or the nodes of the
+// quadrature (columns). Both lie inside of the workspace, so that the box is too small by less than a cell, or by less
+// than the distance of the boundary from the outermost nodes.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/unit.hpp"
+#include "engine/generic/dynamics.hpp"
+#include "engine/problem/motion_options.hpp"
+#include "engine/problem/pose_options.hpp"
+#include "engine/workspace/installation_box.hpp"
+#include "objectives/list.hpp"
+
+namespace pkm {
+namespace {
+
+bool has_motion(const EntryContext& context) { return context.options.has("motion"); }
+
+/// The last box of a thread: several quantities of a design use the same one.
+struct BoxScratch {
+  const Mechanism* mechanism = nullptr;
+  std::string mode;
+  std::vector<double> parameters;
+  std::vector<Pose<double>> poses;
+  std::optional<Bounds<double>> box;
+};
+
+/// @param measure  of the box with these edge lengths
+using Measure = double (*)(const Point3<double>& edges);
+
+class BoxMeasure final : public Quantity {
+ public:
+  BoxMeasure(const EntryContext& context, const std::string& name, Measure measure)
+      : name_(name), mode_(mode_of(context)), measure_(measure) {
+    if (!has_motion(context)) return;
+    motion_ = motion_of(context).name;
+    for (const MotionSample& at : samples_of(context)) {
+      poses_.push_back(at.pose);
+      times_.push_back(at.time);
+    }
+  }
+
+  double value(const DesignView<double>& design) const override {
+    const std::optional<Bounds<double>>& box = box_of(design);
+    return box ? measure_(difference(box->upper, box->lower)) : std::numeric_limits<double>::quiet_NaN();
+  }
+  Dual4 smooth(const DesignView<Dual4>&) const override { throw std::logic_error(*why_no_derivatives()); }
+  Unsupported why_no_derivatives() const override {
+    return name_ + " is an extremum over poses and links, which has none; use an optimiser without gradients";
+  }
+  std::string why_undefined(const DesignView<double>& design) const override {
+    if (motion_.empty()) return design.workspace->pose.empty() ? "no pose is feasible" : "";
+    for (std::size_t k = 0; k < poses_.size(); ++k)
+      if (design.mechanism.links()->place(design.parameters, poses_[k], mode_).empty())
+        return "the motion " + motion_ + " leaves the reach of the mechanism at t = " + with_unit(times_[k], "s");
+    return {};
+  }
+
+ private:
+  const std::optional<Bounds<double>>& box_of(const DesignView<double>& design) const {
+    const std::vector<Pose<double>>& poses = motion_.empty() ? design.workspace->pose : poses_;
+    BoxScratch& last = design.scratch.get<BoxScratch>();
+    if (last.mechanism == &design.mechanism && last.mode == mode_ && last.poses == poses &&
+        std::ranges::equal(last.parameters, design.parameters))
+      return last.box;
+    last.mechanism = &design.mechanism;
+    last.mode = mode_;
+    last.parameters.assign(design.parameters.begin(), design.parameters.end());
+    last.poses = poses;
+    return last.box = installation_box(design.mechanism, design.parameters, mode_, poses);
+  }
+
+  std::string name_, mode_;
+  Measure measure_;
+  std::string motion_;               ///< "": over the workspace
+  std::vector<Pose<double>> poses_;  ///< of the motion
+  std::vector<double> times_;        ///< of these poses [s]
+};
+
+/// @param what  of the box: "base area"
+ObjectiveEntry box_entry(const std::string& name, const std::string& what, const std::string& unit, Measure measure) {
+  OptionSpec motion = motion_option(), samples = samples_option();
+  motion.required = false;
+  motion.meaning += "; default: the poses of the workspace";
+  return {
+      .name = name,
+      .meaning = what + " of the box of all links over the workspace or along a motion",
+      .direction = Direction::minimise,
+      .options = {motion, samples, mode_option()},
+      .unit = [unit](const EntryContext&) { return unit; },
+      .refusal = [name](const Mechanism& mechanism) -> Unsupported {
+        if (mechanism.links()) return {};
+        return "objective " + name + " needs links, and mechanism " + mechanism.info().name +
+               " has none; define `radius` in its limbs, or [[link]], in the mechanism file";
+      },
+      .request =
+          [](const EntryContext& context, FieldRequest& request) {
+            if (has_motion(context)) return;
+            request.poses = true;
+            request.mode = mode_of(context);
+          },
+      .make = [name,
+               measure](const EntryContext& context) { return std::make_unique<BoxMeasure>(context, name, measure); },
+      .detail =
+          [what](const EntryContext& context) {
+            return what + " of the box of all links " +
+                   (has_motion(context) ? "along the motion " + context.options.word("motion") : "over the workspace");
+          },
+      .range = nonnegative,
+      .needs_workspace = [](const EntryContext& context) { return !has_motion(context); },
+  };
+}
+
+ObjectiveEntry mass_entry() {
+  return {
+      .name = "mass",
+      .meaning = "total mass of the moving bodies of the mechanism file, without drive trains",
+      .direction = Direction::minimise,
+      .unit = [](const EntryContext&) { return std::string("kg"); },
+      .refusal = [](const Mechanism& mechanism) -> Unsupported {
+        if (generic::has_total_mass(mechanism)) return {};
+        return "objective mass needs masses, and mechanism " + mechanism.info().name + " has none";
+      },
+      .make =
+          [](const EntryContext&) {
+            return make_quantity([]<class S>(const DesignView<S>& design) {
+              return generic::total_mass<S>(design.mechanism, design.parameters);
+            });
+          },
+      .range = nonnegative,
+      .uses_workspace = false,
+  };
+}
+
+}  // namespace
+
+std::vector<ObjectiveEntry> size_objectives() {
+  return {box_entry("installation-space", "volume", "m^3",
+                    [](const Point3<double>& edges) { return edges[0] * edges[1] * edges[2]; }),
+          box_entry("footprint", "base area (x, y)", "m^2",
+                    [](const Point3<double>& edges) { return edges[0] * edges[1]; }),
+          box_entry("height", "height (along z)", "m", [](const Point3<double>& edges) { return edges[2]; }),
+          mass_entry()};
+}
+
+}  // namespace pkm
