@@ -54,9 +54,9 @@ struct NamedLimb {
   std::string end_on = "";                      ///< the body to which its end is attached; "": unspecified
 
   std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]
-  /// Stiffness of a round tube: axial E A [N], bending E I and torsional G J [N m^2].
+  /// Stiffness of a round tube, axial E A [N], bending E I and torsional G J [N m^2], and its cross-section A [m^2].
   struct Section {
-    limbs::Term EA, EI, GJ;
+    limbs::Term EA, EI, GJ, area;
   };
   std::optional<Section> rod_section = {}, crank_section = {};  ///< rod_section: of one rod, or of the leg; else rigid
   std::optional<limbs::Vector3> universal = {};  ///< axis of its universal joints, on the drive's side of each joint

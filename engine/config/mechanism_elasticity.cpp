@@ -28,7 +28,7 @@ std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const s
   const Term shear = section->has("shear") ? positive("shear", "Pa") : young / (2 * (1 + kPoisson));
   const Term area = (outer * outer - inner * inner) * (std::numbers::pi / 4),
              moment = (to_the_fourth(outer) - to_the_fourth(inner)) * (std::numbers::pi / 64);
-  return NamedLimb::Section{young * area, young * moment, shear * moment * 2};
+  return NamedLimb::Section{young * area, young * moment, shear * moment * 2, area};
 }
 
 Term length_of(const NamedLimb& limb, const std::string& part) {

@@ -96,8 +96,16 @@ class JointReader {
   }
 
   /// An elastic beam that the joint added last holds.
-  SolidNodes::Beam beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far) const {
-    return {nodes(near), nodes(far), section.EA.node(), section.EI.node(), section.GJ.node(), joints_.size() - 1};
+  SolidNodes::Beam beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far,
+                           bool is_rod) const {
+    return {.near = nodes(near),
+            .far = nodes(far),
+            .EA = section.EA.node(),
+            .EI = section.EI.node(),
+            .GJ = section.GJ.node(),
+            .near_joint = joints_.size() - 1,
+            .area = section.area.node(),
+            .is_rod = is_rod};
   }
   /// Makes the joint added last a universal one, if the limb has such joints: it rotates about the axis a of the body
   /// that carries the rod, and about a x rod, and transmits a couple normal to both.
@@ -158,7 +166,7 @@ class JointReader {
     }
     if (limb.drive == "crank") {
       joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, {}));
-      if (const auto& section = limb.crank_section) solids_[*inner].beam = beam_of(*section, A, C);
+      if (const auto& section = limb.crank_section) solids_[*inner].beam = beam_of(*section, A, C, false);
     }
     if (has_links) joints_.push_back(limb_joint(limb, limb.name + ".S", S, *inner, {}, {}));
     if (inner) joints_.back().drive = drive;
@@ -183,7 +191,7 @@ class JointReader {
         drive.slide = {};  // once for both rods
       }
       make_universal(limb, far - near, false);
-      if (const auto& section = limb.rod_section) solids_[outer].beam = beam_of(*section, near, far);
+      if (const auto& section = limb.rod_section) solids_[outer].beam = beam_of(*section, near, far, true);
       joints_.push_back(limb_joint(limb, limb.name + ".B" + number, far, outer, carrier, {}, turns));
       make_universal(limb, far - near, true);
     }

@@ -164,6 +164,8 @@ struct SolidNodes {
     std::array<Node, 3> near, far;
     Node EA, EI, GJ;         ///< axial [N], bending and torsional stiffness [N m^2]
     std::size_t near_joint;  ///< index of the joint that holds it
+    Node area;               ///< of the cross-section [m^2]
+    bool is_rod;             ///< pinned at both ends; false: a crank
   };
   std::optional<Beam> beam{};  ///< std::nullopt: rigid
 };

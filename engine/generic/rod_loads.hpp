@@ -1,0 +1,58 @@
+// Axial forces and stresses of rods, and their safety against Euler buckling, from the reactions in their joints. A rod
+// is a bar of constant section with pinned ends: it buckles at F = pi^2 E I / L^2 (Timoshenko and Gere, "Theory of
+// Elastic Stability", 1961, chapter 2). Rods are those of limbs whose rod section has Young's modulus.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/dynamics/reactions.hpp"
+#include "engine/mechanism/trajectory.hpp"
+
+namespace pkm::generic {
+
+/// Loads of a rod at one state.
+struct RodLoad {
+  std::string name;           ///< "rod 1 of arm1"
+  double area = 0;            ///< of its cross-section [m^2]
+  double buckling_force = 0;  ///< the compression at which the rod buckles [N]
+  /// Forces at both ends [N], tension > 0; the inertia of the rod makes them differ. std::nullopt if the equations do
+  /// not determine them.
+  std::optional<std::array<double, 2>> ends;
+
+  /// The force of larger magnitude [N]; the compression, >= 0 [N]. `ends` is set.
+  double axial() const { return std::fabs((*ends)[0]) > std::fabs((*ends)[1]) ? (*ends)[0] : (*ends)[1]; }
+  double compression() const { return std::max({0.0, -(*ends)[0], -(*ends)[1]}); }
+  /// Buckling force divided by the compression; std::nullopt without compression.
+  std::optional<double> reserve() const {
+    return ends && compression() > 0 ? std::optional(buckling_force / compression()) : std::nullopt;
+  }
+};
+
+/// The rods of which both joints are among the reactions; empty if no rod section has Young's modulus.
+/// @param pose       assembles
+/// @param reactions  of the mechanism at this pose
+std::vector<RodLoad> rod_loads(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
+                               const Pose<double>& pose, const Reactions& reactions);
+
+/// Extrema of the loads of a rod along a trajectory.
+struct PeakRodLoad {
+  std::string name;
+  double buckling_force = 0;            ///< [N]
+  double tension = 0, compression = 0;  ///< maxima [N]; 0: none
+  double stress = 0;                    ///< maximum magnitude [Pa]
+  std::optional<double> reserve;        ///< the minimum; std::nullopt without compression
+  std::size_t critical = 0;             ///< index of the first sample with this reserve
+  bool is_determined = true;            ///< false: the axial force is undetermined at a sample
+};
+
+/// @param trajectory  with reactions at all samples (add_reactions)
+std::vector<PeakRodLoad> peak_rod_loads(const Mechanism& mechanism, std::span<const double> parameters,
+                                        const std::string& mode, const Trajectory& trajectory);
+
+}  // namespace pkm::generic
