@@ -86,6 +86,7 @@ std::string dynamics(const Target& target, const DynamicsArguments& arguments, P
       Reactions found = mechanism.reactions()->find(target.parameters, mode, state, at.acceleration, wrench);
       select_joints(arguments, found);
       report_reactions(found, out);
+      if (arguments.reactions) report_rods(target, mode, at.pose, found, out);
     }
   }
   return report.assembles ? no_forces : assembly_error(mode, report);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/generic/rod_loads.hpp"
 #include "experiments/app/motion_samples.hpp"
 
 namespace pkm {
@@ -103,6 +104,58 @@ void report_reactions(const Trajectory& trajectory, Printout& out) {
     add_load("couple", joint.couple, trajectory, row, loads);
   }
   out.add_table("magnitudes of the forces (N) and couples (N m) in the joints", rows);
+}
+
+void report_rods(const Target& target, const std::string& mode, const Pose<double>& pose, const Reactions& reactions,
+                 Printout& out) {
+  const std::vector<generic::RodLoad> rods =
+      generic::rod_loads(*target.mechanism, target.parameters, mode, pose, reactions);
+  if (rods.empty()) return;
+  std::vector<Row> rows = {{"", "axial force", "stress", "buckles at", "reserve"}};
+  Json& json = out.json["rods"] = Json::object();
+  for (const generic::RodLoad& rod : rods) {
+    const std::optional<double> axial = rod.ends ? std::optional(rod.axial()) : std::nullopt;
+    const std::optional<double> stress = axial ? std::optional(*axial / rod.area) : std::nullopt,
+                                reserve = rod.reserve();
+    rows.push_back({rod.name, axial ? number(*axial, "N") : "undetermined", stress ? number(*stress / 1e6, "MPa") : "",
+                    number(rod.buckling_force, "N"), reserve ? number(*reserve) : ""});
+    json[rod.name] = {{"axial_force", json_or_null(axial)},
+                      {"stress", json_or_null(stress)},
+                      {"buckling_force", rod.buckling_force},
+                      {"buckling_reserve", json_or_null(reserve)}};
+  }
+  out.add_table("rods: axial force (> 0: tension), stress, and reserve against buckling with pinned ends", rows);
+}
+
+void report_rods(const Target& target, const std::string& mode, const Trajectory& trajectory, Printout& out) {
+  if (std::ranges::any_of(trajectory.points, [](const auto& point) { return !point.reactions->reason.empty(); }))
+    return;
+  const std::vector<generic::PeakRodLoad> rods =
+      generic::peak_rod_loads(*target.mechanism, target.parameters, mode, trajectory);
+  if (rods.empty()) return;
+  std::vector<Row> rows = {
+      {"", "peak tension", "peak compression", "peak stress", "buckles at", "least reserve", "at"}};
+  Json& json = out.json["summary"]["rods"] = Json::object();
+  for (const generic::PeakRodLoad& rod : rods) {
+    const auto known = [&rod](double value) { return rod.is_determined ? Json(value) : Json(); };
+    const std::optional<double> reserve = rod.is_determined ? rod.reserve : std::nullopt;
+    const std::optional<double> time =
+        reserve ? std::optional(trajectory.points[rod.critical].motion.time) : std::nullopt;
+    json[rod.name] = {{"peak_tension", known(rod.tension)},
+                      {"peak_compression", known(rod.compression)},
+                      {"peak_stress", known(rod.stress)},
+                      {"buckling_force", rod.buckling_force},
+                      {"least_buckling_reserve", json_or_null(reserve)},
+                      {"least_buckling_reserve_time", json_or_null(time)}};
+    Row& row = rows.emplace_back(Row{rod.name});
+    for (const double force : {rod.tension, rod.compression})
+      row.push_back(rod.is_determined ? number(force, "N") : "undetermined");
+    row.push_back(rod.is_determined ? number(rod.stress / 1e6, "MPa") : "");
+    row.push_back(number(rod.buckling_force, "N"));
+    row.push_back(reserve ? number(*reserve) : "");
+    row.push_back(time ? number(*time, "s") : "");
+  }
+  out.add_table("rods: axial forces, stress, and reserve against buckling with pinned ends", rows);
 }
 
 }  // namespace pkm

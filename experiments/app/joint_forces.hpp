@@ -30,6 +30,13 @@ Json reactions_json(const Reactions& reactions);
 
 /// Adds the forces and couples at one state to the output.
 void report_reactions(const Reactions& reactions, Printout& out);
+/// Adds axial forces, stresses and buckling of the rods whose sections have Young's modulus, if there are any.
+/// @param pose  assembles
+void report_rods(const Target& target, const std::string& mode, const Pose<double>& pose, const Reactions& reactions,
+                 Printout& out);
+/// Adds their extrema along a trajectory with reactions to the output and to out.json["summary"].
+void report_rods(const Target& target, const std::string& mode, const Trajectory& trajectory, Printout& out);
+
 /// Adds the peak and root-mean-square magnitudes along a trajectory to the output and to out.json["summary"].
 void report_reactions(const Trajectory& trajectory, Printout& out);
 

@@ -126,6 +126,7 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   out.head.push_back({"feasible", found.summary.infeasible == 0 ? "yes" : "not at " + infeasible + " samples"});
   report_summary(mechanism, found, out);
   if (arguments.any()) report_reactions(found, out);
+  if (arguments.reactions) report_rods(target, mode, found, out);
   if (!motors.empty() && found.summary.has_forces) report_motor_check(target, mode, found, motors, out);
   out.json["samples"] = Json::array();
   for (const auto& point : found.points)

@@ -1,6 +1,8 @@
 // Joint forces of `pkmopt trajectory` and `pkmopt dynamics` (--reactions, --joint), and errors of these options.
 #include <cmath>
 #include <fstream>
+#include <numbers>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -108,6 +110,58 @@ TEST(CliJointForces, NoForcesForAMotionBeyondTheReach) {
   EXPECT_TRUE(found["summary"]["reactions"].is_null());
   EXPECT_TRUE(found["samples"].front()["reactions"].is_object());
   EXPECT_TRUE(found["samples"].back()["reactions"].is_null());
+}
+
+TEST(CliJointForces, RodsWithYoungsModulusHaveAReserveAgainstBuckling) {
+  const StudyFolder folder;
+  std::stringstream file;
+  file << std::ifstream(kFiles + "rotary-delta.toml").rdbuf();
+  std::string text = file.str();
+  const std::string mass = "rod_mass_per_length = \"0.12 kg/m\"";
+  text.replace(text.find(mass), mass.size(),
+               "rod_section = { density = \"1600 kg/m^3\", outer = \"10 mm\", inner = \"8 mm\", young = \"120 GPa\" }");
+  folder.write("tubes.toml", text);
+  folder.write("m.toml", "type = \"oscillation\"\nx = 0\ny = 0\nz = -0.5\namplitude = 0.1\nperiod = 1\n");
+  const std::vector<std::string> words = {"trajectory", "tubes.toml", "--motion",    "m.toml",     "--samples",
+                                          "21",         "--wrench",   "Fz=100,Fx=5", "--reactions"};
+  const json found = along(words, {"--json"}, folder.path()).json();
+  const json& rods = found["summary"]["rods"];
+  ASSERT_EQ(rods.size(), 6u);
+  const double buckling =
+      std::pow(std::numbers::pi, 3) * 120e9 / 64 * (std::pow(0.01, 4) - std::pow(0.008, 4)) / (0.5 * 0.5);
+  for (const auto& [name, rod] : rods.items()) {
+    EXPECT_NEAR(rod["buckling_force"].get<double>(), buckling, 1e-9 * buckling);
+    EXPECT_NEAR(rod["least_buckling_reserve"].get<double>() * rod["peak_compression"].get<double>(), buckling,
+                1e-9 * buckling);
+  }
+  // The forces at one end of a rod agree with the reaction: ball joints and its own inertia leave little across it.
+  const json& sample = found["samples"][3];
+  const auto list = [&sample](const char* key) {
+    std::string values;
+    for (const auto& [axis, value] : sample[key].items())
+      values += (values.empty() ? "" : ",") + axis + "=" + value.dump();
+    return values;
+  };
+  const json single =
+      pkmopt({"dynamics", "tubes.toml", "--at=" + list("pose"), "--velocity=" + list("velocity"),
+              "--acceleration=" + list("acceleration"), "--wrench", "Fz=100,Fx=5", "--reactions", "--json"},
+             folder.path())
+          .json();
+  ASSERT_EQ(single["rods"].size(), 6u);
+  for (const auto& [name, rod] : single["rods"].items()) {
+    const double axial = rod["axial_force"], area = std::numbers::pi / 4 * (0.01 * 0.01 - 0.008 * 0.008);
+    EXPECT_NEAR(rod["stress"].get<double>(), axial / area, 1e-9 * std::fabs(axial / area));
+    EXPECT_LE(-axial, rods[name]["peak_compression"].get<double>() * (1 + 1e-9));
+    const std::string number = name.substr(4, 1), arm = name.substr(name.size() - 4);  // "rod 1 of arm2"
+    const json& joints = single["reactions"]["joints"];
+    const double at_ends[] = {length(joints[arm + ".C " + number]["force"]),
+                              length(joints[arm + ".B " + number]["force"])};
+    EXPECT_LE(std::fabs(axial), std::max(at_ends[0], at_ends[1]) * (1 + 1e-9));
+    EXPECT_GE(std::fabs(axial), 0.99 * std::max(at_ends[0], at_ends[1]));
+  }
+  const auto printed = along(words, {}, folder.path());
+  EXPECT_THAT(printed.out, HasSubstr("\nrods: axial forces, stress, and reserve against buckling with pinned ends\n"));
+  EXPECT_THAT(along(kCycle, {"--reactions"}, folder.path()).out, ::testing::Not(HasSubstr("rods:")));
 }
 
 TEST(CliJointForces, RejectsUnknownJointsAndMechanismsWithoutAModel) {
