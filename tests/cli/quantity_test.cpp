@@ -101,5 +101,49 @@ TEST(Quantity, ExampleFindsTheLargestWorkspace) {
   EXPECT_LE(fields["pressure_angle"]["greatest"].get<double>(), kLimit);
 }
 
+/// Runs a study of experiments/mechanisms/quantities.
+/// @return `evaluate --json` of the best design
+json best_of(const std::string& study, const std::string& file) {
+  const auto found =
+      pkmopt({"run", PKM_EXPERIMENTS "/mechanisms/quantities/" + study + ".toml", "-o", file, "--quiet"});
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  json best = pkmopt({"evaluate", "--from", file, "--json"}).json();
+  EXPECT_TRUE(best["feasible"].get<bool>()) << study;
+  return best;
+}
+
+// At the centre, x = y = 0, a rod has the slope s to the horizontal, and J^-1 maps errors of 10 um with the worst
+// signs,
+// +, -, -, to 10 um * 4/3 s across and 10 um / 3 along z. The maximum over the workspace is near the centre.
+TEST(Quantity, ExampleOfAccuracyReachesTheBound) {
+  const StudyFolder folder;
+  const std::string file = folder.path() + "/s.h5";
+  const json best = best_of("linear-delta-accuracy", file);
+  const double R = best["parameters"]["R"].get<double>(), l = best["parameters"]["l"].get<double>();
+  EXPECT_NEAR(l, 0.8, 1e-9);
+  const double cosine = (R - 0.06) / l, slope = std::sqrt(1 - cosine * cosine) / cosine;
+  const json centre = pkmopt({"pose", "--from", file, "--at", "x=0,y=0,z=-0.3", "--json"}).json()["quantities"];
+  EXPECT_NEAR(centre["accuracy"].get<double>(), 1e-5 * std::hypot(4.0 / 3 * slope, 1.0 / 3), 1e-14);
+  EXPECT_GT(best["objectives"]["workspace-volume"].get<double>(), 0.1169);
+  const json fields = pkmopt({"workspace", "--from", file, "--cells", "20", "--json"}).json()["fields"];
+  EXPECT_NEAR(fields["accuracy"]["greatest"].get<double>(), 20e-6, 0.1e-6);
+}
+
+// SLSQP ends at 229855.979400 N/m, too.
+TEST(Quantity, ExampleOfStiffnessEndsInAnOptimum) {
+  const StudyFolder folder;
+  const std::string file = folder.path() + "/s.h5";
+  const json best = best_of("stiff-delta", file);
+  EXPECT_NEAR(best["objectives"]["mean-stiffness"].get<double>(), 229855.9794, 1);
+  EXPECT_NEAR(best["constraints"]["effective_mass-mean"].get<double>(), 0, 1e-6);
+  EXPECT_GT(best["outputs"]["natural_frequency-min"].get<double>(), 100);
+}
+
+TEST(Quantity, ExampleOfTransmissionImprovesByGradients) {
+  const StudyFolder folder;
+  const json best = best_of("rotary-delta-gradient", folder.path() + "/s.h5");
+  EXPECT_GT(best["objectives"]["ratio"].get<double>(), 1.002 * 0.05955956942) << "of the genetic algorithm's design";
+}
+
 }  // namespace
 }  // namespace pkm::testing
