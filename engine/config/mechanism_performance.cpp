@@ -30,8 +30,7 @@ class Performance {
 
   void add_all() {
     if (const std::string why = why_no_inverse(); !why.empty()) {
-      lack("velocity_transmission", why);
-      lack("accuracy", why);
+      for (const char* const name : {"velocity_transmission", "force_transmission", "accuracy"}) lack(name, why);
       if (const auto table = accuracy_table()) throw table->refusal("the accuracy is undefined: " + why);
     } else {
       add_velocities();
@@ -117,7 +116,8 @@ class Performance {
 
   void add_velocities() {
     if (mixes_units(model_.info.joints))
-      lack("velocity_transmission", "the joints mix lengths and angles");
+      for (const char* const name : {"velocity_transmission", "force_transmission"})
+        lack(name, "the joints mix lengths and angles");
     else
       add(generic::velocity_quantities(model_, at_));
   }
@@ -235,7 +235,11 @@ class Performance {
       springs.push_back(spring_of(joint, draft_.drive_stiffness[joint]));
       is_rigid = is_rigid && springs.back().compliance.is(0);
     }
-    if (is_rigid) return lack("stiffness", "no limb has `drive_stiffness`, or a section with `young`");
+    if (is_rigid) {
+      for (const char* const name : {"stiffness", "natural_frequency"})
+        lack(name, "no limb has `drive_stiffness` or a section with `young`, and no [[drive_train]] has `stiffness`");
+      return;
+    }
     if (joints_ < model_.inputs.coordinates)
       return lack("stiffness", "the drives do not determine all coordinates: " + why_no_inverse());
     const auto rigid = [](const generic::LimbSpring& spring) { return spring.compliance.is(0); };

@@ -34,8 +34,10 @@ const PoseQuantity& pose_quantity_called(const MechanismInfo& info, const std::s
     if (name == quantity.name || name.starts_with(quantity.name + "_"))
       throw std::invalid_argument("quantity '" + name + "' is undefined for mechanism " + info.name + ": " +
                                   quantity.why);
+  const std::string expected = join(known);
+  for (const UndefinedQuantity& quantity : info.undefined_quantities) known.push_back(quantity.name);
   throw std::invalid_argument("mechanism " + info.name + " has no quantity '" + name + "'; expected one of " +
-                              join(known) + did_you_mean(name, known));
+                              expected + did_you_mean(name, known));
 }
 
 }  // namespace pkm
