@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "engine/core/unit.hpp"
-#include "engine/generic/dynamics.hpp"
+#include "engine/mechanism/total_mass.hpp"
 #include "engine/problem/motion_options.hpp"
 #include "engine/problem/pose_options.hpp"
 #include "engine/workspace/installation_box.hpp"
@@ -123,13 +123,13 @@ ObjectiveEntry mass_entry() {
       .direction = Direction::minimise,
       .unit = [](const EntryContext&) { return std::string("kg"); },
       .refusal = [](const Mechanism& mechanism) -> Unsupported {
-        if (generic::has_total_mass(mechanism)) return {};
+        if (find_total_mass(mechanism)) return {};
         return "objective mass needs masses, and mechanism " + mechanism.info().name + " has none";
       },
       .make =
           [](const EntryContext&) {
             return make_quantity([]<class S>(const DesignView<S>& design) {
-              return generic::total_mass<S>(design.mechanism, design.parameters);
+              return S(find_total_mass(design.mechanism)->total_mass(design.parameters));
             });
           },
       .range = nonnegative,

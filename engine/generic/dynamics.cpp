@@ -5,7 +5,6 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/generic/mechanism.hpp"
 #include "engine/math/lanes.hpp"
 
 namespace pkm::generic {
@@ -140,19 +139,13 @@ template void find_dynamics(const Evaluation&, std::span<const double>, std::siz
 template void find_dynamics(const Evaluation&, std::span<const Dual4>, std::size_t, std::span<const MotionState<Dual4>>,
                             std::span<PoseDynamics<Dual4>>);
 
-bool has_total_mass(const Mechanism& mechanism) {
-  const Evaluation* const evaluation = evaluation_of(mechanism);
-  return evaluation && !evaluation->model.bodies.empty();
-}
-
 template <class S>
-S total_mass(const Mechanism& mechanism, std::span<const S> parameters) {
-  const Evaluation& evaluation = *evaluation_of(mechanism);
+S total_mass(const Evaluation& evaluation, std::span<const S> parameters) {
   check_masses(evaluation, parameters);
   return *evaluation.of_design(evaluation.total_mass, parameters);
 }
 
-template double total_mass(const Mechanism&, std::span<const double>);
-template Dual4 total_mass(const Mechanism&, std::span<const Dual4>);
+template double total_mass(const Evaluation&, std::span<const double>);
+template Dual4 total_mass(const Evaluation&, std::span<const Dual4>);
 
 }  // namespace pkm::generic

@@ -17,13 +17,9 @@ template <class S>
 void find_dynamics(const Evaluation& evaluation, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found);
 
-/// Whether total_mass() is defined: the mechanism is from a file that gives masses.
-bool has_total_mass(const Mechanism& mechanism);
-
-/// Total mass of the moving bodies under the selected mass model [kg], without drive trains. S is double or Dual4.
-/// Throws as check_masses().
-/// @param mechanism  has_total_mass()
+/// Total mass of the moving bodies [kg]. S is double or Dual4. Throws as check_masses().
+/// @param evaluation  of a model with bodies
 template <class S>
-S total_mass(const Mechanism& mechanism, std::span<const S> parameters);
+S total_mass(const Evaluation& evaluation, std::span<const S> parameters);
 
 }  // namespace pkm::generic

@@ -19,6 +19,7 @@
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/voxels.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
+#include "engine/mechanism/total_mass.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
 
 namespace pkm::generic {
@@ -26,6 +27,7 @@ namespace {
 
 /// Offers the capabilities that the file has data for: links, masses, joints, columns.
 class GenericMechanism final : public Mechanism,
+                               public TotalMass,
                                public std::enable_shared_from_this<GenericMechanism>,
                                Voxels,
                                Columns,
@@ -127,6 +129,8 @@ class GenericMechanism final : public Mechanism,
                      std::span<PoseDynamics<S>> found) const {
     generic::find_dynamics(e_, parameters, mode_index(info(), mode), states, found);
   }
+  double total_mass(std::span<const double> parameters) const override { return generic::total_mass(e_, parameters); }
+  Dual4 total_mass(std::span<const Dual4> parameters) const override { return generic::total_mass(e_, parameters); }
   const std::vector<std::string>& mass_models() const override { return e_.model.mass_models; }
   const std::string& mass_model() const override { return e_.model.mass_model; }
   std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {

@@ -22,8 +22,9 @@ struct EvaluateArguments : DesignArguments, SensitivityArguments {
   std::string certified;
 };
 
-/// The problem of a mechanism without a study: all objectives that support the mechanism and the workspace method, with
-/// their default options.
+/// The problem of a mechanism without a study: all objectives of its workspace that support the mechanism and the
+/// method, with their default options. Objectives that need all poses are left out: most closed forms do not store
+/// them.
 /// @param cells  of voxels; empty: a default number
 DesignProblem problem_of_all_objectives(const Target& target, const Catalogues& catalogues, bool by_columns,
                                         const std::vector<std::string>& cells) {
@@ -42,6 +43,7 @@ DesignProblem problem_of_all_objectives(const Target& target, const Catalogues& 
     const EntryContext context{*target.mechanism, parts.plan, options};
     FieldRequest request = parts.request;
     entry.request(context, request);
+    if (!entry.reads(context) || request.poses) continue;
     if (parts.plan.columns() && first_cellwise_field(request)) continue;
     parts.request = request;
     parts.objectives.push_back({.name = entry.name,
