@@ -18,9 +18,11 @@ void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
                            "; gear and lead do without");
 }
 
-bool has_gear_or_losses(const ConfigValue& table) {
-  return std::ranges::any_of(
-      table.keys(), [](const std::string& key) { return key != "joint" && key != "stiffness" && key != "peak_force"; });
+/// Whether the table has only keys that quantities of the pose need: stiffness and peak_force.
+bool is_for_quantities(const ConfigValue& table) {
+  return table.keys().size() > 1 && std::ranges::all_of(table.keys(), [](const std::string& key) {
+           return key == "joint" || key == "stiffness" || key == "peak_force";
+         });
 }
 
 DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
@@ -52,7 +54,7 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
   std::vector<std::string> names = {"all"};
   for (const AxisInfo& joint : joints) names.push_back(joint.name);
   std::vector<std::optional<DriveTrain>> trains(joints.size());
-  if (std::ranges::none_of(tables, has_gear_or_losses)) {
+  if (std::ranges::all_of(tables, is_for_quantities)) {
     for (const ConfigValue& table : tables) table.at("joint", "a joint, or \"all\"").word(names);
     return;  // stiffness and peak_force are read with the quantities of the mechanism
   }

@@ -138,6 +138,11 @@ std::vector<TableVariant> drives() {
 }  // namespace
 
 std::vector<OptionSpec> mass_keys(const std::string& part) {
+  static const TableSpec rigid_section = {
+      .meaning = "tube or rod of some material",
+      .keys = {required(formula_key("density", "kg/m^3", "density of the material")),
+               required(formula_key("outer", "m", "outer diameter")),
+               formula_key("inner", "m", "inner diameter; default: 0")}};
   static const TableSpec section = {.meaning = "tube or rod of some material",
                                     .keys = {formula_key("density", "kg/m^3", "density of the material, for the mass"),
                                              required(formula_key("outer", "m", "outer diameter")),
@@ -153,7 +158,8 @@ std::vector<OptionSpec> mass_keys(const std::string& part) {
                                    (is_telescopic(part) ? "0" : "that of a thin rod")));
   if (has_length(part)) {
     keys.push_back(formula_key(part + "_mass_per_length", "kg/m", "mass of the " + shown + " per length"));
-    keys.push_back(table_key(part + "_section", section, "cross-section and material of the " + shown));
+    keys.push_back(table_key(part + "_section", part.ends_with("_link") ? rigid_section : section,
+                             "cross-section and material of the " + shown));
   }
   if (is_telescopic(part))
     keys.push_back(formula_key(part + "_centre", "m",

@@ -15,8 +15,9 @@ std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const s
                                                MechanismDraft& draft) {
   const auto section = table.find_table(key);
   if (!section) return {};
-  if (const auto shear = section->find("shear"); shear && !section->has("young"))
-    throw shear->refusal("a shear modulus needs Young's modulus, `young`, too");
+  const auto shear_modulus = key == "leg_section" ? std::nullopt : section->find("shear");
+  if (shear_modulus && !section->has("young"))
+    throw shear_modulus->refusal("a shear modulus needs Young's modulus, `young`, too");
   if (!section->has("young")) return {};
   const auto positive = [&](const char* name, const char* unit) {
     return draft.scope.positive(section->at(name), unit, key);
@@ -25,7 +26,7 @@ std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const s
   const Term outer = positive("outer", "m"), inner = section->has("inner") ? positive("inner", "m") : draft.zero();
   const Term young = positive("young", "Pa");
   constexpr double kPoisson = 0.3;  // of steel and aluminium, nearly
-  const Term shear = section->has("shear") ? positive("shear", "Pa") : young / (2 * (1 + kPoisson));
+  const Term shear = shear_modulus ? positive("shear", "Pa") : young / (2 * (1 + kPoisson));
   const Term area = (outer * outer - inner * inner) * (std::numbers::pi / 4),
              moment = (to_the_fourth(outer) - to_the_fourth(inner)) * (std::numbers::pi / 64);
   return NamedLimb::Section{young * area, young * moment, shear * moment * 2, area};

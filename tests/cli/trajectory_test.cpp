@@ -169,7 +169,8 @@ TEST(CliTrajectory, SingularSamplesHaveNoForces) {
   EXPECT_THAT(printed.out, HasSubstr("peak force [N]    -"));
   EXPECT_THAT(printed.out, HasSubstr("are unknown: there are no forces at t = 1 s (sample 11)"));
   EXPECT_THAT(lines_of_file(folder.path() + "/f.csv").back(),
-              HasSubstr(",0,the Jacobian is singular to working precision,,,,,,,,,,4,"));  // the quantities exist
+              ::testing::AllOf(HasSubstr(",0,the Jacobian is singular to working precision,,,,,,,,,,"),
+                               HasSubstr(",4,")));  // the quantities exist
   const auto pose =
       pkmopt({"dynamics", "4ppa-2par", "--at", "x=0.35,y=0.8,z=-0.8,theta=90deg", "--json"}, folder.path());
   EXPECT_EQ(pose.exit_code, 1);

@@ -68,7 +68,7 @@ TEST_F(UndefinedConditioning, IsRefusedInFormulasAndRegions) {
 TEST_F(UndefinedConditioning, IsAbsentFromPosesAndWorkspaces) {
   const auto pose = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3"});
   EXPECT_EQ(pose.exit_code, 0) << pose.err;
-  EXPECT_THAT(pose.out, HasSubstr("conditioning  none: "));
+  EXPECT_THAT(pose.out, ::testing::ContainsRegex("conditioning +none: "));
   EXPECT_THAT(pose.out, HasSubstr(kRadius));
   const auto printed = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--json"}).json();
   EXPECT_TRUE(printed["conditioning"].is_null());
@@ -109,7 +109,7 @@ TEST_F(UndefinedConditioning, ANonPositiveRadiusFailsWithAReason) {
               HasSubstr("the conditioning is undefined: characteristic_radius is 0 m; expected a positive length"));
   const auto pose = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--set", "a=250mm"});
   EXPECT_EQ(pose.exit_code, 0) << pose.err;
-  EXPECT_THAT(pose.out, HasSubstr("conditioning  none: "));
+  EXPECT_THAT(pose.out, ::testing::ContainsRegex("conditioning +none: "));
   EXPECT_THAT(run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--set", "a=220mm"}).out,
               Not(HasSubstr("none: ")));
 }

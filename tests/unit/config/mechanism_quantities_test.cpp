@@ -89,11 +89,11 @@ name = "turned"
 formula = "sin(t)*x"
 )toml"));
   const MechanismInfo& info = mechanism->info();
-  ASSERT_EQ(names_of(info.quantities),
-            (std::vector<std::string>{"twice", "height", "share", "speed", "change", "turned"}));
-  EXPECT_TRUE(info.quantities[0].of_design);
-  EXPECT_FALSE(info.quantities[1].of_design || info.quantities[1].of_motion);
-  EXPECT_TRUE(info.quantities[3].of_motion && info.quantities[4].of_motion && info.quantities[5].of_motion);
+  ASSERT_EQ(names_of(info.quantities), (std::vector<std::string>{"velocity_transmission", "force_transmission", "twice",
+                                                                 "height", "share", "speed", "change", "turned"}));
+  EXPECT_TRUE(info.quantities[2].of_design);
+  EXPECT_FALSE(info.quantities[3].of_design || info.quantities[3].of_motion);
+  EXPECT_TRUE(info.quantities[5].of_motion && info.quantities[6].of_motion && info.quantities[7].of_motion);
 
   const std::vector<double> design = {2, 9};
   const LimitSpec none = no_limits(info);
@@ -107,13 +107,13 @@ formula = "sin(t)*x"
   const std::vector<double> values = mechanism->quantities(design, "+", none, at);
   const double rate = -1.2 * 0.3 / kHeight;  // h h' = -y y'
   const double change = (-0.3 * 0.3 - 1.2 * -0.4 - rate * rate) / kHeight;
-  EXPECT_NEAR(values[3], rate + 2, 1e-14);
-  EXPECT_NEAR(values[4], change - 3, 1e-14);
-  EXPECT_NEAR(values[5], std::sin(0.5) * 0.5, 1e-15);
+  EXPECT_NEAR(values[5], rate + 2, 1e-14);
+  EXPECT_NEAR(values[6], change - 3, 1e-14);
+  EXPECT_NEAR(values[7], std::sin(0.5) * 0.5, 1e-15);
   at.inputs.clear();  // the default, constant
-  EXPECT_NEAR(mechanism->quantities(design, "+", none, at)[3], rate, 1e-14);
-  EXPECT_NEAR(mechanism->quantities(design, "+", none, at)[5], std::sin(0.25) * 0.5, 1e-15);
-  EXPECT_TRUE(std::isnan(mechanism->quantities(design, "+", none, {.pose = {0, 3}})[1]));
+  EXPECT_NEAR(mechanism->quantities(design, "+", none, at)[5], rate, 1e-14);
+  EXPECT_NEAR(mechanism->quantities(design, "+", none, at)[7], std::sin(0.25) * 0.5, 1e-15);
+  EXPECT_TRUE(std::isnan(mechanism->quantities(design, "+", none, {.pose = {0, 3}})[3]));
 }
 
 TEST(MechanismQuantities, RefuseWhatCannotBe) {

@@ -214,7 +214,7 @@ TEST(BuiltInQuantity, LimitsCutVoxels) {
 TEST(FormulaQuantity, MistakesAreNamed) {
   EXPECT_EQ(complaint(kColumns + statistic("heigt", "mean")),
             "s.toml:7: objective[1]: mechanism slider has no quantity 'heigt'; expected one of conditioning, dci, "
-            "inertia_condition, height, push; did you mean "
+            "inertia_condition, velocity_transmission, force_transmission, height, push; did you mean "
             "'height'?");
   EXPECT_THAT(complaint(kColumns + statistic("twice", "mean")),
               HasSubstr("quantity 'twice' depends on the design alone; expected a quantity of the workspace"));
@@ -223,7 +223,7 @@ TEST(FormulaQuantity, MistakesAreNamed) {
               HasSubstr("expected one of mean, std, min, max, p5"));
   EXPECT_EQ(complaint(kColumns + "limits = { heigth = { min = 1 } }\n" + kVolume),
             "s.toml:7: workspace.limits.heigth.min: mechanism slider has no quantity 'heigth'; expected one of "
-            "conditioning, dci, inertia_condition, height, push; "
+            "conditioning, dci, inertia_condition, velocity_transmission, force_transmission, height, push; "
             "did you mean 'height'?");
   EXPECT_THAT(complaint(kColumns + "limits = { height = 1 }\n" + kVolume),
               HasSubstr("expected a table { min = .., max = .. }, since height is a quantity"));
