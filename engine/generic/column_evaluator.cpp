@@ -59,7 +59,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   struct SampleScratch {
     std::vector<S> inputs;
     ConditioningScratch<S> conditioning;
-    std::vector<S> formulas;
+    FormulaScratch formulas;
   };
 
   template <class S>
@@ -154,6 +154,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
                                         if (formulas_) formulas_->add(pose, samples.formulas, result);
                                       });
     if (inertia_) inertia_->finish(design.inertia, result);
+    if (formulas_) formulas_->finish(samples.formulas, result);
   }
 
   const Evaluation& e_;

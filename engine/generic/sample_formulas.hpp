@@ -1,4 +1,4 @@
-// Evaluates pose quantities that are given by formulas at the samples of a workspace analysis.
+// Pose quantities that are given by formulas at the samples of a workspace analysis, in SIMD batches.
 #pragma once
 
 #include "engine/generic/pose_batch.hpp"
@@ -6,26 +6,30 @@
 
 namespace pkm::generic {
 
+/// Scratch memory of SampleFormulas.
+struct FormulaScratch {
+  PoseBatchScratch poses;
+  std::vector<Dual4> dual_registers;
+};
+
 class SampleFormulas {
  public:
   /// @param fields  of a FieldRequest; those that are not formulas are ignored
   SampleFormulas(const Evaluation& evaluation, const std::vector<const PoseQuantity*>& fields,
                  const std::vector<int>& swept, std::size_t mode);
 
-  /// Computes what does not depend on swept coordinates.
-  /// @param inputs     of the design, with the fixed coordinates
-  /// @param registers  scratch memory
-  template <class S>
-  void start(const std::vector<S>& inputs, std::vector<S>& registers) const {
-    batch_.start<S>(inputs, registers);
+  /// As PoseBatch::start().
+  void start(const std::vector<double>& inputs, FormulaScratch& scratch) const { batch_.start(inputs, scratch.poses); }
+  /// Adds a pose, whose values are appended to the fields of the result when the batch is full or finish() is called:
+  /// NaN where a formula is undefined.
+  void add(const Pose<double>& pose, FormulaScratch& scratch, WorkspaceResult<double>& to) const;
+  void finish(FormulaScratch& scratch, WorkspaceResult<double>& to) const;
+  /// With derivatives: poses are evaluated one by one.
+  void start(const std::vector<Dual4>& inputs, FormulaScratch& scratch) const {
+    batch_.start<Dual4>(inputs, scratch.dual_registers);
   }
-  /// Adds the values at a pose to the fields of an analysis; NaN where a formula is undefined.
-  template <class S>
-  void add(const Pose<S>& pose, std::vector<S>& registers, WorkspaceResult<S>& to) const {
-    batch_.run<S>(pose, registers);
-    for (std::size_t i = 0; i < quantities_.size(); ++i)
-      to.find(*quantities_[i])->push_back(registers[batch_.outputs()[i]]);
-  }
+  void add(const Pose<Dual4>& pose, FormulaScratch& scratch, WorkspaceResult<Dual4>& to) const;
+  void finish(FormulaScratch&, WorkspaceResult<Dual4>&) const {}
 
  private:
   std::vector<const PoseQuantity*> quantities_;

@@ -51,7 +51,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     std::vector<double> inputs;
     CellScratch cells;
     InertiaScratch inertia;
-    std::vector<double> formulas;
+    FormulaScratch formulas;
     ClearanceScratch clearance;
     std::array<std::size_t, expression::kRow> waiting;  ///< indices of the bits of the cells in the clearance batch
   };
@@ -200,6 +200,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
       add_sample(parameters, pose_of(grid, test_.cell(slice, j, k), scratch), measure, scratch, to);
     });
     if (inertia_) inertia_->finish(scratch.inertia, to);
+    if (formulas_) formulas_->finish(scratch.formulas, to);
   }
   /// Writes the coordinates of the pose to scratch.inputs.
   void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight, WorkerScratch& scratch,
