@@ -134,7 +134,8 @@ class Performance {
     const auto table = accuracy_table();
     const bool has_play =
         std::ranges::any_of(draft_.limbs, [](const NamedLimb& limb) { return limb.play.has_value(); });
-    if (!table && !has_play) return lack("accuracy", "[accuracy] joint_error is missing");
+    if (!table && !has_play)
+      return lack("accuracy", "there is no [accuracy] with joint_error or parameter_error, and no limb has `play`");
     errors_ = {std::vector<Term>(joints_, draft_.zero()), std::vector<Term>(joints_, draft_.zero())};
     if (table) read_errors(*table);
     for (std::size_t joint = 0; joint < joints_; ++joint)
@@ -154,7 +155,7 @@ class Performance {
   void read_errors(const ConfigValue& table) {
     if (const auto given = table.find("joint_error")) read_joint_errors(*given);
     if (const auto given = table.find_table("parameter_error")) read_parameter_errors(*given);
-    if (table.keys().empty()) throw table.refusal("[accuracy] needs joint_error or parameter_error");
+    if (table.keys().empty()) throw table.refusal("the table is empty; expected joint_error or parameter_error");
   }
   void read_joint_errors(const ConfigValue& given) {
     const auto read = [&](const ConfigValue& value, std::size_t joint) {

@@ -95,6 +95,9 @@ void read_nodes(const ConfigValue& given, const MechanismInfo& info, const Sweep
   std::vector<int> others = sweep.swept;
   std::erase(others, sweep.column);
   const std::vector<std::string> names = coordinate_names(info, others);
+  const std::string& along = info.coordinates[static_cast<std::size_t>(sweep.column)].name;
+  if (const auto own = given.table().find(along))
+    throw own->refusal("columns are lines along " + along + ", whose nodes cannot be set; expected " + join(names));
   const ConfigValue table = given.table_of_names(names);
   for (std::size_t k = 0; k < names.size(); ++k)
     columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer());

@@ -76,7 +76,8 @@ void expect_drawn_fields(const Target& target, const WorkspaceArguments& argumen
       names_of(fields_at(*target.mechanism, target.parameters, target.limits, mode, {}));
   for (const std::string& field : arguments.fields) {
     if (const auto* const undefined = find_named(target.info().undefined_quantities, field))
-      throw ConfigError(place, field + " is undefined for mechanism " + target.info().name + ": " + undefined->why);
+      throw ConfigError(place,
+                        "'" + field + "' is undefined for mechanism " + target.info().name + ": " + undefined->why);
     if (!contains(known, field))
       throw ConfigError(place, "'" + field + "'", "one of " + join(known), nearest_name(field, known));
     if (std::ranges::count(arguments.fields, field) > 1)

@@ -145,5 +145,31 @@ TEST(Quantity, ExampleOfTransmissionImprovesByGradients) {
   EXPECT_GT(best["objectives"]["ratio"].get<double>(), 1.002 * 0.05955956942) << "of the genetic algorithm's design";
 }
 
+TEST(Quantity, MessagesExplainWhatIsMissing) {
+  const StudyFolder folder;
+  const auto check = [&](const std::string& workspace, const std::string& tables = "") {
+    return pkmopt({"check", folder.write("s.toml", "[mechanism]\nfile = \"" PKM_EXPERIMENTS
+                                                   "/mechanisms/rotary-delta.toml\"\n[variables]\n"
+                                                   "R = { min = 0.1, max = 0.3 }\n[workspace]\n" +
+                                                       workspace + tables +
+                                                       "[[objective]]\ntype = \"workspace-volume\"\n"
+                                                       "[[stage]]\noptimiser = \"ga\"\n")})
+        .err;
+  };
+  const std::string voxels = "method = \"voxels\"\ncells = { x = 4, y = 4, z = 4 }\n";
+  EXPECT_THAT(check(voxels + "limits = { natural_frequency = { min = \"10 Hz\" } }\n"),
+              HasSubstr("s.toml:8: workspace.limits.natural_frequency.min: quantity 'natural_frequency' is undefined "
+                        "for mechanism rotary-delta: no limb has `drive_stiffness`"));
+  EXPECT_THAT(check(voxels + "limits = { stifness = { min = 1 } }\n"), HasSubstr("did you mean 'stiffness'?"));
+  EXPECT_THAT(check(voxels, "[accuracy]\n"), HasSubstr("s.toml:8: accuracy: the table is empty; expected joint_error"));
+  EXPECT_THAT(check("nodes = { x = 4, y = 4, z = 4 }\n"),
+              HasSubstr("workspace.nodes.z: columns are lines along z, whose nodes cannot be set; expected x, y"));
+  const auto map = pkmopt({"workspace", PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml", "--cut", "y=0", "--field",
+                           "accuracy", "-o", folder.path() + "/map.svg"});
+  EXPECT_EQ(map.exit_code, 2);
+  EXPECT_THAT(map.err,
+              HasSubstr("--field: 'accuracy' is undefined for mechanism rotary-delta: there is no [accuracy]"));
+}
+
 }  // namespace
 }  // namespace pkm::testing
