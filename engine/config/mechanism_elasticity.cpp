@@ -24,6 +24,7 @@ std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const s
   };
   const auto to_the_fourth = [](const Term& d) { return d * d * d * d; };
   const Term outer = positive("outer", "m"), inner = section->has("inner") ? positive("inner", "m") : draft.zero();
+  draft.model.required.push_back({key + ": outer - inner", "m", (outer - inner).node()});
   const Term young = positive("young", "Pa");
   constexpr double kPoisson = 0.3;  // of steel and aluminium, nearly
   const Term shear = shear_modulus ? positive("shear", "Pa") : young / (2 * (1 + kPoisson));

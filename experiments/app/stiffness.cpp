@@ -40,6 +40,7 @@ struct Elastic {
 
   /// Compliance by pure forces (first = 0) or pure moments (3), as far as they are carried.
   MatrixXd pure(Index first) const {
+    if (S.cols() == 0) return {};
     const MatrixXd others = S.middleRows(3 - first, 3);
     const Eigen::JacobiSVD<MatrixXd> decomposition(others, Eigen::ComputeFullV);
     Index rank = 0;

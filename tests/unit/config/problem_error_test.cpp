@@ -28,7 +28,7 @@ TEST(ProblemErrors, Workspace) {
            "s.toml:5: workspace.nodes: either tolerance (line 4) or nodes set the accuracy; give one of them"},
           {"nodes = { x = 4 }", "s.toml:4: workspace.nodes.theta: found nothing; expected a number of nodes"},
           {"nodes = { x = 4, z = 4 }",
-           "s.toml:4: workspace.nodes.z: found an unknown coordinate; expected one of x, theta; did you mean 'x'?"},
+           "s.toml:4: workspace.nodes.z: columns are lines along z, whose nodes cannot be set; expected x, theta"},
           {"nodes = { x = 0, theta = 4 }", "s.toml:4: workspace.nodes.x: found 0; expected an integer in [1, 200]"},
           {"cells = { x = 1, z = 1, theta = 1 }",
            "s.toml:4: workspace.cells: this key belongs to method = \"voxels\", but the study's method is \"columns\""},
