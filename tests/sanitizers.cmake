@@ -45,7 +45,8 @@ set(PKM_TESTS_OF_RELEASE
   ExistingFilesAreNotOverwritten NewFilesAreShort Obstacle.InvalidDefinitions CheckReportsIncompatibleSettings
   TooManyCellsAreRejected ADeviationFromTheRecord LongLinesTakeNoTime AHigherEvaluationLimitResumes ThreadsDoNotMatter/ipopt
   ExampleFindsTheLargestWorkspace OfRandomDesignsAreThoseOfSlices OfLimitsOfTwoCoordinates AgreeWithDenseSlices
-  OfRandomSolidsIs HaveDerivativesThatAgreeWithDifferences/rotarydelta
+  OfRandomSolidsIs HaveDerivativesThatAgreeWithDifferences/rotarydelta ExampleOfAccuracyReaches ExampleOfStiffnessEnds
+  ExampleOfTransmissionImproves Performance.HasDerivatives
   NanIsFailedAndNeverBest/ipopt RespectsBounds/ipopt CatalogueMdIsUpToDate NumberOfThreadsFromEnvironment)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.
