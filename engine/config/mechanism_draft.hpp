@@ -133,8 +133,10 @@ struct LimbForce {
 };
 /// std::nullopt for limbs that are formulas or have links, which transmit more than a single force.
 std::optional<LimbForce> force_of(const NamedLimb& limb);
+/// Whether a file, or a study unless it is null, has a [[quantity]] of this name.
+bool defines_quantity(const ConfigValue& root, const ConfigValue* study, const std::string& name);
 /// Adds the transmission indices `lti`, `lti_input` and `lti_output` as quantities, if they are defined for the limbs.
-void add_transmission(const ConfigValue& root, MechanismDraft& draft);
+void add_transmission(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
 /// Adds the quantities of engine/generic/performance/performance.hpp for which the file, or the study unless it is
 /// null, has the data.
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);

@@ -254,7 +254,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   read_limbs(root, draft);
   read_bodies(root, read_links(root, draft), draft);
   if (!draft.model.bodies.empty()) draft.model.equations = generic::equations_of(draft.model);
-  add_transmission(root, draft);
+  add_transmission(root, study.get(), draft);
   add_performance(root, study.get(), draft);
   read_quantities(root, study.get(), draft);
   read_margins(root, draft);

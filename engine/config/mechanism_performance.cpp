@@ -64,7 +64,7 @@ class Performance {
     for (const NamedTerm& term : terms) add(term);
   }
   void add(const NamedTerm& term) {
-    if (draft_.scope.knows(term.name) || defines(term.name))
+    if (draft_.scope.knows(term.name) || defines_quantity(root_, study_, term.name))
       return lack(term.name, "the file gives the name " + term.name + " another meaning");
     const auto of_pose = formula_quantity(term.name, term.unit, term.meaning, model_.quantities.size());
     model_.quantities.push_back(term.value.node());
@@ -72,16 +72,6 @@ class Performance {
         {.name = term.name, .unit = term.unit, .meaning = term.meaning, .of_pose = of_pose});
     draft_.scope.add(root_, term.name, term.value.node());
     draft_.scope.known_to_exist(term.value.node());
-  }
-  /// Whether a [[quantity]] has this name.
-  bool defines(const std::string& name) const {
-    const auto has = [&](const ConfigValue& file) {
-      return std::ranges::any_of(file.tables("quantity"), [&](const ConfigValue& table) {
-        const auto own = table.find("name");
-        return own && own->text("the quantity's name") == name;
-      });
-    };
-    return has(root_) || (study_ && has(*study_));
   }
 
   std::string force_unit(std::size_t joint) const { return model_.info.joints[joint].turns() ? "N m" : "N"; }

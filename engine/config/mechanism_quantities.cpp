@@ -81,6 +81,16 @@ std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study) {
   return limits && limits->is_table() && std::ranges::any_of(limits->keys(), is_quantity) ? limits : std::nullopt;
 }
 
+bool defines_quantity(const ConfigValue& root, const ConfigValue* study, const std::string& name) {
+  const auto has = [&](const ConfigValue& file) {
+    return std::ranges::any_of(file.tables("quantity"), [&](const ConfigValue& table) {
+      const auto own = table.find("name");
+      return own && own->text("the quantity's name") == name;
+    });
+  };
+  return has(root) || (study && has(*study));
+}
+
 void read_inputs(const ConfigValue& root, MechanismDraft& draft) {
   const auto all = root.find_table("inputs");
   if (!all) return;

@@ -53,15 +53,10 @@ Term least(const std::vector<Term>& values) {
 
 constexpr const char *kLti = "lti", *kInput = "lti_input", *kOutput = "lti_output";
 
-std::string why_not(const ConfigValue& root, const MechanismDraft& draft) {
-  const auto defines = [&](const std::string& name) {
-    return draft.scope.knows(name) || std::ranges::any_of(root.tables("quantity"), [&](const ConfigValue& table) {
-             const auto own = table.find("name");
-             return own && own->text("the quantity's name") == name;
-           });
-  };
+std::string why_not(const ConfigValue& root, const ConfigValue* study, const MechanismDraft& draft) {
   for (const char* const name : {kLti, kInput, kOutput})
-    if (defines(name)) return std::string("the file gives the name ") + name + " another meaning";
+    if (draft.scope.knows(name) || defines_quantity(root, study, name))
+      return std::string("the file gives the name ") + name + " another meaning";
   constexpr std::size_t kMaxCoordinates = 6;
   const std::size_t coordinates = draft.model.inputs.coordinates;
   if (coordinates > kMaxCoordinates) return "there are more than six coordinates";
@@ -81,9 +76,9 @@ std::optional<LimbForce> force_of(const NamedLimb& limb) {
   return single_force_of(limb);
 }
 
-void add_transmission(const ConfigValue& root, MechanismDraft& draft) {
+void add_transmission(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  if (const std::string why = why_not(root, draft); !why.empty()) {
+  if (const std::string why = why_not(root, study, draft); !why.empty()) {
     model.info.undefined_quantities.push_back({kLti, why});
     return;
   }

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "engine/generic/eigen_matrix.hpp"
 #include "engine/generic/newton_euler.hpp"
 
 namespace pkm::generic {
@@ -13,12 +14,6 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::Vector3d;
 
-AxisMatrix<double> matrix(const MatrixXd& A) {
-  AxisMatrix<double> copy(static_cast<std::size_t>(A.rows()), static_cast<std::size_t>(A.cols()));
-  for (std::size_t i = 0; i < copy.rows(); ++i)
-    for (std::size_t j = 0; j < copy.cols(); ++j) copy(i, j) = A(static_cast<Index>(i), static_cast<Index>(j));
-  return copy;
-}
 Vector3d vector(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 /// Numbers of nodes at a pose.
@@ -194,7 +189,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
   for (Index i = 0; i < C.rows(); ++i)
     for (Index j = 0; j < C.cols(); ++j)
       if (i != j && std::fabs(C(i, j)) < kRounding * std::sqrt(C(i, i) * C(j, j))) C(i, j) = 0;
-  return {matrix(basis), matrix(C)};
+  return {axis_matrix(basis), axis_matrix(C)};
 }
 
 }  // namespace pkm::generic

@@ -8,6 +8,7 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/dynamics/pose_dynamics.hpp"
+#include "engine/generic/eigen_matrix.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/motion_inputs.hpp"
 
@@ -15,21 +16,9 @@ namespace pkm {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using generic::axis_matrix, generic::eigen;
 
 const std::vector<std::string> kComponents = {"x", "y", "z", "about x", "about y", "about z"};
-
-MatrixXd eigen(const AxisMatrix<double>& A) {
-  MatrixXd copy(A.rows(), A.cols());
-  for (std::size_t i = 0; i < A.rows(); ++i)
-    for (std::size_t j = 0; j < A.cols(); ++j) copy(static_cast<Index>(i), static_cast<Index>(j)) = A(i, j);
-  return copy;
-}
-AxisMatrix<double> axis_matrix(const MatrixXd& A) {
-  AxisMatrix<double> copy(static_cast<std::size_t>(A.rows()), static_cast<std::size_t>(A.cols()));
-  for (std::size_t i = 0; i < copy.rows(); ++i)
-    for (std::size_t j = 0; j < copy.cols(); ++j) copy(i, j) = A(static_cast<Index>(i), static_cast<Index>(j));
-  return copy;
-}
 
 /// Eigenvalues, in ascending order.
 VectorXd eigenvalues(const MatrixXd& A) { return Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues(); }
