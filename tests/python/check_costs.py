@@ -3,9 +3,10 @@
 
 check_costs.py PROGRAM CHECKER
 
-Each command runs on files with n and with 2 n entries. The ratio of the CPU times, which hardly depends on the
-machine, shows the order of growth: 2 is linear, 4 quadratic, 16 fourth order. The limit for links allows quadratic
-growth, because the number of pairs of links is quadratic. Exit code 1 if a ratio exceeds its limit.
+Each command runs on files with n and with 4 n entries. The ratio of the CPU times, which hardly depends on the
+machine, shows the order of growth: 4 is linear, 16 quadratic, 64 cubic. The limits lie between two orders, so that
+caches and other work on the machine do not decide. For links the limit allows quadratic growth, because the number
+of pairs of links is quadratic. Exit code 1 if a ratio exceeds its limit.
 """
 
 import os
@@ -66,18 +67,18 @@ def cpu_seconds(command, folder):
 def main():
     program, checker = (os.path.abspath(path) for path in sys.argv[1:3])
     cases = [
-        ("check, links", links, 300, 6, [program, "check"]),
-        ("check, [let]", lets, 20000, 3, [program, "check"]),
-        ("certify --proof, [let]", lets, 5000, 3,
+        ("check, links", links, 150, 32, [program, "check"]),
+        ("check, [let]", lets, 20000, 12, [program, "check"]),
+        ("certify --proof, [let]", lets, 5000, 12,
          [program, "certify", "--boxes", "1", "--gap", "1.99", "--proof", "a.proof", "--force", "--threads", "1"]),
-        ("check of a proof", proof, 20000, 3, [checker]),
+        ("check of a proof", proof, 10000, 12, [checker]),
     ]
     failed = False
-    print("%-24s %8s  CPU seconds     for twice as many  ratio  limit" % ("command", "entries"))
+    print("%-24s %8s  CPU seconds     for four times as many  ratio  limit" % ("command", "entries"))
     with tempfile.TemporaryDirectory() as folder:
         for name, make, n, limit, command in cases:
             paths = []
-            for count in (n, 2 * n):
+            for count in (n, 4 * n):
                 paths.append(os.path.join(folder, "%d.%s" % (count, "toml" if command[0] == program else "proof")))
                 with open(paths[-1], "w", encoding="utf-8") as file:
                     file.write(make(count))
@@ -88,7 +89,7 @@ def main():
                 if ratio <= limit:
                     break
             failed = failed or ratio > limit
-            print("%-24s %8d  %11.3f  %20.3f  %5.1f  %5.1f" % (name, n, *seconds, ratio, limit), flush=True)
+            print("%-24s %8d  %11.3f  %25.3f  %5.1f  %5.1f" % (name, n, *seconds, ratio, limit), flush=True)
     return 1 if failed else 0
 
 
