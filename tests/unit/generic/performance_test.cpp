@@ -72,7 +72,7 @@ Eigen::MatrixXd eigen_of(const AxisMatrix<double>& A) {
   return result;
 }
 
-constexpr double kL = .3106;
+constexpr double kRailLength = .3106;
 
 /// An Orthoglide with single rods of length L, 20 mm thick, drives of 5e6 N/m and 3 kg at the platform: a 3-PUU
 /// translator. Its values were computed by an independent program.
@@ -87,24 +87,24 @@ std::shared_ptr<const Mechanism> orthoglide() {
 
 TEST(Performance, VelocityTransmissionOfTheOrthoglide) {
   const auto mechanism = orthoglide();
-  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kL}});
+  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kRailLength}});
   const auto expect = [&](double at, double velocity, double force) {
     EXPECT_NEAR(value_at(*mechanism, design, {at, at, at}, "velocity_transmission"), velocity, 1e-12);
     EXPECT_NEAR(value_at(*mechanism, design, {at, at, at}, "force_transmission"), force, 1e-12);
   };
   expect(0, 1, 1);
   // the published design rule: factors of 1/2 and 2 in the corners of the cube (Chablat and Wenger 2003)
-  expect(-kL / std::sqrt(6), .5, .5);
-  expect(kL / std::sqrt(18), .8, .5);
+  expect(-kRailLength / std::sqrt(6), .5, .5);
+  expect(kRailLength / std::sqrt(18), .8, .5);
 }
 
 TEST(Performance, StiffnessOfTheOrthoglide) {
   const auto mechanism = orthoglide();
-  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kL}});
+  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kRailLength}});
   EXPECT_NEAR(value_at(*mechanism, design, {0, 0, 0}, "stiffness"), 4670194.062, 1e-3);
   EXPECT_NEAR(value_at(*mechanism, design, {0, 0, 0}, "natural_frequency"), 198.576096, 1e-6);
   EXPECT_NEAR(value_at(*mechanism, design, {0, 0, 0}, "effective_mass"), 3, 1e-14);
-  const double corner = -kL / std::sqrt(6);  // K has 6781628.944 on its diagonal, 5651357.453 beside it
+  const double corner = -kRailLength / std::sqrt(6);  // K has 6781628.944 on its diagonal, 5651357.453 beside it
   EXPECT_NEAR(value_at(*mechanism, design, {corner, corner, corner}, "stiffness"), 6781628.944 - 5651357.453, 2e-3);
 }
 
@@ -153,7 +153,7 @@ TEST(Performance, ComplianceOfTheOrthoglideWithUniversalJoints) {
     at = text.find(drive, at + 1);
   }
   const auto mechanism = read(text);
-  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kL}});
+  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kRailLength}});
   const auto at_diagonal = [&](double x) {
     Pose<double> pose(3);
     for (std::size_t i = 0; i < 3; ++i) pose[i] = x;
@@ -166,15 +166,15 @@ TEST(Performance, ComplianceOfTheOrthoglideWithUniversalJoints) {
     EXPECT_NEAR(1 / centre.compliance(i + 3, i + 3), 1314.897118, 1e-6);
   }
   EXPECT_NEAR(centre.compliance(0, 0) * 100, 21.412386e-6, 1e-12);
-  const PlatformCompliance corner = at_diagonal(-kL / std::sqrt(6));
+  const PlatformCompliance corner = at_diagonal(-kRailLength / std::sqrt(6));
   EXPECT_NEAR(corner.compliance(0, 0) * 100, 60.826094e-6, 1e-12);
   // a parallel singularity: the platform is free in some direction, and not every wrench is carried
-  EXPECT_FALSE(at_diagonal(kL / std::sqrt(3)).is_complete());
+  EXPECT_FALSE(at_diagonal(kRailLength / std::sqrt(3)).is_complete());
 }
 
 TEST(Performance, ComplianceWithBallJointsCarriesForcesOnly) {
   const auto mechanism = orthoglide();
-  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kL}});
+  const std::vector<double> design = test::design_with(mechanism->info(), {{"L", kRailLength}});
   const PlatformCompliance found =
       mechanism->elasticity()->compliance(design, Pose<double>(3), mechanism->info().modes.front());
   ASSERT_EQ(found.supported.cols(), 3U);
