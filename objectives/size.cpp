@@ -1,6 +1,6 @@
 // Size and mass of a mechanism: volume, base area and height of the installation space, the axis-parallel bounding box
-// of all links over the workspace or along a motion (engine/workspace/installation_box.hpp); and the mass of the moving
-// bodies.
+// of all links over the workspace or along a motion, and the total length of the moving links
+// (engine/workspace/installation_space.hpp); and the mass of the moving bodies.
 //
 // The poses are those of the workspace analysis: the centres of all feasible cells (voxels) or the nodes of the
 // quadrature (columns). Both lie inside of the workspace, so that the box is too small by less than a cell, or by less
@@ -13,7 +13,7 @@
 #include "engine/mechanism/total_mass.hpp"
 #include "engine/problem/motion_options.hpp"
 #include "engine/problem/pose_options.hpp"
-#include "engine/workspace/installation_box.hpp"
+#include "engine/workspace/installation_space.hpp"
 #include "objectives/list.hpp"
 
 namespace pkm {
@@ -21,21 +21,20 @@ namespace {
 
 bool has_motion(const EntryContext& context) { return context.options.has("motion"); }
 
-/// The last box of a thread: several quantities of a design use the same one.
-struct BoxScratch {
+/// The last installation space of a thread: several quantities of a design use the same one.
+struct SpaceScratch {
   const Mechanism* mechanism = nullptr;
   std::string mode;
   std::vector<double> parameters;
   std::vector<Pose<double>> poses;
-  std::optional<Bounds<double>> box;
+  std::optional<InstallationSpace> space;
 };
 
-/// @param measure  of the box with these edge lengths
-using Measure = double (*)(const Point3<double>& edges);
+using Measure = double (*)(const InstallationSpace& space);
 
-class BoxMeasure final : public Quantity {
+class SizeMeasure final : public Quantity {
  public:
-  BoxMeasure(const EntryContext& context, const std::string& name, Measure measure)
+  SizeMeasure(const EntryContext& context, const std::string& name, Measure measure)
       : name_(name), mode_(mode_of(context)), measure_(measure) {
     if (!has_motion(context)) return;
     motion_ = motion_of(context).name;
@@ -46,8 +45,8 @@ class BoxMeasure final : public Quantity {
   }
 
   double value(const DesignView<double>& design) const override {
-    const std::optional<Bounds<double>>& box = box_of(design);
-    return box ? measure_(difference(box->upper, box->lower)) : std::numeric_limits<double>::quiet_NaN();
+    const std::optional<InstallationSpace>& space = space_of(design);
+    return space ? measure_(*space) : std::numeric_limits<double>::quiet_NaN();
   }
   Dual4 smooth(const DesignView<Dual4>&) const override { throw std::logic_error(*why_no_derivatives()); }
   Unsupported why_no_derivatives() const override {
@@ -62,17 +61,17 @@ class BoxMeasure final : public Quantity {
   }
 
  private:
-  const std::optional<Bounds<double>>& box_of(const DesignView<double>& design) const {
+  const std::optional<InstallationSpace>& space_of(const DesignView<double>& design) const {
     const std::vector<Pose<double>>& poses = motion_.empty() ? design.workspace->pose : poses_;
-    BoxScratch& last = design.scratch.get<BoxScratch>();
+    SpaceScratch& last = design.scratch.get<SpaceScratch>();
     if (last.mechanism == &design.mechanism && last.mode == mode_ && last.poses == poses &&
         std::ranges::equal(last.parameters, design.parameters))
-      return last.box;
+      return last.space;
     last.mechanism = &design.mechanism;
     last.mode = mode_;
     last.parameters.assign(design.parameters.begin(), design.parameters.end());
     last.poses = poses;
-    return last.box = installation_box(design.mechanism, design.parameters, mode_, poses);
+    return last.space = installation_space(design.mechanism, design.parameters, mode_, poses);
   }
 
   std::string name_, mode_;
@@ -82,14 +81,14 @@ class BoxMeasure final : public Quantity {
   std::vector<double> times_;        ///< of these poses [s]
 };
 
-/// @param what  of the box: "base area"
-ObjectiveEntry box_entry(const std::string& name, const std::string& what, const std::string& unit, Measure measure) {
+/// @param what  "base area of the box of all links"
+ObjectiveEntry size_entry(const std::string& name, const std::string& what, const std::string& unit, Measure measure) {
   OptionSpec motion = motion_option(), samples = samples_option();
   motion.required = false;
   motion.meaning += "; default: the poses of the workspace";
   return {
       .name = name,
-      .meaning = what + " of the box of all links over the workspace or along a motion",
+      .meaning = what + " over the workspace or along a motion",
       .direction = Direction::minimise,
       .options = {motion, samples, mode_option()},
       .unit = [unit](const EntryContext&) { return unit; },
@@ -105,11 +104,11 @@ ObjectiveEntry box_entry(const std::string& name, const std::string& what, const
             request.mode = mode_of(context);
           },
       .make = [name,
-               measure](const EntryContext& context) { return std::make_unique<BoxMeasure>(context, name, measure); },
+               measure](const EntryContext& context) { return std::make_unique<SizeMeasure>(context, name, measure); },
       .detail =
           [what](const EntryContext& context) {
-            return what + " of the box of all links " +
-                   (has_motion(context) ? "along the motion " + context.options.word("motion") : "over the workspace");
+            return what + (has_motion(context) ? " along the motion " + context.options.word("motion")
+                                               : " over the workspace");
           },
       .range = nonnegative,
       .needs_workspace = [](const EntryContext& context) { return !has_motion(context); },
@@ -140,11 +139,18 @@ ObjectiveEntry mass_entry() {
 }  // namespace
 
 std::vector<ObjectiveEntry> size_objectives() {
-  return {box_entry("installation-space", "volume", "m^3",
-                    [](const Point3<double>& edges) { return edges[0] * edges[1] * edges[2]; }),
-          box_entry("footprint", "base area (x, y)", "m^2",
-                    [](const Point3<double>& edges) { return edges[0] * edges[1]; }),
-          box_entry("height", "height (along z)", "m", [](const Point3<double>& edges) { return edges[2]; }),
+  static const auto edge = [](const InstallationSpace& space, std::size_t axis) {
+    return space.box.upper[axis] - space.box.lower[axis];
+  };
+  const std::string box = " of the box of all links";
+  return {size_entry("installation-space", "volume" + box, "m^3",
+                     [](const InstallationSpace& space) { return edge(space, 0) * edge(space, 1) * edge(space, 2); }),
+          size_entry("footprint", "base area (x, y)" + box, "m^2",
+                     [](const InstallationSpace& space) { return edge(space, 0) * edge(space, 1); }),
+          size_entry("height", "height (along z)" + box, "m",
+                     [](const InstallationSpace& space) { return edge(space, 2); }),
+          size_entry("link-length", "sum of the largest lengths of all moving links", "m",
+                     [](const InstallationSpace& space) { return space.moving_length; }),
           mass_entry()};
 }
 

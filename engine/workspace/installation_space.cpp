@@ -1,6 +1,9 @@
-#include "engine/workspace/installation_box.hpp"
+#include "engine/workspace/installation_space.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <numeric>
 
 #include "engine/core/stop.hpp"
 #include "engine/core/team.hpp"
@@ -8,34 +11,53 @@
 namespace pkm {
 namespace {
 
-/// Extends a box to contain a capsule.
-void extend(std::optional<Bounds<double>>& box, const Capsule<double>& capsule) {
-  Bounds<double> own = bounds_of(capsule.axis);
-  for (std::size_t i = 0; i < 3; ++i) {
-    own.lower[i] -= capsule.radius;
-    own.upper[i] += capsule.radius;
+/// What one worker has found.
+struct Extents {
+  std::optional<Bounds<double>> box;
+  std::vector<double> lengths;  ///< by link; 0: part of the frame
+
+  void add(const std::vector<PlacedLink>& links) {
+    lengths.resize(links.size());
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      const Capsule<double>& capsule = links[i].body;
+      Bounds<double> own = bounds_of(capsule.axis);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        own.lower[axis] -= capsule.radius;
+        own.upper[axis] += capsule.radius;
+      }
+      box = box ? joined(*box, {own.lower, own.upper}) : own;
+      if (links[i].part == kFramePart) continue;
+      const Point3<double> axis = difference(capsule.axis.to, capsule.axis.from);
+      lengths[i] = std::max(lengths[i], std::sqrt(dot(axis, axis)));
+    }
   }
-  box = box ? joined(*box, {own.lower, own.upper}) : own;
-}
+  void add(const Extents& other) {
+    if (!other.box) return;
+    box = box ? joined(*box, {other.box->lower, other.box->upper}) : *other.box;
+    lengths.resize(other.lengths.size());
+    for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = std::max(lengths[i], other.lengths[i]);
+  }
+};
 
 }  // namespace
 
-std::optional<Bounds<double>> installation_box(const Mechanism& mechanism, std::span<const double> parameters,
-                                               const std::string& mode, std::span<const Pose<double>> poses) {
-  std::vector<std::optional<Bounds<double>>> by_worker(workers());
+std::optional<InstallationSpace> installation_space(const Mechanism& mechanism, std::span<const double> parameters,
+                                                    const std::string& mode, std::span<const Pose<double>> poses) {
+  std::vector<Extents> by_worker(workers());
   std::atomic<bool> assemble = true;
   parallel_for(poses.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
     for (std::size_t k = begin; k < end && assemble; ++k) {
       check_stop();
       const std::vector<PlacedLink> links = mechanism.links()->place(parameters, poses[k], mode);
       if (links.empty()) assemble = false;
-      for (const PlacedLink& link : links) extend(by_worker[worker], link.body);
+      by_worker[worker].add(links);
     }
   });
-  std::optional<Bounds<double>> box;
-  for (const auto& own : by_worker)
-    if (own) box = box ? joined(*box, {own->lower, own->upper}) : own;
-  return assemble ? box : std::nullopt;
+  if (!assemble) return {};
+  Extents all;
+  for (const Extents& own : by_worker) all.add(own);
+  if (!all.box) return {};
+  return InstallationSpace{*all.box, std::accumulate(all.lengths.begin(), all.lengths.end(), 0.0)};
 }
 
 }  // namespace pkm

@@ -1,5 +1,6 @@
-// Installation space: the axis-parallel bounding box of all links of a mechanism over several poses. Links are
-// capsules, so that the box of one pose is exact: the bounding box of the axis of each link, extended by its radius.
+// Installation space of a mechanism over several poses: the axis-parallel bounding box of all links, and the total
+// length of the moving ones. Links are capsules, so that the box of one pose is exact: the bounding box of the axis of
+// each link, extended by its radius.
 #pragma once
 
 #include <optional>
@@ -11,11 +12,16 @@
 
 namespace pkm {
 
-/// The box [m], by all threads of the caller's team; it does not depend on their number. Links of the frame are
-/// included. Links can extend farthest at any pose, not only on the boundary of a workspace: all poses are evaluated.
+struct InstallationSpace {
+  Bounds<double> box;        ///< [m], links of the frame included
+  double moving_length = 0;  ///< sum over the links that are not part of the frame of the largest length of their axes
+};
+
+/// The installation space, by all threads of the caller's team; it does not depend on their number. Links can extend
+/// farthest at any pose, not only on the boundary of a workspace: all poses are evaluated.
 /// @param mechanism  has links
 /// @return std::nullopt if there are no poses, or one of them cannot be assembled
-std::optional<Bounds<double>> installation_box(const Mechanism& mechanism, std::span<const double> parameters,
-                                               const std::string& mode, std::span<const Pose<double>> poses);
+std::optional<InstallationSpace> installation_space(const Mechanism& mechanism, std::span<const double> parameters,
+                                                    const std::string& mode, std::span<const Pose<double>> poses);
 
 }  // namespace pkm

@@ -1,4 +1,5 @@
-// Installation space, footprint, height and mass, against hand calculations for the five-bar and the linear Delta.
+// Installation space, footprint, height, link length and mass, against hand calculations for the five-bar and the
+// linear Delta.
 #include <array>
 #include <cmath>
 
@@ -6,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/team.hpp"
-#include "engine/workspace/installation_box.hpp"
+#include "engine/workspace/installation_space.hpp"
 #include "tests/unit/config/real_studies.hpp"
 #include "tests/unit/generic/files.hpp"
 
@@ -43,7 +44,8 @@ std::string output(const std::string& type, const std::string& more = "") {
   return "[[output]]\ntype = \"" + type + "\"\n" + more;
 }
 
-const std::string kOutputs = output("installation-space") + output("footprint") + output("height") + output("mass");
+const std::string kOutputs =
+    output("installation-space") + output("footprint") + output("height") + output("mass") + output("link-length");
 const std::string kCranks = "[variables]\nl_a = { min = 0.2, max = 0.3 }\n";
 const std::string kFiveBar = kCranks + "[[objective]]\ntype = \"mass\"\n";
 const std::string kDelta = "[variables]\nl = { min = 0.4, max = 0.6 }\n[[objective]]\ntype = \"mass\"\n";
@@ -79,6 +81,7 @@ TEST(SizeObjectives, BoxOfTheFiveBarAtOnePoseAndAtTwo) {
   EXPECT_NEAR(one[0], width * depth * 2 * r, 1e-14);
   EXPECT_NEAR(one[1], width * depth, 1e-13);
   EXPECT_NEAR(one[2], 2 * r, 1e-15);
+  EXPECT_NEAR(one[4], 2 * (0.25 + 0.35), 1e-14);
 
   // Cells with centres at x = -0.1 and 0.1: the leftmost elbow is that of the left pose, by symmetry also rightmost.
   const double left = std::min(left_elbow(-0.1, 0.4)[0], left_elbow(0.1, 0.4)[0]);
@@ -105,6 +108,28 @@ TEST(SizeObjectives, BoxOfTheLinearDeltaIsThatOfItsRailsAndItsPlatform) {
   EXPECT_NEAR(found[1], width * depth, 1e-13);
   EXPECT_NEAR(found[2], height, 1e-14);
   EXPECT_NEAR(found[3], 0.5 + 3 * (0.8 + 0.3 * 0.5), 1e-14);
+  EXPECT_NEAR(found[4], 3 * (0.5 + 0.06), 1e-14);  // rods and the platform's arms, but not the rails
+}
+
+// A leg of the Gough-Stewart platform is longest at one of two poses.
+TEST(SizeObjectives, LengthOfATelescopeIsTheLargestOne) {
+  const Mechanism& mechanism = *test::described("gough");
+  const std::vector<double> design = test::design_with(mechanism.info(), nlohmann::json::object());
+  const std::string mode = mechanism.info().modes.front();
+  const auto leg_lengths = [&](const Pose<double>& pose) {
+    return mechanism.inspect(design, pose, mode, no_limits(mechanism.info())).joints.value();
+  };
+  const auto length = [&](const std::vector<Pose<double>>& poses) {
+    return installation_space(mechanism, design, mode, poses).value().moving_length;
+  };
+  const Pose<double> left = {-0.1, 0, 1.4, 0, 0, 0}, right = {0.1, 0, 1.4, 0, 0, 0};
+  double longest = 0, at_left = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    longest += std::max(leg_lengths(left)[i], leg_lengths(right)[i]);
+    at_left += leg_lengths(left)[i];
+  }
+  EXPECT_GT(longest, at_left + 1e-3);
+  EXPECT_NEAR(length({left, right}) - length({left}), longest - at_left, 1e-14);
 }
 
 TEST(SizeObjectives, MassOfRodsFromTheirSection) {
@@ -131,15 +156,16 @@ TEST(SizeObjectives, NumberOfThreadsDoesNotMatter) {
   for (int k = 0; k < 500; ++k) poses.push_back({0.1 * std::sin(k), 0.1 * std::cos(1.3 * k), -0.4 - 1e-4 * k});
   const auto with_threads = [&](int threads) {
     std::optional<Bounds<double>> box;
-    with_team(threads, [&] { box = installation_box(mechanism, design, mechanism.info().modes.front(), poses); });
+    with_team(threads,
+              [&] { box = installation_space(mechanism, design, mechanism.info().modes.front(), poses)->box; });
     return box.value();
   };
   const Bounds<double> one = with_threads(1), two = with_threads(2);
   EXPECT_EQ(one.lower, two.lower);
   EXPECT_EQ(one.upper, two.upper);
   poses.push_back({0, 0, 50});
-  EXPECT_FALSE(installation_box(mechanism, design, mechanism.info().modes.front(), poses));
-  EXPECT_FALSE(installation_box(mechanism, design, mechanism.info().modes.front(), {}));
+  EXPECT_FALSE(installation_space(mechanism, design, mechanism.info().modes.front(), poses));
+  EXPECT_FALSE(installation_space(mechanism, design, mechanism.info().modes.front(), {}));
 }
 
 TEST(SizeObjectives, WithoutPosesTheDesignFails) {
