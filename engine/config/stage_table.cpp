@@ -1,30 +1,31 @@
 // Reader of [[stage]]: optimisers with their options. Checks that they support the problem.
 
 #include "engine/config/study_draft.hpp"
+#include "engine/config/study_keys.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
 namespace {
 
 /// Why the optimiser does not support the problem; empty if it does.
-Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, const DesignProblem& problem) {
-  const ProblemParts& parts = problem.parts();
+Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, const Problem& problem) {
+  const auto& objectives = problem.objectives();
   const Capabilities can = entry.capabilities(options);
   const std::string who = "the optimiser " + entry.name + " " +
                           (options.has("algorithm") ? "with the algorithm " + options.word("algorithm") + " " : "");
-  if (parts.space.dimension() == 0) return who + "needs variables, but the study's [variables] is empty";
-  if (can.min_objectives > 0 && parts.objectives.empty())
+  if (problem.space().dimension() == 0) return who + "needs variables, but the study's [variables] is empty";
+  if (can.min_objectives > 0 && objectives.empty())
     return who + "needs an objective, but the study has no [[objective]]";
-  if (parts.objectives.size() < can.min_objectives)
+  if (objectives.size() < can.min_objectives)
     return who + "needs " + std::to_string(can.min_objectives) + " objectives, but the study has one (" +
-           parts.objectives.front().name + ")";
-  if (parts.objectives.size() > can.max_objectives)
+           objectives.front().name + ")";
+  if (objectives.size() > can.max_objectives)
     return who + "handles " + std::to_string(can.max_objectives) + " objective" + (can.max_objectives == 1 ? "" : "s") +
-           ", but the study has " + std::to_string(parts.objectives.size()) + " (" + join(names_of(parts.objectives)) +
-           ")" + (*can.too_many_objectives_hint ? std::string("; ") + can.too_many_objectives_hint : "");
-  const auto margins = names_of(parts.design_margins, parts.workspace_margins);
-  if (!can.constraints && !margins.empty()) return who + "handles no constraints, but the study has " + join(margins);
-  for (const auto& variable : parts.space.variables())
+           ", but the study has " + std::to_string(objectives.size()) + " (" + join(names_of(objectives)) + ")" +
+           (*can.too_many_objectives_hint ? std::string("; ") + can.too_many_objectives_hint : "");
+  if (!can.constraints && !problem.margins().empty())
+    return who + "handles no constraints, but the study has " + join(names_of(problem.margins()));
+  for (const auto& variable : problem.space().variables())
     if (!can.discrete && variable.step > 0)
       return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
   if (can.needs_gradient)
@@ -57,43 +58,70 @@ void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpa
   }
 }
 
+/// @param each      the table [[stage]]
+/// @param is_first  no stage comes before it
+Stage read_stage(const ConfigValue& each, const std::vector<OptimiserEntry>& optimisers, const Problem& problem,
+                 bool is_first) {
+  const OptimiserEntry& entry = *find_named(optimisers, each.choice("optimiser", names_of(optimisers)));
+  const ConfigValue table = each.table(entry.options);
+  // The unit of the objective that an optimiser works on; of several there is no one unit.
+  const auto& objectives = problem.objectives();
+  const DesignSpace& space = problem.space();
+  auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");
+  for (auto& spec : specs) {
+    if (spec.field_names == FieldNames::variables)
+      for (const Variable& v : space.variables()) spec.fields.emplace_back(v.name, v.unit);
+    if (spec.field_names != FieldNames::objectives) continue;
+    for (const ObjectiveInfo& o : objectives) spec.fields.emplace_back(o.name, o.unit);
+    if (spec.kind == OptionKind::word) spec.choices = names_of(objectives);
+  }
+  Stage stage{
+      std::make_shared<const OptimiserEntry>(entry), read_options(table, specs), nullptr, table.place().line, {}};
+  if (const Unsupported reason = refusal_of(entry, stage.options, problem))
+    throw table.find("optimiser")->refusal(*reason);
+  if (entry.capabilities(stage.options).needs_front && is_first)
+    throw table.find("start")->refusal(
+        "start = \"pareto\" needs a [[stage]] before it that finds a front, such as nsga2");
+  if (entry.resolve) entry.resolve(stage.options, space);
+  for (auto& spec : specs)
+    if (!spec.initial) spec.initial = default_of(spec.name, entry, stage.options, space);
+  stage.specs = std::move(specs);
+  check_designs(table, stage, space);
+  stage.optimiser = table.explained([&] { return entry.make(stage.options, space); });
+  return stage;
+}
+
+std::vector<ConfigValue> stage_tables(const ConfigValue& root) {
+  const auto list = root.find("stage");
+  if (!list) return {};
+  const std::string expected = "a list of tables, each written [[stage]]";
+  std::vector<ConfigValue> tables = list->elements(expected);
+  for (ConfigValue& table : tables) table = table.expect_table(expected);
+  return tables;
+}
+
 }  // namespace
 
+void require_stages(const Study& study, const Catalogues& catalogues) {
+  if (study.stages.empty())
+    throw ConfigError({study.file_name, 0, "stage"}, "nothing",
+                      "at least one [[stage]] with optimiser = one of " + join(names_of(catalogues.optimisers)) +
+                          "; without stages a study can be evaluated, but not run");
+}
+
 void read_stages(const ConfigValue& root, StudyDraft& draft) {
-  const auto names = names_of(draft.catalogues.optimisers);
-  const auto list = root.find("stage");
-  const std::string expected = "a list of tables, each written [[stage]]";
-  const auto tables = list ? list->elements(expected) : std::vector<ConfigValue>();
-  if (tables.empty()) root.at("stage", "at least one [[stage]] with optimiser = one of " + join(names));
-  for (const auto& each : tables) {
-    const OptimiserEntry& entry =
-        *find_named(draft.catalogues.optimisers, each.expect_table(expected).choice("optimiser", names));
-    const ConfigValue table = each.table(entry.options);
-    // The unit of the objective that an optimiser works on; of several there is no one unit.
-    const auto& objectives = draft.parts.objectives;
-    auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");
-    for (auto& spec : specs) {
-      if (spec.field_names == FieldNames::variables)
-        for (const Variable& v : draft.parts.space.variables()) spec.fields.emplace_back(v.name, v.unit);
-      if (spec.field_names != FieldNames::objectives) continue;
-      for (const NamedQuantity& o : objectives) spec.fields.emplace_back(o.name, o.unit);
-      if (spec.kind == OptionKind::word) spec.choices = names_of(objectives);
-    }
-    Stage stage{
-        std::make_shared<const OptimiserEntry>(entry), read_options(table, specs), nullptr, table.place().line, {}};
-    if (const Unsupported reason = refusal_of(entry, stage.options, *draft.study.problem))
-      throw table.find("optimiser")->refusal(*reason);
-    if (entry.capabilities(stage.options).needs_front && draft.study.stages.empty())
-      throw table.find("start")->refusal(
-          "start = \"pareto\" needs a [[stage]] before it that finds a front, such as nsga2");
-    if (entry.resolve) entry.resolve(stage.options, draft.parts.space);
-    for (auto& spec : specs)
-      if (!spec.initial) spec.initial = default_of(spec.name, entry, stage.options, draft.parts.space);
-    stage.specs = std::move(specs);
-    check_designs(table, stage, draft.parts.space);
-    stage.optimiser = table.explained([&] { return entry.make(stage.options, draft.parts.space); });
-    draft.study.stages.push_back(std::move(stage));
-  }
+  for (const ConfigValue& table : stage_tables(root))
+    draft.study.stages.push_back(
+        read_stage(table, draft.catalogues.optimisers, *draft.study.problem, draft.study.stages.empty()));
+}
+
+Stage read_stage_toml(const std::string& lines, const std::string& file_name,
+                      const std::vector<OptimiserEntry>& optimisers, const Problem& problem) {
+  const TomlValue document = parse_toml("[[stage]]\n" + lines + '\n', file_name);
+  const auto tables = stage_tables(ConfigValue(document, file_name, "").described_by(study_keys()));
+  if (tables.size() != 1 || document.keys.size() != 1)
+    throw ConfigError({file_name, 0, ""}, "tables", "keys and values of one stage");
+  return read_stage(tables.front(), optimisers, problem, true);
 }
 
 }  // namespace pkm

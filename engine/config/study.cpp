@@ -38,8 +38,9 @@ void read_run_tables(const ConfigValue& root, StudyDraft& draft) {
   if (const auto table = root.find_table("checkpoint")) draft.study.checkpoint_every = table->find_number("every");
   if (const auto table = root.find_table("final")) {
     if (const auto round = table->find("round")) {
-      // The step has the unit that all variables share, otherwise none. (The stages require variables.)
+      // The step has the unit that all variables share, otherwise none.
       const auto& variables = draft.parts.space.variables();
+      if (variables.empty()) throw round->refusal("a design is rounded in its variables, and the study has none");
       std::string& unit = draft.study.round_unit = variables.front().unit;
       for (const auto& variable : variables)
         if (variable.unit != unit) unit = "1";
@@ -119,7 +120,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
                     ImpliedConstraints implied = ImpliedConstraints::added) {
   const std::string& file_name = source.file_name;
   if (document.keys.empty())
-    throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
+    throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] at least");
   if (describes_mechanism(document))
     throw ConfigError({file_name, 0, ""}, "the description of a mechanism",
                       "a study, which names such a file in [mechanism] file = \"..\"");

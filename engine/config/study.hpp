@@ -67,7 +67,7 @@ struct Study {
   /// Mechanism, parameters, variables and survey plan are in problem->parts().
   std::shared_ptr<const DesignProblem> problem;
   std::optional<std::vector<double>> baseline;  ///< every parameter of the mechanism
-  std::vector<Stage> stages;
+  std::vector<Stage> stages;                    ///< may be empty: then the study can be evaluated, but not run
   std::optional<double> round;             ///< [final]: step [SI] to which the best design is rounded
   std::string round_unit = "1";            ///< the unit that all variables share, else "1"
   double exact_seconds = 10;               ///< [workspace] exact: time limit of the exact values; 0: none are computed
@@ -98,6 +98,14 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
 /// Reads the file at `path`, and the mechanism file that it may name, and builds the study. Throws ConfigError, also
 /// when a file cannot be read.
 Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes = {});
+
+/// Reads the options of one optimiser, the lines of a [[stage]] without its header, for a problem that belongs to no
+/// study. Throws ConfigError. `file_name` is named in messages.
+Stage read_stage_toml(const std::string& lines, const std::string& file_name,
+                      const std::vector<OptimiserEntry>& optimisers, const Problem& problem);
+
+/// Throws ConfigError if a study has no stages, so that it cannot be run.
+void require_stages(const Study& study, const Catalogues& catalogues);
 
 /// Whether a document is a mechanism file: these have a name in [mechanism], or a [platform].
 bool describes_mechanism(const TomlValue& document);

@@ -58,6 +58,7 @@ void run(const RunArguments& arguments, Session& session) {
   expect_toml(arguments.study, "resume", session);
   expect_file(arguments.study, "a study in TOML", "new study", session);
   Study study = load_study_toml(arguments.study, session.catalogues, arguments.changes);
+  require_stages(study, session.catalogues);
   if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;
   check_outputs({output}, input_files(study), Existing::replaced);

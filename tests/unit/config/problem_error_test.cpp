@@ -178,6 +178,19 @@ TEST(ProblemErrors, Constraints) {
       kStage);
 }
 
+TEST(ProblemErrors, OnlyStudiesWithStagesRun) {
+  const Study study = read_study_toml(kVolume, "s.toml", testing::fake_catalogues());
+  EXPECT_TRUE(study.stages.empty());
+  try {
+    require_stages(study, testing::fake_catalogues());
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(),
+                 "s.toml: stage: found nothing; expected at least one [[stage]] with optimiser = one of ga, simple, "
+                 "newton, sweep, broken; without stages a study can be evaluated, but not run");
+  }
+}
+
 TEST(ProblemErrors, Stages) {
   const std::string two = kVolume + "[[objective]]\ntype = \"shape\"\n";
   const std::string discrete =
@@ -186,10 +199,6 @@ TEST(ProblemErrors, Stages) {
   expect_messages(
       "",
       {
-          {kVolume,
-           "s.toml:1: stage: found nothing; expected at least one [[stage]] with optimiser = one of ga, simple, "
-           "newton, "
-           "sweep, broken"},
           {(kVolume + "[[stage]]\ntype = \"ga\""),
            "s.toml:7: stage[1].optimiser: found nothing; expected one of ga, simple, newton, sweep, broken"},
           {(kVolume + "[[stage]]\noptimizer = \"ga\""),

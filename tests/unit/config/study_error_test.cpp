@@ -18,9 +18,9 @@ TEST(StudyErrors, Document) {
   expect_messages(
       "",
       {
-          {"", "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
+          {"", "s.toml: found an empty file; expected a study in TOML, with [mechanism] at least"},
           {"# nothing\n",
-           "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
+           "s.toml: found an empty file; expected a study in TOML, with [mechanism] at least"},
           {"a = 1\na = 2\n",
            "s.toml:2: found text that is not TOML (Error while parsing key-value pair: cannot redefine existing "
            "integer 'a'); expected a study in TOML"},
