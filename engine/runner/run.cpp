@@ -12,7 +12,6 @@
 #include "engine/runner/optimality_record.hpp"
 #include "engine/runner/records.hpp"
 #include "engine/runner/stage_starts.hpp"
-#include "engine/runner/stop_request.hpp"
 
 namespace pkm {
 namespace {
@@ -159,14 +158,15 @@ bool Run::generation(const Generation& g) {
 bool Run::goes_on() {
   if (ranks::rank() != 0) return true;
   if (has_stop_request()) {
-    const int signal = StopRequest::signal();
-    stopped_ = signal != 0 ? StopRequest::name(signal) : "time limit";
+    stopped_ = signal_received() != 0 ? StopRequest::name(signal_received())
+               : is_time_over()       ? "time limit"
+                                      : "request";
   }
   return stopped_.empty();
 }
 
 bool Run::has_stop_request() const {
-  return StopRequest::signal() != 0 || (options_.time_limit && seconds() >= *options_.time_limit);
+  return signal_received() != 0 || is_time_over() || (options_.stop && options_.stop());
 }
 
 bool Run::is_grace_period_over() {

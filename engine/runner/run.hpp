@@ -16,6 +16,7 @@
 #include "engine/core/ranks.hpp"
 #include "engine/runner/progress.hpp"
 #include "engine/runner/run_outcome.hpp"
+#include "engine/runner/stop_request.hpp"
 #include "engine/runner/study_output.hpp"
 #include "engine/runner/timed_evaluator.hpp"
 #include "engine/storage/checkpoint_clock.hpp"
@@ -59,8 +60,10 @@ class Run final : public Monitor {
   RunOutcome statistics() const;
   /// Computes the final results.
   void compute_final_results();
-  /// @return true after a signal or when the time limit is reached. Thread-safe.
+  /// @return true after a signal, when the time limit is reached, or if the caller requests it. Thread-safe.
   bool has_stop_request() const;
+  int signal_received() const { return options_.handles_signals ? StopRequest::signal() : 0; }
+  bool is_time_over() const { return options_.time_limit && seconds() >= *options_.time_limit; }
   /// @return true if a stop was requested so long ago that evaluations in progress are to be aborted. They are repeated
   /// when the run is resumed.
   bool is_grace_period_over();

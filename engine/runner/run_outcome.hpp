@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,13 +27,17 @@ struct ProgramVersion {
 struct RunOptions {
   int threads = 0;                   ///< per rank, as for team_size(); 0: ranks::threads()
   std::optional<double> time_limit;  ///< wall time of this run [s], after which it stops with a checkpoint
+  /// Returns true to stop with a checkpoint; called often, by any thread of the team. Empty: never.
+  std::function<bool()> stop = {};
+  /// Whether SIGINT, SIGTERM and SIGHUP request a stop. A library leaves the signals of the process alone.
+  bool handles_signals = true;
   ProgramVersion program;
   RunCost cost = {};  ///< for the estimate of the remaining time in progress reports
 };
 
 struct RunOutcome {
   StudyContents contents;
-  /// Reason for stopping before the end of the study ("SIGINT", "time limit"); "" if the study is finished.
+  /// Reason for stopping before the end of the study ("SIGINT", "time limit", "request"); "" if the study is finished.
   std::string stopped;
   double seconds = 0;                 ///< wall time of this run
   std::int64_t evaluations = 0;       ///< evaluations of this run, excluding replayed ones

@@ -39,7 +39,7 @@ void note_processor(StudyContents& contents) {
 
 RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
                      Progress& progress) {
-  const StopRequest stop_request;
+  const auto stop_request = options.handles_signals ? std::make_unique<StopRequest>() : nullptr;
   const StudyLock lock(path);
   std::error_code error;  // ignored: an inaccessible path is reported when the file is written
   if (!overwrite && std::filesystem::exists(path, error))

@@ -2,6 +2,7 @@
 // All three use class Run (run.hpp).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -21,12 +22,16 @@ RunOutcome run_study(const Study& study, const std::string& path, bool overwrite
                      Progress& progress);
 
 /// A study file that this process has locked and read in order to resume it. While it lives, SIGINT, SIGTERM and SIGHUP
-/// request a stop.
+/// request a stop, unless it does not handle signals.
 struct LockedStudy {
   /// Throws StorageError.
-  explicit LockedStudy(std::string file) : path(std::move(file)), lock(path), contents(read_study(path)) {}
+  explicit LockedStudy(std::string file, bool handles_signals = true)
+      : stop_request(handles_signals ? std::make_unique<StopRequest>() : nullptr),
+        path(std::move(file)),
+        lock(path),
+        contents(read_study(path)) {}
 
-  const StopRequest stop_request = {};
+  const std::unique_ptr<StopRequest> stop_request;
   std::string path;
   StudyLock lock;
   StudyContents contents;
@@ -40,7 +45,7 @@ RunOutcome resume_study(LockedStudy& locked, const Catalogues& catalogues, const
                         const RunOptions& options, Progress& progress);
 inline RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
                                const RunOptions& options, Progress& progress) {
-  LockedStudy locked(path);
+  LockedStudy locked(path, options.handles_signals);
   return resume_study(locked, catalogues, extension, options, progress);
 }
 
