@@ -36,15 +36,7 @@ void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t f
                    Scratch& scratch) {
   auto begin = Clock::now();
   for (std::size_t row = first; row < last; ++row) {
-    const EvaluationSlot slot = table.slot(row);
-    try {
-      problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, slot);
-      if (is_inconsistent(slot)) slot.status = Status::failed;
-    } catch (const DesignError&) {
-      constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-      for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::ranges::fill(part, nan);
-      slot.status = Status::failed;
-    }
+    evaluate_design(problem, static_cast<const EvaluationTable&>(table).design(row), scratch, table.slot(row));
     const auto end = Clock::now();
     table.seconds[row] = std::chrono::duration<float>(end - begin).count();
     begin = end;
@@ -75,6 +67,18 @@ std::vector<std::size_t> chunk_bounds(std::size_t count, std::size_t threads) {
 }
 
 }  // namespace
+
+void evaluate_design(const Problem& problem, std::span<const double> design, Scratch& scratch,
+                     const EvaluationSlot& slot) {
+  try {
+    problem.evaluate(design, scratch, slot);
+    if (is_inconsistent(slot)) slot.status = Status::failed;
+  } catch (const DesignError&) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::ranges::fill(part, nan);
+    slot.status = Status::failed;
+  }
+}
 
 void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   constexpr double kMinTimeForMessages = 100e-6;  // batch time below which communication does not pay off [s]

@@ -11,6 +11,11 @@
 
 namespace pkm {
 
+/// Evaluates one design on this thread. DesignError and values that contradict the status make it a failed one; other
+/// exceptions are rethrown.
+void evaluate_design(const Problem& problem, std::span<const double> design, Scratch& scratch,
+                     const EvaluationSlot& slot);
+
 class Evaluator {
  public:
   virtual ~Evaluator() = default;

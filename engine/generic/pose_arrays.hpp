@@ -1,0 +1,37 @@
+// Inverse kinematics, Jacobians and quantities at arrays of poses, in SIMD batches.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/generic/pose_batch.hpp"
+
+namespace pkm::generic {
+
+/// The values that a PoseArrays object computes at each pose: some nodes of the model's graph.
+class PoseArrays {
+ public:
+  /// The joint coordinates, in the order of MechanismInfo::joints [m, rad].
+  static PoseArrays joints(const Evaluation& evaluation, std::size_t mode);
+  /// The Jacobian J, qdot = J Xdot, row by row: joints x coordinates.
+  static PoseArrays jacobians(const Evaluation& evaluation, std::size_t mode);
+  /// One of MechanismInfo::quantities, with inputs at their defaults, at rest.
+  static PoseArrays quantity(const Evaluation& evaluation, std::size_t mode, std::size_t index);
+
+  /// Number of values per pose.
+  std::size_t width() const { return width_; }
+  /// Computes the values of all poses, by the threads of the caller's team; they do not depend on their number.
+  /// @param poses   count x coordinates [m, rad]
+  /// @param values  count x width(); NaN for a pose that does not assemble, and where a value is undefined
+  void evaluate(std::span<const double> parameters, const LimitSpec& limits, std::span<const double> poses,
+                std::span<double> values) const;
+
+ private:
+  PoseArrays(const Evaluation& evaluation, std::size_t mode, std::vector<Node> nodes);
+
+  const Evaluation& e_;
+  std::size_t mode_, width_;
+  PoseBatch batch_;  ///< outputs: the values, then the constraints under which a pose assembles
+};
+
+}  // namespace pkm::generic
