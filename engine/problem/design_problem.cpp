@@ -196,12 +196,14 @@ std::string DesignProblem::failure_reason(const DesignReport& report) const {
   std::vector<double> computed = report.margins;
   computed.insert(computed.end(), report.objectives.begin(), report.objectives.end());
   auto value = computed.begin();
+  std::string first_undefined;
   for (const auto* list : {&parts_.design_margins, &parts_.workspace_margins, &parts_.objectives})
     for (const auto& q : *list) {
       if (std::isfinite(*value++)) continue;
       if (const std::string reason = q.quantity->why_undefined(view); !reason.empty()) return q.name + ": " + reason;
+      if (first_undefined.empty()) first_undefined = q.name;
     }
-  return "an objective or a margin is not a finite number";
+  return first_undefined + " is not a finite number";
 }
 
 DesignReport DesignProblem::empty_report(std::span<const double> parameters) const {

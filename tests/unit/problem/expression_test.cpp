@@ -219,7 +219,7 @@ TEST(Expression, NonFiniteValueFailsTheEvaluation) {
                                "type = \"expression\"\nexpression = \"" + text + "\"\n");
       const DesignReport report = study.problem->report(study.problem->parts().parameters);
       EXPECT_EQ(report.status, Status::failed) << where << text;
-      EXPECT_EQ(report.reason, "an objective or a margin is not a finite number");
+      EXPECT_EQ(report.reason, "expression is not a finite number");
     }
 }
 
