@@ -10,9 +10,8 @@
 
 namespace pkm {
 
-std::string read_text_file(const std::string& path, const std::string& expected) {
-  constexpr std::size_t kLargestFile = std::size_t{16} << 20;  // bytes
-  std::error_code unreadable;                                  // reported below, when the file cannot be opened
+std::string read_text_file(const std::string& path, const std::string& expected, std::size_t largest) {
+  std::error_code unreadable;  // reported below, when the file cannot be opened
   if (std::filesystem::is_directory(path, unreadable)) throw ConfigError({path, 0, ""}, "a folder", expected);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
@@ -22,7 +21,8 @@ std::string read_text_file(const std::string& path, const std::string& expected)
   do {
     file.read(piece.data(), piece.size());
     text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > kLargestFile) throw ConfigError({path, 0, ""}, "more than 16 MiB", expected);
+    if (text.size() > largest)
+      throw ConfigError({path, 0, ""}, "more than " + std::to_string(largest >> 20) + " MiB", expected);
   } while (file);
   return text;
 }

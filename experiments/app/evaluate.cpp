@@ -1,4 +1,7 @@
-// `pkmopt evaluate`: all objectives, constraint margins and outputs of one design, and the measure of its workspace.
+// `pkmopt evaluate`: all objectives, constraint margins and outputs of one design, and the measure of its workspace; or
+// those of all designs of a table.
+
+#include <limits>
 
 #include "engine/config/assignments.hpp"
 #include "engine/core/team.hpp"
@@ -10,6 +13,7 @@
 #include "experiments/app/grid.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/sensitivity.hpp"
+#include "experiments/app/table_input.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -20,6 +24,7 @@ constexpr std::int64_t kDefaultCells = 40;  // along each axis, for mechanisms w
 struct EvaluateArguments : DesignArguments, SensitivityArguments {
   int threads = 0;
   std::string certified;
+  TableJob designs;
 };
 
 /// The problem of a mechanism without a study: all objectives of its workspace that support the mechanism and the
@@ -147,11 +152,78 @@ std::string feasibility_text(const DesignProblem& problem, const DesignReport& r
   return "no: " + (report.status == Status::failed ? report.reason : join(violated) + " violated" + reason);
 }
 
-std::string evaluate(const Catalogues& catalogues, const Target& target, const EvaluateArguments& arguments,
-                     Printout& out) {
+/// Evaluates the designs of a table: its columns are parameters, the other parameters are those of the target.
+void evaluate_table(const DesignProblem& problem, const Target& target, const EvaluateArguments& arguments,
+                    const std::string& program, Printout& out) {
+  std::vector<Assignable> parameters;  // without ranges: a design outside of them fails
+  for (const Parameter& p : target.info().parameters) parameters.push_back({p.name, p.unit});
+  const CsvColumns given = read_table(arguments.designs, parameters, false, program);
+  const auto reports = computed_rows<DesignReport>(given.rows, arguments.threads, [&](std::size_t row) {
+    std::vector<double> design = target.parameters;
+    for (std::size_t i = 0; i < design.size(); ++i)
+      if (given.values[i]) design[i] = (*given.values[i])[row];
+    DesignReport report;
+    if (const Unsupported reason = target.mechanism->refuse(design)) {
+      report.parameters = design;
+      for (auto* const values : {&report.objectives, &report.margins, &report.reports}) values->clear();
+      report.reason = *reason;
+    } else {
+      report = problem.report(design);
+      report.workspace = {};  // samples of many designs would not fit into memory
+    }
+    return report;
+  });
+
+  std::vector<std::string> columns;
+  const auto add_columns = [&columns](const std::string& prefix, const auto& named) {
+    for (const auto& each : named) columns.push_back(column_header(prefix + each.name, each.unit));
+  };
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (given.values[i]) columns.push_back(column_header(parameters[i].name, parameters[i].unit));
+  columns.emplace_back("status");
+  add_columns("objective ", problem.objectives());
+  add_columns("margin ", problem.margins());
+  add_columns("output ", problem.reports());
+  columns.emplace_back("reason");
+  CsvTable table(columns);
+  std::vector<Json> objects;
+  std::size_t feasible = 0;
+  for (const DesignReport& report : reports) {
+    Json design = Json::object();
+    table.begin_row();
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      if (!given.values[i]) continue;
+      table.add(report.parameters[i]);
+      design[parameters[i].name] = report.parameters[i];
+    }
+    table.add(words(report.status));
+    const auto values = [&table](std::vector<double> found, const auto& named) {
+      found.resize(named.size(), std::numeric_limits<double>::quiet_NaN());
+      table.add(found);
+      return values_by_name(named, found);
+    };
+    Json object = {{"design", design}, {"status", words(report.status)}};
+    object["objectives"] = values(report.objectives, problem.objectives());
+    object["constraints"] = values(report.margins, problem.margins());
+    object["outputs"] = values(report.reports, problem.reports());
+    object["reason"] = text_or_null(report.reason);
+    table.add(report.reason);
+    objects.push_back(std::move(object));
+    feasible += report.status == Status::feasible;
+  }
+  report_table(arguments.designs, table, std::move(objects),
+               std::to_string(feasible) + " of " + std::to_string(given.rows) + " designs are feasible", out);
+}
+
+std::string evaluate(const Session& session, const Target& target, const EvaluateArguments& arguments, Printout& out) {
   const ProblemOfMechanism found = target.study ? ProblemOfMechanism{target.study->problem, ""}
-                                                : default_problem(target, catalogues, arguments.changes.cells);
+                                                : default_problem(target, session.catalogues, arguments.changes.cells);
   const auto& problem = found.problem;
+  expect_table(arguments.designs, "--designs");
+  if (!arguments.designs.input.empty()) {
+    evaluate_table(*problem, target, arguments, session.program, out);
+    return "";
+  }
   const ColumnOptions* const columns = problem->parts().plan.columns();
   std::optional<double> gap = columns ? columns->certified : std::nullopt;
   if (!arguments.certified.empty()) {
@@ -213,11 +285,16 @@ void add_evaluate(CLI::App& app, Session& session) {
       "An infeasible design is not an error.\n"
       "Example: pkmopt evaluate experiments/4ppa-2par/paper-problem.toml --set a=0.3,b=1 --json",
       [&session](const Target& target, const EvaluateArguments& given, Printout& out) {
-        return evaluate(session.catalogues, target, given, out);
+        return evaluate(session, target, given, out);
       });
   add_cells_option(command, arguments.changes.cells, "Voxels along each swept coordinate, instead of the study's");
-  add_option(command, "--certified GAP", arguments.certified,
-             "Check the exact volume against guaranteed bounds with this relative gap (see certify)");
+  auto* const certified =
+      add_option(command, "--certified GAP", arguments.certified,
+                 "Check the exact volume against guaranteed bounds with this relative gap (see certify)");
+  add_option(command, "--designs FILE", arguments.designs.input,
+             "Evaluate every row of this table (CSV), whose columns are parameters, such as \"l_a [mm]\"")
+      ->excludes(certified);
+  add_table_output(command, arguments.designs, "Write the results of --designs to this file");
   add_sensitivity_options(command, arguments);
   add_threads(command, arguments.threads);
 }

@@ -28,13 +28,16 @@ std::vector<PlacedLink> displaced_links(const Links& mechanism, const Target& ta
 
 }  // namespace
 
-void add_link_files(CLI::App& command, LinkFiles& files) {
+void add_link_files(CLI::App& command, LinkFiles& files,
+                    const std::vector<std::pair<std::string, std::string*>>& more) {
   add_option(command, "--stl FILE", files.stl, "Write the surfaces of the links as binary STL in m");
   add_option(command, "--dxf FILE", files.dxf, "Write the axes of the links as DXF in m");
   add_option(command, "--urdf FILE", files.urdf, "Write the links as URDF, a tree with fixed joints");
   add_option(command, "--vtk FILE", files.vtk, "Write the surfaces of the links as VTK PolyData in m (.vtp)");
-  add_output_by_extension(command,
-                          {{".dxf", &files.dxf}, {".stl", &files.stl}, {".urdf", &files.urdf}, {".vtp", &files.vtk}});
+  std::vector<std::pair<std::string, std::string*>> all = {
+      {".dxf", &files.dxf}, {".stl", &files.stl}, {".urdf", &files.urdf}, {".vtp", &files.vtk}};
+  all.insert(all.end(), more.begin(), more.end());
+  add_output_by_extension(command, all);
   command.add_flag("--force", files.force, "Overwrite existing files");
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "experiments/app/target.hpp"
 
@@ -13,7 +15,9 @@ struct LinkFiles {
   bool force = false;
 };
 /// Declares --stl, --dxf, --urdf, --vtk, -o and --force.
-void add_link_files(CLI::App& command, LinkFiles& files);
+/// @param more  further files for -o, by extension
+void add_link_files(CLI::App& command, LinkFiles& files,
+                    const std::vector<std::pair<std::string, std::string*>>& more = {});
 
 /// Writes the requested files; none if the pose does not assemble. Throws ConfigError.
 void write_links(const Target& target, const std::string& mode, const Pose<double>& pose, const LinkFiles& files,

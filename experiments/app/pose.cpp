@@ -1,8 +1,9 @@
 // `pkmopt pose`: inverse kinematics, Jacobians and limits at one pose, and the speeds and accelerations of the joints
-// for given rates of the coordinates.
+// for given rates of the coordinates; or joints, limits and quantities at all poses of a table.
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/math/satisfied.hpp"
@@ -10,7 +11,9 @@
 #include "experiments/app/axes.hpp"
 #include "experiments/app/link_files.hpp"
 #include "experiments/app/motion_inputs.hpp"
+#include "experiments/app/running.hpp"
 #include "experiments/app/stiffness.hpp"
+#include "experiments/app/table_input.hpp"
 #include "experiments/app/tool_error.hpp"
 
 namespace pkm {
@@ -19,6 +22,8 @@ namespace {
 struct PoseArguments : DesignArguments, MotionArguments, InputArguments, LinkFiles {
   std::vector<std::string> joint_error, wrench;
   bool stiffness = false, exact_error = false;
+  TableJob poses;
+  int threads = 0;
 };
 
 /// Reports the joint positions and, if rates are given, the speeds and accelerations of the joints; also the
@@ -100,10 +105,101 @@ void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<do
   print("J_twist, where qdot = J_twist [vx vy vz wx wy wz]", J_twist);
 }
 
-std::string pose(const Target& target, const PoseArguments& arguments, Printout& out) {
+/// Throws ConfigError for options that a table of poses does not have.
+void expect_no_options_of_single_poses(const PoseArguments& arguments) {
+  const std::pair<const char*, bool> options[] = {{"--velocity", !arguments.velocity.empty()},
+                                                  {"--acceleration", !arguments.acceleration.empty()},
+                                                  {"--input", !arguments.inputs.empty()},
+                                                  {"--joint-error", !arguments.joint_error.empty()},
+                                                  {"--stiffness", arguments.stiffness},
+                                                  {"--stl", !arguments.stl.empty()},
+                                                  {"--dxf", !arguments.dxf.empty()},
+                                                  {"--urdf", !arguments.urdf.empty()},
+                                                  {"--vtk", !arguments.vtk.empty()}};
+  for (const auto& [option, is_given] : options)
+    if (is_given) throw ConfigError({"", 0, option}, "--poses", "--at: the option is for a single pose");
+}
+
+/// Joints, conditioning, quantities and margins at all poses of a table.
+void pose_table(const Target& target, const TableJob& job, int threads, const std::string& mode,
+                const std::string& program, Printout& out) {
+  const MechanismInfo& info = target.info();
+  const CsvColumns given = read_table(job, assignable_axes(info.coordinates), true, program);
+  const auto pose_of = [&](std::size_t row) {
+    Pose<double> at(info.coordinates.size());
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = (*given.values[i])[row];
+    return at;
+  };
+  const auto reports = computed_rows<PoseReport>(given.rows, threads, [&](std::size_t row) {
+    return target.mechanism->inspect(target.parameters, pose_of(row), mode, target.limits);
+  });
+
+  std::vector<std::size_t> quantities;  // those of poses
+  std::vector<std::string> columns, margins;
+  for (const AxisInfo& coordinate : info.coordinates)
+    columns.push_back(column_header(coordinate.name, coordinate.unit));
+  columns.insert(columns.end(), {"assembles", "feasible"});
+  for (const AxisInfo& joint : info.joints) columns.push_back(column_header(joint.name, joint.unit));
+  columns.emplace_back("conditioning");
+  for (std::size_t i = 0; i < info.quantities.size(); ++i) {
+    const QuantityInfo& quantity = info.quantities[i];
+    if (quantity.of_design || quantity.of_motion) continue;
+    quantities.push_back(i);
+    columns.push_back(column_header(quantity.name, quantity.unit));
+  }
+  for (const PoseReport& report : reports)  // a pose that does not assemble lacks some
+    for (const auto& [name, value] : report.margins)
+      if (!contains(margins, name)) margins.push_back(name);
+  for (const std::string& margin : margins) columns.push_back("margin " + margin);
+  columns.emplace_back("reason");
+
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  CsvTable table(columns);
+  std::vector<Json> objects;
+  std::size_t feasible = 0;
+  for (std::size_t row = 0; row < given.rows; ++row) {
+    const PoseReport& report = reports[row];
+    const Pose<double> at = pose_of(row);
+    table.row(std::span<const double>(at), int{report.assembles}, int{report.feasible});
+    for (std::size_t i = 0; i < info.joints.size(); ++i) table.add(report.joints ? (*report.joints)[i] : nan);
+    table.add(report.conditioning.value_or(nan));
+    Json object = {{"pose", values_by_name(info.coordinates, at)},
+                   {"assembles", report.assembles},
+                   {"feasible", report.feasible},
+                   {"joints", axes_json(info.joints, report.joints)},
+                   {"conditioning", json_or_null(report.conditioning)}};
+    for (const std::size_t i : quantities) {
+      const double value = report.assembles && i < report.quantities.size() ? report.quantities[i] : nan;
+      table.add(value);
+      object["quantities"][info.quantities[i].name] = value;
+    }
+    for (const std::string& margin : margins) {
+      const auto found = std::ranges::find(report.margins, margin, &NamedValues::value_type::first);
+      table.add(found == report.margins.end() ? nan : found->second);
+    }
+    object["margins"] = values_by_name(report.margins);
+    object["reason"] = text_or_null(report.reason);
+    table.add(report.reason);
+    objects.push_back(std::move(object));
+    feasible += report.feasible;
+  }
+  report_table(job, table, std::move(objects),
+               std::to_string(feasible) + " of " + std::to_string(given.rows) + " poses are feasible", out);
+}
+
+std::string pose(const Target& target, const PoseArguments& arguments, const std::string& program, Printout& out) {
   const Mechanism& mechanism = *target.mechanism;
   const MechanismInfo& info = mechanism.info();
   const std::string mode = parse_mode(info, arguments);
+  expect_table(arguments.poses, "--poses");
+  if (!arguments.poses.input.empty()) {
+    expect_no_options_of_single_poses(arguments);
+    TableJob job = arguments.poses;
+    job.force = arguments.force;
+    pose_table(target, job, arguments.threads, mode, program, out);
+    return "";
+  }
+  if (arguments.at.empty()) throw ConfigError({"", 0, "--at"}, "nothing", "the pose, or --poses with a table of poses");
   MotionSample at = parse_motion(mechanism, arguments);
   set_inputs(mechanism, arguments, at);
   if (!mechanism.velocities() && !(arguments.velocity.empty() && arguments.acceleration.empty()))
@@ -165,12 +261,19 @@ void add_pose(CLI::App& app, Session& session) {
       "A pose that violates a limit is still evaluated (exit code 0). If the pose cannot be assembled, the reason is\n"
       "printed and the exit code is 1.\n"
       "Example: pkmopt pose 4ppa-2par --at x=0.25,y=0.85,z=-0.8,theta=30deg",
-      pose);
-  add_list_option(command, "--at", arguments.at, "The pose: every coordinate")->required();
+      [&session](const Target& target, const PoseArguments& given, Printout& out) {
+        return pose(target, given, session.program, out);
+      });
+  auto* const at = add_list_option(command, "--at", arguments.at, "The pose: every coordinate");
   add_mode_options(command, arguments);
   add_list_option(command, "--velocity", arguments.velocity, "Rates of the coordinates and of the inputs; default: 0");
   add_list_option(command, "--acceleration", arguments.acceleration,
                   "Accelerations of the same coordinates; default: 0");
+  auto* const table = add_option(
+      command, "--poses FILE", arguments.poses.input,
+      "Compute joints, limits and quantities at every row of this table (CSV), whose columns are the coordinates");
+  table->excludes(at);
+  add_threads(command, arguments.threads);
   auto* const joint_error =
       add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
                  "Errors of the joints, 10um for all or by name: print the first-order error of the tool");
@@ -184,7 +287,7 @@ void add_pose(CLI::App& app, Session& session) {
   add_list_option(command, "--wrench", arguments.wrench,
                   "Force and moment at the origin of the platform, Fx=100,Mz=1: print the deflection")
       ->needs(stiffness);
-  add_link_files(command, arguments);
+  add_link_files(command, arguments, {{".csv", &arguments.poses.csv}});
   add_input_option(command, arguments);
 }
 

@@ -42,10 +42,13 @@ void Printout::add_table(const std::string& title, const std::vector<Row>& rows)
 }
 
 void Printout::print() const {
-  if (as_json)
+  if (as_json && !json_lines.empty()) {
+    for (const Json& line : json_lines) std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else if (as_json) {
     print_json(json);
-  else
+  } else {
     std::cout << aligned(head) << text;
+  }
 }
 
 Json values_by_name(const std::vector<std::pair<std::string, double>>& values) {

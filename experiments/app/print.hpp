@@ -44,6 +44,7 @@ struct Printout {
   std::vector<Row> head = {};  ///< first lines of the text: names and values
   std::string text = {};       ///< the rest of the text
   Json json = Json::object();
+  std::vector<Json> json_lines = {};  ///< if not empty: printed instead of `json`, one object per line
 
   /// Adds a value to the JSON object and its text to the head.
   void add(const std::string& name, const std::string& word) { add(name, word, word); }
