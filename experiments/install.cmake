@@ -5,12 +5,12 @@ if(NOT PKM_BUNDLE)  # for the archive's users, other compilers and libraries app
   set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pkmopt)
   write_basic_package_version_file(pkmopt-config-version.cmake COMPATIBILITY SameMinorVersion)
   # One file of targets for each component of find_package(), so that the others' dependencies need not be installed.
-  foreach(library core mechanisms optimisers io program pkmopt)
+  foreach(library core mechanisms optimisers io program pkmopt c)
     set(target pkmopt_${library})
     if(library STREQUAL pkmopt)
       set(target pkmopt)
     endif()
-    if(NOT TARGET ${target} OR (library STREQUAL program AND NOT PKM_PROGRAM))
+    if(NOT TARGET ${target} OR (library MATCHES "^(program|c)$" AND NOT PKM_PROGRAM))
       continue()
     endif()
     install(TARGETS ${target} EXPORT pkmopt-${library})
@@ -23,6 +23,18 @@ set(HEADERS \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/pkmopt)")
   configure_file(engine/pkmopt-config.cmake.in pkmopt-config.cmake @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/pkmopt-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/pkmopt-config-version.cmake
           DESTINATION ${package_folder})
+endif()
+
+# The C interface, and the Python package that uses it: for Debian's Python, in the archive in a folder of its own.
+if(TARGET pkmopt_c)
+  set(python_folder $<IF:$<BOOL:${PKM_BUNDLE}>,python,lib/python3/dist-packages>)
+  install(DIRECTORY bindings/python/pkmopt DESTINATION ${python_folder} FILES_MATCHING PATTERN *.py PATTERN py.typed
+          PATTERN __pycache__ EXCLUDE)
+  install(FILES bindings/c/pkmopt.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(FILES bindings/c/example.c DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  configure_file(bindings/c/pkmopt.pc.in pkmopt.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/pkmopt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endif()
 
 set(studies ${CMAKE_INSTALL_DATADIR}/pkmopt)
@@ -73,10 +85,11 @@ else()
   set(CPACK_GENERATOR TGZ)
   set(beside ${CMAKE_INSTALL_LIBDIR}/pkmopt)
   set_target_properties(${programs} PROPERTIES INSTALL_RPATH $ORIGIN/../${beside})
-  foreach(program IN LISTS programs)  # RPATH instead of RUNPATH: also used for dependencies of the libraries
-    target_link_options(${program} PRIVATE LINKER:--disable-new-dtags)
+  set_target_properties(pkmopt_c PROPERTIES INSTALL_RPATH $ORIGIN/pkmopt)
+  foreach(target IN LISTS programs ITEMS pkmopt_c)  # RPATH instead of RUNPATH: also used for dependencies of the libraries
+    target_link_options(${target} PRIVATE LINKER:--disable-new-dtags)
   endforeach()
-  install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET pkmopt_libraries RUNTIME)
+  install(TARGETS ${programs} pkmopt_c RUNTIME_DEPENDENCY_SET pkmopt_libraries RUNTIME LIBRARY NAMELINK_SKIP)
   install(RUNTIME_DEPENDENCY_SET pkmopt_libraries DESTINATION ${beside}
     PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|ld-linux.*)\\.so")  # provided by the system
   # Copyright files of the Debian packages from which these libraries are copied.
@@ -104,6 +117,8 @@ set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy")  # for `import pkmopt`
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, man-db, g++, cmake, pkg-config, libeigen3-dev, libhdf5-dev, libnlopt-dev, \
 coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev, zlib1g-dev")
 include(CPack)

@@ -5,8 +5,9 @@ Runs the commands that the pages show and compares their output with the pages. 
 into the pages instead.
 
 A block ```console contains commands after `$ ` and their output, from stdout and stderr. The commands of a page run one
-after the other in one temporary folder. In it, `pkmopt` is PROGRAM, `pkmopt-check-proof` is the program beside it, and
-`experiments`, `benchmarks` and `tests` are links to those of the repository. A block ```{code-block} with
+after the other in one temporary folder. In it, `pkmopt` is PROGRAM, `pkmopt-check-proof` is the program beside it,
+`python3` finds the repository's package pkmopt and the library of the same build, and `experiments`, `benchmarks` and
+`tests` are links to those of the repository. A block ```{code-block} with
 `:caption: NAME`, or any block below a line `<!-- NAME -->`, is written to the file NAME before the commands that follow
 it. A command has to succeed unless `$ echo $?` follows. It runs on two threads.
 
@@ -101,7 +102,8 @@ class Folder:
         checker = "pkmopt-check-proof"
         (tools / checker).symlink_to(program.resolve().with_name(checker))
         self.environment = {**os.environ, "PATH": f"{tools}:/usr/bin:{os.environ['PATH']}", "OMP_NUM_THREADS": "2",
-                            "PYTHONDONTWRITEBYTECODE": "1",
+                            "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(REPOSITORY / "bindings" / "python"),
+                            "PKMOPT_LIBRARY": str(program.resolve().parents[1] / "lib" / "libpkmopt.so.0"),
                             **dict.fromkeys(["OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
                                              "OMPI_MCA_rmaps_base_oversubscribe"], "1")}
 

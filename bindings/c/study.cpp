@@ -1,0 +1,203 @@
+// Studies: evaluation and differentiation of designs.
+#include <algorithm>
+#include <sstream>
+
+#include "bindings/c/handles.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/problem/evaluator.hpp"
+
+namespace pkm::c {
+
+StudyChanges changes_of(const char* lines) {
+  StudyChanges changes;
+  std::istringstream all(text_or_empty(lines));
+  for (std::string line; std::getline(all, line);) {
+    const std::size_t space = line.find(' ');
+    const std::string kind = line.substr(0, space), value = space == std::string::npos ? "" : line.substr(space + 1);
+    if (kind == "set")
+      changes.set.push_back(value);
+    else if (kind == "limit")
+      changes.limit.push_back(value);
+    else if (kind == "cells")
+      changes.cells.push_back(value);
+    else
+      throw ConfigError({"", 0, "changes"}, "'" + line + "'", "set NAME=VALUE, limit NAME=VALUE or cells NAME=NUMBER");
+  }
+  return changes;
+}
+
+std::unique_ptr<pkmopt_study> study_handle(Study study) {
+  auto handle = std::make_unique<pkmopt_study>();
+  handle->study = std::move(study);
+  return handle;
+}
+
+namespace {
+
+Json named(const auto& list) {
+  Json all = Json::array();
+  for (const auto& each : list) all.push_back({{"name", each.name}, {"unit", each.unit}, {"meaning", each.meaning}});
+  return all;
+}
+
+Json info_of(const Study& study) {
+  const DesignProblem& problem = *study.problem;
+  const ProblemParts& parts = problem.parts();
+  const MechanismInfo& mechanism = parts.mechanism->info();
+  Json info = {{"name", study.name}, {"seed", study.seed}, {"file", study.file_name}, {"output", study.output_file()}};
+  info["mechanism"] = mechanism.name;
+  info["parameters"] = named(mechanism.parameters);
+  for (std::size_t i = 0; i < parts.parameters.size(); ++i) info["parameters"][i]["value"] = parts.parameters[i];
+  info["variables"] = Json::array();
+  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    const Variable& v = parts.space[i];
+    info["variables"].push_back({{"name", v.name},
+                                 {"unit", v.unit},
+                                 {"min", v.lower},
+                                 {"max", v.upper},
+                                 {"step", v.step},
+                                 {"parameter", parts.varies[i]}});
+  }
+  info["objectives"] = named(problem.objectives());
+  for (std::size_t i = 0; i < problem.objectives().size(); ++i)
+    info["objectives"][i]["maximise"] = problem.objectives()[i].direction == Direction::maximise;
+  info["constraints"] = named(problem.margins());
+  info["outputs"] = named(problem.reports());
+  info["baseline"] = study.baseline ? Json(*study.baseline) : Json();
+  info["method"] = parts.plan.voxels() ? "voxels" : "columns";
+  info["volume_unit"] = volume_unit(mechanism, parts.plan);
+  const Unsupported why = problem.why_no_derivatives();
+  info["why_no_derivatives"] = why ? Json(*why) : Json();
+  info["stages"] = Json::array();
+  for (const Stage& stage : study.stages) info["stages"].push_back(stage.entry->name);
+  info["warnings"] = study.warnings;
+  info["text"] = study.text;
+  info["mechanism_text"] = study.description ? Json(study.description->text) : Json();
+  return info;
+}
+
+/// Where the results of an evaluation go; null: they are not wanted.
+struct Outputs {
+  double *objectives, *margins, *outputs, *derivatives;
+  std::uint8_t* status;
+};
+
+template <class T>
+void copy_unless_null(const std::vector<T>& from, T* to) {
+  if (to) std::ranges::copy(from, to);
+}
+
+/// Scratch memory of evaluate_one().
+struct OneDesign {
+  std::vector<double> objectives, margins, outputs, derivatives;
+};
+
+/// Evaluates a single design on this thread, with memory that is kept for the next one.
+void evaluate_one(const pkmopt_study& handle, const double* design, Detail detail, const Outputs& to) {
+  const DesignProblem& problem = *handle.study.problem;
+  const EvaluationShape shape = problem.shape(detail);
+  std::unique_ptr<Scratch> scratch;
+  {
+    const std::lock_guard lock(handle.scratch_mutex);
+    if (!handle.idle_scratch.empty()) {
+      scratch = std::move(handle.idle_scratch.back());
+      handle.idle_scratch.pop_back();
+    }
+  }
+  if (!scratch) scratch = std::make_unique<Scratch>();
+  OneDesign& values = scratch->get<OneDesign>();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  values.objectives.assign(shape.objectives, nan);
+  values.margins.assign(shape.margins, nan);
+  values.outputs.assign(shape.reports, nan);
+  values.derivatives.assign(shape.derivatives(), nan);
+  Status status = Status::failed;
+  evaluate_design(problem, {design, shape.variables}, *scratch,
+                  {values.objectives, values.margins, values.outputs, status, detail, values.derivatives});
+  copy_unless_null(values.objectives, to.objectives);
+  copy_unless_null(values.margins, to.margins);
+  copy_unless_null(values.outputs, to.outputs);
+  copy_unless_null(values.derivatives, to.derivatives);
+  if (to.status) *to.status = static_cast<std::uint8_t>(status);
+  const std::lock_guard lock(handle.scratch_mutex);
+  handle.idle_scratch.push_back(std::move(scratch));
+}
+
+void evaluate_all(const pkmopt_study& handle, std::size_t count, const double* designs, Detail detail,
+                  const Outputs& to, const pkmopt_options* options) {
+  const DesignProblem& problem = *handle.study.problem;
+  if (count == 1) return with_options(options, false, [&] { evaluate_one(handle, designs, detail, to); });
+  EvaluationTable table(problem.shape(detail));
+  table.extend(count);
+  std::copy_n(designs, table.designs.size(), table.designs.begin());
+  ParallelEvaluator evaluator(options ? options->threads : 0);
+  with_options(options, true, [&] { evaluator.evaluate(problem, table, 0); });
+  copy_unless_null(table.objectives, to.objectives);
+  copy_unless_null(table.margins, to.margins);
+  copy_unless_null(table.reports, to.outputs);
+  copy_unless_null(table.derivatives, to.derivatives);
+  for (std::size_t row = 0; to.status && row < count; ++row)
+    to.status[row] = static_cast<std::uint8_t>(table.status[row]);
+}
+
+}  // namespace
+}  // namespace pkm::c
+
+using namespace pkm::c;
+
+pkmopt_status pkmopt_study_from_file(const char* path, const char* changes, pkmopt_study** study) {
+  return guarded([&] {
+    *study =
+        study_handle(pkm::load_study_toml(required_text(path, "path"), catalogues(), changes_of(changes))).release();
+  });
+}
+
+pkmopt_status pkmopt_study_from_text(const char* toml, const char* file_name, const char* mechanism_toml,
+                                     const char* mechanism_file_name, const char* changes, pkmopt_study** study) {
+  return guarded([&] {
+    std::optional<pkm::SourceText> description;
+    if (mechanism_toml)
+      description = pkm::SourceText{mechanism_toml, mechanism_file_name ? mechanism_file_name : "mechanism.toml"};
+    *study = study_handle(pkm::read_study_toml(required_text(toml, "toml"), file_name ? file_name : "study.toml",
+                                               catalogues(), description, changes_of(changes)))
+                 .release();
+  });
+}
+
+pkmopt_status pkmopt_study_info(const pkmopt_study* study, char** json) {
+  return guarded([&] { *json = allocated(info_of(study->study)); });
+}
+
+void pkmopt_study_free(pkmopt_study* study) { delete study; }
+
+pkmopt_status pkmopt_study_evaluate(const pkmopt_study* study, size_t count, const double* designs, int complete,
+                                    double* objectives, double* margins, double* outputs, uint8_t* status,
+                                    const pkmopt_options* options) {
+  return guarded([&] {
+    evaluate_all(*study, count, designs, complete ? pkm::Detail::complete : pkm::Detail::enough,
+                 {objectives, margins, outputs, nullptr, status}, options);
+  });
+}
+
+pkmopt_status pkmopt_study_differentiate(const pkmopt_study* study, size_t count, const double* designs,
+                                         double* objectives, double* margins, double* outputs, uint8_t* status,
+                                         double* derivatives, const pkmopt_options* options) {
+  return guarded([&] {
+    if (const pkm::Unsupported reason = study->study.problem->why_no_derivatives())
+      throw pkm::ConfigError({"", 0, "derivatives"}, *reason);
+    evaluate_all(*study, count, designs, pkm::Detail::derivatives, {objectives, margins, outputs, derivatives, status},
+                 options);
+  });
+}
+
+pkmopt_status pkmopt_study_why_failed(const pkmopt_study* study, const double* design, char** sentence,
+                                      const pkmopt_options* options) {
+  return guarded([&] {
+    const pkm::DesignProblem& problem = *study->study.problem;
+    std::string reason;
+    with_options(options, false, [&] {
+      reason = problem.failure_reason({design, problem.space().dimension()}, pkm::Detail::complete);
+    });
+    *sentence = allocated(reason);
+  });
+}

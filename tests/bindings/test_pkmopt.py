@@ -1,0 +1,527 @@
+"""The Python package: against the engine's own results, numpy, and misuse."""
+
+import doctest
+import multiprocessing
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import pkmopt
+from pkmopt import formulas
+
+EXPERIMENTS = pathlib.Path(os.environ["PKM_EXPERIMENTS"])
+DELTA = EXPERIMENTS / "mechanisms" / "rotary-delta.toml"
+VARIABLES = {"a": (0.2, 0.5), "b": (0.5, 1.2)}
+
+
+def small_study(**more):
+    stages = {"optimiser": "ga", "generations": 12, "population": 20}
+    return pkmopt.Study("4ppa-2par", VARIABLES, "workspace-volume", **{"stages": stages, **more})
+
+
+def same(a, b):
+    """Whether two tables of evaluations are equal but for the times."""
+    return all(np.array_equal(a[name], b[name]) for name in a.dtype.names if name != "seconds")
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+
+
+class MechanismTest(unittest.TestCase):
+    def setUp(self):
+        self.delta = pkmopt.Mechanism.from_file(DELTA)
+        self.design = self.delta.design()
+        rng = np.random.default_rng(1)
+        self.poses = rng.uniform([-0.1, -0.1, -0.45], [0.1, 0.1, -0.35], (50, 3))
+
+    def test_description(self):
+        self.assertEqual(self.delta.coordinates, ["x", "y", "z"])
+        self.assertEqual(self.delta.joints, ["arm1", "arm2", "arm3"])
+        self.assertEqual(self.delta.parameters["l_a"].unit, "m")
+        self.assertIn("lti", self.delta.quantities)
+        self.assertEqual(pkmopt.Mechanism.from_text(self.delta.to_toml()).info, self.delta.info)
+        self.assertEqual(pkmopt.Mechanism("4ppa-2par").name, "4ppa-2par")
+        self.assertIn("4ppa-2par", pkmopt.mechanism_names())
+
+    def test_inverse_is_the_closed_form(self):
+        """One crank in its plane: the elbow is where a circle meets the sphere of the rod."""
+        p = self.design.parameters
+        q = self.design.inverse(self.poses)[:, 0]
+        elbow = np.stack([p["R"] + p["l_a"] * np.cos(q), np.zeros(50), -p["l_a"] * np.sin(q)], axis=1)
+        joint = self.poses + [p["r"], 0, 0]
+        np.testing.assert_allclose(np.linalg.norm(elbow - joint, axis=1), p["l_b"], rtol=1e-13)
+
+    def test_jacobian_is_the_derivative(self):
+        J = self.design.jacobian(self.poses)
+        for k in range(3):
+            step = np.zeros(3)
+            step[k] = 1e-6
+            difference = (self.design.inverse(self.poses + step) - self.design.inverse(self.poses - step)) / 2e-6
+            np.testing.assert_allclose(J[:, :, k], difference, atol=1e-7)
+
+    def test_forward_inverts_inverse(self):
+        q = self.design.inverse(self.poses)
+        near = self.design.forward(q, near=self.poses + 0.01)
+        np.testing.assert_allclose(near, self.poses, atol=1e-9)
+        for pose, found in zip(self.poses, self.design.forward(q)):
+            self.assertLess(np.abs(found - pose).max(axis=1).min(), 1e-9)
+
+    def test_forces_are_those_of_virtual_work(self):
+        """At rest, drive forces and a wrench in equilibrium do no work: J^T tau + W = 0, besides gravity."""
+        wrench = [3, -2, 5, 0, 0, 0]
+        with_wrench = self.design.dynamics(self.poses, wrenches=wrench).forces
+        difference = with_wrench - self.design.dynamics(self.poses).forces
+        work = np.einsum("kij,ki->kj", self.design.jacobian(self.poses), difference)
+        np.testing.assert_allclose(work, np.broadcast_to(np.negative(wrench[:3]), (50, 3)), atol=1e-11)
+
+    def test_one_pose_has_the_shape_of_one(self):
+        pose = self.poses[0]
+        self.assertEqual(self.design.inverse(pose).shape, (3,))
+        self.assertEqual(self.design.inverse({"x": 0, "y": 0, "z": -0.4}).shape, (3,))
+        self.assertEqual(self.design.inverse({"x": 0, "y": 0, "z": [-0.4, -0.41]}).shape, (2, 3))
+        self.assertEqual(self.design.jacobian(pose).shape, (3, 3))
+        self.assertEqual(np.shape(self.design.quantity("lti", pose)), ())
+        self.assertEqual(self.design.dynamics(pose).inertia.shape, (3, 3))
+        self.assertEqual(self.design.links(pose).start.shape, (9, 3))
+        self.assertEqual(self.design.forward(self.design.inverse(pose), near=pose).shape, (3,))
+        self.assertEqual(self.design.inverse(np.empty((0, 3))).shape, (0, 3))
+
+    def test_feasible_poses_are_those_of_the_margins(self):
+        poses = [[0, 0, -0.4], [0, 0, -4], [0.3, 0, -0.2]]
+        self.assertEqual(self.design.feasible(poses).tolist(), [True, False, False])
+        self.assertTrue(np.isnan(self.design.inverse(poses)[1]).all())
+
+    def test_threads_do_not_matter(self):
+        poses = np.tile(self.poses, (100, 1))
+        for function in (self.design.inverse, self.design.margins, self.design.jacobian):
+            np.testing.assert_array_equal(function(poses, threads=1), function(poses, threads=2))
+
+    def test_units_and_names(self):
+        self.assertEqual(self.delta.design(l_a="250 mm").parameters["l_a"], 0.25)
+        other = self.delta.design({"arm2.l_b": "501 mm"})
+        self.assertEqual(other.parameters["arm2.l_b"], 0.501)
+        self.assertNotEqual(other.inverse([0, 0, -0.4])[1], self.design.inverse([0, 0, -0.4])[1])
+        wrong = [
+            (lambda: self.delta.design(l_c=1), "unknown parameter 'l_c'"),
+            (lambda: self.delta.design(l_a="3 kg"), "'3 kg'"),
+            (lambda: self.delta.design(l_a=-1), "outside"),
+            (lambda: self.delta.design(limits={"lti": 1}), "unknown limit"),
+            (lambda: self.delta.design(mode="x"), "mode"),
+            (lambda: self.design.inverse([1, 2]), "expected (3,)"),
+            (lambda: self.design.inverse({"x": 1, "y": 2}), "expected x, y, z"),
+            (lambda: self.design.quantity("ltj", [0, 0, -0.4]), "did you mean 'lti'?"),
+            (lambda: self.design.inverse([0, 0, 0], threads=-1), "threads"),
+            (lambda: pkmopt.Mechanism("4ppa"), "did you mean '4ppa-2par'?"),
+            (lambda: pkmopt.Mechanism.from_text("[mechanism"), "mechanism.toml:1"),
+        ]
+        for call, message in wrong:
+            with self.assertRaisesRegex(ValueError, message.replace("(", r"\(").replace(")", r"\)").replace("?", r"\?")):
+                call()
+
+
+class WorkspaceTest(unittest.TestCase):
+    def test_volume_has_the_gradient_of_differences(self):
+        mechanism = pkmopt.Mechanism("4ppa-2par")
+        volume, gradient = mechanism.design().volume_and_gradient()
+        for name in ("a", "b", "l_u"):
+            x = mechanism.parameters[name].default
+            above, below = (mechanism.design({name: x + s}).workspace().volume for s in (1e-5, -1e-5))
+            self.assertAlmostEqual(gradient[name], (above - below) / 2e-5, delta=1e-5)
+        self.assertAlmostEqual(volume, mechanism.design().workspace().volume, delta=0)
+        self.assertEqual(mechanism.design().workspace().unit, "m^2 rad")
+
+    def test_methods_agree(self):
+        delta = pkmopt.Mechanism.from_file(DELTA).design()
+        exact = delta.workspace()
+        self.assertLess(exact.error, 1e-7)
+        voxels = delta.workspace(method="voxels", cells={"x": 30, "y": 30, "z": 30})
+        self.assertAlmostEqual(voxels.volume, exact.volume, delta=0.02 * exact.volume)
+        fields = voxels.fields()
+        self.assertEqual(fields["lti"].shape, (30, 30, 30))
+        self.assertAlmostEqual(fields.volume, voxels.volume)
+        self.assertEqual(fields["feasible"].sum(), np.isfinite(fields["lti"]).sum())
+        surface = voxels.surface()
+        a, b, c = (surface.vertices[surface.triangles[:, i]] for i in range(3))
+        enclosed = np.sum(np.einsum("ij,ij->i", a, np.cross(b, c))) / 6
+        self.assertAlmostEqual(enclosed, exact.volume, delta=0.02 * exact.volume)
+
+    def test_limits_cut(self):
+        cells = {"x": 20, "y": 20, "z": 20}
+        design = pkmopt.Mechanism.from_file(DELTA).design()
+        whole = design.workspace(method="voxels", cells=cells)
+        limited = design.workspace(method="voxels", cells=cells, limits={"lti": {"min": 0.8}})
+        self.assertLess(limited.volume, whole.volume)
+        cut = pkmopt.Mechanism("4ppa-2par").design(limits={"beta_max": "50 deg"}).workspace()
+        self.assertLess(cut.volume, pkmopt.Mechanism("4ppa-2par").design().workspace().volume)
+
+    def test_other_working_modes_are_refused(self):
+        mechanism = pkmopt.Mechanism("4ppa-2par")
+        with self.assertRaisesRegex(pkmopt.InputError, "working mode"):
+            mechanism.design(mode=mechanism.modes[1]).workspace()
+
+
+class ProblemTest(unittest.TestCase):
+    def setUp(self):
+        rng = np.random.default_rng(2)
+        self.X = rng.uniform([0.2, 0.5], [0.5, 1.2], (40, 2))
+        sum_ = {"type": "expression", "name": "sum", "expression": "1.5 - a - b", "unit": "m"}
+        self.problem = pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume", sum_)
+
+    def test_values(self):
+        found = self.problem.evaluate(self.X)
+        np.testing.assert_allclose(found.constraints[:, 0], 1.5 - self.X.sum(axis=1), atol=1e-15)
+        np.testing.assert_array_equal(found.status == pkmopt.FEASIBLE, found.constraints[:, 0] >= 0)
+        for x, objective in zip(self.X, found.objectives[:, 0]):
+            self.assertEqual(self.problem.evaluate(x).objectives[0], objective)
+        mechanism = pkmopt.Mechanism("4ppa-2par")
+        a, b = self.X[0]
+        self.assertAlmostEqual(found.objectives[0, 0], mechanism.design(a=a, b=b).workspace().volume, delta=1e-12)
+
+    def test_derivatives(self):
+        found = self.problem.differentiate(self.X)
+        for i in range(2):
+            step = np.eye(2)[i] * 1e-6
+            above, below = (self.problem.evaluate(self.X + s) for s in (step, -step))
+            difference = (above.objectives - below.objectives) / 2e-6
+            np.testing.assert_allclose(found.objectives[:, :, i], difference, atol=2e-6)
+        np.testing.assert_allclose(found.constraints, -1)
+
+    def test_a_failed_design_says_why(self):
+        problem = pkmopt.Problem("4ppa-2par", {"a": (0.2, 0.5)}, {"type": "expression", "name": "root", "expression":
+                                 "sqrt(0.3 - a)", "unit": "1"})
+        found = problem.evaluate([[0.25], [0.4]])
+        self.assertEqual(found.status.tolist(), [pkmopt.FEASIBLE, pkmopt.FAILED])
+        self.assertTrue(np.isnan(found.objectives[1, 0]))
+        self.assertIn("root", problem.why_failed([0.4]))
+
+    def test_scipy_interface(self):
+        scipy = self.problem.as_scipy()
+        x = self.X[0]
+        self.assertEqual(scipy.fun(x), -self.problem.evaluate(x).objectives[0])
+        np.testing.assert_array_equal(scipy.jac(x), -self.problem.differentiate(x).objectives[0])
+        self.assertEqual(scipy.penalised(self.X.T).shape, (40,))
+        worst_satisfied = scipy.penalised(self.X.T)[self.X.sum(axis=1) <= 1.5].max()
+        self.assertGreater(scipy.penalised(np.array([0.5, 1.2])), worst_satisfied)
+
+    def test_mistakes(self):
+        for call in (
+            lambda: pkmopt.Problem("4ppa-2par", {"aa": (0, 1)}, "workspace-volume"),
+            lambda: pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volum"),
+            lambda: pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume", workspase={}),
+            lambda: pkmopt.Problem("4ppa-2par", {"a": (1, 2, 3, 4)}, "workspace-volume"),
+            lambda: self.problem.evaluate([1, 2, 3]),
+        ):
+            with self.assertRaises(ValueError):
+                call()
+
+
+class StudyTest(InFolder):
+    def program(self, *arguments):
+        """Runs `pkmopt`, if the build has it beside the library."""
+        program = pathlib.Path(os.environ["PKMOPT_LIBRARY"]).parent.parent / "bin" / "pkmopt"
+        return subprocess.run([program, *arguments], check=True, capture_output=True, text=True)
+
+    def test_has_the_bits_of_the_program(self):
+        for stage in (
+            {"optimiser": "ga", "generations": 8},
+            {"optimiser": "sweep", "points": 6},
+            {"optimiser": "nlopt", "algorithm": "slsqp", "start": "best"},
+            {"optimiser": "ipopt", "start": "best"},
+        ):
+            study = small_study(stages=[stage])
+            mine = study.run("mine.h5", overwrite=True).evaluations()
+            pathlib.Path("study.toml").write_text(study.to_toml(), encoding="utf-8")
+            self.program("run", "study.toml", "--output", "theirs.h5", "--force", "--quiet")
+            self.assertTrue(same(mine, pkmopt.open_study("theirs.h5").evaluations()), stage)
+
+    def test_fronts(self):
+        study = pkmopt.Study("4ppa-2par", VARIABLES, ["workspace-volume", "workspace-ratio"],
+                             stages={"optimiser": "nsga2", "generations": 5, "population": 20})
+        results = study.run("front.h5")
+        front = results.front
+        self.assertGreater(len(front), 1)
+        self.assertTrue((np.diff(front["workspace-volume"]) <= 0).all())
+        self.assertEqual(len(results.population()), 20)
+        self.assertEqual(results.stages[0]["generations"], 6)
+
+    def test_callbacks_stop_and_resume(self):
+        whole = small_study().run("whole.h5")
+        generations = []
+        stopped = small_study().run("stopped.h5", callback=lambda p: generations.append(p.generation) or p.generation == 3)
+        self.assertEqual(generations, [0, 1, 2, 3])
+        self.assertEqual((stopped.state, stopped.outcome["stopped"]), ("interrupted", "request"))
+        self.program("resume", "stopped.h5", "--quiet")
+        with pkmopt.open_study("stopped.h5") as resumed:
+            self.assertTrue(same(resumed.evaluations(), whole.evaluations()))
+        with self.assertRaises(ValueError):
+            resumed.evaluations()
+        self.assertEqual(len(pkmopt.resume("whole.h5", generations=14).evaluations()), 300)
+
+    def test_callbacks_run_on_the_calling_thread_and_may_raise(self):
+        threads = set()
+
+        def fail(progress):
+            threads.add(threading.get_ident())
+            if progress.generation == 2:
+                raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            small_study().run("raised.h5", callback=fail)
+        self.assertEqual(threads, {threading.get_ident()})
+        self.assertEqual(pkmopt.open_study("raised.h5").state, "interrupted")
+
+    def test_callbacks_may_use_the_library(self):
+        values = []
+        study = small_study()
+        study.run("nested.h5", callback=lambda p: values.append(study.evaluate([0.3, 1.0]).objectives[0]) and None)
+        self.assertEqual(len(set(values)), 1)
+
+    def test_ctrl_c_leaves_a_checkpoint(self):
+        endless = small_study(stages={"optimiser": "ga", "generations": 1000000})
+        handler = signal.getsignal(signal.SIGINT)
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        start = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            endless.run("endless.h5")
+        self.assertLess(time.monotonic() - start, 5)
+        timer.join()
+        self.assertEqual(signal.getsignal(signal.SIGINT), handler)
+        results = pkmopt.open_study("endless.h5")
+        self.assertEqual(results.state, "interrupted")
+        self.assertGreater(len(results.evaluations()), 100)
+
+    def test_ctrl_c_ends_computations(self):
+        cells = {"x": 100, "z": 100, "theta": 100}
+        problem = pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume",
+                                 workspace={"method": "voxels", "cells": cells})
+        X = np.random.default_rng(0).uniform([0.2, 0.5], [0.5, 1.2], (1000000, 2))
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            problem.evaluate(X)
+
+    def test_seeds_and_existing_files(self):
+        first, second = (small_study().run("seed-%d.h5" % seed, seed=seed).evaluations() for seed in (1, 2))
+        self.assertFalse(same(first, second))
+        with self.assertRaisesRegex(pkmopt.FileError, "exists already"):
+            small_study().run("seed-1.h5")
+        with self.assertRaisesRegex(pkmopt.InputError, "at least one"):
+            small_study(stages=[]).run("none.h5")
+        with self.assertRaises(OSError):
+            pkmopt.open_study("missing.h5")
+
+    def test_a_mechanism_file_travels_with_the_study(self):
+        delta = pkmopt.Mechanism.from_file(DELTA)
+        cells = {"x": 12, "y": 12, "z": 12}
+        study = pkmopt.Study(delta, {"l_a": ("150 mm", "400 mm")}, "workspace-volume",
+                             stages={"optimiser": "ga", "generations": 3, "population": 8},
+                             workspace={"method": "voxels", "cells": cells})
+        best = study.run("delta.h5").best
+        again = pkmopt.open_study("delta.h5").study.evaluate([best["design"]["l_a"]])
+        self.assertEqual(again.objectives[0], best["objectives"]["workspace-volume"])
+
+    def test_report(self):
+        results = small_study().run("report.h5")
+        try:
+            path = results.report()
+        except RuntimeError as error:  # a build without the page
+            self.skipTest(str(error))
+        self.assertEqual(path, "report.html")
+        self.assertIn("workspace-volume", pathlib.Path(path).read_text(encoding="utf-8"))
+        self.assertTrue(results._repr_html_().startswith("<iframe"))
+        with self.assertRaises(OSError):
+            results.report()
+
+
+class OptimiserTest(InFolder):
+    BOUNDS = [(-2, 2), (-2, 2)]
+
+    def drive(self, optimiser, batch=None):
+        while not optimiser.finished:
+            X = optimiser.ask(batch)
+            optimiser.tell(X, ((X - [1, -0.5]) ** 2).sum(axis=1))
+        return optimiser
+
+    def test_designs_do_not_depend_on_the_batches(self):
+        whole = self.drive(pkmopt.Optimiser("ga", self.BOUNDS, generations=20, seed=3)).evaluations
+        parts = self.drive(pkmopt.Optimiser("ga", self.BOUNDS, generations=20, seed=3), 3).evaluations
+        np.testing.assert_array_equal(whole.designs, parts.designs)
+        self.assertLess(whole.objectives[whole.best, 0], 1e-2)
+
+    def test_are_those_of_the_built_in_run(self):
+        study = small_study()
+        run = study.run("run.h5").evaluations()
+        optimiser = pkmopt.Optimiser("ga", VARIABLES.values(), maximise=True, generations=12, population=20)
+        while not optimiser.finished:
+            X = optimiser.ask()
+            optimiser.tell(X, study.evaluate(X, complete=False).objectives)
+        np.testing.assert_array_equal(optimiser.evaluations.designs, np.stack([run["a"], run["b"]], axis=1))
+
+    def test_constraints_and_several_objectives(self):
+        optimiser = pkmopt.Optimiser("nsga2", self.BOUNDS, objectives=2, constraints=1, generations=30, population=24)
+        while not optimiser.finished:
+            X = optimiser.ask()
+            optimiser.tell(X, np.stack([X[:, 0] ** 2, (X[:, 0] - 1) ** 2], axis=1), X[:, 1])
+        told = optimiser.evaluations
+        last = told.designs[-24:]
+        self.assertTrue((last[:, 1] > -0.2).mean() > 0.9)
+        self.assertEqual(told.status[told.best], pkmopt.FEASIBLE)
+
+    def test_gradients(self):
+        optimiser = pkmopt.Optimiser("nlopt", self.BOUNDS, algorithm="slsqp", start="best")
+        self.assertTrue(optimiser.needs_derivatives)
+        while not optimiser.finished:
+            X = optimiser.ask()
+            D = X - [1, -0.5]
+            optimiser.tell(X, (D**2).sum(axis=1), dF=2 * D)
+        np.testing.assert_allclose(optimiser.best, [1, -0.5], atol=1e-6)
+
+    def test_failed_designs(self):
+        optimiser = pkmopt.Optimiser("ga", self.BOUNDS, generations=10)
+        while not optimiser.finished:
+            X = optimiser.ask()
+            optimiser.tell(X, np.where(X[:, 0] < 0, np.nan, X[:, 0]))
+        told = optimiser.evaluations
+        np.testing.assert_array_equal(told.status == pkmopt.FAILED, told.designs[:, 0] < 0)
+
+    def test_is_saved_within_a_generation(self):
+        whole = self.drive(pkmopt.Optimiser("ga", self.BOUNDS, generations=10, seed=5)).evaluations
+        optimiser = pkmopt.Optimiser("ga", self.BOUNDS, generations=10, seed=5)
+        for _ in range(31):
+            X = optimiser.ask(1)
+            optimiser.tell(X, ((X - [1, -0.5]) ** 2).sum(axis=1))
+        optimiser.save("half.npz")
+        again = self.drive(pkmopt.Optimiser.load("half.npz")).evaluations
+        np.testing.assert_array_equal(whole.designs, again.designs)
+
+    def test_mistakes(self):
+        for call in (
+            lambda: pkmopt.Optimiser("gaa", self.BOUNDS),
+            lambda: pkmopt.Optimiser("ga", self.BOUNDS, generation=3),
+            lambda: pkmopt.Optimiser("ga", [(1, 0)]),
+            lambda: pkmopt.Optimiser("ga", self.BOUNDS, objectives=2, maximise=[True]),
+            lambda: pkmopt.Optimiser("ga", self.BOUNDS).tell([[0, 0]], [1]),
+            lambda: pkmopt.Optimiser("nlopt", [(0, 1, 0.5)], algorithm="slsqp"),
+        ):
+            with self.assertRaises(ValueError):
+                call()
+        optimiser = pkmopt.Optimiser("ga", self.BOUNDS)
+        X = optimiser.ask()
+        with self.assertRaisesRegex(ValueError, "in their order"):
+            optimiser.tell(X[::-1], X[:, 0])
+        with self.assertRaisesRegex(ValueError, "F has shape"):
+            optimiser.tell(X, [1, 2])
+
+
+class DescribeTest(unittest.TestCase):
+    def test_a_five_bar(self):
+        """The five-bar of the experiments, written with formulas, has the same joints."""
+        file = pkmopt.Mechanism.from_file(EXPERIMENTS / "mechanisms" / "five-bar.toml").design()
+        p = file.parameters
+        with pkmopt.describe("five-bar", "two cranks and two rods") as d:
+            half = d.parameter("d", default="%r m" % p["d"], min="1 mm", max="1 m")
+            crank = d.parameter("l_a", default="%r m" % p["l_a"], min="1 mm", max="1 m")
+            rod = d.parameter("l_b", default="%r m" % p["l_b"], min="1 mm", max="1 m")
+            x, y = d.platform(x="along x", y="along y")
+            left = d.let("u", x + half)
+            square = d.let("s", left**2 + y**2)
+            along = (crank**2 + square - rod**2) / (2 * crank)
+            turn = formulas.acos(along / formulas.sqrt(square))
+            d.formula_limb("left", unit="rad", q1=formulas.atan2(y, left) + turn)
+            d.quantity("product", -x * (y - 1) / 2, "m^2")
+            d.survey(x=(-0.5, 0.5), y=(0, 0.6))
+        design = d.mechanism().design()
+        poses = np.array([[0, 0.4], [0.1, 0.35], [-0.05, 0.45]])
+        np.testing.assert_allclose(design.inverse(poses)[:, 0], file.inverse(poses)[:, 0], atol=1e-12)
+        x, y = poses.T
+        np.testing.assert_allclose(design.quantity("product", poses), -x * (y - 1) / 2, atol=1e-16)
+
+
+def evaluate_in_child(connection):
+    try:
+        connection.send(pkmopt.Mechanism("4ppa-2par").name)
+    except RuntimeError as error:
+        connection.send(str(error))
+
+
+class ProcessTest(unittest.TestCase):
+    def child(self, method):
+        context = multiprocessing.get_context(method)
+        here, there = context.Pipe()
+        process = context.Process(target=evaluate_in_child, args=(there,))
+        process.start()
+        answer = here.recv()
+        process.join()
+        return answer
+
+    def test_forked_processes_are_told_to_spawn(self):
+        pkmopt.Mechanism("4ppa-2par")
+        self.assertIn('get_context("spawn")', self.child("fork"))
+        self.assertEqual(self.child("spawn"), "4ppa-2par")
+
+    def test_two_threads_at_once(self):
+        problem = pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume")
+        X = np.random.default_rng(0).uniform([0.2, 0.5], [0.5, 1.2], (500, 2))
+        expected = problem.evaluate(X).objectives
+        wrong = []
+
+        def work():
+            for _ in range(20):
+                if not np.array_equal(problem.evaluate(X).objectives, expected):
+                    wrong.append(1)
+
+        workers = [threading.Thread(target=work) for _ in range(2)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        self.assertEqual(wrong, [])
+
+    def test_a_missing_library_is_explained(self):
+        program = "import sys; sys.path.insert(0, %r); import pkmopt" % os.environ["PYTHONPATH"].split(os.pathsep)[0]
+        failed = subprocess.run([sys.executable, "-c", program], env={"PKMOPT_LIBRARY": "/nowhere.so", "PATH": "/bin"},
+                                capture_output=True, text=True)
+        self.assertIn("ImportError", failed.stderr)
+        self.assertIn("experiments/quickstart.sh", failed.stderr)
+
+    def test_memory_stays_flat(self):
+        problem = pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume")
+        design = pkmopt.Mechanism("4ppa-2par").design()
+
+        def call(times):
+            for _ in range(times):
+                problem.evaluate([0.3, 1.0])
+                design.inverse([0.25, 0.85, -0.8, 0.5])
+
+        def pages():
+            return int(pathlib.Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+
+        call(2000)
+        before = pages()
+        call(20000)
+        self.assertLessEqual(pages() - before, 128)
+
+
+def load_tests(loader, tests, ignore):
+    for name in ("mechanism", "study", "optimiser", "formulas"):
+        module = __import__("pkmopt." + name, fromlist=[name])
+        finder = {"Mechanism": pkmopt.Mechanism, "Problem": pkmopt.Problem, "Study": pkmopt.Study}
+        tests.addTests(doctest.DocTestSuite(module, extraglobs=finder))
+    return tests
+
+
+if __name__ == "__main__":
+    unittest.main()
