@@ -51,7 +51,7 @@ std::string fixed_text(const FixedCoordinate& fixed, const std::string& unit) {
   if (fixed.kind == Kind::default_value) return "middle of each design";
   if (fixed.kind == Kind::integrated) return "integrated over its range";
   if (fixed.kind == Kind::value) return with_degrees(fixed.value, unit);
-  return join_of(fixed.values, [&unit](double value) { return with_degrees(value, unit); });
+  return join_texts(fixed.values, [&unit](double value) { return with_degrees(value, unit); });
 }
 
 std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& plan) {

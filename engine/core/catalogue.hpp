@@ -43,7 +43,7 @@ inline std::string did_you_mean(std::string_view name, const std::vector<std::st
 
 /// "a, b, c": text_of(element) for each element of the list, separated by commas, for messages.
 template <class List, class Text>
-std::string join_of(const List& list, Text text_of) {
+std::string join_texts(const List& list, Text text_of) {
   std::vector<std::string> words;
   for (const auto& element : list) words.push_back(text_of(element));
   return join(words);

@@ -43,12 +43,12 @@ struct TomlWriter {
   std::string operator()(std::int64_t number) const { return std::to_string(number); }
   std::string operator()(bool flag) const { return flag ? "true" : "false"; }
   std::string operator()(const std::string& word) const { return quoted(word); }
-  std::string operator()(const std::vector<NamedNumbers>& list) const { return "[" + join_of(list, *this) + "]"; }
+  std::string operator()(const std::vector<NamedNumbers>& list) const { return "[" + join_texts(list, *this) + "]"; }
   std::string operator()(const Setting& setting) const { return std::visit(*this, setting); }
   template <class Value>
   std::string operator()(const std::map<std::string, Value>& table) const {
     const auto entry = [this](const auto& named) { return named.first + " = " + (*this)(named.second); };
-    return "{ " + join_of(table, entry) + (table.empty() ? "}" : " }");
+    return "{ " + join_texts(table, entry) + (table.empty() ? "}" : " }");
   }
 };
 

@@ -44,8 +44,8 @@ struct Launcher {
   std::optional<int> size, rank;
 };
 
-/// The first match counts, because mpirun may itself have been started by srun. SLURM_NTASKS is not used: it is also
-/// set for a batch script, which is a single process.
+/// Finds the launcher. mpirun is tested before srun, because mpirun may itself have been started by srun. SLURM_NTASKS
+/// is not used, because it is also set for a batch script, which is a single process.
 std::optional<Launcher> launcher() {
   struct Variables {
     const char *name, *size, *rank;
@@ -89,7 +89,7 @@ std::vector<Location> gather_locations() {
   return all;
 }
 
-/// Number of threads for a rank: its cores, each counted 1/k if k ranks may use it; at least 1.
+/// Number of threads for a rank, at least 1: the number of its cores, where a core that k ranks may use counts 1/k.
 int threads_of(const Location& location) {
   double share = 0;
   for (const int core : location.cores)
@@ -239,7 +239,7 @@ int threads() {
   return threads_of(locations[static_cast<std::size_t>(group->rank)]);
 }
 
-std::optional<std::string> crowded(int threads) {
+std::optional<std::string> oversubscription_warning(int threads) {
   std::map<std::string, std::pair<int, std::set<int>>> hosts;  // number of ranks and set of cores
   for (const Location& location : locations) {
     auto& [ranks, cores] = hosts[location.host];

@@ -27,8 +27,8 @@ class Group {
   Group& operator=(const Group&) = delete;
 };
 
-/// Whether this process is the first of those that a launcher has started, according to the environment variables of
-/// the launcher. It alone reports the error if the processes cannot communicate.
+/// Whether this process is rank 0, according to the environment variables of the launcher: for use before a Group
+/// exists. If the processes cannot communicate, only rank 0 reports the error.
 bool is_launched_as_rank_zero();
 
 /// Number of this rank; 0 without a Group or a launcher.
@@ -82,7 +82,7 @@ std::string name(int rank);
 /// set.
 int threads();
 /// A warning if a host is oversubscribed: with `threads` threads per rank, it has more threads than cores.
-std::optional<std::string> crowded(int threads);
+std::optional<std::string> oversubscription_warning(int threads);
 
 /// Prints the sentence to stderr and terminates all ranks, because this one cannot continue and the others would wait
 /// for it forever.

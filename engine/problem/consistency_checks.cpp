@@ -104,7 +104,7 @@ void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double
     const AxisInfo& axis = parts.mechanism->info().coordinates[static_cast<std::size_t>(fixed.coordinate)];
     found.add(is_contradiction && outside.size() == values.size(), axis.name,
               table + "." + axis.name + " = " +
-                  join_of(outside, [&](double value) { return with_unit(value, axis.unit); }) +
+                  join_texts(outside, [&](double value) { return with_unit(value, axis.unit); }) +
                   " is out of reach; designs within the bounds reach " + range_text(hull, axis.unit));
   }
 }

@@ -47,7 +47,7 @@ int threads_of(const RunningArguments& arguments) {
 }
 
 RunOptions run_options(const RunningArguments& arguments, const Session& session) {
-  if (const auto warning = ranks::crowded(threads_of(arguments)))
+  if (const auto warning = ranks::oversubscription_warning(threads_of(arguments)))
     std::cerr << session.program << ": warning: " << *warning << '\n';
   RunOptions options{.threads = arguments.threads,
                      .program = {program_version(), program_revision(), session.arguments}};
