@@ -39,8 +39,9 @@ enum class OptionKind {
 
 struct TableSpec;
 
-/// Placeholder for the unit of a number: the unit of the quantity that the entry computes (the value of a constraint)
-/// or works on (the objective of an optimiser). It depends on the study, so the reader of the study substitutes it.
+/// Placeholder for the unit of an option of a catalogue entry, if it is the unit of the quantity that the entry
+/// computes (the value of a constraint) or uses (the objective of an optimiser). This unit depends on the study; the
+/// reader of the study substitutes it.
 inline constexpr const char* kUnitOfEntry = "";
 
 /// Which names are valid in a list of named numbers: those in OptionSpec::fields, or the names of the study's variables
@@ -64,15 +65,15 @@ struct OptionSpec {
 
   bool positive = false;               ///< numbers have to be > 0
   std::size_t count = 0;               ///< number of elements of a list; 0: any
-  std::vector<OptionSpec> parts = {};  ///< of a list one, which describes its elements; of any_of the alternatives
-  const TableSpec* table = nullptr;    ///< of a table
+  std::vector<OptionSpec> parts = {};  ///< list: one spec for all elements; any_of: the alternatives
+  const TableSpec* table = nullptr;    ///< keys of the table (tables only)
 };
 
 /// The keys of a table for one value of TableSpec::choice.
 struct TableVariant {
   std::string word, meaning;
   std::vector<OptionSpec> keys;
-  std::vector<OptionSpec> named = {};  ///< as TableSpec::named
+  std::vector<OptionSpec> named = {};  ///< see TableSpec::named
 };
 
 /// A TOML table: its keys, and those that it has for one value of its key `choice` only ("drive", "shape", "type").
@@ -82,7 +83,7 @@ struct TableSpec {
   std::vector<OptionSpec> keys;
   std::string choice = {};  ///< key that selects one of the variants; "": there are none
   std::vector<TableVariant> variants = {};
-  std::vector<OptionSpec> named = {};  ///< at most one: describes the values of keys that are names of the user's
+  std::vector<OptionSpec> named = {};  ///< at most one: describes the keys whose names the user chooses
   std::string noun = "key";            ///< what a key is, for messages: "coordinate", "parameter", "table"
 
   /// The key called `name`, also of a variant; null if there is none.
@@ -95,8 +96,8 @@ class Options {
   void set(const std::string& name, OptionValue value) { values_[name] = std::move(value); }
   bool has(const std::string& name) const { return values_.contains(name); }
 
-  // Each throws std::out_of_range if the option has no value, and std::bad_variant_access if it is of another kind.
-  // Both are programming errors of the entry, not of the user: the reader has validated the values against the specs.
+  // These functions throw std::out_of_range if the option has no value, and std::bad_variant_access if it is of another
+  // kind. Both are programming errors of the catalogue entry, not of the user: the reader has validated all values.
   double number(const std::string& name) const { return std::get<double>(values_.at(name)); }
   std::int64_t integer(const std::string& name) const { return std::get<std::int64_t>(values_.at(name)); }
   bool flag(const std::string& name) const { return std::get<bool>(values_.at(name)); }

@@ -15,7 +15,8 @@ namespace pkm {
 /// Thrown by check_stop(). Not derived from std::exception, so that error handlers do not catch it.
 struct Stopped {};
 
-/// While an instance exists, computations of this thread are stopped when its condition or its time limit is met.
+/// RAII: while an instance exists, check_stop() in this thread throws as soon as the instance's condition is true or
+/// its time limit is exceeded.
 class StopScope {
  public:
   /// @param is_requested  returns true to stop; called frequently, by any thread of the team, possibly concurrently

@@ -32,8 +32,8 @@ class ThreadPool;
 thread_local std::size_t thread_count = 1;
 // The pool in which these threads wait.
 thread_local ThreadPool* pool = nullptr;
-// True while this thread executes an iteration of parallel_for_nested(): then only threads that have no such iteration
-// left help with its loops.
+// True while this thread executes an iteration of parallel_for_nested(). Its inner loops are then shared only with
+// threads for which no iteration of parallel_for_nested() is left.
 thread_local bool in_long_iteration = false;
 
 /// Validates OMP_NUM_THREADS, which OpenMP itself accepts unchecked. Of a list, the first number applies to the

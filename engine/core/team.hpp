@@ -62,7 +62,7 @@ bool has_team();
 
 /// Maximum number of workers of parallel_for() here, for allocating data per worker.
 std::size_t workers();
-/// Index of this thread among them, less than workers().
+/// Index of this thread among the workers of parallel_for(), less than workers().
 std::size_t worker();
 
 /// Parallel loop: executes each of the iterations [0, iterations) once, by calls work(begin, end) or work(begin, end,

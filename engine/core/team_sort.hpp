@@ -11,8 +11,8 @@
 
 namespace pkm {
 
-/// Sorts the elements from index `first` on. No two elements may be equivalent under `less`, so that the result does
-/// not depend on the number of threads.
+/// Sorts the elements from index `first` to the end. The result does not depend on the number of threads, provided that
+/// no two elements are equivalent under `less`.
 template <class T, class Less = std::less<>>
 void parallel_sort(std::vector<T>& all, std::size_t first = 0, const Less& less = {}) {
   constexpr std::size_t kMinRunSize = 5000;  // elements; smaller runs are not worth a thread

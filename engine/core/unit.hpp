@@ -21,17 +21,17 @@ std::optional<double> parse_quantity(std::string_view text, std::string_view uni
 /// Describes the dimension of a text with a number and a unit: "an angle", "a length", or "a quantity in kg/m".
 /// @return "" for any other text, including numbers without a unit
 std::string kind_of_quantity(std::string_view text);
-/// Describes the dimension of a unit in the same way.
+/// Describes the dimension of a unit in the form of kind_of_quantity(): "an angle".
 std::string kind_of_unit(std::string_view unit);
 
 /// Maximum magnitude of an angle in the input [rad]. Of larger angles, a double represents the remainder modulo 2 pi
 /// with fewer than 11 digits, and the argument reduction of sin and cos is not exact (engine/math/portable.hpp).
 inline constexpr double kMaxAngle = 1e5;
 
-/// What is expected instead of `value`, if it is an angle whose magnitude exceeds kMaxAngle; otherwise "".
+/// For error messages: the allowed range, if `value` is an angle whose magnitude exceeds kMaxAngle; otherwise "".
 std::string angle_hint(double value, std::string_view unit);
 
-/// The value in degrees, to be appended to a number in rad: " (75 deg)"; "" for other units and for NaN.
+/// If `unit` is rad, the value in degrees as text to append to the number: " (75 deg)". "" for other units and for NaN.
 std::string in_degrees(double value, std::string_view unit);
 /// Formats a number with its unit, angles also in degrees: "1.5 rad (85.9437 deg)", "2 m".
 std::string with_degrees(double value, std::string_view unit);
