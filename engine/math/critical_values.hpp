@@ -77,7 +77,8 @@ void find_subintervals(const std::vector<CriticalValue<S>>& values, double merge
   }
 }
 
-/// Finds the subintervals likewise, with changes of the signature located by sampling and bisection.
+/// Finds the subintervals between critical values on which slices are not empty. Changes of the signature are located
+/// by sampling and bisection.
 /// @param values     both bounds of the outer coordinate and the known critical values, in any order; sorted here
 /// @param signature  signature(x): of the slice at x, 0 if it is empty
 /// @param lift       lift(x): the critical value x, found by bisection, as a number with derivatives

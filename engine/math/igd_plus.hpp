@@ -12,7 +12,7 @@ namespace pkm {
 /// A point that dominates z has distance 0 to it. Infinite if there are no points; points with a NaN are ignored. The
 /// result is bit-identical for any order of the points.
 /// @param points      row-major, `objectives` values per point, all to be minimised
-/// @param front       likewise; throws std::invalid_argument if it is empty
+/// @param front       points of the known front, in the same layout; throws std::invalid_argument if it is empty
 /// @param extents     `objectives` lengths > 0 that scale the objectives to comparable sizes
 double igd_plus(std::span<const double> points, std::size_t objectives, std::span<const double> front,
                 std::span<const double> extents);

@@ -80,7 +80,7 @@ Interval logarithm_at(double x) {
   return around(l, std::fabs(l) * kExponentialError);
 }
 
-/// Range of an increasing function from its values at the endpoints. @param at  encloses the function at a number
+/// Range of an increasing function from its values at the endpoints. @param at  at(number): enclosure of the value
 template <class F>
 Interval increasing(const F& at, const Interval& x) {
   if (x.is_empty()) return x;
@@ -283,7 +283,8 @@ Interval wrapped(const Interval& angle) {
 
 namespace {
 
-/// Decoration of a function that is constant where it is defined: continuous, unless it may be undefined.
+/// Decoration of a function with a constant value, given that of its arguments: continuous, unless they may be
+/// undefined.
 Decoration decoration_of_constant(Decoration known) {
   return known == Decoration::partial ? known : Decoration::continuous;
 }

@@ -22,8 +22,8 @@ struct ClosedInterval {
 /// sign change in it, or until its width is 1/16 of the interval. Sign changes are then located to 1e-13 of the
 /// interval. If the samples have a local minimum of |f| without a sign change, and the Lipschitz constant does not
 /// exclude two sign changes, a golden-section search locates the minimum to 1e-6 of the interval, and a point of the
-/// opposite sign becomes an additional sample. So a component or a gap can be missed only if it is narrower than 1e-6
-/// of the interval, or if several of them lie in one subinterval.
+/// opposite sign becomes an additional sample. Therefore a component or a gap can be missed only if it is narrower than
+/// 1e-6 of the interval, or if several of them lie in one subinterval.
 class NonNegativeIntervals {
  public:
   /// @param f          must have the correct sign everywhere; where it is positive, a lower bound of the actual

@@ -60,7 +60,7 @@ void visit_nodes(const Subinterval<S>& interval, const GaussRule& rule, const Vi
     visit(point, jacobian, rule.weight[i]);
   }
 }
-/// The same for several subintervals.
+/// Calls visit(point, d point / dt, weight of the rule) for each node of several subintervals.
 template <class S, class Visit>
 void visit_nodes(const std::vector<Subinterval<S>>& intervals, const GaussRule& rule, const Visit& visit) {
   for (const Subinterval<S>& interval : intervals) visit_nodes(interval, rule, visit);
@@ -70,10 +70,10 @@ void visit_nodes(const std::vector<Subinterval<S>>& intervals, const GaussRule& 
 /// only evaluates its additional nodes.
 struct NestedRule {
   static constexpr std::size_t kNodes = 15;
-  /// One rule, on the first `nodes` nodes.
+  /// One rule of the sequence, which uses the first `nodes` nodes.
   struct Level {
     std::size_t nodes;
-    std::array<double, kNodes> weight, fewer;  ///< of the rule, and of the embedded rule for its error estimate
+    std::array<double, kNodes> weight, fewer;  ///< of the rule, and of the embedded rule with fewer nodes
   };
   std::array<double, kNodes> node;  ///< in the order in which the rules add them
   std::vector<Level> level;
@@ -104,7 +104,7 @@ struct Integral {
   }
 };
 
-/// Regularity of the integrand inside the subintervals: smooth, or continuous with kinks.
+/// Regularity of the integrand between the endpoints of a subinterval: smooth, or continuous with kinks.
 enum class Between { smooth, kinks };
 
 /// QUADPACK's error estimate for a smooth integrand (Piessens et al. 1983),

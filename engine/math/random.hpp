@@ -2,9 +2,9 @@
 // Random123.
 //
 // A stream is identified by (seed, generation, individual, use): the key of the generator is the seed, its counter is
-// (block, use, individual, generation). So every individual of every generation draws the same numbers for any number
-// of threads, and a resumed run reproduces them without stored state. No result depends on libm or on the distributions
-// of the standard library, which differ between machines.
+// (block, use, individual, generation). Therefore every individual of every generation draws the same numbers for any
+// number of threads, and a resumed run reproduces them without stored state. No result depends on libm or on the
+// distributions of the standard library, which differ between machines.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace pkm {
 
-/// One block of Philox4x32-10: four 32-bit words. For the known-answer test.
+/// One block of Philox4x32-10: four 32-bit words. Declared here for a test with published values.
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
 /// A reproducible stream of random numbers.

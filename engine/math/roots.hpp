@@ -36,7 +36,7 @@ double refine_root(const F& f, double a, double f_a, double b, double f_b, doubl
     double x = a + t * (b - a);
     if (x == a || x == b) x = a + 0.5 * (b - a);
     if (x == a || x == b) break;  // adjacent doubles
-    // x becomes the new a; (c, f_c) is the point that it replaces
+    // x replaces a; (c, f_c) is the replaced point
     const double f_x = f(x);
     const bool replaces_a = (f_x >= 0) == (f_a >= 0);
     const double c = replaces_a ? a : b, f_c = replaces_a ? f_a : f_b;

@@ -68,8 +68,8 @@ S soft_min(const std::vector<S>& weight, const std::vector<S>& field, double sha
   return kreisselmeier_steinhauser(weight, field, value_of(minimum(field)), -sharpness);
 }
 
-/// Smooth approximation of the maximum (soft-max) likewise: not above the maximum, and converging to it as `sharpness`
-/// increases.
+/// Smooth approximation of the maximum (soft-max), the counterpart of soft_min(): it is not above the maximum and
+/// converges to it as `sharpness` increases.
 template <class S>
 S soft_max(const std::vector<S>& weight, const std::vector<S>& field, double sharpness) {
   return kreisselmeier_steinhauser(weight, field, value_of(maximum(field)), sharpness);
