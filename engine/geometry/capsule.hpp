@@ -115,7 +115,7 @@ struct Bounds {
   Point3<S> lower, upper;
 };
 
-/// The bounding box of a segment; joined(): of a box and a segment.
+/// The bounding box of a segment.
 template <class S>
 Bounds<S> bounds_of(const Segment<S>& segment) {
   Bounds<S> box;
@@ -125,6 +125,7 @@ Bounds<S> bounds_of(const Segment<S>& segment) {
   }
   return box;
 }
+/// The bounding box of a box and a segment.
 template <class S>
 Bounds<S> joined(const Bounds<S>& box, const Segment<S>& segment) {
   Bounds<S> both = bounds_of(segment);

@@ -182,7 +182,7 @@ template <class S>
 
 /// Inverse condition number of a 3 x 3 matrix in closed form. S is double or Lanes. The relative error is a few ulp if
 /// determinant and cofactors are computed without cancellation, otherwise a few ulp times sigma_1 / sigma_2.
-/// @param extra  square of an additional singular value, of a separate diagonal block; < 0: there is none
+/// @param extra  square of the singular value of a separate 1 x 1 diagonal block; < 0: there is no such block
 template <class S>
 [[gnu::always_inline]] inline S inverse_condition(const Rows3<S>& m, const S& extra = S(-1.0)) {
   const ExtremeSingularValues<S> s = extreme_singular_values(m);
@@ -193,8 +193,8 @@ template <class S>
                               select(extra >= 0.0, larger_2, max_squared));
 }
 
-/// Inverse condition number with derivatives; parameters as above. If the extreme singular value is a double one, so
-/// that it is not differentiable, the derivatives are those of one of the two, or finite but meaningless.
+/// Inverse condition number of a 3 x 3 matrix with derivatives. If an extreme singular value is double, it is not
+/// differentiable; the derivatives are then those of one of the two, or finite but meaningless.
 template <int N>
 Dual<N> inverse_condition(const Rows3<Dual<N>>& m, const Dual<N>& extra = Dual<N>(-1.0)) {
   Rows3<double> plain;

@@ -33,8 +33,8 @@ AxisVector<S> accelerations(const Influence<S>& influence, const AxisVector<S>& 
   return joints;
 }
 
-/// The symmetric n x n matrices of some quadratic forms, from their values at the unit vectors and at sums of two unit
-/// vectors (polarisation).
+/// The symmetric n x n matrices of several quadratic forms, from the values of the forms at the unit vectors and at
+/// sums of two unit vectors (polarisation).
 /// @param form  form(v): the values of the forms at v
 template <class Form>
 std::array<AxisMatrix<double>, kMaxJoints> quadratic_form_matrices(std::size_t n, const Form& form) {

@@ -40,7 +40,7 @@ struct Obstacle {
 };
 using Obstacles = std::vector<Obstacle>;
 
-/// Parameter t in [0, 1] of the point of a segment from + t way that is closest to a box centred at the origin.
+/// The parameter t in [0, 1] at which the point from + t way of a segment is closest to a box centred at the origin.
 inline double closest_to_box(const Point3<double>& from, const Point3<double>& way, const Point3<double>& half) {
   const auto derivative = [&](double t) {  // of |e|^2 / 2
     double sum = 0;
@@ -105,7 +105,8 @@ S box_distance(const Segment<S>& segment, const SolidBox& box) {
     start[i] = value_of(from[i]);
     way[i] = value_of(to[i]) - start[i];
   }
-  // t may be a constant for derivatives: at the closest point, the derivative of the distance by t vanishes
+  // t is treated as a constant in derivatives, because the derivative of the distance by t vanishes at the closest
+  // point
   const double t = closest_to_box(start, way, box.half);
   S square(0.0);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -15,11 +15,11 @@ inline constexpr const char* kObstaclePart = "obstacle";  ///< part of obstacles
 /// One capsule in the world frame.
 struct PlacedLink {
   std::string name;  ///< "rod 12"; capsules that form one body have the same name
-  std::string part;  ///< "limb 1", one of the above, or another one defined by the mechanism ("carriage")
+  std::string part;  ///< kFramePart, kPlatformPart, "limb 1", or a name defined by the mechanism ("carriage")
   Capsule<double> body;
 };
 
-/// Obstacles for drawing with the links: a capsule as it is, a box as its twelve edges.
+/// Converts obstacles to capsules, to draw them like links: a capsule is unchanged, a box becomes its twelve edges.
 inline std::vector<PlacedLink> drawn_obstacles(const Obstacles& obstacles) {
   constexpr double kEdgeRadius = 0.02;  // relative to the smallest half size of the box
   std::vector<PlacedLink> drawn;

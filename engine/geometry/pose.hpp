@@ -54,7 +54,7 @@ struct PoseReport {
   NamedValues angles;                  ///< angles [rad] and lengths [m] specific to the mechanism
   NamedValues margins;                 ///< pose-level constraint values; >= 0: satisfied
   std::vector<double> quantities =
-      {};  ///< of MechanismInfo::quantities, inputs at their defaults, at rest; NaN: undefined
+      {};  ///< values of MechanismInfo::quantities with default inputs, at rest; NaN: undefined
 };
 
 /// One solution of the forward kinematics.
@@ -62,7 +62,7 @@ struct AssemblyMode {
   Pose<double> pose;
   std::string mode;                            ///< the mechanism's name of this assembly mode
   bool usual = true;                           ///< listed by default; otherwise on request only
-  std::string working_mode = {};               ///< in which the inverse kinematics gives the joints back; "": in all
+  std::string working_mode = {};               ///< inverse kinematics in this mode reproduces the joints; "": in all
   std::vector<std::string> double_roots = {};  ///< coordinates that are double roots: two assembly modes coincide
 };
 

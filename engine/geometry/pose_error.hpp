@@ -20,8 +20,8 @@ inline std::vector<double> max_components(const AxisMatrix<double>& E, std::span
   return max;
 }
 
-/// Map from coordinate rates to the twist for a mechanism that does not provide it: the coordinates that are lengths
-/// are taken as the components of the position; the rotation is unknown and set to 0.
+/// Map from coordinate rates to the twist, for a mechanism that does not provide this map: coordinates that are lengths
+/// are interpreted as components of the position, and rotations are unknown and set to 0.
 inline AxisMatrix<double> translation_map(const std::vector<AxisInfo>& coordinates) {
   auto T = AxisMatrix<double>::zero(6, coordinates.size());
   for (std::size_t j = 0, row = 0; j < coordinates.size() && row < 3; ++j)

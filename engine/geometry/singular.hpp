@@ -59,7 +59,7 @@ bool is_singular(const M& J, const M& eliminated) {
   return !(norm(values) * norm(solve(values, Plain::identity(n))) <= 1 / kSingularRcond);
 }
 
-/// As above, without a factorisation at hand.
+/// True if rcond(J) < kSingularRcond, or if an element of J is not finite. Factorises J itself.
 template <SmallMatrix M>
 bool is_singular(const M& J) {
   M u = J;
@@ -84,8 +84,8 @@ inline AxisMatrix<double> qr_factor(AxisMatrix<double> J) {
   return R;
 }
 
-/// The same criterion for redundantly actuated mechanisms: true if the rank of J is less than its number of columns, so
-/// that the platform can move while all joints are locked. @param J  joints x coordinates
+/// Singularity of a redundantly actuated mechanism: true if the rank of J is less than its number of columns. The
+/// platform can then move while all joints are locked. @param J  joints x coordinates
 inline bool is_rank_deficient(const AxisMatrix<double>& J) {
   if (J.rows() < J.cols()) return true;
   return is_singular(J.rows() == J.cols() ? J : qr_factor(J));
