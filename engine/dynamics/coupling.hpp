@@ -26,7 +26,7 @@ auto coupling_indices(const M& M_q) {
   return indices;
 }
 
-/// The symmetric matrix with these elements.
+/// Converts the elements of M_q to a 4 x 4 matrix.
 template <class S>
 Matrix<S, 4, 4> matrix_of(const JointInertia<S>& of) {
   Matrix<S, 4, 4> M;

@@ -2,8 +2,8 @@
 //
 //   DCI_i = 1 - exp(-delta_i),   delta_i = sum over k != i of |M_q(i,k)| / |M_q(i,i)|
 //
-// 0: decoupled; it tends to 1 for strong coupling. Dimensionless if all elements of M_q have the same unit, kg. Source:
-// as pose_dynamics.hpp, eq 42.
+// DCI is 0 for a decoupled joint, and tends to 1 for strong coupling. It is dimensionless if all elements of M_q have
+// the same unit, kg. Source: the paper cited in pose_dynamics.hpp, eq 42.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ struct JointInertia {
   S m00, m11, m22, m33, m01, m02, m03, m12, m13, m23;
 };
 
-/// 1 - exp(-off / own), with the sum `off` of the off-diagonal magnitudes and the diagonal element `own`.
+/// The index 1 - exp(-off / own) from the sum `off` of the off-diagonal magnitudes of a row and its diagonal element
+/// `own`.
 template <class S>
 [[gnu::always_inline]] inline S coupling_index(const S& off, const S& own) {
   return S(1.0) - exp(S(off / own * -1.0));

@@ -25,7 +25,7 @@ struct DriveTrain {
   double efficiency = 1;  ///< eta, of the transmission
   double coulomb = 0;     ///< F_c, at the joint [N, N m]
   double viscous = 0;     ///< b, at the joint [N s/m, N m s/rad]
-  double slow = 1e-3;     ///< v_0 [m/s, rad/s]
+  double slow = 1e-3;     ///< v_0: below this speed, friction and losses decrease to 0 [m/s, rad/s]
 
   /// Inertia J = rotor + shaft reflected to the joint [kg, kg m^2].
   double reflected() const { return (rotor + shaft) * ratio * ratio; }
@@ -51,7 +51,7 @@ struct DriveTrain {
 /// One drive train per joint.
 using DriveTrains = std::vector<DriveTrain>;
 
-/// The reflected inertias: the trains' contribution to the diagonal of M_q.
+/// The reflected inertias of all drive trains: their contribution to the diagonal of M_q.
 inline std::vector<double> reflected(const DriveTrains& trains) {
   std::vector<double> all;
   for (const DriveTrain& train : trains) all.push_back(train.reflected());

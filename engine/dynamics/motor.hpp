@@ -32,7 +32,7 @@ struct MotorFit {
 
 /// Compares the demand of a motion with the ratings of a motor.
 /// @param train  drive train of the joint; its rotor inertia is replaced by that of the motor
-/// @param loads  at equidistant times, at least one
+/// @param loads  loads of the joint at equidistant times, at least one
 MotorFit fit(const Motor& motor, DriveTrain train, std::span<const JointLoad> loads);
 
 }  // namespace pkm

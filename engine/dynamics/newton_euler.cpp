@@ -36,7 +36,7 @@ struct Component {
   Eigen::VectorXd weights;
 
   double in(const Eigen::VectorXd& solution) const { return weights.dot(solution.segment(first, weights.size())); }
-  /// True if no unit vector of the null space changes it by more than the tolerance.
+  /// True if the component is unique: no unit vector of the null space changes it by more than the tolerance.
   bool is_determined(const MinNormSolution& solution) const {
     if (solution.null_space.cols() == 0 || weights.size() == 0) return true;
     const auto rows = solution.null_space.middleRows(first, weights.size());
@@ -53,7 +53,7 @@ Component couple_along(const JointColumns& at, const Eigen::Vector3d& direction)
     component.weights[k] = direction.dot(eigen(at.joint.couples[static_cast<std::size_t>(k)]));
   return component;
 }
-/// The component that the actuator of a joint exerts.
+/// The component of a joint's force or couple that is exerted by its actuator.
 Component actuation(const JointColumns& at) {
   const Eigen::Vector3d axis = eigen(at.joint.actuator->axis);
   return at.joint.actuator->turns ? couple_along(at, axis) : force_along(at, axis);
@@ -66,7 +66,7 @@ LinearEquations equations(const NewtonEuler& system) {
   const auto rows = static_cast<Index>(6 * system.bodies.size());
   const Index unknowns = columns.empty() ? 0 : columns.back().couples + columns.back().couple_count;
   LinearEquations e{Eigen::MatrixXd::Zero(rows, unknowns), Eigen::VectorXd(rows)};
-  // adds the columns of a joint to the rows of a body; sign: -1 for the body that the opposites act on
+  // adds the columns of a joint to the rows of a body; sign: -1 for the body on which the opposite force and couple act
   const auto add_joint = [&](const JointColumns& at, std::size_t body, double sign) {
     const auto row = static_cast<Index>(6 * body);
     const Eigen::Vector3d r = eigen(at.joint.point - system.bodies[body].centre) * sign;

@@ -37,9 +37,9 @@ struct Actuator {
 /// A joint between two bodies, or a body and the ground. It transmits forces in all directions.
 struct Joint {
   std::string name;
-  Vector<double, 3> point;                 ///< [m]
-  std::size_t on;                          ///< index of the body that the force and the couples act on
-  std::optional<std::size_t> from;         ///< index of the body that the opposites act on; std::nullopt: the ground
+  Vector<double, 3> point;          ///< [m]
+  std::size_t on;                   ///< index of the body that the force and the couples act on
+  std::optional<std::size_t> from;  ///< index of the other body, which carries the opposites; std::nullopt: the ground
   std::vector<Vector<double, 3>> couples;  ///< unit vectors of the couples that it can transmit
   std::optional<Actuator> actuator;
 };
@@ -77,7 +77,7 @@ MinNormSolution min_norm_solution(const NewtonEuler& system);
 /// Forces of the actuators in a solution, by index of their joints [N, N m].
 AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution);
 
-/// A component is determined if unit vectors of the null space change it by less than this.
+/// A force component is determined if unit vectors of the null space change it by less than this tolerance.
 inline constexpr double kUniqueTolerance = 1e-9;
 /// Joint reactions and drive forces, as far as the equations determine them.
 Reactions reactions(const NewtonEuler& system);

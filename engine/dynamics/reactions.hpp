@@ -13,7 +13,7 @@ namespace pkm {
 /// Force and couple that a joint transmits to the body `on`, in world axes.
 struct JointReaction {
   std::string name;  ///< "a1"
-  std::string on;    ///< the body they act on; the opposites act on the other body of the joint
+  std::string on;    ///< body on which the force and the couple act; their opposites act on the other body
   /// Components along x, y, z [N]; std::nullopt if rigid bodies do not determine a component (overconstrained
   /// mechanism).
   std::array<std::optional<double>, 3> force;

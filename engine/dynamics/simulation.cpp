@@ -34,7 +34,7 @@ double max_norm(const AxisVector<double>& x) {
   return max;
 }
 
-/// One stage of a step: velocity, acceleration, and the powers of the forces [W].
+/// One Runge-Kutta stage of a time step: velocity, acceleration, and the powers of the forces [W].
 struct Stage {
   AxisVector<double> velocity, acceleration;
   double drives = 0, friction = 0, weight = 0, wrench = 0;
@@ -44,7 +44,7 @@ class Integrator {
  public:
   explicit Integrator(const SimulationSetup& setup) : setup_(setup) {}
 
-  /// Makes one step. @return "", or why it failed
+  /// Integrates one time step. @return "" if successful, otherwise why the step failed
   std::string step(const SimulationState& from, double end, SimulationState& to) const {
     const double h = end - from.time;
     std::array<Stage, kStages> stages;
@@ -64,7 +64,8 @@ class Integrator {
     return complete(to);
   }
 
-  /// Computes acceleration and kinetic energy of a state. @return "", or why they do not exist, or the violated limit
+  /// Computes acceleration and kinetic energy of a state. @return "" if successful, otherwise why they do not exist, or
+  /// which limit is violated
   std::string complete(SimulationState& state) const {
     const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
     if (!d.assembles) return at(state.time) + kOutOfReach;
@@ -77,7 +78,8 @@ class Integrator {
   }
 
  private:
-  /// Solves the implicit stage equations by fixed-point iteration on the accelerations. @return "", or why it failed
+  /// Solves the implicit stage equations by fixed-point iteration on the accelerations. @return "" if successful,
+  /// otherwise why it failed
   std::string solve_stages(const SimulationState& from, double h, std::array<Stage, kStages>& stages) const {
     double previous_change = INFINITY;
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -107,7 +109,7 @@ class Integrator {
     return at(from.time) + "the iteration for the accelerations does not converge" + likely_cause(setup_);
   }
 
-  /// The actuator forces minus friction, and the friction forces.
+  /// Returns two vectors: the actuator forces minus friction, and the friction forces.
   std::pair<AxisVector<double>, AxisVector<double>> joint_forces(const PoseDynamics<double>& d, double time,
                                                                  const AxisVector<double>& velocity) const {
     const AxisVector<double> tau = setup_.forces(time);

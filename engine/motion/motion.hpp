@@ -25,7 +25,7 @@ struct MotionSample {
   double time = 0;                            ///< [s]
   Pose<double> pose;                          ///< [m, rad]
   AxisVector<double> velocity, acceleration;  ///< time derivatives of the pose
-  std::vector<InputSample> inputs = {};       ///< by MechanismInfo::inputs; empty: their defaults, constant
+  std::vector<InputSample> inputs = {};       ///< in the order of MechanismInfo::inputs; empty: constant default values
 };
 
 /// A motion, given by a function of time and by an equivalent expression graph. Immutable and thread-safe.

@@ -11,7 +11,7 @@
 
 namespace pkm {
 
-/// A pause, then a rest-to-rest move on a straight line in the space of the coordinates.
+/// A pause, followed by a rest-to-rest move on a straight line in the space of the coordinates.
 struct Move {
   double wait = 0;        ///< pause before the move [s]
   AxisVector<double> to;  ///< pose at its end
@@ -32,7 +32,7 @@ struct PeakRates {
 };
 
 /// The shortest duration [s] of a move that satisfies the limits; 0 if no limited coordinate moves.
-/// @param limits  the position is the vector of all lengths
+/// @param limits  limits of the position apply to the vector of all coordinates that are lengths
 double min_move_duration(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
                          const AxisVector<double>& to, const PeakRates& limits);
 

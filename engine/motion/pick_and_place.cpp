@@ -7,7 +7,7 @@ namespace {
 
 /// A sample of one way of the cycle.
 /// @param t      time since the way began
-/// @param along  displacement of the whole way, without lifting
+/// @param along  horizontal displacement and rotation over the whole way
 MotionSample sample_way(const PickAndPlace& cycle, double time, double t, const AxisVector<double>& from,
                         const AxisVector<double>& along) {
   const double reach_begins = cycle.lift_time - cycle.overlap;                     // t_h

@@ -15,11 +15,11 @@ struct TimeGraph {
   std::size_t position;           ///< index of the time among the inputs
   expression::Term time;
 
-  /// @param known  values of the inputs that the graph has already; the time and the constants are appended
+  /// @param known  values of the inputs that exist in the graph; the values of time and constants are appended
   TimeGraph(expression::Graph& to, std::vector<Interval>& known)
       : graph(to), inputs(known), position(known.size()), time(input(0.0)) {}
 
-  /// A new input with a value.
+  /// Adds an input with a given value to the graph.
   expression::Term input(const Interval& value) {
     inputs.push_back(value);
     return {graph, graph.input(inputs.size() - 1)};

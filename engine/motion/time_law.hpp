@@ -20,7 +20,7 @@ struct PathState {
   double distance = 0, speed = 0, acceleration = 0;
 };
 
-/// Evaluates a move over `distance` with a duration; at rest before its start and after its end.
+/// Distance, speed and acceleration of a move at a time. Before its start and after its end, the move is at rest.
 /// @param time  since its start
 PathState evaluate(TimeLaw law, double time, double duration, double distance);
 
