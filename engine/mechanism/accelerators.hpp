@@ -14,8 +14,8 @@ namespace pkm {
 class ColumnAccelerator {
  public:
   virtual ~ColumnAccelerator() = default;
-  /// @return false if the generic engine has to be used. May throw std::invalid_argument with one sentence if the
-  /// generic engine cannot serve the plan either.
+  /// @return false if the plan requires the generic engine. May throw std::invalid_argument with one sentence if the
+  /// generic engine does not support the plan either.
   virtual bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest& request) const = 0;
   virtual std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                             const FieldRequest& request) const = 0;
@@ -30,8 +30,8 @@ class VoxelAccelerator {
                                                         const FieldRequest& request) const = 0;
 };
 
-/// @return true if a plan sweeps the coordinates `default_swept`: it names them, or it names no swept coordinates and
-/// fixes none of these
+/// @return true if a plan sweeps the coordinates `default_swept`: the plan either names them, or it names no swept
+/// coordinates and fixes none of `default_swept`
 inline bool sweeps(const WorkspacePlan& plan, const std::vector<int>& default_swept) {
   if (!plan.swept.empty()) return std::ranges::is_permutation(plan.swept, default_swept);
   return std::ranges::none_of(plan.fixed, [&](const FixedCoordinate& fixed) {

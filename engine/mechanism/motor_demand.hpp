@@ -1,4 +1,4 @@
-// FieldRequest of a trajectory on the motors of a mechanism with drive trains, for the choice of motors.
+// Demand of a trajectory on the motors of a mechanism with drive trains, for the choice of motors.
 #pragma once
 
 #include <span>
@@ -10,13 +10,13 @@
 
 namespace pkm {
 
-/// Loads along the motion, indexed by joint and sample: the force without the inertia of the motor that the mechanism
-/// has, the speed and the acceleration.
+/// Loads along the motion, indexed by joint and sample: speed, acceleration, and the force without the inertia of the
+/// mechanism's present motor.
 /// @param trajectory  all samples have forces
 std::vector<std::vector<JointLoad>> joint_loads(const DriveTrains& trains, const Trajectory& trajectory);
 
 /// Mean over the samples of the largest dynamic coupling index if every joint has this motor.
-/// @param mechanism  with dynamics and drive trains
+/// @param mechanism  must have dynamics and drive trains
 /// @param mode       one of MechanismInfo::modes
 double mean_coupling_index(const Motor& motor, const Mechanism& mechanism, std::span<const double> parameters,
                            const std::string& mode, const Trajectory& trajectory);

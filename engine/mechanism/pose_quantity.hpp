@@ -15,8 +15,8 @@
 
 namespace pkm {
 
-/// A generic lambda [](const auto& M_q, auto* values) {...}, instantiated for every matrix type of a joint-space
-/// inertia.
+/// Type-erased generic lambda [](const auto& M_q, auto* values) {...}: stores its instantiations for all matrix types
+/// of the joint-space inertia M_q.
 class InertiaFunction {
  public:
   constexpr InertiaFunction() = default;
@@ -52,11 +52,11 @@ struct NamedStatistic {
 struct PoseQuantity {
   enum class Worst { minimum, maximum };
 
-  const char* name;           ///< of its field, "inertia_condition"; that of its objective has hyphens
+  const char* name;           ///< name of its field, "inertia_condition"; the objective's name has hyphens instead
   const char* unit;           ///< SI, "1"
   const char* meaning;        ///< "inverse condition number of the Jacobian"
   double lower, upper;        ///< range of possible values
-  Worst worst;                ///< which extreme value of a workspace is bad; objectives improve it
+  Worst worst;                ///< whether the minimum or the maximum over a workspace is the worst case
   double value_if_undefined;  ///< for poses where the value is not finite, and for workspaces without poses
   bool per_joint = false;
   std::array<NamedStatistic, 4> results = {};  ///< an entry without a statistic is unused

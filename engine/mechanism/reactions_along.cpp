@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kRounding = 1e-12;  // relative; compares couples with forces as if levers were 1 m long
+constexpr double kRounding = 1e-12;  // relative; couples are compared with forces at a lever arm of 1 m
 
 /// Load of the joint with index `joint`.
 /// @param kind  &JointReaction::force or &JointReaction::couple
@@ -31,7 +31,8 @@ LoadSummary load_of(const Trajectory& trajectory, std::size_t joint,
   return load;
 }
 
-/// Sets a load to zero if it is a rounding error: the couple of a joint that transmits forces only, or the reverse.
+/// Sets a load to zero if it is a rounding error compared with the other one: the couple of a joint that transmits
+/// forces only, or the force of a joint that transmits couples only.
 void clear_rounding(LoadSummary& load, const LoadSummary& other) {
   if (load.peak < kRounding * other.peak) load.peak = load.rms = 0;
 }

@@ -11,7 +11,7 @@
 namespace pkm {
 
 /// Computes the reactions of every sample.
-/// @param mechanism  reactions() is not null
+/// @param mechanism  its reactions() must not be null
 /// @param wrench     the load on the platform for which the trajectory was computed [N, N m]
 void add_reactions(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
                    const Wrench<double>& wrench, Trajectory& trajectory);
@@ -21,7 +21,7 @@ void add_reactions(const Mechanism& mechanism, std::span<const double> parameter
 struct LoadSummary {
   std::array<bool, 3> determined = {true, true, true};  ///< along x, y, z
   double peak = 0, rms = 0;                             ///< maximum, and root of the mean square [N, N m]
-  std::size_t at = 0;                                   ///< index of the first sample with the maximum, to rounding
+  std::size_t at = 0;  ///< index of the first sample that attains the maximum within rounding
 };
 
 struct ReactionLoads {

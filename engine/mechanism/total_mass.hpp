@@ -16,7 +16,8 @@ class TotalMass {
   virtual Dual4 total_mass(std::span<const Dual4> parameters) const = 0;
 };
 
-/// The total mass of a mechanism with or without drive trains; null if it has no masses, or does not list its bodies.
+/// The interface TotalMass of a mechanism with or without drive trains; null if the mechanism has no masses, or does
+/// not list its bodies.
 const TotalMass* find_total_mass(const Mechanism& mechanism);
 
 }  // namespace pkm

@@ -23,9 +23,9 @@ struct TrajectoryPoint {
   std::optional<double> conditioning;
   std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
   std::optional<AxisVector<double>> forces, power;          ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
-  std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, with drive trains [N m, rad/s]
+  std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, if there are drive trains [N m, rad/s]
   std::vector<double> quantities;                           ///< by MechanismInfo::quantities; NaN: undefined
-  std::optional<Reactions> reactions;                       ///< of the joints, set by add_reactions()
+  std::optional<Reactions> reactions;                       ///< reactions in the joints, set by add_reactions()
 };
 
 /// Statistics by joint over all samples that have the value.
@@ -35,7 +35,7 @@ struct TrajectorySummary {
   bool has_forces = false;                       ///< true if every sample has forces; otherwise the following are 0
   AxisVector<double> peak_force, rms_force;      ///< maximum |tau|; root of the mean square over the samples [N, N m]
   AxisVector<double> peak_power;                 ///< maximum |tau qdot|, driving or braking [W]
-  AxisVector<double> peak_torque, rms_torque, peak_motor_speed;  ///< of the motors, with drive trains [N m, rad/s]
+  AxisVector<double> peak_torque, rms_torque, peak_motor_speed;  ///< of the motors of drive trains [N m, rad/s]
   double peak_total_power = 0, min_total_power = 0;              ///< extrema of the sum over the joints [W]
   /// Time integrals by the trapezoidal rule [J]: of the total power (energy with full regeneration), and of the
   /// positive parts of the joints' powers (energy without regeneration).

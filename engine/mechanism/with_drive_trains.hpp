@@ -12,7 +12,7 @@ namespace pkm {
 /// @param trains  one for each joint
 std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains);
 
-/// The mechanism that with_drive_trains() decorates; a mechanism without drive trains itself.
+/// The mechanism that was passed to with_drive_trains(); the argument itself if it is not such a decorator.
 const Mechanism& without_drive_trains(const Mechanism& mechanism);
 
 }  // namespace pkm

@@ -37,7 +37,7 @@ class GradientEvaluator {
 /// Evaluator of a plan with voxels.
 class VoxelEvaluator : public WorkspaceEvaluator {
  public:
-  /// The feasible cells of a design. If coordinates are integrated over, those of the first of their cells.
+  /// The feasible cells of a design. Coordinates that are integrated over are fixed at the centre of their first cell.
   virtual VoxelMap map(std::span<const double> parameters) const = 0;
   std::string why_no_derivatives() const final {
     return "voxel counts are piecewise constant and have no derivatives; set workspace.method = \"columns\"";
@@ -54,7 +54,7 @@ void evaluate_workspace(const WorkspaceEvaluator& evaluator, std::span<const S> 
     evaluator.gradients()->evaluate(parameters, scratch, result);
 }
 
-/// evaluate_workspace() with scratch memory of its own, for a single analysis.
+/// Calls evaluate_workspace() with temporary scratch memory, for a single analysis.
 template <class S>
 void evaluate_once(const WorkspaceEvaluator& evaluator, std::span<const S> parameters, WorkspaceResult<S>& result) {
   Scratch scratch;

@@ -18,16 +18,16 @@ namespace pkm {
 template <class S>
 struct WorkspaceResult {
   S volume{};  ///< measure of the feasible set, in the unit of volume_unit()
-  // of voxels
+  // Set by voxel analyses:
   std::int64_t cells = 0;
   std::int64_t feasible_cells = 0;
   double cell_volume = 0;
   bool touches_box = false;  ///< true if a feasible cell lies in the outermost layer of the box
-  // of columns
+  // Set by analyses by columns:
   std::int64_t columns = 0;  ///< number of columns, or of nodes along edges, evaluated
   double error = 0;          ///< estimated relative error of the volume
   bool is_sampled = false;   ///< parts of the workspace that lie between sampled slices may be missed
-  // by feasible sample, if requested; otherwise empty
+  // One element per feasible sample, if requested; otherwise empty:
   std::vector<S> weight;
   std::vector<Pose<S>> pose;
   std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;  ///< one vector, or one by joint
@@ -44,7 +44,7 @@ struct WorkspaceResult {
     return found == fields.end() ? nullptr : found->second.data();
   }
 
-  /// Resets the result to an empty workspace, and keeps the memory.
+  /// Resets the result to an empty workspace without releasing its memory.
   /// @param requested  the quantities for which samples will be appended
   void clear(std::span<const PoseQuantity* const> requested = {}) {
     volume = S{};

@@ -23,8 +23,8 @@ struct BoundsOptions {
 struct VolumeBounds {
   double lower = 0, upper = 0;
   int innermost = 0;         ///< column coordinate, by index of MechanismInfo::coordinates
-  std::size_t boxes = 0;     ///< boxes whose bounds are added up
-  std::size_t examined = 0;  ///< these boxes, and those that have been bisected
+  std::size_t boxes = 0;     ///< number of boxes whose bounds are added up
+  std::size_t examined = 0;  ///< number of boxes examined, bisected ones included
   bool stopped = false;
 
   double gap() const { return upper > 0 ? 2 * (upper - lower) / (upper + lower) : 0; }
@@ -36,7 +36,7 @@ struct PropertyResult {
   Kind kind = Kind::holds;
   std::string detail = {};                ///< the constraint or matrix that fails or is undecided; why not examined
   std::optional<Pose<double>> pose = {};  ///< a pose where it fails, or near which it is undecided
-  std::optional<double> time = {};        ///< of a motion: the time of that pose [s]
+  std::optional<double> time = {};        ///< time of that pose [s], for motions
 };
 
 struct PoseCertificate {

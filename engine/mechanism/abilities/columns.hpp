@@ -1,4 +1,4 @@
-// Workspace analysis by columns (cylindrical decomposition), and by voxels faster than cell by cell.
+// Abilities of workspace analysis: by columns (cylindrical decomposition), and by voxels without testing every cell.
 #pragma once
 
 #include <memory>

@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxDesignTests = 16;
 
 /// A constraint that depends on the design alone.
 struct DesignMarginInfo {
-  std::string name;  ///< of the constraint: "rail-length"
+  std::string name;  ///< name of the constraint: "rail-length"
   std::string unit;
   std::string meaning;
 };
@@ -48,10 +48,10 @@ class PoseMargins {
   virtual ~PoseMargins() = default;
   /// Unit of all margins; "" if each has its own (m, rad or 1).
   virtual std::string margin_unit() const = 0;
-  /// Why margins under these limits have no derivatives; std::nullopt if they have.
+  /// Why the margins have no derivatives under given limits; empty if they have.
   virtual Unsupported why_no_derivatives(const LimitSpec&) const { return {}; }
-  /// Appends the margins of poses, which are finite. A pose that cannot be assembled has margins, too, one of them
-  /// negative.
+  /// Appends the margins of all poses; they are finite. A pose that cannot be assembled also has margins, of which at
+  /// least one is negative.
   /// @param mode     one of MechanismInfo::modes, or "": the first
   /// @param scratch  of the calling thread
   virtual void append(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,

@@ -8,21 +8,21 @@
 
 namespace pkm {
 
-/// Displacements by wrenches: three components along x, y, z of the base frame, then three about them, at the origin of
-/// the platform's frame.
+/// Compliance of the platform: displacement per wrench. Wrenches and displacements have six components, along and about
+/// x, y, z of the base frame, at the origin of the platform frame.
 struct PlatformCompliance {
-  AxisMatrix<double> supported;   ///< 6 x k, orthonormal columns: wrenches that the mechanism carries in equilibrium
-  AxisMatrix<double> compliance;  ///< k x k, by these wrenches [m/N, rad/(N m), ..]
+  AxisMatrix<double> supported;   ///< 6 x k, orthonormal basis of the wrenches that the mechanism can balance
+  AxisMatrix<double> compliance;  ///< k x k, in the basis `supported` [m/N, rad/(N m), ..]
 
-  /// Whether all wrenches are carried, and `supported` is the identity; otherwise the platform is free in some
-  /// direction, or the pose is singular.
+  /// Whether the mechanism can balance every wrench; `supported` is then the identity. Otherwise the platform can move
+  /// freely in some direction, or the pose is singular.
   bool is_complete() const { return supported.cols() == 6; }
 };
 
 class Elasticity {
  public:
   virtual ~Elasticity() = default;
-  /// @param pose  assembles
+  /// @param pose  a pose that can be assembled
   virtual PlatformCompliance compliance(std::span<const double> parameters, const Pose<double>& pose,
                                         const std::string& mode) const = 0;
 };

@@ -52,7 +52,7 @@ class ForwardKinematics {
   }
 };
 
-/// A link, and the links from which no clearance is required.
+/// A link, and the links joined to it, from which it needs no clearance.
 struct JoinedLinks {
   std::string link;
   std::vector<std::string> others;
@@ -66,7 +66,7 @@ class Links {
   /// @param mode  one of MechanismInfo::modes
   virtual std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
                                         const std::string& mode) const = 0;
-  /// Pairs of links that the clearance ignores because they are joined, for people; empty if unspecified.
+  /// Pairs of links between which no clearance is required because they are joined, for display; empty if unspecified.
   virtual std::vector<JoinedLinks> joined() const { return {}; }
 };
 
