@@ -31,7 +31,7 @@ void for_each_cell(const CellRun& run, const Visit& visit) {
   for (Cell cell = run.first; cell[run.axis] < run.end; ++cell[run.axis]) visit(cell);
 }
 
-/// Calls visit(run) for the maximal runs of those cells of a run that satisfy a predicate.
+/// Splits a run: calls visit(run) for each maximal run of its cells that satisfy a predicate.
 template <class Predicate, class Visit>
 void filter_run(const CellRun& run, const Predicate& passes, const Visit& visit) {
   CellRun kept = run;

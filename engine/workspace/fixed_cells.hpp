@@ -35,7 +35,7 @@ void find_fixed_cells(std::span<const int> coordinates, const WorkspacePlan& pla
   }
 }
 
-/// Sets the coordinates to the centres of one combination of their cells.
+/// Sets each coordinate that is integrated over to the centre of its cell in one combination of cells.
 /// @param number      of the combination, from 0; the first coordinate varies fastest
 /// @param coordinate  coordinate(index): reference to the value of a coordinate
 template <class Coordinates>

@@ -20,8 +20,8 @@ struct GriddedDesign {
   double cell_volume;     ///< including the steps of coordinates that are integrated over
   std::size_t grids = 1;  ///< number of grids; they differ in the coordinates that are integrated over
 
-  GriddedDesign(const VoxelGrid& on, std::size_t blocks_of_grid, std::span<const FixedCells> integrated = {})
-      : grid(on), blocks(blocks_of_grid), cell_volume(on.cell_volume()) {
+  GriddedDesign(const VoxelGrid& voxels, std::size_t blocks_of_grid, std::span<const FixedCells> integrated = {})
+      : grid(voxels), blocks(blocks_of_grid), cell_volume(voxels.cell_volume()) {
     for (const FixedCells& each : integrated) {
       cell_volume *= each.step;
       grids *= static_cast<std::size_t>(each.cells);
@@ -43,10 +43,11 @@ struct GridBuffers {
 /// CRTP base. Self defines, accessible to this class,
 ///   Buffers                            its GridBuffers
 ///   start(parameters, buffers)         returns the design, a GriddedDesign or a class derived from it
-///   find(design, number, block, buffer, result)  adds the feasible cells of a block of the grid `number` to the
-///   result,
-///                                      their samples, and whether they touch the box
-///   visit_cells(design, buffers, visit)  calls visit(cell) for the feasible cells of the first grid
+///   find(design, number, block, buffer, result)
+///                                      adds to the result the feasible cells of a block of the grid `number`, their
+///                                      samples, and whether they touch the box
+///   visit_cells(design, buffers, visit)
+///                                      calls visit(cell) for the feasible cells of the first grid
 template <class Self>
 class GridEvaluator : public VoxelEvaluator {
  public:

@@ -26,7 +26,7 @@ class BadCellCounts {
               sum({i, j, k + 1}) - sum({i, j + 1, k}) - sum({i + 1, j, k}) + sum({i, j, k});
   }
 
-  /// @param a  first cell of the box  @param b  one past its last cell, in each coordinate
+  /// Number of bad cells in a box from cell `a` to the cell before `b` in each coordinate.
   std::int64_t within(const CellIndex& a, const CellIndex& b) const {
     return sum(b) - sum({a[0], b[1], b[2]}) - sum({b[0], a[1], b[2]}) - sum({b[0], b[1], a[2]}) +
            sum({a[0], a[1], b[2]}) + sum({a[0], b[1], a[2]}) + sum({b[0], a[1], a[2]}) - sum(a);
@@ -68,7 +68,8 @@ std::optional<CellCube> largest_cube(const WorkspaceFields& workspace, const std
       for (cell[1] = 0; cell[1] < cells[1]; ++cell[1])
         for (cell[2] = 0; cell[2] < cells[2]; ++cell[2]) visit(cell);
   };
-  std::size_t found = 0;  // number of candidates that fit somewhere; if one fits, all smaller ones do
+  // Number of candidates for which a cube of good cells exists; if one fits, so do all smaller ones.
+  std::size_t found = 0;
   each_cell([&](const CellIndex& cell) {
     while (found < sides.size() && fits(cell, sides[found])) ++found;
   });

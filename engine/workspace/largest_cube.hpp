@@ -13,11 +13,11 @@ namespace pkm {
 
 struct CellCube {
   double side = 0;                     ///< a whole number of cells along at least one axis
-  std::array<std::size_t, 3> first{};  ///< its cell with the lowest indices
+  std::array<std::size_t, 3> first{};  ///< the cell of the cube with the lowest indices
 };
 
 /// The largest cube of good cells. Among several cubes of this size, the one closest to the mean of their positions.
-/// @param good  by cell; the swept coordinates have one unit
+/// @param good  whether each cell is good, by index; all swept coordinates must have the same unit
 /// @return std::nullopt if no cell is good
 std::optional<CellCube> largest_cube(const WorkspaceFields& workspace, const std::vector<bool>& good);
 

@@ -3,7 +3,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kHalfThickness = 0x1p-10;  // of a layer of cells [m or rad]
+constexpr double kHalfThickness = 0x1p-10;  // half the thickness of a layer of cells [m or rad]
 
 }  // namespace
 

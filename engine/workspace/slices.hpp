@@ -12,11 +12,11 @@ namespace pkm {
 using Slices = std::map<int, double>;
 
 /// Replaces the range of each sliced coordinate by one thin cell.
-/// @param plan  of voxels with a box
+/// @param plan  a voxel plan with a box
 void set_thin_layers(WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
 
 /// Turns the sliced axes into fixed coordinates, and the volume into that over the remaining axes.
-/// @param workspace  of a plan with thin layers
+/// @param workspace  result of a plan that set_thin_layers() has modified
 void remove_sliced_axes(WorkspaceFields& workspace, const MechanismInfo& info, const Slices& slices);
 
 }  // namespace pkm

@@ -7,7 +7,7 @@ namespace pkm {
 
 /// A voxel plan with the same limits and box as `plan`, and one value of each fixed coordinate: the plan's value, the
 /// first one of a list, or the default value of the design if the plan integrates over it.
-/// @param cells  for a plan with columns; a plan with voxels keeps its own
+/// @param cells  number of cells if `plan` uses columns; a voxel plan keeps its own cells
 inline WorkspacePlan visualisation_plan(const MechanismInfo& info, const WorkspacePlan& plan,
                                         const std::array<std::int64_t, 3>& cells) {
   WorkspacePlan result = plan;

@@ -61,7 +61,7 @@ class Evaluator {
     if (!why_no_joint_forces(mechanism)) add_quantities(true);
   }
 
-  static constexpr std::size_t kFeasible = 0;  ///< number of the field that exists before
+  static constexpr std::size_t kFeasible = 0;  ///< index of the existing field `feasible`
 
   /// Scratch memory of a thread.
   struct FieldScratch {
@@ -87,7 +87,7 @@ class Evaluator {
   }
 
  private:
-  static constexpr std::size_t kMargin = 1, kQuantities = 2;  ///< numbers of fields
+  static constexpr std::size_t kMargin = 1, kQuantities = 2;  ///< indices of fields
 
   void add(std::string name, std::string unit, std::string meaning) {
     fields_.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
@@ -111,8 +111,8 @@ class Evaluator {
   }
   static bool min_is_worst(const PoseQuantity& quantity) { return quantity.worst == PoseQuantity::Worst::minimum; }
 
-  /// Stores all quantities with or without inertia at one cell.
-  /// @param field     number of the first of their fields; they are stored in the order of add_quantities()
+  /// Computes and stores at one cell either all quantities of the joint-space inertia or all others.
+  /// @param field     index of the field of the first quantity; the others follow in the order of add_quantities()
   /// @param evaluate  evaluate(quantity, values) computes the values of a quantity
   template <class Evaluate>
   void store(std::size_t field, std::size_t cell, bool from_inertia, const Evaluate& evaluate) const {
@@ -179,7 +179,7 @@ class Evaluator {
   std::vector<WorkspaceField>& fields_;
   const Poses& poses_;
   std::size_t block_;       ///< number of poses per block
-  std::size_t joints_ = 0;  ///< number of the field of the first joint
+  std::size_t joints_ = 0;  ///< index of the field of the first joint
 };
 
 }  // namespace
@@ -236,7 +236,7 @@ PoseMargin::PoseMargin(const Mechanism& mechanism, std::span<const double> param
 double PoseMargin::operator()(const Pose<double>& pose, Scratch& scratch) const {
   double min_margin = std::numeric_limits<double>::infinity();
   const PoseMargins* const capability = mechanism_.pose_margins();
-  if (!capability) {  // take the margins from the report; there are some even if the pose does not assemble
+  if (!capability) {  // take the margins from the report, which has some even if the pose does not assemble
     const auto report = mechanism_.inspect(parameters_, pose, mechanism_.info().modes.front(), limits_);
     for (const auto& named : report.margins) min_margin = std::fmin(min_margin, named.second);
     return report.feasible || min_margin < 0 ? min_margin : -1;

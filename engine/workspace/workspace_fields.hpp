@@ -98,7 +98,7 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
                                  const WorkspacePlan& plan, const std::string& mode);
 
 /// Evaluates all fields except `feasible` at given feasible poses; NaN where a quantity is undefined.
-/// @param limits  as in the plan
+/// @param limits  limits of the workspace plan
 std::vector<WorkspaceField> fields_at(const Mechanism& mechanism, std::span<const double> parameters,
                                       const LimitSpec& limits, const std::string& mode,
                                       const std::vector<Pose<double>>& poses);

@@ -48,7 +48,7 @@ ColumnPruner::Root ColumnPruner::enclose_root(std::size_t constraint, const Segm
   if (!over_box.value.is_continuous()) return {};
   Root root{.is_continuous = true};
   const Interval by_z = over_box.by_axis[z];
-  root.is_enclosed = over_box.is_known_by_last && !by_z.holds(0);
+  root.is_enclosed = over_box.is_last_derivative_known && !by_z.holds(0);
   root.is_increasing = by_z.lower > 0;
   // Choose z_c: near the root at the centre of the box, or the end of the segment that is nearer to it.
   const auto value_at = [&](double height) {
@@ -117,7 +117,7 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
   };
   IntervalBox sides, centre;
   Interval area(1.0);
-  double widest = 0;  // side of the box, relative to the whole
+  double widest = 0;  // longest side of the box, relative to the whole range
   for (std::size_t axis = 0; axis < z; ++axis) {
     const auto [from, to] = box.side[axis];
     sides[axis] = {from, to};
@@ -129,7 +129,7 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
   constraints_.set_box(centre, scratch.centre);
   const auto min_bisected_size = static_cast<std::int64_t>(0.5 * widest * static_cast<double>(ColumnGrid::kSteps));
 
-  std::vector<Segment>& pending = scratch.pending;  // stack: the lowest segment last
+  std::vector<Segment>& pending = scratch.pending;  // stack with the lowest segment on top
   pending.swap(box.open);
   merge(pending);
   std::ranges::reverse(pending);

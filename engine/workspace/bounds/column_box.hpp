@@ -38,9 +38,10 @@ struct ColumnGrid {
   Interval between(std::int64_t from, std::int64_t to) const { return {at(from), at(to)}; }
   /// Enclosure of the length of a segment.
   Interval length(std::int64_t from, std::int64_t to) const { return Interval(at(to)) - Interval(at(from)); }
-  /// A step in [from, to] with at(step) <= z, the last one up to rounding; `from` if there is none.
+  /// The last step in [from, to] with at(step) <= z, or one slightly before it due to rounding; `from` if there is
+  /// none.
   std::int64_t step_below(double z, std::int64_t from, std::int64_t to) const;
-  /// A step in [from, to] with at(step) >= z, the first one up to rounding; `to` if there is none.
+  /// The first step in [from, to] with at(step) >= z, or one slightly after it due to rounding; `to` if there is none.
   std::int64_t step_above(double z, std::int64_t from, std::int64_t to) const;
 };
 
@@ -68,7 +69,7 @@ struct Step {
 /// A box of the outer coordinates, with its segments.
 struct ColumnBox {
   std::array<std::array<double, 2>, kMaxOuterAxes> side{};
-  Interval feasible_length{0.0};  ///< length of z that is feasible over the whole box
+  Interval feasible_length{0.0};  ///< total length of the z segments that are feasible over the whole box
   std::vector<Segment> open;      ///< undecided segments
   Interval volume{0.0};           ///< enclosure of the volume over the box
 };

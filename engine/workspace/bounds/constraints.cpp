@@ -87,29 +87,29 @@ void Constraints::set_box(const IntervalBox& box, Scratch& scratch) const {
   for (std::size_t axis = 0; axis + 1 < axes_.size(); ++axis)
     if (registers_[axis]) scratch.registers_[*registers_[axis]] = box[axis];
   scratch.box_version_ = ++scratch.version_;
-  scratch.last_ = Interval::empty();  // differs from every side
+  scratch.last_side_ = Interval::empty();  // differs from every side
 }
 
-void Constraints::run(const Subprogram& subprogram, const Interval& last, Scratch& scratch) const {
+void Constraints::run(const Subprogram& subprogram, const Interval& last_side, Scratch& scratch) const {
   if (scratch.evaluated_[subprogram.index] != scratch.box_version_) {
     expression::run_steps(subprogram.outer_steps, scratch.box_version_, scratch.versions_, scratch.registers_);
     scratch.evaluated_[subprogram.index] = scratch.box_version_;
   }
-  if (last.lower != scratch.last_.lower || last.upper != scratch.last_.upper) {
-    scratch.last_ = last;
+  if (last_side.lower != scratch.last_side_.lower || last_side.upper != scratch.last_side_.upper) {
+    scratch.last_side_ = last_side;
     scratch.last_version_ = ++scratch.version_;
-    if (registers_.back()) scratch.registers_[*registers_.back()] = last;
+    if (registers_.back()) scratch.registers_[*registers_.back()] = last_side;
   }
   expression::run_steps(subprogram.last_steps, scratch.last_version_, scratch.versions_, scratch.registers_);
 }
 
-Interval Constraints::value(std::size_t k, const Interval& last, Scratch& scratch) const {
-  run(all_[k].value, last, scratch);
+Interval Constraints::value(std::size_t k, const Interval& last_side, Scratch& scratch) const {
+  run(all_[k].value, last_side, scratch);
   return scratch.registers_[all_[k].value.outputs.front()];
 }
 
-Derivatives Constraints::derivatives(std::size_t k, const Interval& last, Scratch& scratch) const {
-  run(all_[k].derivatives, last, scratch);
+Derivatives Constraints::derivatives(std::size_t k, const Interval& last_side, Scratch& scratch) const {
+  run(all_[k].derivatives, last_side, scratch);
   const std::span<const Interval> registers = scratch.registers_;
   const std::vector<std::uint32_t>& outputs = all_[k].derivatives.outputs;
   Derivatives found{.value = registers[outputs[0]], .by_axis = {}};
@@ -118,7 +118,7 @@ Derivatives Constraints::derivatives(std::size_t k, const Interval& last, Scratc
     if (axis >= axes_.size()) break;
     found.by_axis[axis] = registers[outputs[axis + 1]];
     const bool known = found.by_axis[axis].is_defined() && !found.by_axis[axis].is_empty();
-    if (axis + 1 == axes_.size()) found.is_known_by_last = known && found.value.is_continuous();
+    if (axis + 1 == axes_.size()) found.is_last_derivative_known = known && found.value.is_continuous();
     found.is_known = found.is_known && known;
   }
   return found;

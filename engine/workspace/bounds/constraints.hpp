@@ -22,8 +22,8 @@ using IntervalBox = std::array<Interval, kMaxAxes>;
 struct Derivatives {
   Interval value;
   std::array<Interval, kMaxAxes> by_axis;
-  bool is_known = false;          ///< the constraint is continuous, and all partial derivatives are enclosed
-  bool is_known_by_last = false;  ///< it is continuous, and the derivative by the last axis is enclosed
+  bool is_known = false;                  ///< the constraint is continuous, and all partial derivatives are enclosed
+  bool is_last_derivative_known = false;  ///< the constraint is continuous, and `by_axis` of the last axis is enclosed
 };
 
 struct NamedConstraint {
@@ -34,15 +34,15 @@ struct NamedConstraint {
 /// Immutable and thread-safe.
 class Constraints {
  public:
-  /// Registers of one worker. They cache results: steps that do not depend on the last axis are evaluated once per box,
-  /// and common subexpressions of several constraints are evaluated once.
+  /// Registers of one worker. They cache results: program steps that do not depend on the last axis are evaluated once
+  /// per box, and common subexpressions of several constraints are evaluated once.
   class Scratch {
     friend Constraints;
     std::vector<Interval> registers_;
     std::vector<std::uint64_t> versions_;   ///< by register: version of the inputs for which it was computed
     std::vector<std::uint64_t> evaluated_;  ///< by subprogram: version of the box for which its outer steps were run
     std::uint64_t version_ = 0, box_version_ = 0, last_version_ = 0;
-    Interval last_;  ///< side of the last axis
+    Interval last_side_;  ///< side of the box along the last axis
   };
 
   /// @param axes    indices of the graph's inputs that are the axes
@@ -58,11 +58,11 @@ class Constraints {
   bool depends(std::size_t k, std::size_t axis) const { return all_[k].depends[axis]; }
   Scratch make_scratch() const { return initial_; }
 
-  /// Sets the sides of all axes but the last.
+  /// Sets the sides of all axes but the last one, whose side is an argument of value() and derivatives().
   void set_box(const IntervalBox& box, Scratch& scratch) const;
-  /// Enclosure of the value of constraint k over the box. @param last  side of the last axis
-  Interval value(std::size_t k, const Interval& last, Scratch& scratch) const;
-  Derivatives derivatives(std::size_t k, const Interval& last, Scratch& scratch) const;
+  /// Enclosure of the value of constraint k over the box. @param last_side  side of the box along the last axis
+  Interval value(std::size_t k, const Interval& last_side, Scratch& scratch) const;
+  Derivatives derivatives(std::size_t k, const Interval& last_side, Scratch& scratch) const;
 
  private:
   /// The steps of the program that some of its outputs depend on.
@@ -78,7 +78,7 @@ class Constraints {
     std::array<bool, kMaxAxes> depends{};
   };
 
-  void run(const Subprogram& subprogram, const Interval& last, Scratch& scratch) const;
+  void run(const Subprogram& subprogram, const Interval& last_side, Scratch& scratch) const;
   Subprogram extract(const expression::Program& program, std::size_t first_output, std::size_t count);
 
   std::vector<std::size_t> axes_;

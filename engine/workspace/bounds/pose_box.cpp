@@ -192,7 +192,7 @@ class PoseBranchAndBound {
     std::vector<Box> boxes = {all};
     while (!boxes.empty()) {
       parallel_for(boxes.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
-        for (std::size_t i = begin; i < end && !stopped(); ++i)  // tested here, too, because a round may take long
+        for (std::size_t i = begin; i < end && !stopped(); ++i)  // also tested within a round, which may take long
           examine(boxes[i], scratch_[worker]);
       });
       found.boxes += boxes.size();

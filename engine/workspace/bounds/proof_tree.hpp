@@ -8,7 +8,7 @@
 
 namespace pkm::bounds {
 
-/// A node is a box, stored with its steps as text; node 0 is the whole.
+/// A node is a box, stored with its proof steps as text; node 0 is the whole search box.
 class ProofTree {
  public:
   void resize(std::size_t nodes) { nodes_.resize(nodes); }
@@ -17,7 +17,7 @@ class ProofTree {
   void record(std::size_t node, const std::vector<Step>& steps);
   /// Bisects a node along `axis`. Its lower half is node `first_child`, its upper half the node after that.
   void bisect(std::size_t node, std::size_t axis, std::size_t first_child);
-  /// Upper bound of the length that append_to() appends.
+  /// Upper bound of the length of the text that append_to() appends.
   std::size_t bytes() const;
   /// Appends one line per node, in depth-first order.
   void append_to(std::string& text) const;

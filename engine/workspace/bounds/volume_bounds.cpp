@@ -73,10 +73,11 @@ class BranchAndBound {
   /// Enclosure of a leaf, in an array of its own because all of them are read after each round.
   struct Enclosure {
     Interval volume{0.0};
-    double width = 0;  ///< of `volume`; 0 if bisection cannot reduce it
+    double width = 0;  ///< width of `volume`; 0 if bisection cannot reduce it
   };
 
-  /// The leaves with the widest enclosures: as many as could be sufficient, at most those with 3/4 of the total width.
+  /// Selects the leaves with the widest enclosures for bisection: as many as could be sufficient to reach the required
+  /// gap, but at most those with 3/4 of the total width.
   std::vector<std::size_t> select_leaves(const VolumeBounds& bounds) {
     order_.clear();
     for (std::size_t i = 0; i < enclosures_.size(); ++i)
@@ -111,7 +112,7 @@ class BranchAndBound {
 
   void prune(std::size_t i, ColumnPruner::Scratch& scratch) {
     Leaf& leaf = leaves_[i];
-    const bool skipped = options_.stop && options_.stop();  // tested here, too, because a round may take long
+    const bool skipped = options_.stop && options_.stop();  // also tested within a round, which may take long
     std::vector<Step> steps;
     pruner_.prune(leaf.box, scratch, tree_ ? &steps : nullptr, skipped);
     if (tree_) tree_->record(leaf.node, steps);

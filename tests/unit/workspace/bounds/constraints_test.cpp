@@ -21,7 +21,7 @@ TEST(Constraints, EncloseValuesAndDerivatives) {
   disc.set_box({Interval(0.1, 0.2)}, scratch);
   expect_tight(disc.value(0, {-0.5, 0.3}, scratch), 1 - 0.04 - 0.25, 1 - 0.01);
   const Derivatives slope = disc.derivatives(0, {-0.5, 0.3}, scratch);
-  EXPECT_TRUE(slope.is_known && slope.is_known_by_last);
+  EXPECT_TRUE(slope.is_known && slope.is_last_derivative_known);
   expect_tight(slope.by_axis[0], -0.4, -0.2);
   expect_tight(slope.by_axis[1], -0.6, 1);
   disc.set_box({Interval(2, 3)}, scratch);  // what depends on x must be computed again
@@ -32,11 +32,11 @@ TEST(Constraints, KnowWhichDerivativesExist) {
   const Constraints kink = conditions("xz", {"1 - abs(x) - z", "sqrt(x) - z", "sign(x) - z"});
   Constraints::Scratch scratch = kink.make_scratch();
   kink.set_box({Interval(-1, 1)}, scratch);
-  EXPECT_TRUE(kink.derivatives(0, {0, 1}, scratch).is_known_by_last);
-  EXPECT_FALSE(kink.derivatives(1, {0, 1}, scratch).is_known_by_last);  // undefined for x < 0
-  EXPECT_FALSE(kink.derivatives(2, {0, 1}, scratch).is_known_by_last);  // discontinuous
+  EXPECT_TRUE(kink.derivatives(0, {0, 1}, scratch).is_last_derivative_known);
+  EXPECT_FALSE(kink.derivatives(1, {0, 1}, scratch).is_last_derivative_known);  // undefined for x < 0
+  EXPECT_FALSE(kink.derivatives(2, {0, 1}, scratch).is_last_derivative_known);  // discontinuous
   kink.set_box({Interval(0, 1)}, scratch);
-  EXPECT_TRUE(kink.derivatives(1, {0, 1}, scratch).is_known_by_last);
+  EXPECT_TRUE(kink.derivatives(1, {0, 1}, scratch).is_last_derivative_known);
   EXPECT_FALSE(kink.derivatives(1, {0, 1}, scratch).is_known) << "the derivative by x is infinite at 0";
   kink.set_box({Interval(0.5, 1)}, scratch);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(kink.derivatives(k, {0, 1}, scratch).is_known) << k;
