@@ -20,7 +20,7 @@ bool lexicographically_less(const double* a, const double* b, std::size_t object
 // its members weakly dominates (dominates or equals) the next design. The first score of the next design is never
 // smaller than the members' first scores, so only the other scores are compared.
 
-/// 2 objectives: the minimum of the second score, which the last member has.
+/// A front for 2 objectives: stores the minimum of the second score, which is that of the last member.
 struct RunningMinimum {
   explicit RunningMinimum(std::size_t) {}
   bool weakly_dominates(const double* p) const { return any && minimum <= p[1]; }
@@ -32,8 +32,8 @@ struct RunningMinimum {
   double minimum = 0;
 };
 
-/// 3 objectives: the non-dominated pairs of second and third score, sorted by ascending second and therefore descending
-/// third score.
+/// A front for 3 objectives: stores the non-dominated pairs of second and third score, sorted by ascending second and
+/// therefore descending third score.
 struct Staircase {
   explicit Staircase(std::size_t) {}
   bool weakly_dominates(const double* p) const {
@@ -56,7 +56,8 @@ struct Staircase {
   std::vector<std::array<double, 2>> steps;
 };
 
-/// Any number of objectives: all members, compared one by one from the last, which is the most likely to dominate.
+/// A front for any number of objectives: stores all members and compares them one by one, starting with the last, which
+/// is the most likely to dominate.
 struct MemberList {
   explicit MemberList(std::size_t objectives) : n(objectives) {}
   bool weakly_dominates(const double* p) const {

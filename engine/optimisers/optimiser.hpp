@@ -60,7 +60,7 @@ class Monitor {
   virtual ~Monitor() = default;
   /// Reports a generation. @return false to stop the stage, which then ends with StopReason::interrupted
   virtual bool generation(const Generation& generation) = 0;
-  /// Checked between generations. @return false to stop, as generation()
+  /// Called between generations. @return false to stop the stage, which then ends with StopReason::interrupted
   virtual bool goes_on() { return true; }
   /// Shows a warning, one sentence, to the user.
   virtual void warn(const std::string& sentence) = 0;
@@ -117,7 +117,7 @@ class Optimiser {
   virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
   /// Maximum number of concurrent evaluations.
   virtual std::int64_t at_once() const { return std::numeric_limits<std::int64_t>::max(); }
-  /// Which results the stage needs of an evaluation.
+  /// Which results of an evaluation the stage needs.
   virtual Detail detail() const { return Detail::enough; }
 };
 
@@ -125,7 +125,7 @@ class Optimiser {
 struct OptimiserEntry {
   std::string name;
   std::string meaning;  ///< one line
-  /// Depends on the options where they choose a library's algorithm.
+  /// The capabilities depend on the options if these select an algorithm of a library.
   Capabilities (*capabilities)(const Options&);
   std::vector<OptionSpec> options;
   std::unique_ptr<Optimiser> (*make)(const Options&, const DesignSpace&);

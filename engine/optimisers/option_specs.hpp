@@ -9,7 +9,8 @@
 
 namespace pkm {
 
-/// A dimensionless number in [lower, upper]. Without an initial value the option is optional and has no default.
+/// An option whose value is a dimensionless number in [lower, upper]. Without an initial value, the option is optional
+/// and has no default.
 inline OptionSpec number_option(std::string name, std::optional<OptionValue> initial, double lower, double upper,
                                 std::string meaning) {
   return {.name = std::move(name),
@@ -27,7 +28,7 @@ inline OptionSpec integer_option(std::string name, std::optional<OptionValue> in
   return spec;
 }
 
-/// One of `choices`; the first is the default.
+/// An option whose value is one of `choices`; the first is the default.
 inline OptionSpec word_option(std::string name, std::vector<std::string> choices, std::string meaning) {
   return {.name = std::move(name),
           .kind = OptionKind::word,

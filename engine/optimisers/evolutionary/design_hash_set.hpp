@@ -19,7 +19,8 @@ class DesignHashSet {
   void insert(const EvaluationTable& table, std::size_t row);
 
  private:
-  /// The hash is stored with the row, so that designs, which are far apart in memory, are rarely compared in vain.
+  /// A row of the table and the hash of its design. Comparing hashes first avoids most comparisons of designs, which
+  /// are far apart in memory.
   struct Slot {
     std::uint32_t hash = 0, row = kEmpty;
   };

@@ -101,8 +101,8 @@ class Nsga2Selection final : public SurvivorSelection {
     return spread(survivors);
   }
 
-  /// Progress is an increase of the hypervolume. While there is no hypervolume, any change of the front counts, and
-  /// while no design is feasible, a smaller violation.
+  /// Progress is an increase of the hypervolume. While there is no hypervolume, any change of the front counts as
+  /// progress; while no design is feasible, a smaller constraint violation.
   bool has_progressed(bool archive_changed, bool violation_reduced) {
     const double hypervolume = archive_.front().hypervolume;
     if (std::isnan(hypervolume)) return archive_changed || (violation_reduced && archive_.compromise_row() < 0);

@@ -1,9 +1,9 @@
 // Genetic operators for real variables: parent selection, crossover and mutation.
 //
-// Selection uses only the rank in the population (index 0 is the best), so that it serves one and several objectives.
-// Crossover is linear in the parents' physical values, so that the unit of a variable does not matter. Mutation steps
-// are fractions of the variable's range [lower, upper]. The caller projects the results onto the bounds, so that an
-// optimum in a corner of the design space is found exactly.
+// Selection uses only the rank in the population (index 0 is the best) and therefore serves one and several objectives.
+// Crossover is linear in the parents' physical values and therefore independent of the unit of a variable. Mutation
+// steps are fractions of the variable's range [lower, upper]. The caller projects the results onto the bounds; an
+// optimum in a corner of the design space is then found exactly.
 #pragma once
 
 #include <cstddef>
@@ -33,12 +33,11 @@ struct Crossover {
   enum class Kind {
     /// Differential evolution, similar to current-to-pbest/1 (Zhang and Sanderson 2009):
     ///   child = first + F (guide - first) + F (p - q)
-    /// `guide` is a random one of the best tenth (at least two); p and q are random members, p being the better one
-    /// with
-    /// probability 7/8; F is uniform in [0.45, 1.35]. Each variable takes the step with probability 0.9, a random one
-    /// always; the other variables are copied from `first`.
+    /// `guide` is a random one of the best tenth (at least two); p and q are random members, where p is the better
+    /// one with probability 7/8; F is uniform in [0.45, 1.35]. Each variable is changed with probability 0.9, but at
+    /// least one, chosen at random; the other variables are copied from `first`.
     differential,
-    sbx,       ///< simulated binary crossover (Deb and Agrawal 1995), distribution index `eta`; per variable with 1/2
+    sbx,       ///< simulated binary crossover (Deb and Agrawal 1995), index `eta`; probability 1/2 per variable
     blend,     ///< BLX-0.5: uniform on the parents' interval, extended by half of its length on both sides
     scattered  ///< discrete recombination: each variable from either parent
   };

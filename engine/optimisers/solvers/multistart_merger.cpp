@@ -13,7 +13,7 @@ MultistartMerger::MultistartMerger(const SolverPlan& plan, const StageInput& inp
       max_evaluations_(plan.limits.evaluations),
       table_(table),
       scalarisation_(plan.scalarisation),
-      starts_(make_start_runs(plan, input)) {
+      starts_(make_multistart_runs(plan, input)) {
   const auto& objectives = input.problem.objectives();
   if (objectives.size() == 1) return;
   scalarisation_.extents = input.previous_front.extents;
@@ -28,7 +28,7 @@ MultistartMerger::MultistartMerger(const SolverPlan& plan, const StageInput& inp
 
 bool MultistartMerger::merge() {
   while (!stopped_ && next_ < starts_.size()) {
-    StartRun& run = starts_[next_];
+    MultistartRun& run = starts_[next_];
     // A start that is still replaying its record is not merged: it may deviate from the record and be restarted.
     if (!run.ended && run.table.size() <= run.recorded.size()) break;
     while (!stopped_ && merged_rows_ < run.table.size()) stopped_ = !append_and_report(run.table, merged_rows_++);
@@ -61,7 +61,7 @@ bool MultistartMerger::append_and_report(const EvaluationTable& run_table, std::
                                     .alone = true});
 }
 
-void MultistartMerger::finish(StartRun& run) {
+void MultistartMerger::finish(MultistartRun& run) {
   StartOutcome outcome = run.outcome;
   outcome.first_row = static_cast<std::int64_t>(table_.size() - run.table.size());
   outcome.end_row += outcome.first_row;
@@ -78,7 +78,7 @@ void MultistartMerger::finish(StartRun& run) {
 }
 
 void MultistartMerger::receive(UnmergedStart&& remote) {
-  StartRun& run = starts_.at(static_cast<std::size_t>(remote.number));
+  MultistartRun& run = starts_.at(static_cast<std::size_t>(remote.number));
   if (run.ended) return;
   run.ended = remote.outcome.has_value();
   if (run.ended) run.outcome = std::move(*remote.outcome);
@@ -86,7 +86,7 @@ void MultistartMerger::receive(UnmergedStart&& remote) {
 }
 
 UnmergedStart MultistartMerger::snapshot(std::size_t k) const {
-  const StartRun& run = starts_[k];
+  const MultistartRun& run = starts_[k];
   UnmergedStart copy{static_cast<std::int64_t>(k), run.checkpoint_table(), {}};
   if (run.ended) copy.outcome = run.outcome;
   return copy;
@@ -104,7 +104,7 @@ std::int64_t MultistartMerger::evaluations_left() {
 std::vector<UnmergedStart> MultistartMerger::unmerged_starts() const {
   std::vector<UnmergedStart> unmerged;
   for (std::size_t k = next_; k < starts_.size(); ++k) {
-    const StartRun& run = starts_[k];
+    const MultistartRun& run = starts_[k];
     if (k == next_ && !run.ended && run.checkpoint_table().size() == merged_rows_) continue;
     if (run.checkpoint_table().size() > 0) unmerged.push_back(snapshot(k));
   }

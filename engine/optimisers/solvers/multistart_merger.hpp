@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/optimisers/pareto_archive.hpp"
-#include "engine/optimisers/solvers/start_run.hpp"
+#include "engine/optimisers/solvers/multistart_run.hpp"
 
 namespace pkm {
 
@@ -19,17 +19,17 @@ class MultistartMerger {
 
   const Scalarisation& scalarisation() const { return scalarisation_; }
   bool has_front() const { return archive_.has_value(); }
-  std::vector<StartRun>& starts() { return starts_; }
+  std::vector<MultistartRun>& starts() { return starts_; }
   bool stopped() const { return stopped_; }
   void stop() { stopped_ = true; }
-  /// Protects starts() and merge().
+  /// To be locked for access to starts() and calls of merge().
   std::mutex& mutex() { return mutex_; }
 
   /// Appends all rows that are next in start order to the stage table, and reports each to the monitor. Rank 0 merges
   /// during the stage, the other ranks at its end.
   /// @return false if the stage was stopped, for example by the monitor
   bool merge();
-  /// Takes over the evaluations, and the outcome if there is one, of a start that another rank works on.
+  /// Stores the evaluations and, if it has finished, the outcome of a start that another rank runs.
   void receive(UnmergedStart&& remote);
   /// Copy of the evaluations of a start and, if it has finished, of its outcome.
   UnmergedStart snapshot(std::size_t k) const;
@@ -39,7 +39,7 @@ class MultistartMerger {
   /// Appends row `source` of the start being merged. @return false if the monitor requests a stop
   bool append_and_report(const EvaluationTable& run_table, std::size_t source);
   /// Records the outcome of a start whose rows have all been merged, and proceeds to the next start.
-  void finish(StartRun& run);
+  void finish(MultistartRun& run);
   /// Maximum number of evaluations still to be made. Cached: counted again whenever as many rows as a
   /// sixteenth of the number of starts have been merged.
   std::int64_t evaluations_left();
@@ -52,15 +52,15 @@ class MultistartMerger {
   std::int64_t max_evaluations_;  ///< per start
   EvaluationTable& table_;
   Scalarisation scalarisation_;
-  std::vector<StartRun> starts_;
+  std::vector<MultistartRun> starts_;
   std::mutex mutex_;
   std::size_t next_ = 0;         ///< index of the start being merged
-  std::size_t merged_rows_ = 0;  ///< number of its rows that have been merged
+  std::size_t merged_rows_ = 0;  ///< number of merged rows of that start
   std::atomic<bool> stopped_ = false;
   std::optional<ScalarisedProblem> scalarised_;  ///< of the start being merged
   RankKey best_, best_of_start_;
   std::int64_t evaluations_left_ = 0;
-  std::size_t next_count_size_ = 0;  ///< table size at which they are recounted
+  std::size_t next_count_size_ = 0;  ///< table size at which evaluations_left_ is recomputed
   std::vector<StartOutcome> finished_;
   std::vector<std::int64_t> population_;  ///< best row of the start being merged
   std::optional<ParetoArchive> archive_;  ///< several objectives: the results of the starts

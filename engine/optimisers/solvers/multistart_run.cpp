@@ -1,4 +1,4 @@
-#include "engine/optimisers/solvers/start_run.hpp"
+#include "engine/optimisers/solvers/multistart_run.hpp"
 
 #include <utility>
 
@@ -7,9 +7,9 @@
 namespace pkm {
 namespace {
 
-/// Restores the recorded starts. Finished ones are adopted as they are, except those that ended by an evaluation limit
-/// that has been raised since.
-void read_record(const SolverPlan& plan, const StageInput& input, std::vector<StartRun>& starts) {
+/// Restores the recorded runs. A finished run is kept unchanged, unless it ended by an evaluation limit that has been
+/// raised since then.
+void read_record(const SolverPlan& plan, const StageInput& input, std::vector<MultistartRun>& starts) {
   const auto restore = [&](std::size_t k, EvaluationTable table, const StartOutcome* outcome) {
     if (k >= starts.size() || table.size() < starts[k].recorded.size()) return;
     starts[k].recorded = std::move(table);
@@ -35,10 +35,10 @@ void read_record(const SolverPlan& plan, const StageInput& input, std::vector<St
 
 }  // namespace
 
-std::vector<StartRun> make_start_runs(const SolverPlan& plan, const StageInput& input) {
+std::vector<MultistartRun> make_multistart_runs(const SolverPlan& plan, const StageInput& input) {
   const DesignSpace& space = input.problem.space();
   const EvaluationShape shape = input.problem.shape(plan.detail);
-  std::vector<StartRun> starts;
+  std::vector<MultistartRun> starts;
   const auto add = [&](StartDesign start) {
     starts.push_back({std::move(start), EvaluationTable(shape), EvaluationTable(shape)});
   };

@@ -8,16 +8,16 @@
 
 namespace pkm {
 
-struct StartRun {
+struct MultistartRun {
   StartDesign start;
   EvaluationTable table;     ///< evaluations of this run so far
   EvaluationTable recorded;  ///< recorded evaluations of an earlier run, which are replayed
   bool ended = false;
-  bool is_local = false;      ///< this rank runs it
-  StartOutcome outcome = {};  ///< rows count from 0
+  bool is_local = false;      ///< true if this rank executes the run
+  StartOutcome outcome = {};  ///< row numbers refer to `table`
   std::string warning = {};
 
-  /// Evaluations to be stored in a checkpoint: the record, until the replay has passed its end.
+  /// Evaluations to be stored in a checkpoint: `recorded` until all of it has been replayed, then `table`.
   const EvaluationTable& checkpoint_table() const {
     return !ended && recorded.size() > table.size() ? recorded : table;
   }
@@ -25,6 +25,6 @@ struct StartRun {
 
 /// Creates the runs of a stage, from the start designs of its input and then from Sobol points, with their recorded
 /// evaluations.
-std::vector<StartRun> make_start_runs(const SolverPlan& plan, const StageInput& input);
+std::vector<MultistartRun> make_multistart_runs(const SolverPlan& plan, const StageInput& input);
 
 }  // namespace pkm

@@ -32,7 +32,7 @@ const NonlinearProgram::Point* NonlinearProgram::evaluate(const double* u) noexc
       evaluate_new_row({clamped.data(), variables});
     }
     if (stop_ == Stop::not_finite) return nullptr;
-    if (clamped != current_unit_) {  // only t differs
+    if (clamped != current_unit_) {  // only the epigraph variable t differs
       current_unit_ = clamped;
       update_point(row_, current_unit_.back());
     }
@@ -57,7 +57,7 @@ void NonlinearProgram::evaluate_new_row(std::span<const double> u) {
   const DesignSpace& space = context_.problem.space();
   const std::size_t row = table_.extend(1);
   const auto design = table_.design(row);
-  for (std::size_t i = 0; i < design.size(); ++i)  // exactly the start design, not its rounded image
+  for (std::size_t i = 0; i < design.size(); ++i)  // use the start design itself, without rounding
     design[i] = u[i] == start_unit_[i] ? start_design_[i] : space.from_unit(i, u[i]);
   context_.evaluator.evaluate(context_.problem, table_, row);
   if (!scalarised_) scalarised_.emplace(context_.scalarisation, context_.problem, table_, row);

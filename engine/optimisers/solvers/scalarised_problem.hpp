@@ -75,7 +75,7 @@ class ScalarisedProblem {
   double scaled_change(std::size_t row, std::size_t k) const {
     return (smooth_value(row, k) - start_values_[k]) / scalarisation_.extents[k];
   }
-  /// t of its unit coordinate, and the bounds of t.
+  /// The variable t for a unit coordinate u in [0, 1].
   double t_from_unit(double u) const { return t_min() + u * (t_max() - t_min()); }
   static double t_min() { return -10; }
   double t_max() const { return start_is_feasible_ ? 0 : 10; }
@@ -87,7 +87,7 @@ class ScalarisedProblem {
   std::size_t start_;
   std::vector<double> start_values_;  ///< f_i0, from smooth values
   double scale_ = 1;                  ///< factor of the single minimised objective
-  bool start_is_feasible_ = true;     ///< then no objective may become worse
+  bool start_is_feasible_ = true;     ///< true: no objective may become worse
 };
 
 }  // namespace pkm

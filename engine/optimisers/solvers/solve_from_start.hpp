@@ -10,7 +10,7 @@ namespace pkm {
 /// Runs the solver, restarts it where it stops before the optimum, and moves the result onto nearby bounds and
 /// constraints.
 /// @param program  the nonlinear program, with the start design evaluated
-/// @param table  its evaluations
+/// @param table  evaluations of `program`
 /// @param start_evaluated  false if several objectives are to be scalarised relative to a start whose evaluation failed
 /// @return nullopt if interrupted
 std::optional<StartOutcome> solve_from_start(const Solver& solver, NonlinearProgram& program,

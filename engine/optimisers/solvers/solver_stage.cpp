@@ -22,7 +22,7 @@ class SolverStageRun {
       : plan_(plan), input_(input), table_(table), merger_(plan, input, table) {}
 
   StageResult operator()() {
-    const std::vector<StartRun>& starts = merger_.starts();
+    const std::vector<MultistartRun>& starts = merger_.starts();
     std::vector<std::size_t> unfinished;
     for (std::size_t k = 0; k < starts.size(); ++k)
       if (!starts[k].ended) unfinished.push_back(k);
@@ -46,7 +46,7 @@ class SolverStageRun {
   /// Runs one start on this thread.
   void run_start(std::size_t k) {
     if (merger_.stopped()) return;
-    StartRun& run = merger_.starts()[k];
+    MultistartRun& run = merger_.starts()[k];
     run.is_local = true;
     try {
       try {
@@ -67,7 +67,7 @@ class SolverStageRun {
     }
   }
 
-  void solve(std::size_t k, StartRun& run, Evaluator& evaluator) {
+  void solve(std::size_t k, MultistartRun& run, Evaluator& evaluator) {
     // `table` belongs to this thread; run.table is a copy that other threads read under the mutex.
     EvaluationTable table(run.table.shape());
     const auto evaluated = [&] {
