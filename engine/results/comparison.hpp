@@ -33,7 +33,7 @@ std::optional<DesignRecord> best_so_far(const StudyContents& contents);
 std::optional<Diagnosis> diagnose(const StudyContents& contents, const DesignProblem* problem);
 
 /// Counts the failed evaluations of all stages and finds the reasons of some.
-/// @param problem  as above; null: no reasons are found
+/// @param problem  the study's problem, used to evaluate designs again; null: no reasons are found
 Failures collect_failures(const StudyContents& contents, const DesignProblem* problem);
 
 /// Label of the best evaluation in tables: "best"; "best so far" before the study's end; "compromise" of several

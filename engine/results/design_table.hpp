@@ -12,7 +12,7 @@
 namespace pkm {
 
 struct DesignTable {
-  /// One design. `exact` has its values by the exact method, where `record` has values by voxels.
+  /// One design. If `record` has values computed by voxels, `exact` has those of the exact method.
   struct Column {
     std::string name;
     std::optional<DesignRecord> record, exact;

@@ -1,4 +1,4 @@
-// Points of a recorded Pareto front that stand out, and its hypervolume.
+// Notable points of a recorded Pareto front (best in an objective, knee, compromise), and its hypervolume.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace pkm {
 
-/// Labels of each point that stands out: "best conditioning", "knee", "compromise".
+/// Labels of the notable points, by index of the point: "best conditioning", "knee", "compromise".
 /// @param front  not empty
 std::vector<std::vector<std::string>> point_labels(const ProblemRecord& problem, const Scores& front);
 
