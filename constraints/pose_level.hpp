@@ -1,4 +1,4 @@
-// Helpers of the pose-level constraints: each sets the limits of one group of the mechanism.
+// Helpers of the pose-level constraints. Such a constraint sets the limits of one group (LimitInfo::group).
 #pragma once
 
 #include <string>

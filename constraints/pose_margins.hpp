@@ -23,9 +23,9 @@ struct MarginsOfPoses {
   std::vector<S> all;
 };
 
-/// All margins of all poses, from the mechanism's PoseMargins capability, else (double only) from inspect(): there a
-/// NaN margin and a pose that does not assemble count as -1. The reference is valid until the next call with this
-/// scratch.
+/// All margins of all poses, from the mechanism's PoseMargins capability, otherwise (double only) from
+/// Mechanism::inspect(); in this case a NaN margin and a pose that does not assemble count as -1. The reference is
+/// valid until the next call with the same scratch memory.
 template <class S>
 const std::vector<S>& margins_of(const DesignView<S>& design, const MarginPoses& of) {
   const Mechanism& mechanism = design.mechanism;

@@ -117,7 +117,7 @@ class PeakLoad final : public Quantity {
                                      design.scratch.template get<InverseDynamicsScratch<S>>(),
                                      [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, loads); });
   }
-  /// As collect(), by influence coefficients: for mechanisms without joint forces.
+  /// Variant of collect() for mechanisms without joint forces: computes the loads by influence coefficients.
   std::size_t collect_rates(const DesignView<double>& design, std::vector<double>& loads) const {
     for (std::size_t k = 0; k < samples_.size(); ++k) {
       const MotionSample& at = samples_[k];
@@ -198,7 +198,7 @@ class PeakLoad final : public Quantity {
   Unsupported why_no_derivatives_;
 };
 
-/// @param joints  values of the option `joint` besides numbers; the first is the default
+/// @param joints  words that the option `joint` accepts besides joint numbers; the first is the default
 /// @param forces  whether the load depends on a wrench on the platform
 std::vector<OptionSpec> load_options(const std::vector<std::string>& joints, bool forces = true) {
   std::vector<std::pair<std::string, std::string>> wrench;
