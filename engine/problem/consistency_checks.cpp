@@ -18,8 +18,8 @@ using Kind = FixedCoordinate::Kind;
 using Interval1D = std::array<double, 2>;
 
 constexpr std::size_t kMaxVariables = 10;  // checks use the 2^n vertices of the bounds; skipped for more variables
-// Relative to the size of the range that the vertices reach: a box must be this far outside it. The reach of inner
-// designs may exceed that of the vertices.
+// A box is reported if it lies this far outside the range that the vertex designs reach, relative to the size of the
+// range. The tolerance is necessary because designs inside the bounds may reach farther than those at the vertices.
 constexpr double kReachTolerance = 0.1;
 
 const std::string kContradiction = "contradiction";
@@ -109,8 +109,8 @@ void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double
   }
 }
 
-/// Extends the hull by the ranges of the swept coordinates of the designs: the box that a workspace analysis without
-/// one derives from the design.
+/// Extends the hull by the ranges of the swept coordinates of the designs: each is the box that a workspace analysis
+/// uses if the plan has no box.
 void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<double>>& designs, WorkspacePlan plan,
                     Box& hull) {
   std::visit([](auto& method) { method.box.reset(); }, plan.method);
@@ -173,8 +173,8 @@ void check_bounds(const ProblemParts& parts, Findings& found) {
     }
 }
 
-/// Whether an objective or a constraint uses a workspace analysis (0: the workspace, k: the k-th region). Only then
-/// does an empty analysis make every design useless.
+/// Whether an objective or a constraint uses a workspace analysis (0: the workspace, k: the k-th region). If so, a
+/// design is useless if the result of this analysis is empty.
 bool is_essential(const ProblemParts& parts, std::size_t analysis) {
   const auto reads = [analysis](const NamedQuantity& q) { return q.uses_workspace && q.analysis == analysis; };
   return std::ranges::any_of(parts.objectives, reads) || std::ranges::any_of(parts.workspace_margins, reads);

@@ -134,7 +134,7 @@ Status DesignProblem::compute(std::span<const double> parameters, Scratch& scrat
 
 void DesignProblem::differentiate(std::span<const double> parameters, std::span<const std::size_t> by,
                                   std::span<double> derivatives, Scratch& scratch) const {
-  constexpr std::size_t kDirections = 4;  // of Dual4
+  constexpr std::size_t kDirections = 4;  // number of derivatives of Dual4
   Buffers& buffers = scratch.get<Buffers>();
   std::vector<Dual4>& all = buffers.duals;
   WorkspaceResults<double>& workspaces = buffers.workspaces;
@@ -188,8 +188,8 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
   }
 }
 
-/// The reason given by the first quantity without a finite value that gives one, in the order of evaluation: margins,
-/// then objectives.
+/// Finds the first quantity whose value is not finite and that states a reason for it, and returns the reason. The
+/// order is that of evaluation: margins, then objectives.
 std::string DesignProblem::failure_reason(const DesignReport& report) const {
   Scratch scratch;
   const DesignView<double> view{*parts_.mechanism, report.parameters, &report.workspace, scratch};

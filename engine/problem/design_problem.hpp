@@ -66,7 +66,7 @@ class DesignProblem final : public Problem {
   const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level ones first
   const std::vector<OutputInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const override;
-  /// There are none if a workspace analysis in use or a quantity has none.
+  /// Derivatives require that all workspace analyses in use and all quantities have derivatives.
   Unsupported why_no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
@@ -78,7 +78,7 @@ class DesignProblem final : public Problem {
   /// if a design-level constraint is violated.
   DesignReport report(std::span<const double> parameters) const;
   /// Evaluates a failed design again and returns the reason: the first quantity without a finite value, and why.
-  /// @param detail  of the evaluation that failed
+  /// @param detail  level of detail of the evaluation that failed
   std::string failure_reason(std::span<const double> design, Detail detail) const;
   /// Derivatives of objectives and margins with respect to any parameters, also those that are not variables.
   /// @param by  indices of the parameters
@@ -99,7 +99,7 @@ class DesignProblem final : public Problem {
   /// derivatives, and the values of the workspace analyses to the buffers in `scratch`.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> derivatives,
                      Scratch& scratch) const;
-  /// Runs the workspace analyses in use. @param all  also the workspace's, if no quantity uses it
+  /// Runs the workspace analyses that quantities use. @param all  true: analyses the main workspace in any case
   template <class S>
   void analyse(std::span<const S> parameters, bool all, Scratch& scratch, WorkspaceResults<S>& results) const;
 

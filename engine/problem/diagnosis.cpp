@@ -89,7 +89,7 @@ bool has_useful_design(const Designs& designs) {
   return false;
 }
 
-/// The best design in the order of `better`; without a table if there are no designs.
+/// The best design according to better(); its `table` is null if there are no designs.
 TableRow best_ranked(const Designs& designs) {
   TableRow best;
   RankKey rank;

@@ -102,12 +102,13 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
   evaluate_with_ranks(problem, table, first, timings);
 }
 
-void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double each) {
+void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows,
+                                      double design_seconds) {
   // Times [s]: a shorter batch is faster on one thread; a longer design is worth evaluating on several threads.
   constexpr double kMinBatchTime = 5e-6, kMinDesignTime = 200e-6;
   const auto [first, end] = rows;
   const std::size_t count = end - first;
-  if (threads_ == 1 || (each > 0 && each * static_cast<double>(count) < kMinBatchTime)) {
+  if (threads_ == 1 || (design_seconds > 0 && design_seconds * static_cast<double>(count) < kMinBatchTime)) {
     Scratch& own = scratch_[worker()];
     const SerialScope alone;
     return evaluate_rows(problem, table, first, end, own);
@@ -115,11 +116,12 @@ void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& t
   with_team(threads_, [&, first = first, end = end] {
     const std::size_t team = workers(), rounds = (count + team - 1) / team;
     if (scratch_.size() < team) scratch_.resize(team);
-    // Distributed over the designs, more than a quarter of the threads' time would be idle.
+    // True if evaluating each design on one thread would leave the threads idle for more than a quarter of the time.
     const bool imbalanced = 4 * count < 3 * rounds * team;
-    if (imbalanced && each > kMinDesignTime) return evaluate_rows(problem, table, first, end, scratch_[worker()]);
+    if (imbalanced && design_seconds > kMinDesignTime)
+      return evaluate_rows(problem, table, first, end, scratch_[worker()]);
     parallel_for(count,
-                 [&](std::size_t begin, std::size_t stop, std::size_t worker) {  // one design: parallel within it
+                 [&](std::size_t begin, std::size_t stop, std::size_t worker) {  // a single design may use all threads
                    evaluate_rows(problem, table, first + begin, first + stop, scratch_[worker]);
                  });
   });
@@ -199,9 +201,11 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
     return std::accumulate(table.seconds.begin() + static_cast<std::ptrdiff_t>(of.first),
                            table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);
   };
-  // Accepted idle time: relative to the mean time of the threads, and in [s], below which claims do not pay off.
+  // Idle time that is accepted before rows are distributed dynamically: relative to the mean time of the threads, and
+  // in s.
   constexpr double kMaxIdleShare = 0.05, kMinIdleTime = 1e-3;
-  // Batches that take longer per thread are always claimed: unforeseen delays cost more than the claims (at most 3 %).
+  // Batches that take longer per thread are always distributed dynamically: unforeseen delays would cost more than the
+  // messages for claiming rows (at most 3 %).
   constexpr double kMaxStaticTime = 0.1;  // [s]
   double longest = 0, threads = 0;
   for (std::size_t rank = 0; rank < ranks; ++rank) {

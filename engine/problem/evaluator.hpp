@@ -21,7 +21,7 @@ class Evaluator {
   virtual ~Evaluator() = default;
 
   /// Evaluates rows [first, table.size()), whose designs are set. The results do not depend on the distribution of the
-  /// rows. DesignError makes the row of a design a failed one; other exceptions are rethrown. After
+  /// rows. A design whose evaluation throws DesignError gets the status `failed`; other exceptions are rethrown. After
   /// Stopped, the table ends before the first incomplete row.
   virtual void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) = 0;
 };
@@ -52,8 +52,8 @@ class ParallelEvaluator final : public Evaluator {
   };
   using Rows = std::pair<std::size_t, std::size_t>;  // first, end
 
-  /// @param each  expected time per design on one thread [s]; 0: unknown
-  void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double each);
+  /// @param design_seconds  expected time per design on one thread [s]; 0: unknown
+  void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double design_seconds);
   void evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first, BatchTimings& timings);
   void compare_ranks(const EvaluationTable& table, std::size_t row);
   std::vector<Rows> claim_chunks(const Problem& problem, EvaluationTable& table, Rows rows);

@@ -29,9 +29,9 @@ struct AnalysisResult {
   std::string name;
   std::string meaning;
   const PoseQuantity* quantity = nullptr;  ///< null: the volume
-  std::string statistic = {};              ///< as in NamedStatistic
+  std::string statistic = {};              ///< see NamedStatistic
 
-  /// With derivatives (Dual4), a worst case is replaced by its smooth approximation.
+  /// The value of this result. With derivatives (Dual4), a worst case is replaced by a smooth approximation.
   /// @param sharpness  of the smooth approximation
   template <class S>
   S value(const WorkspaceResult<S>& workspace, double sharpness, Scratch& scratch) const;
@@ -55,8 +55,8 @@ class Expression {
   bool needs_workspace() const;
   /// Adds the fields that the workspace analysis has to compute.
   void add_request(const EntryContext& context, FieldRequest& request) const;
-  /// With derivatives (Dual4), worst cases are replaced by smooth approximations. design.workspace may be null if
-  /// needs_workspace() is false.
+  /// The value of the expression. With derivatives (Dual4), worst cases are replaced by smooth approximations.
+  /// design.workspace may be null if needs_workspace() is false.
   template <class S>
   S value(const DesignView<S>& design) const;
 

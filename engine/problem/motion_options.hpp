@@ -38,7 +38,7 @@ inline const NamedMotion& motion_of(const EntryContext& context) {
                               did_you_mean(name, known));
 }
 
-/// Samples of that motion. Throws std::invalid_argument if one is not finite.
+/// Samples of the motion named in the options. Throws std::invalid_argument if a sample is not finite.
 inline std::vector<MotionSample> samples_of(const EntryContext& context) {
   const NamedMotion& named = motion_of(context);
   auto samples = sample(*named.motion, static_cast<std::size_t>(context.options.integer("samples")));

@@ -34,8 +34,8 @@ struct JointFieldScratch {
   std::vector<S> field;
 };
 
-/// The values of a quantity at all samples, reduced over the joints: one joint's, the worst joint's or the mean over
-/// the joints. The reference is valid until the next call with this scratch.
+/// The values of a quantity at all samples, reduced over the joints: the value of one joint, of the worst joint, or the
+/// mean. The reference is valid until the next call with the same scratch memory.
 /// @param joint  "1" to "8", "worst" or "mean"; ignored for quantities with one value per pose
 template <class S>
 const std::vector<S>& reduced_field(const WorkspaceResult<S>& workspace, const PoseQuantity& quantity,
@@ -66,7 +66,7 @@ const std::vector<S>& reduced_field(const WorkspaceResult<S>& workspace, const P
 struct PoseStatistic {
   const PoseQuantity& quantity;
   std::string statistic;        ///< "mean", "std", "min", "max" or a quantile such as "p95" (without derivatives)
-  std::string joint = "worst";  ///< as for reduced_field()
+  std::string joint = "worst";  ///< see reduced_field()
   double sharpness = 200;       ///< of the smooth approximation of "min" and "max" with derivatives
 
   template <class S>

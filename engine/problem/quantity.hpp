@@ -84,7 +84,7 @@ struct Region {
 /// Input of a catalogue entry when a study uses it.
 struct EntryContext {
   const Mechanism& mechanism;
-  const WorkspacePlan& plan;  ///< of the workspace analysis that the entry uses
+  const WorkspacePlan& plan;  ///< plan of the workspace analysis that the entry uses
   const Options& options;
   std::span<const Region> regions = {};       ///< of the study
   std::span<const NamedMotion> motions = {};  ///< of the study
@@ -117,7 +117,7 @@ struct ObjectiveEntry {
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// Description of the objective with given options; nullptr: `meaning`.
   std::function<std::string(const EntryContext&)> detail = nullptr;
-  std::function<Range(const EntryContext&)> range = unbounded;  ///< of its values
+  std::function<Range(const EntryContext&)> range = unbounded;  ///< range of its values
   bool uses_workspace = true;  ///< uses the analysis of the workspace or of a region; false: depends on the design only
   /// Whether the objective with given options uses the workspace analysis; nullptr: `uses_workspace` holds for all.
   bool (*needs_workspace)(const EntryContext&) = nullptr;

@@ -20,12 +20,12 @@ struct QuantityGradient {
 };
 
 /// The gradients of all objectives, then of all margins. Precondition: the problem has derivatives.
-/// @param report  of the design
+/// @param report  evaluation of the design
 std::vector<QuantityGradient> quantity_gradients(const DesignProblem& problem, const DesignReport& report);
 
 /// Worst value of a quantity for parameters within +- their tolerances.
 struct WorstCase {
-  double first_order;  ///< by the gradient
+  double first_order;  ///< estimate by the gradient
   double evaluated;    ///< at the corner of the tolerance box that is the worst to first order; NaN: evaluation failed
 };
 /// @param gradients  quantity_gradients() of the design
