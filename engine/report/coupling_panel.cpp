@@ -20,7 +20,7 @@ struct CouplingByRotation {
   std::vector<WorkspaceResult<double>> surveys;
 };
 
-/// The rotation is swept: groups the workspace's cells by rotation.
+/// For a rotation that the study sweeps: groups the cells of the workspace by rotation.
 CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size_t axis, std::size_t limbs) {
   CouplingByRotation result;
   const VoxelGrid grid = workspace.grid();
@@ -38,8 +38,8 @@ CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size
   return result;
 }
 
-/// The rotation is fixed: analyses the workspace on coarse voxels at rotations from the range in which poses are
-/// feasible.
+/// For a rotation that the study fixes: analyses the workspace on coarse voxels at several rotations of the range in
+/// which poses are feasible.
 /// @param fixed  index of the rotation in WorkspaceFields::fixed
 CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDesign& design, std::size_t fixed) {
   CouplingByRotation result;

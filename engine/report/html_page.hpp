@@ -25,7 +25,7 @@ struct PageAssets {
   std::string_view script;
   std::string_view plotly;
 };
-/// Throws std::runtime_error if the library was built without them.
+/// The embedded files. Throws std::runtime_error if the library was built without them.
 PageAssets page_assets();
 
 /// The complete page. Throws as page_assets() does.

@@ -92,7 +92,7 @@ std::vector<DrawnPose> draw(const ShownDesigns& shown, const ShownDesign& design
   return drawn;
 }
 
-/// The motions: the range of their poses among all poses, and the coordinates of these poses.
+/// Data of the motions: for each, the index range of its samples among all poses, and the coordinates of its samples.
 /// @param first  number of the first pose of the first motion
 Json motion_poses(const ShownDesigns& shown, const std::vector<Pose<double>>& poses, std::size_t first) {
   Json list = Json::array();

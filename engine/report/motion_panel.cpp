@@ -38,7 +38,8 @@ Json joint_columns(const Trajectory& trajectory, std::size_t joints, JointQuanti
 
 std::vector<double> to_list(const AxisVector<double>& values) { return {values.begin(), values.end()}; }
 
-/// Indices in MechanismInfo::quantities of those that depend on inputs or rates. Only these are plotted along motions.
+/// Indices in MechanismInfo::quantities of the quantities that are plotted along motions: those that depend on inputs
+/// or rates.
 std::vector<std::size_t> plotted_quantities(const MechanismInfo& info) {
   std::vector<std::size_t> plotted;
   for (std::size_t i = 0; i < info.quantities.size(); ++i)

@@ -11,18 +11,19 @@
 
 namespace pkm {
 
-/// RFC 4648, with padding.
+/// Base64 text of bytes (RFC 4648), with padding.
 std::string base64(std::span<const std::uint8_t> bytes);
 
-/// "f32": single precision, seven digits; sufficient for plots and displayed values.
+/// Packs numbers as kind "f32": single precision, seven digits; sufficient for plots and displayed values.
 std::string packed_floats(std::span<const double> values);
-/// "u16" if all values fit, otherwise "u32". Values must be in [0, 2^32).
+/// Packs integers as kind "u16" if all values fit, otherwise as "u32". Values must be in [0, 2^32).
 std::string packed_integers(std::span<const std::int64_t> values);
-/// "u8".
+/// Packs bytes as kind "u8".
 std::string packed_bytes(std::span<const std::uint8_t> values);
-/// "bits": eight flags per byte, lowest bit first.
+/// Packs flags as kind "bits": eight flags per byte, lowest bit first.
 std::string packed_bits(std::span<const std::uint8_t> flags);
-/// "q16": 65535 equidistant levels from the smallest to the largest finite value. Non-finite values are decoded as NaN.
+/// Packs numbers as kind "q16": 65535 equidistant levels from the smallest to the largest finite value. Non-finite
+/// values are decoded as NaN.
 std::string packed_quantised(std::span<const double> values);
 
 }  // namespace pkm

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxMembers = 200;  // per step
 struct ShownSteps {
   std::vector<std::int64_t> rows;  ///< rows of the stage's table that are members of a shown step, ascending
   Json steps = Json::array();
-  std::size_t stride = 1;  ///< of the steps
+  std::size_t stride = 1;  ///< every stride-th step is shown
   bool members_thinned = false;
 };
 

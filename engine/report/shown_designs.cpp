@@ -56,7 +56,7 @@ std::array<double, 2> feasible_range(const WorkspaceAxis& fixed, const ShownDesi
   return range;
 }
 
-/// Motions per page: in a study with a front each one needs up to 0.7 MB of the page.
+/// Maximum number of motions per page. In a study with a front, each motion needs up to 0.7 MB of the page.
 constexpr std::size_t kMaxMotions = 6;
 
 /// The settings that the designs of a page share; `designs` is empty.

@@ -16,7 +16,7 @@ struct PageStudy {
   std::string file;             ///< name of the study file
   StudyContents contents;       ///< everything in the file
   std::optional<Study> study;   ///< built from the text in the file; std::nullopt if this program cannot read the text
-  std::string unreadable = {};  ///< why it cannot
+  std::string unreadable = {};  ///< why this program cannot read the text
 };
 
 /// A design with its workspace.
@@ -41,7 +41,7 @@ struct PageDetail {
 struct ShownDesigns {
   const Mechanism& mechanism;
   WorkspacePlan plan;                ///< of the workspace analysis: voxels, limited by `detail`
-  LimitSpec limits;                  ///< of poses
+  LimitSpec limits;                  ///< limits of poses
   std::string mode;                  ///< working mode
   std::vector<NamedMotion> motions;  ///< the first motions of the study, limited by the size of a page
   std::size_t omitted_motions = 0;   ///< number of its further motions
