@@ -44,7 +44,7 @@ void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord
   record.reason = r.reason + (record.reason.empty() ? "" : "; ") + record.reason;
 }
 
-DesignRecord evaluate_rounded_design(const DesignProblem& problem, const std::vector<double>& parameters) {
+DesignRecord evaluate_design_after_rounding(const DesignProblem& problem, const std::vector<double>& parameters) {
   const ProblemParts& parts = problem.parts();
   if (const Unsupported refusal = parts.mechanism->refuse(parameters)) {
     const auto undefined = [](std::size_t size) {

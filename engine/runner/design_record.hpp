@@ -13,9 +13,10 @@ namespace pkm {
 /// @param parameters  all parameters of the mechanism
 DesignRecord evaluate_design(const DesignProblem& problem, std::span<const double> parameters);
 
-/// Evaluates a rounded design. `reason` lists the variables that rounding has moved out of their bounds. If the rounded
-/// parameters are outside the range in which the mechanism is defined, nothing is evaluated and the status is failed.
-DesignRecord evaluate_rounded_design(const DesignProblem& problem, const std::vector<double>& parameters);
+/// Evaluates a design whose variables have been rounded to the steps given in the study. DesignRecord::reason lists the
+/// variables that rounding has moved out of their bounds. If the mechanism is not defined for the rounded parameters,
+/// nothing is evaluated and the status is `failed`.
+DesignRecord evaluate_design_after_rounding(const DesignProblem& problem, const std::vector<double>& parameters);
 
 /// Adds certified bounds of the volume to the record, unless its evaluation failed. Sets the status to failed if the
 /// computed volume lies outside them. Throws Stopped.

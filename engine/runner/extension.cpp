@@ -15,10 +15,11 @@ void check_limit(const Stage& stage, const std::string& limit, double value) {
   if (!(value <= option->upper)) throw ConfigError(place, shortest(value), "at most " + shortest(option->upper));
 }
 
-/// Number of evaluations that the stage's evaluation limit applies to: all of the stage, or in solver stages, where the
-/// limit applies to each multistart run, those of the longest run.
+/// Number of evaluations made, as counted by the stage's evaluation limit: all evaluations of the stage. In solver
+/// stages, where the limit applies to each multistart run, those of the longest run.
 double evaluations_done(const StageRecord& stage) {
-  auto count = static_cast<std::int64_t>(stage.table.size());  // minus the finished runs: the unfinished run
+  // The rows after those of the finished runs belong to the unfinished run.
+  auto count = static_cast<std::int64_t>(stage.table.size());
   if (!stage.starts.empty()) count -= stage.starts.back().first_row + stage.starts.back().rows;
   for (const StartOutcome& start : stage.starts) count = std::max(count, start.rows);
   for (const UnmergedStart& start : stage.ahead) count = std::max(count, static_cast<std::int64_t>(start.table.size()));

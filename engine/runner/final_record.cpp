@@ -143,7 +143,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
   if (study.round) {
     auto rounded = best;
     for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
-    f.rounded = evaluate_rounded_design(problem, rounded);
+    f.rounded = evaluate_design_after_rounding(problem, rounded);
   }
   return f;
 }

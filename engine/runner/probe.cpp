@@ -11,7 +11,7 @@ namespace pkm {
 namespace {
 
 constexpr std::size_t kMaxDesigns = 64, kMinDesigns = 4;
-constexpr double kBudget = 50e-3, kMaxCost = 0.5;  // estimated time of all designs, and of one [s]
+constexpr double kBudget = 50e-3, kMaxCost = 0.5;  // maximum estimated time of all designs, and of one [s]
 
 // Approximate costs of a workspace analysis [s].
 constexpr double kVoxelCost = 0.1e-9;      // per voxel, counted in batches

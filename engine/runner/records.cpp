@@ -21,7 +21,8 @@ std::string text_digest(const std::string& toml, const std::optional<SourceText>
   return xxh64_hex(toml + '\0' + (description ? description->text : ""));
 }
 
-/// "name [unit]", and what else must agree for the recorded values to be meaningful.
+/// Text for comparing a recorded element of the problem with that of the study text: "name [unit]", and other
+/// properties without which the recorded values would be meaningless.
 template <class Info>
 std::string label(const Info& info) {
   return info.name + " [" + info.unit + "]";

@@ -97,7 +97,7 @@ bool Run::run_stage(std::size_t index) {
   ahead_ = {};
   if (failed_) return false;
   if (result.reason == StopReason::interrupted) {
-    goes_on();  // sets the reason if an evaluation was aborted
+    goes_on();  // sets the stop reason if an evaluation was aborted
     return false;
   }
   update_best(record.table, result.best_row);

@@ -86,9 +86,9 @@ class Run final : public Monitor {
   std::size_t stage_ = 0;                              ///< index of the current stage
   std::int64_t limit_ = 0;                             ///< maximum number of evaluations of the current stage
   std::int64_t made_ = 0;                              ///< new evaluations of this run up to the last generation
-  std::function<std::vector<UnmergedStart>()> ahead_;  ///< current solver stage: state of runs that are ahead
+  std::function<std::vector<UnmergedStart>()> ahead_;  ///< current solver stage: returns the runs not yet merged
   bool replaying_;                                     ///< all results so far are recorded in the study file
-  std::optional<std::size_t> complete_rows_;  ///< of the current stage; empty while a generation is being recorded
+  std::optional<std::size_t> complete_rows_;  ///< rows of complete generations of the stage; empty while recording one
   std::string stopped_;                       ///< reason for stopping; "": the run continues
   std::exception_ptr failure_;                ///< rank 0: exception that ends the run on all ranks
   bool failed_ = false;                       ///< all ranks: rank 0 has a failure
