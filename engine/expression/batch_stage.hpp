@@ -69,7 +69,7 @@ class BatchStage {
   const std::vector<std::uint32_t>& inputs() const { return inputs_; }
 
   /// Runs the stage for `count` values; parameters as run_batch().
-  /// @param registers  of the earlier stages
+  /// @param registers  values of the registers of the earlier stages
   void run(const double* registers, double* rows, std::size_t count) const;
 
  private:

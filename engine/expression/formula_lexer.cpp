@@ -16,7 +16,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
 
-/// "; expected one of a, b; did you mean 'a'?"
+/// End of a message about an unknown name: "; expected one of a, b; did you mean 'a'?"
 std::string expected_names(const std::string& name, const std::vector<std::string>& known) {
   return "; expected one of " + join(known) + did_you_mean(name, known);
 }
@@ -41,7 +41,7 @@ class Lexer {
  private:
   struct Parenthesis {
     std::size_t token;  ///< its index
-    bool calls;         ///< begins the arguments of a function; else it only groups
+    bool calls;         ///< true: begins the arguments of a function; false: groups a term
     std::size_t commas = 0;
   };
 

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMaxCharacters = 20000;
 constexpr const char* kMissingColon = "has a '?' without its ':'";
 
-/// True for < <= > >=.
+/// Whether an operator is one of < <= > >=.
 bool compares(const Operation* operation) {
   return operation && (operation->name[0] == '<' || operation->name[0] == '>');
 }

@@ -159,8 +159,8 @@ class NormalForm {
     return clauses_of_multiple(node);
   }
 
-  /// c f >= 0 and f / c >= 0, where c does not depend on z but f contains minima, maxima or absolute values: f >= 0 or
-  /// -c >= 0, and -f >= 0 or c >= 0. Also c x + c y and c x - c y.
+  /// Converts c f >= 0 and f / c >= 0, where c does not depend on z but f contains minima, maxima or absolute values: f
+  /// >= 0 or -c >= 0, and -f >= 0 or c >= 0. Sums c x + c y and c x - c y are converted in the same way.
   Clauses clauses_of_multiple(Node node) {
     const Entry entry = graph_[node];
     if (!entry.operation) return {};
@@ -367,7 +367,7 @@ class NormalForm {
     x->insert(x->end(), y->begin(), y->end());
     return x;
   }
-  /// By the distributive law.
+  /// The conjunctive normal form of "x or y", by the distributive law.
   static Clauses disjunction(const Clauses& x, const Clauses& y) {
     if (!x || !y) return {};
     std::vector<Clause> all;
@@ -384,7 +384,7 @@ class NormalForm {
   std::size_t degree_;
   bool squares_;
   std::unordered_map<Node, std::optional<RadicalForm>> forms_;  ///< cache
-  int depth_ = 0, steps_ = 0;                                   ///< of clauses()
+  int depth_ = 0, steps_ = 0;                                   ///< recursion depth and number of steps of clauses()
 };
 
 }  // namespace

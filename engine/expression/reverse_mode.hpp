@@ -18,8 +18,8 @@ namespace pkm::expression {
 void backward_sweep(const Program& program, std::size_t stage, std::span<const double> registers,
                     std::span<double> adjoints);
 
-/// The derivative of the register `of`, which a stage computes, by the stage's inputs: the sum of the partial
-/// derivatives if there are several.
+/// The derivative of register number `of`, which a stage computes, by the input of this stage; for several inputs, the
+/// sum of the partial derivatives.
 /// @param by  receives the derivatives of `of` by the registers of the earlier stages, by register; overwritten
 double stage_derivative(const Program& program, std::size_t stage, std::uint32_t of, std::span<const double> registers,
                         std::vector<double>& by);

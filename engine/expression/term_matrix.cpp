@@ -7,22 +7,23 @@
 namespace pkm::expression {
 namespace {
 
-/// Determinants of submatrices of the first rows of a matrix, by Laplace expansion along the last of these rows.
+/// Determinants of square submatrices that consist of the first rows of a matrix and some of its columns, by Laplace
+/// expansion along their last rows.
 class Minors {
  public:
-  /// @param without  a row to leave out; A.rows() or more: none
-  Minors(const TermMatrix& A, std::size_t without) : A_(A) {
+  /// @param excluded_row  index of a row that is excluded from all submatrices; A.rows(): none is excluded
+  Minors(const TermMatrix& A, std::size_t excluded_row) : A_(A) {
     for (std::size_t i = 0; i < A.rows(); ++i)
-      if (i != without) rows_.push_back(i);
+      if (i != excluded_row) rows_.push_back(i);
     known_.emplace(0U, Term(A.graph(), 1.0));
   }
 
-  /// @param columns  one bit for each column of the submatrix, which has the first rows, as many as there are bits
+  /// Determinant of a submatrix. @param columns  set of its columns, one bit each; their number is that of its rows
   Term of(unsigned columns) {
     if (const auto found = known_.find(columns); found != known_.end()) return found->second;
     const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
     Term sum(A_.graph(), 0.0);
-    bool is_negative = false;  // sign of the last column that is left
+    bool is_negative = false;  // cofactor sign; the last column of the submatrix has a plus
     for (std::size_t j = A_.columns(); j-- > 0;) {
       if ((columns >> j & 1U) == 0) continue;
       const Term product = A_(row, j) * of(columns & ~(1U << j));
