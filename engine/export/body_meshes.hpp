@@ -13,7 +13,7 @@ namespace pkm {
 struct BodyMeshes {
   struct Body {
     std::string name, part;  ///< see PlacedLink
-    std::size_t end;         ///< index behind its last triangle
+    std::size_t end;         ///< index after the last triangle of the body
   };
 
   Isosurface all;

@@ -7,8 +7,8 @@
 namespace pkm {
 namespace {
 
-constexpr double kLabelDistance = 44, kOutlineDistance = 9;  // minimum, from the centre and the ends of a label [pixel]
-constexpr double kMinStraight = 0.97;  // distance of the ends of a label, relative to the length of the line between
+constexpr double kLabelDistance = 44, kOutlineDistance = 9;  // minimum distance of labels, and from outline [pixel]
+constexpr double kMinStraight = 0.97;  // distance of a label's ends, relative to the length of the line between them
 constexpr double kClearance = 8;       // between a label and the ends of its line [pixel]
 constexpr double kGap = 3;             // between a label and the line that continues [pixel]
 constexpr double kStep = 6;            // between the places examined [pixel]

@@ -19,9 +19,9 @@ struct LabelPlace {
 /// Chooses the place nearest to the middle of a line where the line is nearly straight over the length of the label,
 /// and neither other labels nor the outline are close. @return std::nullopt if there is none
 /// @param line     [pixel], y downwards
-/// @param length   of the label [pixel]
+/// @param length   length of the label [pixel]
 /// @param labels   centres of other labels
-/// @param outline  its points, which must be close to each other
+/// @param outline  points of the outline, which must be close to each other
 std::optional<LabelPlace> place_label(const std::vector<PlanePoint>& line, double length,
                                       const std::vector<PlanePoint>& labels, const std::vector<PlanePoint>& outline);
 

@@ -10,8 +10,8 @@ constexpr double kTail = 0.02;       // share of the values at either end that m
 constexpr double kConstant = 1e-9;   // relative range of a field that is constant up to rounding errors
 constexpr double kMinIntervals = 7;  // of a scale
 
-/// Triangles around the centres of polygons. Points on their edges are labelled by both ends of the edge, and vertices
-/// by twice the same.
+/// Divides polygons into triangles around their centres. A point on an edge of a triangle is identified by the indices
+/// of both ends of the edge, a vertex by its index, twice.
 class TriangleField {
  public:
   TriangleField(const SliceMesh& mesh, std::span<const double> values)
@@ -135,7 +135,7 @@ ContourLevels contour_levels(std::span<const double> values) {
     if (levels.open_below) lower = low;
     if (levels.open_above) upper = high;
   }
-  const double step = round_step(upper - lower), slack = 1e-9;  // slack: of the rounding of ends, relative to a step
+  const double step = round_step(upper - lower), slack = 1e-9;  // slack: allowance for rounding errors, in steps
   const double first = levels.open_below ? std::ceil(lower / step - slack) : std::floor(lower / step + slack),
                end = levels.open_above ? std::floor(upper / step + slack) : std::ceil(upper / step - slack);
   for (double k = first; k <= end; ++k) levels.values.push_back(step < 1 ? k / std::round(1 / step) : k * step);

@@ -27,7 +27,7 @@ struct ContourLevels {
 /// @return no levels if no value is finite
 ContourLevels contour_levels(std::span<const double> values);
 
-/// Where the field reaches a threshold.
+/// The region in which the field is at or above a threshold.
 struct FieldRegion {
   std::vector<SliceOutline::Loop> loops;          ///< boundary, closed, oriented as in SliceOutline
   std::vector<std::vector<PlanePoint>> contours;  ///< the parts of it that are contour lines; closed ones repeat
@@ -38,7 +38,7 @@ struct FieldRegion {
 struct FieldMap {
   FieldRegion defined;               ///< where the field is defined; without contour lines
   FieldRegion undefined;             ///< the rest of the mesh; without contour lines
-  std::vector<FieldRegion> regions;  ///< of each threshold, ascending; each region contains the following ones
+  std::vector<FieldRegion> regions;  ///< by threshold, ascending; each region contains the following ones
 };
 
 /// @param values  one per vertex of the mesh

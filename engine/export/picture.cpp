@@ -11,7 +11,8 @@
 namespace pkm {
 namespace {
 
-/// The range is the extent of the outline plus a margin of 10 %; the whole axis if nothing is feasible.
+/// Axis i of the plot. Its range is the extent of the outline plus a margin of 10 %, or the whole range of the
+/// workspace axis if nothing is feasible.
 PlotAxis plot_axis(const SliceOutline& outline, std::size_t i) {
   const WorkspaceAxis& axis = outline.axes[i];
   const bool angle = axis.unit == "rad";

@@ -58,7 +58,7 @@ Picture draw_map(const SliceMesh& mesh, const WorkspaceField& field, std::vector
 /// Contents of an SVG file.
 std::string svg_file(const Picture& picture);
 
-/// Contents of a PNG file, with two dots per pixel in both directions for printing.
+/// Contents of a PNG file. For printing, it has twice the width and height of the picture in pixels.
 std::string png_file(const Picture& picture);
 
 }  // namespace pkm

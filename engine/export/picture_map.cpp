@@ -56,11 +56,11 @@ SliceOutline::Loop rectangle(double left, double top, double right, double botto
   return {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
 }
 
-/// The colours between thresholds.
+/// Colours of the bands between consecutive thresholds.
 class Bands {
  public:
   explicit Bands(const ContourLevels& levels) : last_(static_cast<double>(levels.thresholds().size())) {}
-  /// @param k  number of thresholds below
+  /// The colour of a band. @param k  number of thresholds below the band
   Colour colour(std::size_t k) const { return scale_colour(last_ > 0 ? static_cast<double>(k) / last_ : 0.5); }
   /// The colour between the bands on both sides of a threshold.
   Colour at_threshold(std::size_t k) const { return scale_colour((static_cast<double>(k) + 0.5) / last_); }

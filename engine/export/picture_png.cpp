@@ -8,8 +8,8 @@
 namespace pkm {
 namespace {
 
-constexpr double kDots = 2;                           // per pixel
-constexpr double kFontScale = 1.5;                    // pixels per unit of the stroke font
+constexpr double kDots = 2;         // dots of the PNG file per pixel of the picture, horizontally and vertically
+constexpr double kFontScale = 1.5;  // pixels per unit of the stroke font
 constexpr double kHalfWidth = 0.5, kHalfBold = 0.85;  // half line widths, of normal and of bold lines [pixel]
 constexpr double kHalfBorder = 2.0;                   // half line width of letters with a border
 

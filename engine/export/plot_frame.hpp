@@ -10,7 +10,7 @@ struct PlotAxis {
   std::string title;
   double unit = 1;               ///< SI value of the unit of the labels
   double lower = 0, upper = 0;   ///< range [SI]
-  double pixel = 0, length = 0;  ///< position of `lower`, and signed length up to `upper`, in pixels
+  double pixel = 0, length = 0;  ///< position of `lower`, and signed distance from it to `upper` [pixel]
 
   double to_pixels(double value) const { return pixel + length * (value - lower) / (upper - lower); }
   /// Four to ten round numbers within the range, in the unit of the labels.

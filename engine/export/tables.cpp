@@ -21,17 +21,17 @@ CsvTable workspace_table(const WorkspaceFields& workspace) {
   return table;
 }
 
-CsvTable coupling_table(const MechanismInfo& info, const WorkspaceResult<double>& survey) {
+CsvTable coupling_table(const MechanismInfo& info, const WorkspaceResult<double>& workspace) {
   std::vector<std::string> columns = names_of(info.coordinates);
   for (std::size_t i = 1; i <= info.joints.size(); ++i) columns.push_back("dci_" + std::to_string(i));
   columns.emplace_back("dci_worst");
   CsvTable table(columns);
   Scratch scratch;
-  const std::vector<double>& worst = reduced_field(survey, kCouplingIndex, "worst", scratch);
-  for (std::size_t k = 0; k < survey.weight.size(); ++k) {
+  const std::vector<double>& worst = reduced_field(workspace, kCouplingIndex, "worst", scratch);
+  for (std::size_t k = 0; k < workspace.weight.size(); ++k) {
     table.begin_row();
-    table.add(survey.pose[k]);
-    for (std::size_t i = 0; i < info.joints.size(); ++i) table.add(survey.field(kCouplingIndex, i)[k]);
+    table.add(workspace.pose[k]);
+    for (std::size_t i = 0; i < info.joints.size(); ++i) table.add(workspace.field(kCouplingIndex, i)[k]);
     table.add(worst[k]);
   }
   return table;
