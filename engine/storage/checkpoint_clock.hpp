@@ -19,7 +19,7 @@ double steady_seconds();
 
 class CheckpointClock {
  public:
-  static constexpr double kMaxShare = 0.02;  ///< of the run time that checkpoints may take
+  static constexpr double kMaxShare = 0.02;  ///< maximum share of the run time spent on checkpoints
 
   /// @param every  fixed period [s], >= 0; std::nullopt: adaptive
   /// @param now    clock to use; default: steady_seconds()

@@ -37,7 +37,7 @@ class Handle {
  public:
   /// Throws ImageError if `id` is negative.
   /// @param close  the HDF5 function that releases the identifier
-  /// @param what   the object that it stands for, for messages
+  /// @param what   the object that the identifier refers to, for messages
   Handle(std::int64_t id, int (*close)(std::int64_t), const std::string& what) : id_(id), close_(close) {
     if (id < 0) fail(what);
   }

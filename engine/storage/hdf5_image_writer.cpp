@@ -15,8 +15,8 @@ namespace {
 using namespace hdf5;
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 17;
-constexpr std::size_t kMinDeflatedBytes = 1024;   // of a chunk: initialising deflate takes a quarter of a megabyte
-constexpr std::size_t kMaxAttributeTexts = 4000;  // an attribute holds 64 kB, a text 16 bytes of it
+constexpr std::size_t kMinDeflatedBytes = 1024;   // smaller chunks stay uncompressed: deflate allocates 256 kB
+constexpr std::size_t kMaxAttributeTexts = 4000;  // 16 bytes each, at most 64 kB per attribute
 constexpr unsigned kDeflateLevel = 1;             // twice as fast as level 6, and files are a few per cent larger
 
 /// Type of text in datasets: UTF-8 of fixed length, padded with NUL. Unlike text of variable length it is compressed

@@ -96,7 +96,7 @@ StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(stu
     }
     ::close(fd);
   }
-  // The process name serves messages only, so that a failure to write it (full disk) is ignored.
+  // A failure to write the process name (full disk) is ignored, because it is only used in messages.
   const std::string name = (std::string(kLockSignature) + process_name()).substr(0, kMaxBytes);
   if (::ftruncate(fd_, 0) == 0) static_cast<void>(!::pwrite(fd_, name.data(), name.size(), 0));
 }

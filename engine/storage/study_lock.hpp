@@ -25,8 +25,8 @@ class StudyLock {
   /// @return the process that holds the lock of a study: "process 12 on host"; empty if no process holds it
   static std::optional<std::string> holder(const std::string& study_path);
 
-  /// @return false if the lock file has been removed or replaced since, so that another process may have locked the
-  /// study
+  /// @return false if the lock file has been removed or replaced since construction: another process may then hold the
+  /// lock of the study
   bool owns_lock() const;
 
  private:

@@ -27,9 +27,10 @@ extern char** environ;
 namespace pkm {
 namespace {
 
-constexpr int kInvalidExit = 1, kOutOfMemoryExit = 4;                 // exit codes of the checking process
-constexpr unsigned kMaxSeconds = 20;                                  // valid files of 100 MB take 1 s
-constexpr rlim_t kBaseMemory = rlim_t{2} << 30, kMemoryPerByte = 32;  // limit in bytes, and per byte of the file
+constexpr int kInvalidExit = 1, kOutOfMemoryExit = 4;  // exit codes of the checking process
+constexpr unsigned kMaxSeconds = 20;                   // valid files of 100 MB take 1 s
+constexpr rlim_t kBaseMemory = rlim_t{2} << 30,
+                 kMemoryPerByte = 32;  // memory limit: base + per byte of the file
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 11;
 
 std::vector<std::string>& check_command() {
