@@ -13,7 +13,7 @@ namespace {
 
 SourceLocation place_of(const std::string& option) { return {"", 0, option}; }
 
-/// Parses one value. @param target  without a name if the option has a single value
+/// Parses one value. @param target  its name is empty if the option has a single value
 double parse_value(const std::string& text, const std::string& option, const Assignable& target) {
   const std::string found = target.name.empty() ? text : target.name + "=" + text;
   const auto value = parse_quantity(text, target.unit);
@@ -170,7 +170,7 @@ std::vector<double> parse_values(const std::string& text, const std::string& opt
 
 std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, const std::vector<std::string>& names) {
   const std::string option = "--cells";
-  constexpr std::int64_t kMost = 1'000'000;  // along one coordinate
+  constexpr std::int64_t kMaxCells = 1'000'000;  // along one coordinate
   std::vector<std::string> all = lists;
   if (lists.size() == 1 && lists[0].find('=') == std::string::npos) {
     all.clear();
@@ -183,9 +183,9 @@ std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, con
   std::vector<std::int64_t> cells;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto number = parse_integer(*texts[i]);
-    if (!number || *number < 1 || *number > kMost)
+    if (!number || *number < 1 || *number > kMaxCells)
       throw ConfigError(place_of(option), known[i].name + "=" + *texts[i],
-                        "a whole number of cells, 1 to " + std::to_string(kMost));
+                        "a whole number of cells, 1 to " + std::to_string(kMaxCells));
     cells.push_back(*number);
   }
   return cells;

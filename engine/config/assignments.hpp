@@ -31,42 +31,42 @@ std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::
 /// Forces of the joints, under the names of the joints.
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);
 
-/// The names before the `=` in such lists.
+/// The names before the `=` in comma-separated `name=value` lists.
 std::vector<std::string> assigned_names(const std::vector<std::string>& lists);
 
 /// The value [SI] of an option that takes one number. Throws ConfigError.
 double parse_number(const std::string& text, const std::string& option, const std::string& unit);
 
 /// Values [SI] of comma-separated `name=value` lists, in the order of `known`; std::nullopt for names that are not
-/// given. `option` ("--set") is named in messages. Throws ConfigError for anything unknown, malformed, out of range or
-/// twice.
+/// given. `option` ("--set") is named in messages. Throws ConfigError for a name that is unknown or occurs twice, and
+/// for a value that is malformed or out of range.
 std::vector<std::optional<double>> parse_assignments(const std::vector<std::string>& lists, const std::string& option,
                                                      const std::vector<Assignable>& known);
 
-/// The same; every name must be given.
+/// Values [SI] of `name=value` lists as for parse_assignments(); throws ConfigError if a name is not given.
 std::vector<double> parse_all_assignments(const std::vector<std::string>& lists, const std::string& option,
                                           const std::vector<Assignable>& known);
 
-/// The same; 0 for names that are not given.
+/// Values [SI] of `name=value` lists as for parse_assignments(), with 0 for names that are not given.
 std::vector<double> parse_some_assignments(const std::vector<std::string>& lists, const std::string& option,
                                            const std::vector<Assignable>& known);
 
 /// Force and moment of `--wrench` on the platform; components that are not given are 0.
 Wrench<double> parse_wrench(const std::vector<std::string>& lists);
 
-/// Values [SI] of `0,30deg`, or `-60deg:60deg:5` (from : to : count).
+/// Values [SI] of a list such as `0,30deg`, or of a range such as `-60deg:60deg:5` (from : to : count).
 std::vector<double> parse_values(const std::string& text, const std::string& option, const Assignable& what);
 
-/// Numbers of cells of `--cells x=20,z=20`, or of `--cells 40` along each, in the order of `names`.
+/// Numbers of cells in the order of `names`: of `--cells x=20,z=20`, or the same number along all axes, `--cells 40`.
 std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, const std::vector<std::string>& names);
 
-/// Ranges [SI] of comma-separated `name=from:to` or `name=from..to` lists, in the order of `known`; std::nullopt
-/// for names that are not given.
+/// Ranges [SI] of comma-separated `name=from:to` or `name=from..to` lists, in the order of `known`; std::nullopt for
+/// names that are not given.
 std::vector<std::optional<std::array<double, 2>>> parse_some_ranges(const std::vector<std::string>& lists,
                                                                     const std::string& option,
                                                                     const std::vector<Assignable>& known);
 
-/// The same; every name must be given.
+/// Ranges [SI] of lists as for parse_some_ranges(); throws ConfigError if a name is not given.
 std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,
                                                 const std::vector<Assignable>& known);
 

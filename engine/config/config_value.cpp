@@ -32,7 +32,7 @@ const char* kind_word(OptionKind kind) {
   return words[static_cast<std::size_t>(kind)];
 }
 
-/// { name = number, ... } with the names and units of `fields`.
+/// Reads { name = number, ... } with the names and units of OptionSpec::fields.
 NamedNumbers read_fields(const ConfigValue& table, const OptionSpec& spec) {
   std::vector<std::string> names;
   for (const auto& field : spec.fields) names.push_back(field.first);
@@ -53,7 +53,7 @@ OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
       return value.flag();
     case OptionKind::word:
       if (spec.choices.empty()) return value.text(expectation(spec));
-      if (value.is_integer()) {  // "limb = 2" is as good as limb = "2"
+      if (value.is_integer()) {  // an integer is accepted instead of text: limb = 2 for limb = "2"
         const std::string word = std::to_string(value.integer(-kUnbounded, kUnbounded));
         if (contains(spec.choices, word)) return word;
       }

@@ -42,7 +42,7 @@ class ConfigValue {
   bool is_integer() const { return value_->kind == TomlValue::Kind::integer; }
   bool is_text() const { return value_->kind == TomlValue::Kind::text; }
 
-  // Values whose description gives unit, range and words
+  // Functions for values whose description contains unit, range and words:
 
   /// A finite number in SI, or text with a unit.
   double number() const;
@@ -51,7 +51,7 @@ class ConfigValue {
   /// The elements of a list: `path[1]`, `path[2]`, ...
   std::vector<ConfigValue> elements() const;
 
-  // Values whose unit, range or words depend on the mechanism or the study
+  // Functions for values whose unit, range or words depend on the mechanism or the study:
 
   /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].
   double number(std::string_view unit, double lower = -kUnbounded, double upper = kUnbounded) const;
@@ -73,9 +73,9 @@ class ConfigValue {
   /// tables with variants, also refuses a missing or unknown TableSpec::choice, and the keys of other variants.
   /// @param more  further keys: of a catalogue entry, or the names of TableSpec::named if these are known
   ConfigValue described_by(const TableSpec& spec, const std::vector<OptionSpec>& more = {}) const;
-  /// The same by the description of the table in that of its key.
+  /// The table, to be read by the description that its key has.
   ConfigValue table(const std::vector<OptionSpec>& more = {}) const;
-  /// The same for a table whose keys are names, which have to be among `names`.
+  /// The table, if its keys are names of the user's, which have to be among `names`.
   ConfigValue table_of_names(const std::vector<std::string>& names) const;
   /// The table [key], read by its description; std::nullopt if the file has none.
   std::optional<ConfigValue> find_table(const std::string& key, const std::vector<OptionSpec>& more = {}) const;
@@ -94,7 +94,7 @@ class ConfigValue {
   std::optional<ConfigValue> find(const std::string& key) const;
   /// The value of a required key.
   ConfigValue at(const std::string& key, std::string_view expected) const;
-  /// The same; what is expected is the description of the key.
+  /// The value of a required key; the message for a missing key is taken from the description of the key.
   ConfigValue at(const std::string& key) const;
   /// The value of a key, else its default.
   double number_at(const std::string& key) const;
@@ -106,8 +106,8 @@ class ConfigValue {
                                     double upper = kUnbounded) const;
   /// Refuses anything but a table.
   const ConfigValue& expect_table(std::string_view expected = "a table") const;
-  /// The word under `key`, which has to be one of `choices`. It decides which other keys are allowed, so it is read
-  /// before they are checked; the message for a missing key names a key that is similar to it.
+  /// The word under `key`, which has to be one of `choices`. It decides which other keys are allowed and is therefore
+  /// read before they are checked; the message for a missing key names a key that is similar to it.
   const std::string& choice(const std::string& key, const std::vector<std::string>& choices) const;
 
   /// Throws std::logic_error if the description of this value is not a formula of this unit.
@@ -141,7 +141,8 @@ class ConfigValue {
   using Spec = std::shared_ptr<const OptionSpec>;  // shares the ownership of `Description::more`
 
   ConfigValue child(const TomlValue& value, std::string path, Spec spec) const;
-  /// The description of a key; null if this table is not described. Throws std::logic_error if the key is not.
+  /// The description of a key; null if this table has no description. Throws std::logic_error if its description lacks
+  /// the key.
   Spec spec_of(const std::string& key) const;
   /// The description of this value; null if it has none. Throws std::logic_error if the description has none of these
   /// kinds, or another unit. @param unit  "" accepts any unit
@@ -152,8 +153,8 @@ class ConfigValue {
   const TomlValue* value_;
   std::string file_;
   std::string path_;
-  Spec spec_ = nullptr;                                 ///< of this value
-  std::shared_ptr<const Description> table_ = nullptr;  ///< of its keys
+  Spec spec_ = nullptr;                                 ///< description of this value
+  std::shared_ptr<const Description> table_ = nullptr;  ///< description of its keys
 };
 
 /// Descriptions of the values under these names, by TableSpec::named.

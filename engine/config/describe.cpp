@@ -13,7 +13,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// Marks values that are the defaults, whether the study gives them or not.
+/// Mark of a value that equals the default, whether or not the study sets it.
 const char* mark(bool is_default) { return is_default ? "(default)" : ""; }
 
 void write_parameters(std::ostream& out, const Study& study) {

@@ -20,10 +20,10 @@ namespace {
 
 constexpr std::int64_t kNominalCells = 16;  // grid cells per swept coordinate, to find a nominal pose
 
-std::string names_text(const std::vector<std::string>& names, std::size_t most = 8) {
+std::string names_text(const std::vector<std::string>& names, std::size_t max_count = 8) {
   const std::vector<std::string> first(names.begin(),
-                                       names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())));
-  return join(first) + (names.size() > most ? ", .. (" + std::to_string(names.size()) + " in all)" : "");
+                                       names.begin() + static_cast<std::ptrdiff_t>(std::min(max_count, names.size())));
+  return join(first) + (names.size() > max_count ? ", .. (" + std::to_string(names.size()) + " in all)" : "");
 }
 
 /// The poses of a coarse grid over the box of the default sweep; empty if there is no box.

@@ -14,7 +14,7 @@
 namespace pkm {
 namespace {
 
-/// The parameters that a table names. Refuses unknown names and names that occur twice.
+/// The names of the parameters in a table. Refuses unknown names and names that occur twice.
 std::vector<std::string> parameters_in(const ConfigValue& table, bool of_tables, const std::vector<Parameter>& known) {
   std::vector<std::string> keys = table.dotted_keys(of_tables);
   const std::vector<std::string> names = names_of(known);
@@ -45,7 +45,7 @@ void find_limb_parameters(const ConfigValue& root, StudyDraft& draft) {
 
 /// Sets the parameters of single limbs that are not given to the values of the common parameters.
 template <class Given>
-void follow(const StudyDraft& draft, const Given& given, std::vector<double>& values) {
+void apply_common_parameters(const StudyDraft& draft, const Given& given, std::vector<double>& values) {
   const auto& known = draft.info().parameters;
   const auto number = [&known](const std::string& name) {
     return static_cast<std::size_t>(find_named(known, name) - known.data());
@@ -80,7 +80,7 @@ Variable read_variable(const ConfigValue& value, const Parameter& parameter) {
   return variable;
 }
 
-/// The variable as a study file records it; `of_text` if there is no record.
+/// The variable as recorded in a study file; `of_text`, the variable of the study's text, if there is no record.
 Variable recorded_variable(const StudyDraft& draft, const Variable& of_text, const Parameter& parameter) {
   for (const StudyChanges& changes : draft.changes)
     if (const Variable* const recorded = find_named(changes.recorded_variables, of_text.name)) {
@@ -162,7 +162,7 @@ void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
     };
     return (fixed && fixed->has(name)) || std::ranges::any_of(draft.changes, set);
   };
-  follow(draft, given, draft.parts.parameters);
+  apply_common_parameters(draft, given, draft.parts.parameters);
 }
 
 void read_variables(const ConfigValue& root, StudyDraft& draft) {
@@ -193,7 +193,7 @@ void read_baseline(const ConfigValue& root, StudyDraft& draft) {
   if (!table) return;
   std::vector<double> values = draft.parts.parameters;
   read_parameters(*table, draft.info().parameters, values);
-  follow(
+  apply_common_parameters(
       draft, [&](const std::string& name) { return table->has(name) || !root.find("variables")->has(name); }, values);
   if (const Unsupported reason = draft.parts.mechanism->refuse(values)) throw table->refusal(*reason);
   draft.study.baseline = std::move(values);

@@ -22,7 +22,7 @@ constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRST
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
   std::string name = given ? given->text("text") : type;
-  if (!given) std::ranges::replace(name, ' ', '-');  // of a described mechanism's tests
+  if (!given) std::ranges::replace(name, ' ', '-');  // type is the name of a [[design]] of the mechanism file
   if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
     throw given->error("a name of letters, digits, '-', '_' and '.'");
   if (find_named(before, name))
@@ -48,8 +48,8 @@ std::string default_name(const ObjectiveEntry& entry, const Options& options) {
   return entry.name + (rms ? "-rms" : "");
 }
 
-/// Adds the request of an entry to that of the previous ones. All samples of a workspace analysis have one
-/// characteristic length and one working mode.
+/// Adds the fields that an entry requests, `own`, to those that the previous entries have requested. Refuses a second
+/// characteristic length or working mode: all samples of a workspace analysis have the same.
 void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest& request) {
   if (own.needs_jacobian()) {
     if (request.needs_jacobian() && own.characteristic_length != request.characteristic_length)
@@ -68,7 +68,7 @@ void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest
 }
 
 /// Index of the workspace analysis that an entry uses: 0 for the workspace, k for the k-th region.
-std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, const StudyDraft& draft) {
+std::size_t analysis_index(const ConfigValue& table, const ObjectiveEntry& entry, const StudyDraft& draft) {
   const auto named = table.find("region");
   if (!named) return 0;
   if (!entry.uses_workspace)
@@ -80,7 +80,7 @@ std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, c
 
 /// Refuses an entry that the mechanism does not support.
 template <class Entry>
-void expect_served(const ConfigValue& table, const Entry& entry, const StudyDraft& draft) {
+void refuse_unsupported(const ConfigValue& table, const Entry& entry, const StudyDraft& draft) {
   if (const Unsupported reason = entry.refusal(*draft.parts.mechanism)) throw table.find("type")->refusal(*reason);
 }
 
@@ -90,8 +90,8 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
   const Options options = read_options(table, entry.options);
   const std::string name = entry_name(table, default_name(entry, options), entries);
   entries.push_back({entry.name, name, "", entry.options, options});
-  expect_served(table, entry, draft);
-  const std::size_t survey = survey_read(table, entry, draft);
+  refuse_unsupported(table, entry, draft);
+  const std::size_t survey = analysis_index(table, entry, draft);
   if (survey > 0 && options.has("motion"))
     throw table.find("region")->refusal("the objective " + entry.name +
                                         " is evaluated along a motion or in a region; found both");
@@ -152,8 +152,8 @@ void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entr
 void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& entry, StudyDraft& draft) {
   auto specs = entry.options(draft.info());
   const ConfigValue table = value.described_by(margin_constraint_keys(), specs);
-  expect_served(table, entry, draft);
-  // The margin's unit may follow from some options and be that of others, which are read after it is known.
+  refuse_unsupported(table, entry, draft);
+  // The unit of the margin may depend on some options and be the unit of others; the latter are read second.
   auto first = specs;
   std::erase_if(first, [](const OptionSpec& spec) { return spec.unit == kUnitOfEntry; });
   Options options = read_options(table, first);
@@ -234,7 +234,7 @@ void read_pose_constraint(const ConfigValue& value, const ConstraintEntry& entry
   const MechanismInfo& info = draft.info();
   const auto specs = entry.options(info);
   const ConfigValue table = value.described_by(pose_constraint_keys(), specs);
-  expect_served(table, entry, draft);
+  refuse_unsupported(table, entry, draft);
   const Options options = read_options(table, specs);
   LimitSpec& all = draft.parts.plan.limits;
   const LimitSpec own = table.explained([&] { return entry.limits(info, options); });
@@ -253,10 +253,10 @@ void read_pose_constraint(const ConfigValue& value, const ConstraintEntry& entry
   draft.study.constraints.push_back({entry.name, entry.name, role, specs, options});
 }
 
-/// Reads each [[constraint]] of the wanted level; objectives' names count as design level.
+/// Reads either the pose-level [[constraint]]s or all others; those whose type is an objective belong to the others.
 void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level) {
   std::vector<ConstraintEntry> entries = draft.catalogues.constraints;
-  for (const DesignMarginInfo& test : design_tests_of(*draft.parts.mechanism))  // a file's mechanism has its own
+  for (const DesignMarginInfo& test : design_tests_of(*draft.parts.mechanism))  // defined by the mechanism file
     if (!find_named(entries, test.name)) entries.push_back(design_test(test.name, test.meaning));
   std::vector<std::string> names = names_of(entries);
   for (const auto& name : names_of(draft.catalogues.objectives))

@@ -64,7 +64,7 @@ Json word_schema(const std::vector<std::string>& choices) {
 
 Json number_schema() { return {{"type", {"number", "string"}}, {"pattern", kQuantity}}; }
 
-/// { name = number }: names listed in the description, otherwise any.
+/// Schema of { name = number }, for the names listed in the description, otherwise for any names.
 Json named_numbers_schema(const OptionSpec& spec) {
   Json schema = {{"type", "object"}};
   for (const auto& [name, unit] : spec.fields) {
@@ -232,7 +232,7 @@ class StudyTables {
     return variant;
   }
 
-  /// Adds the keys that not all constraints have, in front.
+  /// Inserts the keys that not all constraints have before the other keys.
   static void add_keys(const TableSpec& table, TableVariant& variant) {
     std::vector<OptionSpec> keys;
     for (const OptionSpec& key : table.keys)

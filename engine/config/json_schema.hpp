@@ -9,7 +9,7 @@
 namespace pkm {
 
 /// Schema of studies, with the names and options of all entries of the catalogues. Names that a mechanism file defines
-/// (coordinates, parameters, limits, constraints of the design) are accepted whatever they are.
+/// (coordinates, parameters, limits, constraints of the design) are not checked.
 std::string study_schema(const Catalogues& catalogues);
 std::string mechanism_schema();
 std::string motion_schema();

@@ -18,7 +18,7 @@ std::string cell(const std::string& text) {
   return escaped;
 }
 
-/// Whether the rows of a table describe the keys of this table, too.
+/// The table that is the value of a key, if its keys are listed below the key; otherwise null.
 const TableSpec* inline_table(const OptionSpec& key) {
   if (key.kind == OptionKind::table) return key.table;
   if (key.kind == OptionKind::list || key.kind == OptionKind::any_of)
@@ -48,7 +48,7 @@ std::string value_text(const OptionSpec& key) {
 
 void add_rows(const std::vector<OptionSpec>& keys, const std::string& prefix, std::string& rows);
 
-/// @param shown  how the row names the key
+/// @param shown  text for the key in the row
 void add_row(const OptionSpec& key, const std::string& shown, std::string& rows) {
   const std::string initial = key.required ? "required" : key.initial ? '`' + to_text(*key.initial) + '`' : "";
   rows += "| `" + shown + "` | " + cell(value_text(key)) + " | " + initial + " | " + cell(key.meaning) + " |\n";
@@ -72,7 +72,7 @@ std::string sentence(const std::string& text) {
   return static_cast<char>(std::toupper(text[0])) + text.substr(1) + ".\n\n";
 }
 
-/// The keys of the variants; those that several variants have in common once.
+/// Adds the keys of all variants; keys that several variants have in common are listed once.
 void add_variants(const TableSpec& table, std::string& text) {
   std::vector<std::pair<std::vector<std::string>, std::string>>
       groups;  // words of variants, and the rows of their keys

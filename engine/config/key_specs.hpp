@@ -7,13 +7,13 @@
 
 namespace pkm {
 
-/// A key `name = { .. }` or [name].
+/// The description of a table, written as `name = { .. }` or [name].
 inline OptionSpec table_key(const std::string& name, const TableSpec& table, const std::string& meaning = "") {
   return {
       .name = name, .kind = OptionKind::table, .meaning = meaning.empty() ? table.meaning : meaning, .table = &table};
 }
 
-/// Tables [[name]].
+/// The description of an array of tables [[name]].
 inline OptionSpec tables_key(const std::string& name, const TableSpec& table) {
   return {.name = name,
           .kind = OptionKind::list,
@@ -31,7 +31,7 @@ inline OptionSpec formula_key(const std::string& name, const std::string& unit, 
   return {.name = name, .kind = OptionKind::formula, .unit = unit, .meaning = meaning};
 }
 
-/// A list of formulas. @param count  0: any number
+/// The description of a list of formulas. @param count  number of formulas; 0: any
 inline OptionSpec formulas_key(const std::string& name, const std::string& unit, std::size_t count,
                                const std::string& meaning) {
   return {.name = name,
@@ -50,7 +50,7 @@ inline OptionSpec direction_key(const std::string& name, const std::string& mean
   return formulas_key(name, "1", 3, meaning);
 }
 
-/// A point [x, y, z], or the point of a limb: "arm1.C".
+/// The description of a point: [x, y, z], or the name of a point of a limb, "arm1.C".
 inline OptionSpec place_key(const std::string& name, const std::string& meaning) {
   return {.name = name,
           .kind = OptionKind::any_of,

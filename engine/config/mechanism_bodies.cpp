@@ -29,7 +29,7 @@ struct Mass {
 };
 
 /// Mass and inertia of a tube or rod of some material.
-/// @param number_of  such tubes, side by side
+/// @param number_of  number of such tubes side by side
 Mass mass_of_profile(const ConfigValue& value, const Term& length, double number_of, const std::string& what,
                      MechanismDraft& draft) {
   const ConfigValue profile = value.table();
@@ -81,7 +81,7 @@ void add_square(const std::array<expression::Node, 3>& f, const Term& weight, Bo
 
 /// Adds the rotational inertia of a body that rotates with the platform, from its principal values along the platform's
 /// axes: the inertia about the only axis of rotation, otherwise the second moments of mass along the axes.
-void add_turns_of_platform(const std::array<Term, 3>& inertia, BodyNodes& body, MechanismDraft& draft) {
+void add_platform_rotation(const std::array<Term, 3>& inertia, BodyNodes& body, MechanismDraft& draft) {
   const auto turns = [](const auto& axis) { return axis.has_value(); };
   const auto& about = draft.model.rotation_axes;
   const auto count = std::ranges::count_if(about, turns);
@@ -123,7 +123,7 @@ BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia,
   const Term quarter = mass * 0.25, turning = inertia / (*part.length * *part.length);
   const Vector3 centre = (part.from + part.to) * Term(draft.model.graph, 0.5);
   BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
-  if (part.on_arm && part.on_arm->is_arm) {  // from its pivot, which moves along the axis
+  if (part.on_arm && part.on_arm->is_arm) {  // measured from its pivot, which moves along the axis
     add_square(nodes(part.from), mass, body);
     body.arm_rotations.push_back({part.on_arm->arm, (mass * 0.25 * *part.length * *part.length + inertia).node()});
     return body;
@@ -140,7 +140,8 @@ BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia,
   return body;
 }
 
-/// One half of a leg, with its centre of mass on the line from A to B, whose direction is `part.line`.
+/// One of the two bodies of a telescopic leg, with its centre of mass on the line from A to B, whose direction is
+/// `part.line`.
 BodyNodes telescopic_body(const LimbPart& part, const Term& mass, const Term& along, const Term& inertia,
                           const std::string& name) {
   const std::array<expression::Node, 3> direction = nodes(*part.line);
@@ -211,7 +212,7 @@ void read_platform_body(const ConfigValue& platform, MechanismDraft& draft) {
   BodyNodes body = body_at(at, m, "platform");
   if (inertia) {
     const std::array<Term, 3> values = read_inertia(*inertia, "the platform", draft);
-    add_turns_of_platform(values, body, draft);
+    add_platform_rotation(values, body, draft);
     body.inertia = {values[0].node(), values[1].node(), values[2].node()};
   }
   draft.model.bodies.push_back(std::move(body));
@@ -238,7 +239,7 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
       const std::array<Term, 3> inertia = read_inertia(*value, name, draft);
       body.inertia = {inertia[0].node(), inertia[1].node(), inertia[2].node()};
       if (rotation && rotation->text("a name") == "platform") {
-        add_turns_of_platform(inertia, body, draft);
+        add_platform_rotation(inertia, body, draft);
       } else if (rotation) {
         if (inertia[1].node() != inertia[2].node())
           throw value->refusal(

@@ -24,20 +24,20 @@ inline std::array<expression::Node, 3> nodes(const limbs::Vector3& v) {
 /// A part of a limb, or a link: it may have a mass, and [[body]] refers to it as "arm1.crank".
 struct LimbPart {
   std::string name;                         ///< "crank", "rod", "slider"
-  limbs::Vector3 from, to;                  ///< its ends
-  std::optional<limbs::Term> length = {};   ///< if it is constant
-  std::optional<limbs::Vector3> line = {};  ///< vector along it, of any length; std::nullopt: it does not rotate
+  limbs::Vector3 from, to;                  ///< ends of the part
+  std::optional<limbs::Term> length = {};   ///< length, if it is constant
+  std::optional<limbs::Vector3> line = {};  ///< vector along the part, of any length; std::nullopt: it does not rotate
   /// Set if `from` is the end of an arm, or the part is the arm itself.
   struct OnArm {
     std::size_t arm;
     limbs::Vector3 pivot;
-    limbs::Term length;  ///< of the arm
+    limbs::Term length;  ///< length of the arm
     bool is_arm;
   };
   std::optional<OnArm> on_arm = {};
 };
 
-/// A limb under the name that other tables use.
+/// A limb that has been read, as other tables refer to it.
 struct NamedLimb {
   std::string name;                              ///< "arm2"
   std::string group;                             ///< "arm": all copies
@@ -46,7 +46,7 @@ struct NamedLimb {
 
   std::string drive = "formula";
   std::size_t joint = 0;                        ///< index among the joints of the mechanism
-  std::optional<limbs::Vector3> axis = {};      ///< of the crank's pivot, or along the slide
+  std::optional<limbs::Vector3> axis = {};      ///< axis of the crank's pivot, or direction of the slide
   std::optional<limbs::Vector3> revolute = {};  ///< the axis of its joints, if they are parallel revolutes
   bool has_rod = false;                         ///< a rod or telescope; false: a slide that carries the platform
   bool has_links = false;                       ///< two links instead of a rod
@@ -58,11 +58,12 @@ struct NamedLimb {
   struct Section {
     limbs::Term EA, EI, GJ, area;
   };
-  std::optional<Section> rod_section = {}, crank_section = {};  ///< rod_section: of one rod, or of the leg; else rigid
+  /// Cross-section of one rod or of the leg, and of the crank; std::nullopt: rigid.
+  std::optional<Section> rod_section = {}, crank_section = {};
   std::optional<limbs::Vector3> universal = {};  ///< axis of its universal joints, on the drive's side of each joint
 };
 
-/// A limb with `across`: the distance of its ends along the normal is the same at every pose.
+/// A limb with the key `across`: the distance of its ends along the normal must be the same at every pose.
 struct LimbInPlane {
   ConfigValue across;
   limbs::Vector3 A, B, normal;
@@ -73,23 +74,24 @@ struct OwnParameter : LimbParameter {
   expression::Node node{};
 };
 
-/// The values of a sign of the working modes, and their names in the names of modes.
+/// One of the signs that select the working mode: its possible values, and their texts in the names of modes.
 struct SignChoice {
   std::string signs;               ///< "+-": the first is the default
-  std::vector<std::string> names;  ///< by sign
+  std::vector<std::string> names;  ///< texts of the signs
   bool is_branch = false;          ///< appended to the name of a mode after a "/", unless it is the default
 };
 
-/// Result of the readers that have been called.
+/// The mechanism as far as it has been read; each reader adds to it.
 struct MechanismDraft {
   generic::Model model;
   MechanismScope scope{model};
-  limbs::Vector3 origin{zero(), zero(), zero()};  ///< of the platform's frame
+  limbs::Vector3 origin{zero(), zero(), zero()};  ///< origin of the platform's frame
+  /// Rotation of the platform's frame.
   limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
-  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: x, y, z
-  std::vector<SignChoice> sign_choices;                                           ///< by sign
+  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: ranges of x, y, z
+  std::vector<SignChoice> sign_choices;                                           ///< in the order of the inputs
 
   std::vector<std::optional<limbs::Term>> drive_stiffness;  ///< by joint [N/m or N m/rad]; std::nullopt: rigid
   std::vector<OwnParameter> own;
@@ -118,20 +120,20 @@ void read_as_limb(const std::string& limb, const std::function<void()>& read, Me
 /// Refuses parameters of limbs that do not exist or whose formulas do not use the parameter.
 void refuse_idle_parameters(const MechanismDraft& draft);
 
-/// [[limit]]
+/// Reads the tables [[limit]].
 void read_limits(const ConfigValue& root, MechanismDraft& draft);
-/// [inputs]: variables besides the pose, on which quantities, and formulas of [let] that they use, may depend.
+/// Reads [inputs]: variables besides the pose, on which quantities, and formulas of [let] that they use, may depend.
 void read_inputs(const ConfigValue& root, MechanismDraft& draft);
-/// [[quantity]] of the file, and of a study unless it is null. Their formulas may also use "NAME_rate", the time
-/// derivative of a coordinate, an input or a quantity.
+/// Reads the tables [[quantity]] of the file, and of a study unless it is null. Their formulas may also use
+/// "NAME_rate", the time derivative of a coordinate, an input or a quantity.
 void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
-/// What a limb transmits to the platform: a force along a rod, a leg or a slide.
+/// The force that a limb transmits to the platform, along a rod, a leg or a slide.
 struct LimbForce {
   limbs::Vector3 force;  ///< unit vector
   limbs::Term input;     ///< input transmission index
-  limbs::Vector3 end;    ///< where it acts on the platform: B
+  limbs::Vector3 end;    ///< point of the platform at which the force acts: B
 };
-/// std::nullopt for limbs that are formulas or have links, which transmit more than a single force.
+/// The force of a limb; std::nullopt for limbs that are formulas or have links, which transmit more than one force.
 std::optional<LimbForce> force_of(const NamedLimb& limb);
 /// Whether a file, or a study unless it is null, has a [[quantity]] of this name.
 bool defines_quantity(const ConfigValue& root, const ConfigValue* study, const std::string& name);
@@ -140,7 +142,7 @@ void add_transmission(const ConfigValue& root, const ConfigValue* study, Mechani
 /// Adds the quantities of engine/generic/performance/performance.hpp for which the file, or the study unless it is
 /// null, has the data.
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
-/// Reads what makes a limb compliant and inexact: the elastic moduli of its sections, and the play of its joints.
+/// Reads the elastic moduli of a limb's cross-sections, and the play of its joints.
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
 /// Compliance of the limb's end along the line of its rod or leg, due to rods and crank [m/N].
 limbs::Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft);
@@ -152,23 +154,23 @@ std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
 /// called directly after read_limits(), because the positions of all later inputs of the graph depend on the number of
 /// limits.
 void read_quantity_limits(const ConfigValue& study, MechanismDraft& draft);
-/// Adds the margins of these limits.
+/// Adds the margins of the limits of quantities in the study.
 void add_quantity_margins(const ConfigValue& study, MechanismDraft& draft);
-/// [modes]
+/// Reads the table [modes].
 void read_modes(const ConfigValue& root, MechanismDraft& draft);
-/// [[limb]]: joints, loop-closure equations, constraints, ranges, angles, links, bodies.
+/// Reads the tables [[limb]]: joints, loop-closure equations, constraints, ranges, angles, links, bodies.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
 /// Refuses `across` if the end of the limb leaves the limb's plane at some poses.
 void refuse_changing_planes(MechanismDraft& draft);
-/// [[margin]] and [[design]]
+/// Reads the tables [[margin]] and [[design]].
 void read_margins(const ConfigValue& root, MechanismDraft& draft);
 /// Refuses signs of [modes] that no formula of a joint or margin uses.
 void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft);
-/// [[link]]. @return  the links, under the names that [[body]] uses
+/// Reads the tables [[link]]. @return the links, under the names that [[body]] uses
 std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft);
 /// Adds the limit of the clearance, after all others, if there are links that could collide.
 void add_clearance(MechanismDraft& draft);
-/// [survey]
+/// Reads the table [survey].
 void read_survey(const ConfigValue& root, MechanismDraft& draft);
 /// Lists all combinations of the signs, the default first.
 void list_modes(MechanismDraft& draft);
@@ -180,9 +182,9 @@ void add_link_body(const ConfigValue& table, const std::string& name, const limb
                    const limbs::Vector3& to, MechanismDraft& draft);
 /// Adds the body of the platform: mass, centre and inertia.
 void read_platform_body(const ConfigValue& platform, MechanismDraft& draft);
-/// [[body]]. @param links  those of [[link]]
+/// Reads the tables [[body]]. @param links  result of read_links()
 void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft);
-/// [[joint]], and the joints of limbs, for the forces in joints.
+/// Reads the tables [[joint]], and adds the joints of limbs, for the forces in joints.
 void add_joints(const ConfigValue& root, MechanismDraft& draft);
 /// Reads [x, y, z] or the name of a limb's point, "arm1.C".
 limbs::Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft);

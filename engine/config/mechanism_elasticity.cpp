@@ -10,7 +10,7 @@ namespace {
 
 using limbs::Term, limbs::Vector3;
 
-/// std::nullopt if the section is not given, or without Young's modulus.
+/// Reads a cross-section; std::nullopt if it is not given, or has no Young's modulus.
 std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const std::string& key,
                                                MechanismDraft& draft) {
   const auto section = table.find_table(key);
@@ -56,7 +56,7 @@ Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft) {
         limb.drive == "telescope" ? draft.model.term(draft.model.joints[limb.joint]) : length_of(limb, "rod");
     compliance = length / (limb.rod_section->EA * (limb.beside ? 2.0 : 1.0));
   }
-  if (limb.crank_section) {  // a cantilever with the rod's force at its end
+  if (limb.crank_section) {  // the crank is a cantilever with the rod's force at its end
     const Term r = length_of(limb, "crank"), one(draft.model.graph, 1.0);
     const Term along = dot(force_of(limb)->force, limb.points.at("C") - limb.points.at("A")) / r;
     compliance = compliance + along * along * r / limb.crank_section->EA +

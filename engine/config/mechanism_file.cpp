@@ -147,7 +147,8 @@ void read_let(const ConfigValue& root, MechanismDraft& draft) {
   }
 }
 
-/// Selects one of [masses]: alternatives with parameters and formulas of their own. @param chosen  "": the first
+/// Selects one of the mass models in [masses], which have parameters and formulas of their own. @param chosen  name of
+/// the model; "": the first
 void choose_masses(const ConfigValue& root, const std::string& chosen, MechanismDraft& draft) {
   generic::Model& model = draft.model;
   const auto all = root.find_table("masses");
@@ -185,7 +186,7 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   if (const auto radius = platform.find("characteristic_radius"))
     model.radius = draft.scope.of_design(*radius, "m", "characteristic_radius").node();
   if (!mixes_units(model.info.coordinates) && model.info.characteristic_length.empty())
-    model.info.characteristic_length = "1";  // of no effect
+    model.info.characteristic_length = "1";  // has no effect
   if (const auto size = platform.find_table("size")) {
     const std::string unit = si_unit(size->at("unit", "the size's unit: \"m^3\""));
     const ConfigValue formula = size->at("formula", "a formula of parameters");
@@ -263,7 +264,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   refuse_idle_parameters(draft);
   read_survey(root, draft);
   remove_undefined_conditioning(draft.model);
-  draft.scope.note_domains();
+  draft.scope.add_domains();
   list_modes(draft);
   refuse_changing_planes(draft);
   add_clearance(draft);

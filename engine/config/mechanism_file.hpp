@@ -15,10 +15,10 @@ namespace pkm {
 
 class ConfigValue;
 
-/// A parameter of a single limb, besides the common one: "arm2.l_b".
+/// A parameter of a single limb, which replaces the parameter that all limbs share: "arm2.l_b".
 struct LimbParameter {
   std::string limb, parameter;
-  SourceLocation place = {};  ///< where it is named
+  SourceLocation place = {};  ///< location of its name in the input
 
   std::string name() const { return limb + "." + parameter; }
 };

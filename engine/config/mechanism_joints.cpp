@@ -29,7 +29,7 @@ using limbs::Term, limbs::Vector3;
 using Nodes = std::array<expression::Node, 3>;
 
 /// Thrown with a sentence if the file does not describe the joints completely.
-struct Unsaid {
+struct IncompleteDescription {
   std::string why;
 };
 
@@ -51,15 +51,15 @@ class JointReader {
   }
   /// Adds the masses, for the forces in the joints.
   generic::JointedBodies with_masses() {
-    gather_bodies();
-    refuse_loose();
+    assign_masses();
+    refuse_loose_bodies();
     return {solids_, joints_};
   }
 
  private:
   Vector3 vector(const Nodes& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
 
-  /// @param body  body of the model, or the platform, whose mass it has, or a share of it
+  /// @param body  body of the model, or the platform, whose mass, or part of it, the solid has
   std::size_t add_solid(const std::string& body, SolidNodes solid) {
     made_of_[body].push_back(solids_.size());
     solids_.push_back(std::move(solid));
@@ -95,7 +95,7 @@ class JointReader {
     return joint(name, point, on, from, JointNodes::Couples::all_but_about, {});
   }
 
-  /// An elastic beam that the joint added last holds.
+  /// An elastic beam that is connected to the joint added last.
   SolidNodes::Beam beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far,
                            bool is_rod) const {
     return {.near = nodes(near),
@@ -125,16 +125,18 @@ class JointReader {
 
   void add_limb(const NamedLimb& limb) {
     if (limb.drive == "formula")
-      throw Unsaid{"limb " + limb.name + " is a formula, which does not say what its links are"};
+      throw IncompleteDescription{"limb " + limb.name + " is a formula, which does not say what its links are"};
     if (limb.parts.size() == 1)
-      throw Unsaid{"limb " + limb.name + " has neither `rod` nor `links` to carry the platform by"};
+      throw IncompleteDescription{"limb " + limb.name + " has neither `rod` nor `links` to carry the platform by"};
     if (limb.end_on.empty())
-      throw Unsaid{"limb " + limb.name +
-                   " ends at `end`; end_on = \"platform\", or the name of a [[body]], says what carries its end"};
+      throw IncompleteDescription{
+          "limb " + limb.name +
+          " ends at `end`; end_on = \"platform\", or the name of a [[body]], says what carries its end"};
     const auto found = std::ranges::find(solids_, limb.end_on, &SolidNodes::name);
     if (found == solids_.end())
-      throw Unsaid{"limb " + limb.name + " ends on '" + limb.end_on + "', which is neither the platform nor a body" +
-                   did_you_mean(limb.end_on, names_of(solids_))};
+      throw IncompleteDescription{"limb " + limb.name + " ends on '" + limb.end_on +
+                                  "', which is neither the platform nor a body" +
+                                  did_you_mean(limb.end_on, names_of(solids_))};
     const auto carrier = static_cast<std::size_t>(found - solids_.begin());
     const auto& points = limb.points;
     const Vector3 &A = points.at("A"), &B = points.at("B"), &C = points.at("C"), &S = points.at("S");
@@ -188,7 +190,7 @@ class JointReader {
       } else {
         joints_.push_back(limb_joint(limb, limb.name + ".S" + number, near, outer, {}, last.line));
         joints_.back().drive = drive;
-        drive.slide = {};  // once for both rods
+        drive.slide = {};  // the slide counts once for both rods
       }
       make_universal(limb, far - near, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = beam_of(*section, near, far, true);
@@ -215,7 +217,7 @@ class JointReader {
   }
 
   /// Gives each mass to the body that it belongs to.
-  void gather_bodies() {
+  void assign_masses() {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyNodes& body = model_.bodies[i];
       if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;  // part of its drive
@@ -225,15 +227,17 @@ class JointReader {
           if (owner == limb.name + "." + part.name) owner = part.name + " of " + limb.name;
       const auto owners = made_of_.find(owner);
       if (owners == made_of_.end())
-        throw Unsaid{"body " + body.name + " turns with " + body.part_of + ", which is no body of its own"};
+        throw IncompleteDescription{"body " + body.name + " turns with " + body.part_of +
+                                    ", which is no body of its own"};
       if (owners->second.size() > 1 && body.name != owner)
-        throw Unsaid{"body " + body.name + " turns with a pair of rods, and the file does not say with which"};
+        throw IncompleteDescription{"body " + body.name +
+                                    " turns with a pair of rods, and the file does not say with which"};
       for (const std::size_t solid : owners->second) solids_[solid].bodies.push_back(i);
     }
   }
 
   /// Refuses bodies without a joint, and joints with fewer unknowns than there are equations, which leave motions free.
-  void refuse_loose() {
+  void refuse_loose_bodies() {
     std::vector<bool> has_joint(solids_.size(), false);
     std::size_t unknowns = 0;
     for (const JointNodes& joint : joints_) {
@@ -243,12 +247,13 @@ class JointReader {
     }
     for (std::size_t i = 0; i < solids_.size(); ++i)
       if (!has_joint[i])
-        throw Unsaid{"no joint holds the body " + solids_[i].name +
-                     "; rotation = \"platform\" makes a body part of the platform, [[joint]] joins two"};
+        throw IncompleteDescription{"no joint holds the body " + solids_[i].name +
+                                    "; rotation = \"platform\" makes a body part of the platform, [[joint]] joins two"};
     if (const std::size_t equations = 6 * solids_.size(); unknowns < equations)
-      throw Unsaid{"the joints of the file hold its bodies too little (" + std::to_string(equations) +
-                   " equations have " + std::to_string(unknowns) +
-                   " unknowns); rods that come in pairs say `pair`, limbs of parallel revolutes `across`"};
+      throw IncompleteDescription{
+          "the joints of the file hold its bodies too little (" + std::to_string(equations) + " equations have " +
+          std::to_string(unknowns) +
+          " unknowns); rods that come in pairs say `pair`, limbs of parallel revolutes `across`"};
   }
   std::size_t couples_of(const JointNodes& joint) {
     if (joint.couples == JointNodes::Couples::along) return joint.axes.size();
@@ -283,11 +288,11 @@ void add_joints(const ConfigValue& root, MechanismDraft& draft) {
     const bool has_spring = std::ranges::any_of(
         model.jointed->joints, [](const JointNodes& joint) { return joint.drive && joint.drive->compliance; });
     if (!has_beam && !has_spring) model.why_no_elasticity = "no limb has `drive_stiffness`, or a section with `young`";
-    if (model.bodies.empty()) throw Unsaid{"the file names no masses"};
+    if (model.bodies.empty()) throw IncompleteDescription{"the file names no masses"};
     model.jointed = reader.with_masses();
-  } catch (const Unsaid& unsaid) {
-    model.why_no_reactions = unsaid.why;
-    if (!model.jointed) model.why_no_elasticity = unsaid.why;
+  } catch (const IncompleteDescription& incomplete) {
+    model.why_no_reactions = incomplete.why;
+    if (!model.jointed) model.why_no_elasticity = incomplete.why;
   }
 }
 

@@ -13,7 +13,7 @@ const TableSpec& mechanism_keys();
 
 /// Keys of a [[quantity]] of a mechanism file or a study.
 const TableSpec& quantity_keys();
-/// [accuracy], of a mechanism or a study.
+/// Keys of the table [accuracy] of a mechanism file or a study.
 const TableSpec& accuracy_keys();
 /// Keys of a parameter of a single limb: "arm2.l_b = { .. }".
 const TableSpec& limb_parameter_keys();

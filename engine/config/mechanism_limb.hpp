@@ -16,39 +16,39 @@ struct LimbCopy {
   const ConfigValue& table;
   MechanismDraft& draft;
   std::string drive;
-  std::string group;     ///< the limb's name: "arm"
-  std::string name;      ///< this copy's: "arm2"
-  limbs::Rotation turn;  ///< of this copy
+  std::string group;     ///< name in the file: "arm"
+  std::string name;      ///< name of this copy: "arm2"
+  limbs::Rotation turn;  ///< rotation of this copy
 
   limbs::Term length(const char* key, const char* expected) const;
-  /// Reads a direction and rotates it with the copy. @param on_platform  it is given in the platform's frame
+  /// Reads a direction and rotates it with the copy. @param on_platform  true: given in the platform's frame
   limbs::Vector3 direction(const ConfigValue& value, bool on_platform = false) const;
-  /// The ends of `range`, which must be present.
+  /// Reads both ends of the key `range`, which must be present.
   std::array<limbs::Term, 2> range(const std::string& unit) const;
-  /// l_1 and l_2 of `links`, which must be present.
+  /// Reads l_1 and l_2 of the key `links`, which must be present.
   std::array<limbs::Term, 2> links() const;
 };
 
 /// A limb in closed form with its drive.
 struct DrivenLimb : limbs::Limb {
-  std::string form;                     ///< formula of the joint coordinate
-  std::optional<limbs::Vector3> e;      ///< along the slide, or the crank's axis
-  std::optional<limbs::Term> beyond{};  ///< maximum distance of B from A or from the slide
+  std::string form;                           ///< formula of the joint coordinate
+  std::optional<limbs::Vector3> e;            ///< direction of the slide, or axis of the crank
+  std::optional<limbs::Term> max_distance{};  ///< maximum distance of B from A or from the slide
 };
 
-/// @param q  the joint variable
+/// Reads the drive of a limb. @param q  the joint variable
 DrivenLimb read_drive(const LimbCopy& copy, const limbs::Ends& at, const limbs::Term& q);
 
 /// Names of the parts of a limb: its bodies, as [[body]] refers to them.
 std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::string& drive);
-/// The parts with their ends. Adds the limb's arm to the model.
+/// The parts of a limb with their ends. Adds the limb's arm to the model.
 std::vector<LimbPart> read_parts(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 /// Adds the links that are drawn and tested for clearance, if the limb has a `radius`.
 void add_limb_links(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 /// Adds a box about A, or about the rail, that contains the platform's frame whenever the limb can reach it.
 void add_reach(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 
-/// [[limb]] with drive = "formula": the joints are formulas of the pose.
+/// Reads a [[limb]] with drive = "formula": the joints are formulas of the pose.
 void read_formula_limb(const ConfigValue& table, const std::string& name, MechanismDraft& draft);
 
 /// Adds a joint and its input to the graph.

@@ -31,9 +31,9 @@ DrivenLimb slider_and_links(const LimbCopy& copy, const Ends& at, const Vector3&
   const auto [l_1, l_2] = copy.links();
   const auto given = copy.table.find("axis");
   const Vector3 axis = given ? copy.direction(*given) : e;
-  const Term beyond = l_1 + l_2;
+  const Term max_distance = l_1 + l_2;
   return {limbs::slider_and_links(at, e, axis, l_1, l_2, branch(copy), q), "q = (B - A) . e, two links across e", e,
-          beyond};
+          max_distance};
 }
 
 DrivenLimb slider(const LimbCopy& copy, const Ends& at, const Term& q) {
@@ -68,9 +68,10 @@ DrivenLimb crank(const LimbCopy& copy, const Ends& at, const Term& q) {
   const Term crank = copy.length("crank", "the crank's length"), rod = copy.length("rod", "the rod's length");
   std::optional<std::array<Term, 2>> ends;
   if (table.has("range")) ends = copy.range("rad");
-  const Term beyond = crank + rod;
+  const Term max_distance = crank + rod;
   return {limbs::crank_and_rod(at, axis, zero, crank, rod, branch(copy), ends, q),
-          "q = atan2(w, u) + branch acos(k / hypot(u, w)), k = (|v|^2 + crank^2 - rod^2) / (2 crank)", axis, beyond};
+          "q = atan2(w, u) + branch acos(k / hypot(u, w)), k = (|v|^2 + crank^2 - rod^2) / (2 crank)", axis,
+          max_distance};
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void add_reach(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
   const ConfigValue& table = copy.table;
   const bool has_range = table.has("range");
   const bool on_rail = copy.drive == "slider";
-  std::optional<Term> far = limb.beyond;
+  std::optional<Term> far = limb.max_distance;
   if (copy.drive == "telescope" && has_range) far = copy.range("m")[1];
   if (!far || at.across || table.has("end") || (on_rail && (!has_range || table.has("links")))) return;
   const Vector3 arm = copy.draft.scope.point(table.at("platform", "a point"), copy.group);
@@ -81,7 +81,7 @@ void add_reach(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
     }
     reach[i] = {low - round, high + round};
   }
-  copy.draft.scope.known_to_exist(round.node());
+  copy.draft.scope.mark_as_defined(round.node());
 }
 
 }  // namespace pkm

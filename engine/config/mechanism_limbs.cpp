@@ -119,7 +119,7 @@ void add_passive_joint(const LimbCopy& copy, const char* key, const char* called
   };
   limit("min", [&](const Term& least) { return angle - least; });
   limit("max", [&](const Term& greatest) { return greatest - angle; });
-  draft.scope.known_to_exist(angle.node());
+  draft.scope.mark_as_defined(angle.node());
 }
 
 /// Vector from the middle of a pair of rods to one of them; std::nullopt for a single rod.
@@ -198,10 +198,10 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   for (const limbs::Constraint& constraint : limb.constraints) {
     model.domains.push_back({copy.name + " " + constraint.name, constraint.unit, constraint.margin.node(),
                              copy.name + " cannot reach the pose"});
-    draft.scope.known_to_exist(constraint.margin.node());
+    draft.scope.mark_as_defined(constraint.margin.node());
   }
-  draft.scope.known_to_exist(limb.joint.node());
-  draft.scope.known_to_exist(limb.C[0].node());
+  draft.scope.mark_as_defined(limb.joint.node());
+  draft.scope.mark_as_defined(limb.C[0].node());
   draft.scope.add(copy.table, joint, limb.joint.node());
   model.joints.push_back(limb.joint.node());
   model.closures.push_back(limb.closure.node());

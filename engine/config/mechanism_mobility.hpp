@@ -10,7 +10,7 @@ namespace pkm {
 
 /// States how many degrees of freedom the drives determine at a pose, and whether the joints prevent all other motions
 /// of the platform.
-/// @param rank  of the Jacobian at the pose
+/// @param rank  rank of the Jacobian at the pose
 std::string mobility_text(const Mechanism& mechanism, std::span<const double> parameters, const Pose<double>& pose,
                           std::size_t rank);
 

@@ -50,7 +50,7 @@ class Performance {
   }
 
  private:
-  /// Why J has no inverse; "": it has one.
+  /// Why the Jacobian has no inverse; "" if it has one.
   std::string why_no_inverse() const {
     if (joints_ == model_.inputs.coordinates) return "";
     return "there are " + std::to_string(joints_) + " joints for " + std::to_string(model_.inputs.coordinates) +
@@ -71,7 +71,7 @@ class Performance {
     model_.info.quantities.push_back(
         {.name = term.name, .unit = term.unit, .meaning = term.meaning, .of_pose = of_pose});
     draft_.scope.add(root_, term.name, term.value.node());
-    draft_.scope.known_to_exist(term.value.node());
+    draft_.scope.mark_as_defined(term.value.node());
   }
 
   std::string force_unit(std::size_t joint) const { return model_.info.joints[joint].turns() ? "N m" : "N"; }
@@ -114,7 +114,7 @@ class Performance {
 
   // Accuracy
 
-  /// [accuracy] of the study, else of the file.
+  /// The table [accuracy] of the study, otherwise that of the file.
   std::optional<ConfigValue> accuracy_table() const {
     if (study_)
       if (auto table = study_->find_table("accuracy")) return table;
@@ -163,7 +163,8 @@ class Performance {
     for (std::size_t joint = 0; joint < joints_; ++joint)
       if (const auto value = by_name.find(model_.info.joints[joint].name)) read(*value, joint);
   }
-  /// An error of a parameter of all limbs is one of each physical copy, and acts on the joint of its limb alone.
+  /// Reads the errors of parameters. A parameter that all limbs share has an independent error in each limb, which acts
+  /// on the joint of this limb only.
   void read_parameter_errors(const ConfigValue& all) {
     for (const std::string& name : all.dotted_keys(false)) {
       const ConfigValue value = *all.find(name);
@@ -220,7 +221,7 @@ class Performance {
     std::vector<generic::LimbSpring> springs;
     bool is_rigid = true;
     for (std::size_t joint = 0; joint < joints_; ++joint) {
-      if (given[joint])  // of the study; also for the bodies and joints of the mechanism
+      if (given[joint])  // set by the study; takes precedence over the mechanism file
         draft_.drive_stiffness[joint] =
             draft_.scope.positive(*given[joint], model_.info.joints[joint].turns() ? "N m/rad" : "N/m", "stiffness");
       springs.push_back(spring_of(joint, draft_.drive_stiffness[joint]));

@@ -80,7 +80,7 @@ class RandomPoses {
 }  // namespace
 
 void refuse_changing_planes(MechanismDraft& draft) {
-  std::vector<Node> nodes;  // of each limb: the component of B - A along the normal, |B - A|^2
+  std::vector<Node> nodes;  // two per limb: the component of B - A along the normal, and |B - A|^2
   for (const LimbInPlane& limb : draft.in_planes) {
     const limbs::Vector3 v = limb.B - limb.A;
     nodes.push_back(dot(v, limb.normal).node());

@@ -19,13 +19,13 @@ const std::vector<std::string> kTaken = {"conditioning", "dci",    "dci_worst", 
 
 constexpr double kNoLimit = 1e30;  // threshold that no value of a quantity violates, in any unit
 
-/// A coordinate or an extra input: its value, rate and acceleration are inputs of the graph.
+/// A coordinate, or an input of [inputs]. Its value, rate and acceleration are inputs of the graph.
 struct Moving {
   std::string name;
   Node value, rate, acceleration;
 };
 
-/// The coordinates and the extra inputs.
+/// The coordinates and the inputs of [inputs].
 std::vector<Moving> moving_inputs(generic::Model& model) {
   const Inputs& at = model.inputs;
   std::vector<Moving> all;
@@ -55,8 +55,8 @@ void visit_quantity_limits(const ConfigValue& study, const MechanismInfo& info, 
   }
 }
 
-/// value - threshold of a minimum, else threshold - value. A minimum or maximum stays outermost, so that the polynomial
-/// normal form takes it apart: min(a, b) - t = min(a - t, b - t).
+/// The margin of a limit: value - threshold for a minimum, threshold - value for a maximum. min and max in the value
+/// are moved outwards, min(a, b) - t = min(a - t, b - t), where the polynomial normal form can eliminate them.
 /// @param most  number of minima and maxima that are moved outwards
 Node margin_of(expression::Graph& graph, Node value, Node threshold, bool is_minimum, int& most) {
   const expression::Entry entry = graph[value];

@@ -36,7 +36,7 @@ Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, 
   const Node node = value.explained([&] { return expression::read_formula(model_.graph, text, names_, nodes_); });
   if (!motion_allowed_ && (model_.graph[node].groups & (generic::Inputs::kExtras | generic::Inputs::kRates)) != 0)
     throw value.refusal("a formula of [inputs] or of rates is possible for a [[quantity]] only");
-  watch(node, what);
+  register_partial_operations(node, what);
   return model_.term(node);
 }
 
@@ -64,7 +64,7 @@ namespace {
 constexpr const char* kPoint = "three numbers or formulas [x, y, z]";
 constexpr const char* kDirection = "a direction, three numbers or formulas [x, y, z] that are not all 0";
 
-/// [x, y, z], each read by `read`.
+/// Reads [x, y, z], each element by `read`.
 template <class Read>
 Vector3 three(const ConfigValue& value, const char* expected, const Read& read) {
   const std::vector<ConfigValue> elements = value.elements(expected);
@@ -86,7 +86,7 @@ Vector3 MechanismScope::direction(const ConfigValue& value, const std::string& w
   const Vector3 v = three(value, kDirection, [&](const ConfigValue& each) { return of_design(each, "1", what); });
   const Term length = limbs::length(v);
   if (!(at_default(length) > 0)) throw value.error(kDirection);
-  known_to_exist(length.node());
+  mark_as_defined(length.node());
   return v / length;
 }
 
@@ -97,7 +97,7 @@ double MechanismScope::at_default(const Term& term) const {
   for (std::size_t i = 0; i < model_.info.parameters.size(); ++i) inputs[i] = model_.info.parameters[i].nominal;
   for (std::size_t i = 0; i < model_.inputs.limits; ++i)
     inputs[model_.inputs.limit(i)] = model_.info.limits[i].inactive;
-  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)  // nothing special about this pose
+  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)  // an arbitrary, generic pose
     inputs[model_.inputs.coordinate(i)] = 0.37 + 0.11 * static_cast<double>(i);
   program.run_all<double>(inputs, registers);
   return registers[program.outputs().front()];
@@ -110,28 +110,29 @@ void MechanismScope::refuse_empty(const ConfigValue& range, const Term& from, co
                       shortest(greatest) + "]");
 }
 
-std::vector<Node> MechanismScope::unseen(Node root) const {
-  return model_.graph.reachable({&root, 1}, [&](Node each) { return seen_.contains(each); });
+std::vector<Node> MechanismScope::unvisited_nodes(Node root) const {
+  return model_.graph.reachable({&root, 1}, [&](Node each) { return visited_.contains(each); });
 }
 
-void MechanismScope::known_to_exist(Node node) {
-  for (const Node each : unseen(node)) seen_.insert(each);
+void MechanismScope::mark_as_defined(Node node) {
+  for (const Node each : unvisited_nodes(node)) visited_.insert(each);
 }
 
-void MechanismScope::watch(Node root, const std::string& what) {
+void MechanismScope::register_partial_operations(Node root, const std::string& what) {
   const auto has_domain = [](const expression::Operation* operation) {
     return operation && (operation->name == "sqrt" || operation->name == "asin" || operation->name == "acos" ||
                          operation->name == "log" || operation->name == "log10");
   };
   int count = 0;
-  for (const Node node : unseen(root)) {
-    seen_.insert(node);
+  for (const Node node : unvisited_nodes(root)) {
+    visited_.insert(node);
     if (has_domain(model_.graph[node].operation))
-      watched_.push_back({node, what, what + (++count > 1 ? " exists (" + std::to_string(count) + ")" : " exists")});
+      partial_operations_.push_back(
+          {node, what, what + (++count > 1 ? " exists (" + std::to_string(count) + ")" : " exists")});
   }
 }
 
-void MechanismScope::note_domains() {
+void MechanismScope::add_domains() {
   std::vector<Node> used = model_.joints, limited;
   for (const generic::Result& margin : model_.margins) {
     const LimitInfo* const limit = find_named(model_.info.limits, margin.name);
@@ -140,7 +141,7 @@ void MechanismScope::note_domains() {
   const std::vector<Node> reachable = model_.graph.reachable(used), of_limits = model_.graph.reachable(limited);
   std::vector<std::vector<Node>> of_joints;
   for (const Node& joint : model_.joints) of_joints.push_back(model_.graph.reachable({&joint, 1}));
-  for (const auto& [node, what, name] : watched_) {
+  for (const auto& [node, what, name] : partial_operations_) {
     const bool is_needed = std::ranges::binary_search(reachable, node);
     if (!is_needed && !std::ranges::binary_search(of_limits, node)) continue;
     std::string consequence = what + " has no real value";

@@ -18,13 +18,13 @@ class MechanismScope {
 
   /// Refuses a name that is invalid in formulas or in use.
   void add(const ConfigValue& at, const std::string& name, expression::Node node);
-  /// Gives a name another meaning: a threshold in place of the parameter.
+  /// Assigns another node to a name: a threshold instead of the parameter.
   void replace(const std::string& name, expression::Node node);
-  /// The meanings of all names, to be restored later; names that are added in between stay.
+  /// The nodes of all names, for restore(), which keeps names that were added later.
   const std::vector<expression::Node>& meanings() const { return nodes_; }
   void restore(const std::vector<expression::Node>& meanings) { std::ranges::copy(meanings, nodes_.begin()); }
   bool knows(const std::string& name) const;
-  /// Whether formulas may depend on rates and on [inputs]: those of quantities.
+  /// Sets whether formulas may depend on rates and on [inputs]. Only formulas of quantities may.
   void allow_motion(bool allowed) { motion_allowed_ = allowed; }
 
   /// Reads a number, text with a unit of the dimension of `unit`, or a formula of the names defined so far. If it may
@@ -32,8 +32,8 @@ class MechanismScope {
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// Reads a formula of parameters only.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// Reads a formula of parameters whose value has to be positive: refuses a number that is not. Formulas may violate
-  /// it for some designs.
+  /// Reads a formula of parameters whose value has to be positive. Refuses a number that is not positive; a formula may
+  /// be negative for some designs.
   limbs::Term positive(const ConfigValue& value, const std::string& unit, const std::string& what,
                        bool may_vanish = false);
   /// Reads three formulas, [x, y, z].
@@ -48,20 +48,22 @@ class MechanismScope {
   /// Refuses a range that is empty for the default parameters.
   void refuse_empty(const ConfigValue& range, const limbs::Term& from, const limbs::Term& to) const;
 
-  /// Marks the square roots in `node` as defined wherever the constraints of the limb are satisfied, so that they get
-  /// no margins of their own.
-  void known_to_exist(expression::Node node);
+  /// Marks the square roots in `node` as defined wherever the constraints of the limb are satisfied; add_domains() then
+  /// adds no margins for them.
+  void mark_as_defined(expression::Node node);
   /// Adds domains for the operations in joints and margins of the model that may be undefined; margins for those that
   /// only limits of quantities use.
-  void note_domains();
+  void add_domains();
 
  private:
-  /// The descendants of a node that have not been visited.
-  std::vector<expression::Node> unseen(expression::Node root) const;
+  /// The nodes that `root` depends on and that have not been visited yet, in topological order.
+  std::vector<expression::Node> unvisited_nodes(expression::Node root) const;
 
-  void watch(expression::Node node, const std::string& what);
+  /// Registers the operations in a node that are undefined for some arguments, for add_domains().
+  void register_partial_operations(expression::Node root, const std::string& what);
 
-  struct Watched {
+  /// An operation that is undefined for some arguments.
+  struct PartialOperation {
     expression::Node node;
     std::string what, name;
   };
@@ -70,8 +72,8 @@ class MechanismScope {
   expression::Names names_;
   std::vector<expression::Node> nodes_;
   std::vector<std::string> origins_;  ///< "parameters.a (line 7)"
-  std::vector<Watched> watched_;
-  std::unordered_set<expression::Node> seen_;
+  std::vector<PartialOperation> partial_operations_;
+  std::unordered_set<expression::Node> visited_;
   bool motion_allowed_ = false;
 };
 

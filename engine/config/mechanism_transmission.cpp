@@ -35,7 +35,7 @@ LimbForce single_force_of(const NamedLimb& limb) {
   const Term one(B[0].graph(), 1.0);
   if (limb.drive == "slider" && !limb.has_rod) return {unit(*limb.axis), one, B};
   Vector3 rod = B - (limb.drive == "telescope" ? A : C);
-  if (limb.revolute) {  // joints about one direction: there is no force along it
+  if (limb.revolute) {  // parallel revolute joints transmit no force along their axes
     const Vector3 n = unit(*limb.revolute);
     rod = rod - n * dot(rod, n);
   }
@@ -45,7 +45,7 @@ LimbForce single_force_of(const NamedLimb& limb) {
   return {force, abs(dot(force, unit(motion))), B};
 }
 
-Term least(const std::vector<Term>& values) {
+Term minimum_of(const std::vector<Term>& values) {
   Term result = values.front();
   for (std::size_t i = 1; i < values.size(); ++i) result = call(expression::operation("min"), result, values[i]);
   return result;
@@ -53,7 +53,7 @@ Term least(const std::vector<Term>& values) {
 
 constexpr const char *kLti = "lti", *kInput = "lti_input", *kOutput = "lti_output";
 
-std::string why_not(const ConfigValue& root, const ConfigValue* study, const MechanismDraft& draft) {
+std::string why_no_transmission(const ConfigValue& root, const ConfigValue* study, const MechanismDraft& draft) {
   for (const char* const name : {kLti, kInput, kOutput})
     if (draft.scope.knows(name) || defines_quantity(root, study, name))
       return std::string("the file gives the name ") + name + " another meaning";
@@ -78,7 +78,7 @@ std::optional<LimbForce> force_of(const NamedLimb& limb) {
 
 void add_transmission(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  if (const std::string why = why_not(root, study, draft); !why.empty()) {
+  if (const std::string why = why_no_transmission(root, study, draft); !why.empty()) {
     model.info.undefined_quantities.push_back({kLti, why});
     return;
   }
@@ -106,14 +106,14 @@ void add_transmission(const ConfigValue& root, const ConfigValue* study, Mechani
     inputs.push_back(all[i].input);
     outputs.push_back(abs(dot(all[i].force, v)) / limbs::length(v));
   }
-  const Term input = least(inputs), output = least(outputs);
+  const Term input = minimum_of(inputs), output = minimum_of(outputs);
   const auto add = [&](const std::string& name, const Term& value, const std::string& meaning) {
     const auto of_pose = formula_quantity(name, "1", meaning, model.quantities.size());
     model.quantities.push_back(value.node());
     model.info.quantities.push_back({.name = name, .unit = "1", .meaning = meaning, .of_pose = of_pose});
     draft.scope.add(root, name, value.node());
   };
-  add(kLti, least({input, output}), "local transmission index: minimum of lti_input and lti_output");
+  add(kLti, minimum_of({input, output}), "local transmission index: minimum of lti_input and lti_output");
   add(kInput, input, "minimum over the limbs of the input transmission index, 0 at serial singularities");
   add(kOutput, output, "minimum over the limbs of the output transmission index, 0 at parallel singularities");
   const auto add_of_limb = [&](const std::string& name, const std::string& unit, const Term& value,

@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-/// What bounds the duration of a move: `time`, or peak accelerations and speeds.
+/// Keys that determine the duration of a move: `time`, or peak accelerations and speeds.
 std::vector<OptionSpec> pace_keys() {
   return {{.name = "time", .unit = "s", .meaning = "duration of a move", .positive = true},
           {.name = "acceleration",
@@ -87,7 +87,7 @@ std::vector<TableVariant> motion_variants() {
        {{.name = "duration", .unit = "s", .required = true, .meaning = "duration of the motion", .positive = true}}}};
 }
 
-/// @param in_study  a [[motion]], which has a name
+/// @param in_study  true for a [[motion]] of a study, which has a name
 TableSpec motion_table(bool in_study) {
   TableSpec table = {
       .header = in_study ? "[[motion]]" : "",

@@ -26,7 +26,7 @@ std::vector<OptionSpec> coordinate_keys(const ConfigValue& point, const Coordina
   return named_keys(point.table_spec(), names_of(names));
 }
 
-/// Every coordinate of a pose.
+/// Reads a pose: a value for every coordinate.
 Pose<double> pose_at(const ConfigValue& table, const Coordinates& names) {
   Pose<double> pose(names.size());
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -34,13 +34,13 @@ Pose<double> pose_at(const ConfigValue& table, const Coordinates& names) {
   return pose;
 }
 
-/// What determines the duration of a move: `time`, or peak accelerations and speeds.
+/// The data that determine the duration of a move: `time`, or peak accelerations and speeds.
 struct Pace {
   std::optional<double> time;
   PeakRates most = {};
 };
 
-/// The pace that the table gives, otherwise `general`.
+/// The pace in the table of a point; otherwise `general`, that of the whole motion.
 Pace pace_of(const ConfigValue& table, const Pace& general) {
   const auto peak = [&table](const char* key) { return table.find_number(key).value_or(kUnbounded); };
   const Pace pace{table.find_number("time"),
@@ -172,7 +172,8 @@ constexpr MotionKind kMotionKinds[] = {{"points", read_points},
 /// The table of a motion, read by its description.
 ConfigValue motion_described_by(const TableSpec& spec, const ConfigValue& value, const MotionNames& names) {
   const bool has_points = value.expect_table().choice("type", names_of(kMotionKinds)) == "points";
-  Names keys = has_points ? Names() : names_of(names.coordinates);  // points have them instead
+  Names keys =
+      has_points ? Names() : names_of(names.coordinates);  // with `points`, the coordinates are keys of the points
   for (const InputInfo& input : names.inputs) keys.push_back(input.name);
   return value.described_by(spec, named_keys(spec, keys));
 }

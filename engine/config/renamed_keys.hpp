@@ -19,7 +19,7 @@ struct RenamedKey {
 };
 std::span<const RenamedKey> renamed_keys();
 
-/// The present name of the key with the path "workspace.certain"; "" if it was not renamed.
+/// The present name of the key with an old path such as "workspace.certain"; "" if the key was not renamed.
 std::string present_name(std::string_view path);
 
 /// The present name of an option such as "--held"; "" if it was not renamed.

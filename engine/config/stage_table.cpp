@@ -64,7 +64,7 @@ Stage read_stage(const ConfigValue& each, const std::vector<OptimiserEntry>& opt
                  bool is_first) {
   const OptimiserEntry& entry = *find_named(optimisers, each.choice("optimiser", names_of(optimisers)));
   const ConfigValue table = each.table(entry.options);
-  // The unit of the objective that an optimiser works on; of several there is no one unit.
+  // The unit of the objective; with several objectives there is no common unit.
   const auto& objectives = problem.objectives();
   const DesignSpace& space = problem.space();
   auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");

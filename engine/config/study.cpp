@@ -38,7 +38,7 @@ void read_run_tables(const ConfigValue& root, StudyDraft& draft) {
   if (const auto table = root.find_table("checkpoint")) draft.study.checkpoint_every = table->find_number("every");
   if (const auto table = root.find_table("final")) {
     if (const auto round = table->find("round")) {
-      // The step has the unit that all variables share, otherwise none.
+      // The step has the unit that all variables share; "1" if their units differ.
       const auto& variables = draft.parts.space.variables();
       if (variables.empty()) throw round->refusal("a design is rounded in its variables, and the study has none");
       std::string& unit = draft.study.round_unit = variables.front().unit;
@@ -50,8 +50,8 @@ void read_run_tables(const ConfigValue& root, StudyDraft& draft) {
   }
 }
 
-/// Warns if the workspace is empty, for example because a plane is off the rail or a box has a wrong unit. Otherwise
-/// only the end of the run would show it.
+/// Warns if the workspace is empty, for example because a fixed coordinate is out of reach or a box has a wrong unit.
+/// Without the warning, users would notice it only at the end of the run.
 void warn_of_empty_workspace(Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
@@ -73,8 +73,8 @@ void warn_of_empty_workspace(Study& study) {
       design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
   }
   if (parts.mechanism->refuse(design)) return;
-  constexpr double kLongest = 1;  // s
-  const StopScope limit(kLongest);
+  constexpr double kMaxSeconds = 1;  // s
+  const StopScope limit(kMaxSeconds);
   try {
     if (study.problem->workspace(design).volume > 0) return;
   } catch (const Stopped&) {

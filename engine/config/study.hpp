@@ -35,8 +35,8 @@ struct Stage {
   std::shared_ptr<const OptimiserEntry> entry;
   Options options;  ///< defaults filled in, also those that depend on the variables
   std::shared_ptr<const Optimiser> optimiser;
-  int line = 0;                   ///< of its [[stage]]
-  std::vector<OptionSpec> specs;  ///< the entry's, completed for this study: units, and defaults as in `options`
+  int line = 0;                   ///< line of its [[stage]] in the file
+  std::vector<OptionSpec> specs;  ///< options of the entry with the units and defaults of this study
 };
 
 /// An [[objective]], [[constraint]] or [[output]] with its defaults, for listings.
@@ -73,11 +73,11 @@ struct Study {
   double exact_seconds = 10;               ///< [workspace] exact: time limit of the exact values; 0: none are computed
   std::optional<double> checkpoint_every;  ///< [s]; std::nullopt: adaptive
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
-  std::vector<std::string> differences;    ///< between the records and the text of a study file
+  std::vector<std::string> differences;    ///< differences between the records and the text of a study file
 
   std::vector<Reference> references;
   std::vector<NamedMotion> motions;             ///< [[motion]]s
-  std::vector<std::string> unfollowed_motions;  ///< those with follow = false
+  std::vector<std::string> unfollowed_motions;  ///< motions with follow = false
 
   std::vector<StudyEntry> objectives, constraints, outputs;
   std::vector<std::string> limit_origins;  ///< for each limit of the mechanism: where it is set; "": nowhere

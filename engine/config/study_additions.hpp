@@ -9,10 +9,10 @@
 
 namespace pkm {
 
-/// The additions of a study's document, a copy of which they own.
+/// The additions in the document of a study. The result owns a copy of the document.
 StudyAdditions study_additions(const TomlValue& study, const std::string& file_name);
 
-/// [accuracy] joint_error, as an option gives it; null if there is none.
+/// The key joint_error of [accuracy], from the values of a command-line option; null if the lists are empty.
 /// @param lists  one error for all joints, or NAME=ERROR, separated by commas
 StudyAdditions joint_error_addition(const std::vector<std::string>& lists);
 

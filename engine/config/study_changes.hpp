@@ -28,16 +28,16 @@ struct StudyChanges {
   std::vector<Variable> recorded_variables;
 
   bool empty() const { return set.empty() && limit.empty() && cells.empty(); }
-  /// "--set", "L0=2", "--cells", "40"
+  /// The changes as command-line arguments: "--set", "L0=2", "--cells", "40".
   std::vector<std::string> arguments() const;
 };
 
 /// The parameters of single limbs that the changes name.
 std::vector<LimbParameter> limb_parameters(const StudyChanges& changes);
 
-/// The text with an [[override]] appended. Later ones take precedence.
+/// The text of a study with an [[override]] appended. Later overrides take precedence.
 std::string with_changes(const std::string& text, const StudyChanges& changes);
-/// The text without the [[override]]s that with_changes() has appended.
+/// The text of a study without the [[override]]s that with_changes() has appended.
 std::string without_changes(const std::string& text);
 
 }  // namespace pkm

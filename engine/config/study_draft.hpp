@@ -12,53 +12,57 @@
 
 namespace pkm {
 
-/// Result of the readers that have been called.
+/// The study as far as it has been read; each reader adds to it.
 struct StudyDraft {
   const Catalogues& catalogues;
   /// Reads the mechanism file that [mechanism] names.
   std::function<SourceText(const ConfigValue& file)> description;
   Study study;
   ProblemParts parts;
-  std::vector<LimbParameter> limb_parameters = {};  ///< those that the study or the command line names
-  std::vector<StudyChanges> changes = {};           ///< those in the text, then those of this command line
+  std::vector<LimbParameter> limb_parameters = {};  ///< single-limb parameters in study or command line
+  std::vector<StudyChanges> changes = {};           ///< changes in the text, then those of the command line
   ImpliedConstraints implied = ImpliedConstraints::added;
 
   const MechanismInfo& info() const { return parts.mechanism->info(); }
 };
 
-/// [[override]]: changes by the command line
+/// Reads the tables [[override]]: changes by the command line.
 void read_overrides(const ConfigValue& root, StudyDraft& draft);
-/// Apply the overrides of fixed parameters, and of limits.
+/// Applies the overrides of fixed parameters.
 void override_parameters(const ConfigValue& root, StudyDraft& draft);
+/// Applies the overrides of limits.
 void override_limits(StudyDraft& draft);
-/// [mechanism]: type or file, masses, fixed parameters.
+/// Reads [mechanism]: type or file, masses, fixed parameters.
 void read_mechanism(const ConfigValue& root, StudyDraft& draft);
-/// [[drive_train]]: gears, screws, rotors and losses between motors and joints, which become part of the mechanism.
+/// Reads the tables [[drive_train]]: gears, screws, rotors and losses between motors and joints, which become part of
+/// the mechanism.
 void read_drive_trains(const ConfigValue& root, StudyDraft& draft);
-/// [variables]
+/// Reads the table [variables].
 void read_variables(const ConfigValue& root, StudyDraft& draft);
-/// [baseline]
+/// Reads the table [baseline].
 void read_baseline(const ConfigValue& root, StudyDraft& draft);
-/// [workspace]: method, grid or accuracy, fixed coordinates, limits.
+/// Reads [workspace]: method, grid or accuracy, fixed coordinates, limits.
 void read_workspace(const ConfigValue& root, StudyDraft& draft);
-/// Sets the default cells or accuracy of the method of `plan`.
+/// Sets the default number of cells or the default tolerance, depending on the method of the plan.
 void set_defaults(const MechanismInfo& info, WorkspacePlan& plan);
-/// The [[constraint]]s that limit poses. They become part of the plan of the workspace analysis, and are therefore read
-/// before all tables that use this plan.
+/// Reads the [[constraint]]s that limit poses. They become part of the plan of the workspace analysis, and are
+/// therefore read before all tables that use this plan.
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
-/// [[obstacle]]: bodies fixed to the base; the clearance limit also applies to their distance from the links.
+/// Reads the tables [[obstacle]]: bodies fixed to the base; the clearance limit also applies to their distance from the
+/// links.
 void read_obstacles(const ConfigValue& root, StudyDraft& draft);
-/// [[region]]: named parts of the workspace with analyses of their own, under the study's limits.
+/// Reads the tables [[region]]: named parts of the workspace with analyses of their own, under the study's limits.
 void read_regions(const ConfigValue& root, StudyDraft& draft);
-/// [[motion]]
+/// Reads the tables [[motion]].
 void read_motions(const ConfigValue& root, StudyDraft& draft);
-/// [[objective]], the other [[constraint]]s and [[output]], and the constraints that their motions imply
+/// Reads [[objective]], [[output]] and the [[constraint]]s that do not limit poses, and adds the constraints that their
+/// motions imply.
 void read_quantities(const ConfigValue& root, StudyDraft& draft);
-/// [[reference]]
+/// Reads the tables [[reference]].
 void read_references(const ConfigValue& root, StudyDraft& draft);
-/// [[stage]]
+/// Reads the tables [[stage]].
 void read_stages(const ConfigValue& root, StudyDraft& draft);
 
-/// The options with kUnitOfEntry replaced by `unit`.
+/// The specifications of options with the placeholder kUnitOfEntry replaced by `unit`.
 std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std::string& unit);
 }  // namespace pkm

@@ -6,7 +6,8 @@
 namespace pkm {
 namespace {
 
-/// { name = number }: values of parameters; of the parameter of one limb, arm2.l_b, in a table arm2.
+/// Description of { name = number }: values of parameters. A parameter of a single limb, arm2.l_b, may be written in a
+/// table arm2.
 const TableSpec& parameter_values() {
   static const TableSpec limb = {.meaning = "parameters of this limb alone",
                                  .keys = {},

@@ -10,17 +10,17 @@ namespace pkm {
 /// addition, the options of the catalogue entry that their `type` or `optimiser` names.
 const TableSpec& study_keys();
 
-// Keys of a [[constraint]] besides the options of its entry
+// Keys of a [[constraint]] besides the options of its catalogue entry:
 const TableSpec& pose_constraint_keys();
 const TableSpec& margin_constraint_keys();
-const TableSpec& bounded_objective_keys();  ///< made from an objective by `min` or `max`
+const TableSpec& bounded_objective_keys();  ///< if an objective becomes a constraint by `min` or `max`
 
 /// Keys of [workspace], [[region]] and [[drive_train]].
 const TableSpec& workspace_keys();
 const TableSpec& region_keys();
 const TableSpec& drive_train_keys();
 
-/// Keys of a [[motion]]; of a motion file, which has neither name nor `follow`.
+/// Keys of a [[motion]] of a study, and of a motion file, which has neither `name` nor `follow`.
 const TableSpec& motion_keys();
 const TableSpec& motion_file_keys();
 /// The tables of a motor file.

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// ["x", "y"]
+/// Names as a TOML list: ["x", "y"].
 std::string quoted_list(const std::vector<std::string>& names) { return "[\"" + join(names, "\", \"") + "\"]"; }
 
 /// Reads the value of a fixed coordinate: "middle", "integrated" or a number.
@@ -47,7 +47,7 @@ FixedCoordinate read_fixed_values(const ConfigValue& list, const MechanismInfo& 
   return fixed;
 }
 
-/// Whether the sweep fixes all of these coordinates.
+/// Whether a sweep fixes all of the given coordinates.
 bool fixes(const Sweep& sweep, const std::vector<int>& coordinates) {
   return std::ranges::all_of(coordinates, [&](int c) { return contains(sweep.fixed, c); });
 }

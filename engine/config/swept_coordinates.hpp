@@ -18,7 +18,7 @@ std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::
 /// Describes valid angles, for messages. A number beyond pi without a unit is probably meant in degrees.
 std::string angle_expectation(const ConfigValue& written, double value);
 
-/// The coordinates that some sweep fixes, those of the default sweep first.
+/// The coordinates that at least one sweep of the mechanism fixes; first those that the default sweep fixes.
 std::vector<int> fixable(const MechanismInfo& info);
 /// Reads the list of swept coordinates, in any order.
 void read_sweep(const ConfigValue& list, const MechanismInfo& info, WorkspacePlan& plan);

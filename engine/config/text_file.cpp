@@ -17,7 +17,7 @@ std::string read_text_file(const std::string& path, const std::string& expected,
   std::ifstream file(path, std::ios::binary);
   if (!file) throw ConfigError({path, 0, ""}, std::string("no readable file (") + std::strerror(errno) + ")", expected);
   std::string text;
-  std::array<char, std::size_t{1} << 14> piece;  // memory in proportion to the file: clearing 16 MiB takes 10 ms
+  std::array<char, std::size_t{1} << 14> buffer;  // small, because clearing 16 MiB takes 10 ms
   do {
     file.read(piece.data(), piece.size());
     text.append(piece.data(), static_cast<std::size_t>(file.gcount()));

@@ -48,7 +48,7 @@ class KeyScanner {
     while (peek() == ']') ++at_;
   }
 
-  /// Reads a dotted key within the table `path`, and the blanks behind it; at least one character.
+  /// Reads a dotted key within the table `path`, and the blanks after it. Consumes at least one character.
   Path read_key(Path path) {
     for (;;) {
       skip_blank(false);
@@ -71,7 +71,7 @@ class KeyScanner {
     }
   }
 
-  /// Skips a string, to behind its closing quotes. A string in single lines ends at the end of the line at the latest.
+  /// Skips a string and its closing quotes. A single-line string ends at the end of the line at the latest.
   void skip_string() {
     const char quote = text_[at_];
     const std::string three(3, quote);
@@ -89,7 +89,7 @@ class KeyScanner {
         return;
       } else if (multi_line && text_.substr(at_).starts_with(three)) {
         at_ += 3;
-        for (int quotes = 0; quotes < 2 && peek() == quote; ++quotes) ++at_;  // up to two belong to the string
+        for (int quotes = 0; quotes < 2 && peek() == quote; ++quotes) ++at_;  // up to two quotes belong to the string
         return;
       }
     }

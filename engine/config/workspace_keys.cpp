@@ -48,7 +48,7 @@ std::vector<OptionSpec> analysis_keys() {
            .parts = {{.kind = OptionKind::word}}}};
 }
 
-/// A fixed coordinate: y, phi, ...
+/// Description of the keys that fix a coordinate: y, phi, ...
 OptionSpec fixed_coordinate() {
   return {.kind = OptionKind::any_of,
           .unit = kUnitOfEntry,

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid: the one of the 4PPa-2PaR paper
 constexpr std::int64_t kIntegratedCells = 32;                   // default along a coordinate that is integrated over
 constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;       // a voxel map takes a byte per cell
-constexpr double kDefaultGap = 1e-2;                            // gap of certified = true
+constexpr double kDefaultGap = 1e-2;                            // relative gap for `certified = true`
 
 bool integrated(const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; }
 
@@ -118,8 +118,8 @@ std::optional<double> read_certified(const ConfigValue& value, const Mechanism& 
 }
 
 /// Reads `exact`: false, true, or a time.
-/// @param default_seconds  time for true
-/// @return the time that exact values may take [s]; 0: they are not computed
+/// @param default_seconds  time limit for `exact = true`
+/// @return time limit of the exact values [s]; 0: they are not computed
 double read_exact(const ConfigValue& value, const Mechanism& mechanism, double default_seconds) {
   if (value.is_flag() && !value.flag()) return 0;
   const std::string expected = "true, false, or the time that exact values may take: a time > 0 s, such as \"10 s\"";
@@ -132,7 +132,7 @@ double read_exact(const ConfigValue& value, const Mechanism& mechanism, double d
   return seconds;
 }
 
-/// limits = { NAME = threshold, QUANTITY = { min = threshold, max = threshold } }
+/// Reads limits = { NAME = threshold, QUANTITY = { min = threshold, max = threshold } }.
 void read_limits(const ConfigValue& given, StudyDraft& draft) {
   const auto& known = draft.info().limits;
   std::vector<std::string> names;
@@ -170,7 +170,7 @@ std::vector<std::string> fixable_coordinates(const MechanismInfo& info) {
   return coordinate_names(info, fixable(info));
 }
 
-ConfigError of_other_method(const ConfigValue& key, const WorkspacePlan& plan) {
+ConfigError error_of_other_method(const ConfigValue& key, const WorkspacePlan& plan) {
   return key.refusal(std::string("this key belongs to method = ") +
                      (plan.voxels() ? "\"columns\", but the study's method is \"voxels\""
                                     : "\"voxels\", but the study's method is \"columns\""));
@@ -183,14 +183,15 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
   for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
     const bool of_voxels = key == "cells" || key == "box", of_both = key == "box" && columns_support_box;
     if (!of_both && of_voxels != (plan.voxels() != nullptr) && table.has(key))
-      throw of_other_method(*table.find(key), plan);
+      throw error_of_other_method(*table.find(key), plan);
   }
   const auto tolerance = table.find("tolerance"), nodes = table.find("nodes");
   const double relative = table.number_at("tolerance");
   if (tolerance && nodes)
     throw nodes->refusal("either tolerance (" + tolerance->line() + ") or nodes set the accuracy; give one of them");
   if (const auto list = table.find("sweep")) read_sweep(*list, info, plan);
-  read_fixed_coordinates(table, info, of_region, plan);  // decides which are swept, where the study does not say
+  read_fixed_coordinates(table, info, of_region,
+                         plan);  // determines the swept coordinates, if the study does not name them
   const Sweep& sweep = sweep_of(info, plan);
   if (auto* const columns = std::get_if<ColumnOptions>(&plan.method)) {
     if (tolerance) columns->tolerance = relative;
@@ -226,11 +227,11 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
     read_survey(*table, *draft.parts.mechanism, false, plan);
     if (const auto certified = table->find("certified")) {
       auto* const columns = std::get_if<ColumnOptions>(&plan.method);
-      if (!columns) throw of_other_method(*certified, plan);
+      if (!columns) throw error_of_other_method(*certified, plan);
       columns->certified = read_certified(*certified, *draft.parts.mechanism);
     }
     if (const auto exact = table->find("exact")) {
-      if (!plan.voxels()) throw of_other_method(*exact, plan);
+      if (!plan.voxels()) throw error_of_other_method(*exact, plan);
       draft.study.exact_seconds = read_exact(*exact, *draft.parts.mechanism, draft.study.exact_seconds);
     }
     if (const auto limits = table->find("limits")) read_limits(*limits, draft);
