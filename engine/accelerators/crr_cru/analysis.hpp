@@ -34,10 +34,10 @@ struct AnalysisSettings {
   }
   /// Adds one sample that represents all positions at one phi.
   template <class S>
-  void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, WorkspaceResult<S>& survey) const {
+  void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, WorkspaceResult<S>& workspace) const {
     if (!(value_of(weight) > 0)) return;
-    survey.weight.push_back(weight);
-    survey.find(kConditioning)->push_back(conditioning_at(g, phi));
+    workspace.weight.push_back(weight);
+    workspace.find(kConditioning)->push_back(conditioning_at(g, phi));
   }
 };
 

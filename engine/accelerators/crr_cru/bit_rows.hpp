@@ -13,11 +13,11 @@ namespace pkm::crr_cru {
 /// Parallel lines of cells and an annulus. A plain struct, so that kernels share no inline code with files that are
 /// compiled for another instruction set.
 struct AnnulusLines {
-  double lower, step, cells;  ///< of the axis along the lines
+  double lower, step, cells;  ///< lower bound, cell size and number of cells along the lines
   const double* across;       ///< coordinate of each line, padded to a multiple of kLanes
   std::size_t lines;
-  double center_along, center_across;  ///< of the annulus
-  double in2, out2;                    ///< squared radii
+  double center_along, center_across;  ///< centre of the annulus
+  double in2, out2;                    ///< squared inner and outer radius
 };
 
 /// Clears the bits of all cells outside the annulus, i.e. exactly those for which the floating-point comparison
@@ -29,12 +29,12 @@ void mask_annulus(const AnnulusLines& lines, std::size_t words, std::uint64_t* r
 /// The cells of a plane: (u, v) is feasible if bit u of u_row, bit v of v_row and bit v of row u of v_at_u are set.
 struct PlaneRows {
   const std::uint64_t *u_row, *v_row, *v_at_u;
-  std::size_t u_cells, v_cells, words;  ///< words: of a row of v
+  std::size_t u_cells, v_cells, words;  ///< words: number of words per row of v
 };
 
 struct PlaneTally {
   std::int64_t cells;  ///< number of feasible cells
-  bool touches;        ///< one of them is the first or last along u or v
+  bool touches;        ///< a feasible cell is the first or last along u or v
 };
 
 template <InstructionSet set>

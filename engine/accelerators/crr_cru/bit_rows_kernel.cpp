@@ -53,7 +53,8 @@ template <int W>
   return bits;
 }
 
-/// @param words  of a row; if it is a compile-time constant 1, the loop over words vanishes
+/// @param words  number of words per row; if it is the compile-time constant 1, the compiler removes the loop over
+///               words
 template <class L>
 [[gnu::always_inline]] inline void mask_annulus_of(const AnnulusLines& lines, std::size_t words, std::uint64_t* rows) {
   for (std::size_t line = 0; line < lines.lines; line += kLanes) {

@@ -35,21 +35,21 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   static constexpr int kInertiaNodes = 8;  // per subinterval and coordinate
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& survey) const {
-    survey.clear(settings_.request.fields);
+  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& workspace) const {
+    workspace.clear(settings_.request.fields);
     ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const SlicedDesign<S> s = sliced(parameters);
     find_outer_intervals(s, sliced_constant<double>(parameters), sliced_constant<Dual<1>>(parameters), scratch);
     if (!has_fixed_rules_) {
       const auto area = [&](const S& outer) { return area_at(s, outer, scratch); };
       set_volume(integrate<S>(area, scratch.intervals, tolerance_, roundoff(s, scratch.intervals), scratch.integrals),
-                 survey);
+                 workspace);
     }
     if (settings_.request.needs_inertia()) {
-      sample_inertia(s, parameters, scratch, survey);
+      sample_inertia(s, parameters, scratch, workspace);
       if (has_fixed_rules_) {
-        for (const S& weight : survey.weight) survey.volume += weight;
-        survey.columns = static_cast<long>(survey.weight.size());
+        for (const S& weight : workspace.weight) workspace.volume += weight;
+        workspace.columns = static_cast<long>(workspace.weight.size());
       }
       return;
     }
@@ -57,22 +57,22 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     const bool per_slice = settings_.with_conditioning && s.axes.outer_is_phi;
     if (has_fixed_rules_ || per_slice)
       visit_nodes(scratch.intervals, outer_rule_, [&](const S& outer, const S& jacobian, double rule_weight) {
-        const S area = has_fixed_rules_ ? area_of_columns(s, outer, inner_rule_, scratch, survey.columns)
+        const S area = has_fixed_rules_ ? area_of_columns(s, outer, inner_rule_, scratch, workspace.columns)
                                         : area_at(s, outer, scratch);
         const S weight = area * jacobian * rule_weight;
-        if (has_fixed_rules_) survey.volume += weight;
-        if (per_slice) settings_.add_conditioning(g, outer, weight, survey);
+        if (has_fixed_rules_) workspace.volume += weight;
+        if (per_slice) settings_.add_conditioning(g, outer, weight, workspace);
       });
-    if (settings_.with_conditioning && !per_slice) settings_.add_conditioning(g, s.fixed, survey.volume, survey);
+    if (settings_.with_conditioning && !per_slice) settings_.add_conditioning(g, s.fixed, workspace.volume, workspace);
   }
 
   /// Adds samples at the nodes of a product rule over all three coordinates.
   template <class S>
   void sample_inertia(const SlicedDesign<S>& s, std::span<const S> parameters, ColumnScratch<S>& scratch,
-                      WorkspaceResult<S>& survey) const {
+                      WorkspaceResult<S>& workspace) const {
     const Geometry<S>& g = s.design.g;
     const Masses<S> b = settings_.masses(parameters);
-    std::vector<S>* const conditioning = survey.find(kConditioning);
+    std::vector<S>* const conditioning = workspace.find(kConditioning);
     YawInertia<S> inertia;
     S angle(0.0), index(0.0);
     const auto set_phi = [&](const S& phi) {
@@ -87,10 +87,10 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
       visit_positions(s, outer, inner_rule_, scratch, [&](const Vector3<S>& at, const S& weight) {
         const S measure = outer_weight * weight;
         if (!(value_of(measure) > 0)) return;
-        survey.weight.push_back(measure);
-        if (settings_.request.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
+        workspace.weight.push_back(measure);
+        if (settings_.request.poses) workspace.pose.push_back({at[0], at[1], at[2], angle});
         if (conditioning) conditioning->push_back(index);
-        add_inertia(joint_inertia(g, b, inertia, at, settings_.mode), survey);
+        add_inertia(joint_inertia(g, b, inertia, at, settings_.mode), workspace);
       });
     });
   }
@@ -99,7 +99,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   SlicedDesign<S> sliced(std::span<const S> parameters) const {
     return sliced_design(design(geometry(settings_.platform, parameters), settings_.limits, box_), settings_.fixed);
   }
-  /// The design as constants of another scalar.
+  /// The sliced design with its numbers as constants of another scalar type.
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(std::span<const To>(constants<To, kParameters>(parameters)));

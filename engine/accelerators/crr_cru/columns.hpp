@@ -31,7 +31,7 @@ S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plai
                       const SlicedDesign<Dual<1>>& by_outer, double at, double range, Decomposition& decomposition) {
   const double offset = 1e-9 * range;
   double smallest = 1e-4 * range, t = at;
-  CriticalPoint first, second;  // bound the smallest column or gap beside `at`
+  CriticalPoint first, second;  // ends of the smallest column or gap next to `at`
   for (const double candidate : {at - offset, at + offset}) {
     const Slice<double> slice = slice_at(plain, candidate);
     decompose(slice, decomposition);
@@ -64,7 +64,7 @@ S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plai
 
 /// Fills scratch.intervals with the subintervals of the outer coordinate on which slices are not empty and have one
 /// combinatorial type. Decisions depend on values only, never on derivatives.
-/// @param plain, by_outer  as of lift_critical_value()
+/// @param plain, by_outer  see lift_critical_value()
 template <class S>
 void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
                           const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {
@@ -147,7 +147,7 @@ void visit_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& ru
 }
 
 /// Area of the slice by a quadrature rule over u of the exact lengths of its columns [m^2].
-/// @param columns  incremented by their number
+/// @param columns  incremented by the number of columns evaluated
 template <class S>
 S area_of_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                   std::int64_t& columns) {

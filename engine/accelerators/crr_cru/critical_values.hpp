@@ -15,7 +15,7 @@ struct SlicedDesign {
   Design<S> design;
   SliceAxes axes;
   S fixed;                   ///< value of the fixed coordinate
-  PositionSet<S> positions;  ///< if phi is fixed
+  PositionSet<S> positions;  ///< set if phi is fixed
 };
 
 template <class S>
@@ -62,9 +62,9 @@ void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<CriticalVa
 }
 
 /// Adds the bounds of x and its critical values at given phi. At given x, endpoints of u = y are on circles of limb 3,
-/// endpoints of v = z on circles of limbs 2 and 4. Critical values are the turning points of these circles, and their
-/// intersections with the ranges of y and z, with the centre, the turning points and the intersections with those
-/// ranges of limb 1's annulus, and with each other.
+/// endpoints of v = z on circles of limbs 2 and 4. Critical values of x are the turning points of these circles and the
+/// points where they intersect each other, the bounds of y and z, or a line y or z = constant through the centre of
+/// limb 1's annulus, its turning points or its intersections with the bounds.
 template <class S>
 void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<CriticalValue<S>>& values) {
   const Design<S>& d = s.design;

@@ -24,6 +24,7 @@ inline std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVe
     modes.push_back(
         {{rho[0] - arm[0].to_joint[0], rho[1] - arm[1].to_joint[1], rho[2] - arm[2].to_joint[2], phi}, branch});
   };
+  // sin(phi + delta) = kappa has the solutions phi + delta = angle and pi - angle.
   add(angle - delta, "+");
   if (kPi - angle != angle) add(kPi - angle - delta, "-");
   return modes;

@@ -65,8 +65,8 @@ class InertiaTables {
   }
 
   /// Computes the coupling indices of cells [first, end) of a row.
-  /// @param row    its first cell
-  /// @param index  receives them, by joint and by number of the cell; extended if necessary
+  /// @param row    first cell of the row
+  /// @param index  receives the indices, by joint and by number of the cell; extended if necessary
   void coupling(const Cell& row, std::size_t first, std::size_t end, std::array<std::vector<double>, 4>& index) const {
     std::array<InertiaRow, 4> limbs;
     std::array<double*, 4> to;
@@ -81,11 +81,11 @@ class InertiaTables {
   }
 
  private:
-  static constexpr std::size_t kFixed = 3;  ///< instead of an axis of the grid
+  static constexpr std::size_t kFixed = 3;  ///< number used in place of a grid axis for the fixed coordinate
   struct Table {
     std::vector<double> pp, pq, qq;  ///< with kLanes elements after the last cell, which kernels may read
     std::array<std::size_t, 3> stride;
-    bool varies;  ///< along rows
+    bool varies;  ///< true if the values vary along rows
     std::size_t index(const Cell& cell) const {
       return static_cast<std::size_t>(cell[0]) * stride[0] + static_cast<std::size_t>(cell[1]) * stride[1] +
              static_cast<std::size_t>(cell[2]) * stride[2];

@@ -30,7 +30,7 @@ struct GriddedSlices : GriddedDesign {
   bool over_phi;                     ///< phi is the outer coordinate, so that each slice has its own
   std::array<std::size_t, 3> swept;  ///< the coordinate of each axis of the grid, ascending
   double fixed;                      ///< value of the fixed coordinate
-  const CellsAtPhi& common;          ///< of all slices, if phi is fixed
+  const CellsAtPhi& common;          ///< cells shared by all slices, if phi is fixed
 };
 
 class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
@@ -47,11 +47,12 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   friend GridEvaluator;
   using Buffers = GridBuffers<CellsAtPhi, VoxelWorker>;
 
-  void evaluate(std::span<const double> parameters, Scratch& scratch, WorkspaceResult<double>& survey) const override {
-    GridEvaluator::evaluate(parameters, scratch, survey);
-    if (!settings_.with_conditioning || !survey.weight.empty()) return;
+  void evaluate(std::span<const double> parameters, Scratch& scratch,
+                WorkspaceResult<double>& workspace) const override {
+    GridEvaluator::evaluate(parameters, scratch, workspace);
+    if (!settings_.with_conditioning || !workspace.weight.empty()) return;
     const Geometry<double> g = geometry(settings_.platform, parameters);  // phi is fixed: one sample
-    settings_.add_conditioning(g, fixed_value(g, settings_.fixed), survey.volume, survey);
+    settings_.add_conditioning(g, fixed_value(g, settings_.fixed), workspace.volume, workspace);
   }
 
   GriddedSlices start(std::span<const double> parameters, Buffers& buffers) const {

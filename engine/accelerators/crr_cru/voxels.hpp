@@ -28,7 +28,7 @@ Box default_box(const Design<double>& d, const FixedCoordinate& fixed);
 /// Feasible cells along one coordinate, for every cell along another one: rows of bits, padded to whole words, and
 /// empty rows up to a multiple of kLanes.
 struct BitTable {
-  std::size_t words = 0;  ///< of a row
+  std::size_t words = 0;  ///< number of words per row
   std::vector<std::uint64_t> bits;
 
   std::span<const std::uint64_t> row(std::size_t i) const { return {bits.data() + i * words, words}; }
@@ -66,7 +66,7 @@ class SliceCells {
   static void fill_axis(Axis& axis, const VoxelGrid& grid, std::size_t which);
 
   /// Fills the table of coordinate b at each a from the ranges of a and b and the annuli in their plane.
-  /// @return false if it is empty
+  /// @return false if the table is empty
   bool fill_table(const Design<double>& d, const PositionSet<double>& set, std::size_t a, const Axis& across,
                   std::size_t b, const Axis& along, BitTable& table);
 
