@@ -57,8 +57,8 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& survey) const {
-    survey.clear(request_.fields);
+  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& workspace) const {
+    workspace.clear(request_.fields);
     ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const Geometry<S> g = geometry(parameters);
     Limits<S> l = limits(g, limits_);
@@ -68,12 +68,12 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     const S y = plane(g, y_);
     const SlicedDesign<S> d = sliced_design(g, l, y);
     const bool over_y = y_.kind == FixedCoordinate::Kind::integrated;
-    set_volume(volume_of(d, test, over_y, scratch), survey);
+    set_volume(volume_of(d, test, over_y, scratch), workspace);
     if (!request_.needs_samples()) return;
     const SampleContents<S> wanted = contents(parameters, request_);
     if (!over_y) {
       sample(d, wanted, value_of(y) > value_of(S(g.L0 - y)) ? Planes::far : Planes::near, S(1.0), theta_rule_,
-             inner_rule_, test, scratch, survey);
+             inner_rule_, test, scratch, workspace);
       return;
     }
     const Subinterval<S> half{l.h_min, g.L0 * 0.5, true, false};
@@ -83,7 +83,8 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     const GaussRule &inner = wanted.distinguishes_images() ? coarse : inner_rule_,
                     &outer = wanted.distinguishes_images() ? coarse : theta_rule_;
     visit_nodes(half, inner, [&](const S& at, const S& jacobian, double weight) {
-      sample(sliced_design(g, l, at), wanted, Planes::both, S(jacobian * weight), outer, inner, test, scratch, survey);
+      sample(sliced_design(g, l, at), wanted, Planes::both, S(jacobian * weight), outer, inner, test, scratch,
+             workspace);
     });
   }
 
@@ -139,8 +140,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     Geometry<double> g;
     Limits<double> l;
     std::optional<ClearanceTest> test;
-    const std::vector<FixedCells>& all_y;  ///< if y is integrated over
-    double y;                              ///< otherwise
+    const std::vector<FixedCells>& all_y;  ///< cells of y, if y is integrated over
+    double y;                              ///< value of y otherwise
     SampleContents<double> wanted;
 
     VoxelPlane operator[](std::size_t number) const {
@@ -216,8 +217,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     for (std::int64_t j = first; j < run.end; ++j) {
       const auto n = static_cast<std::size_t>(j - first);
       if (wanted.inertia)
-        inertia_values(joint_inertia(g, wanted.masses, s, c, x_j, sigma, {poses.z_c[0][n], poses.z_c[1][n]}), to.survey,
-                       own.inertia);
+        inertia_values(joint_inertia(g, wanted.masses, s, c, x_j, sigma, {poses.z_c[0][n], poses.z_c[1][n]}),
+                       to.workspace, own.inertia);
       add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
                  wanted.conditioning ? poses.index[n] : 0, own.inertia, false, to);
     }

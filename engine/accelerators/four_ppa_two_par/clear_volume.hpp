@@ -18,7 +18,7 @@ inline constexpr double kFinestClearTolerance = 1e-4;  ///< relative
 Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch);
 
-/// The same by fixed rules in theta and delta, without an error estimate.
+/// The volume of clear_volume() by fixed quadrature rules in theta and delta, without an error estimate.
 Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y,
                                       const GaussRule& theta_rule, const GaussRule& inner_rule,
                                       ColumnScratch<double>& scratch);

@@ -5,13 +5,14 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Lower links are suspended from C_j; sliders, upper bars and the connector's side are in the plane of the rail.
+/// Whether the links of a group are suspended from C_j. Sliders, upper bars and the connector's side are not: they are
+/// in the plane of the rail.
 bool is_lower(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kLowerBars || kind == kLowerConnector);
 }
 
-/// Sliders and upper bars move relative to all other links when z changes.
+/// Whether the links of a group move relative to all other links when z changes: sliders and upper bars.
 bool moves(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kSliders || kind == kUpperBars);
@@ -23,7 +24,7 @@ double radius(const Geometry<double>& g, int group) {
   return group % kGroupsPerLimb == kSliders ? g.R_s : g.R_u;
 }
 
-/// Whether the lower bound of a pair is its distance at every pose: if it is too small, no pose is clear.
+/// Whether a pair has the same distance at every pose, namely its lower bound. If it is too small, no pose is clear.
 bool is_constant(const Geometry<double>& g, const GroupPair& pair) {
   if (pair.first == kPlatform) return is_lower(pair.second) && g.d_d <= g.d;
   return pair.first == group_of(0, kLowerConnector) && pair.second == group_of(1, kLowerConnector);

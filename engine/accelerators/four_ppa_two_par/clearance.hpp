@@ -45,8 +45,8 @@ class ClearanceTest {
                                                   const HalfSlice<double>& h, std::size_t leaning, double low,
                                                   double high, ClearanceScratch& scratch) const;
 
-  /// Finds the intervals of one column, inside such an interval of delta, in which all links are clear, as heights
-  /// above its lower end [m].
+  /// Finds the intervals of a column in which all links are clear, as heights above its lower end [m]. The delta of the
+  /// column must be in an interval found by clear_deltas().
   /// @return scratch.clear
   const std::vector<ClosedInterval>& clear_heights(const SlicedDesign<double>& d, const Slice<double>& t,
                                                    const Column<double>& column, ClearanceScratch& scratch) const;
@@ -59,8 +59,8 @@ class ClearanceTest {
   Geometry<double> g_;
   double min_clearance_;
   double h_min_ = 0, sin_beta_min_ = 0;
-  std::vector<GroupPair> suspended_pairs_;  ///< their distance does not depend on z
-  std::vector<GroupPair> moving_pairs_;     ///< the others
+  std::vector<GroupPair> suspended_pairs_;  ///< pairs whose distance does not depend on z
+  std::vector<GroupPair> moving_pairs_;     ///< pairs whose distance depends on z
 };
 
 /// Removes the clearance limit from `l`: conditions on h and beta become l.h_min and l.sin_beta_min, the other ones a

@@ -139,8 +139,8 @@ void find_delta_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const Hal
   }
 }
 
-/// Calls visit(half, leaning, images) for one half of a slice, which represents both if they are symmetric (images =
-/// 2), or for both (images = 1), with find_delta_intervals() in scratch.deltas.
+/// Calls visit(half, leaning, images) for both halves of a slice (images = 1), or, if they are symmetric, for one half
+/// that represents both (images = 2). Each call finds the result of find_delta_intervals() in scratch.deltas.
 template <class S, class Visit>
 void visit_halves(const SlicedDesign<S>& d, const Slice<S>& t, const ClearanceTest* test, ColumnScratch<S>& scratch,
                   const Visit& visit) {
@@ -170,7 +170,7 @@ void find_height_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const Co
   scratch.heights.push_back({S(0.0), column.length, true, true});
 }
 
-/// Contents of the samples.
+/// The values that samples contain, and the data to compute them.
 template <class S>
 struct SampleContents {
   bool conditioning = false, poses = false, inertia = false;
@@ -181,28 +181,27 @@ struct SampleContents {
   bool distinguishes_images() const { return inertia || poses; }
 };
 
-/// A survey to which samples are added.
+/// The result of a workspace analysis to which samples are added.
 template <class S>
-/// Where the samples of a workspace analysis are stored.
 struct SampleTarget {
-  explicit SampleTarget(WorkspaceResult<S>& to) : survey(to), conditioning(to.find(kConditioning)) {}
-  WorkspaceResult<S>& survey;
+  explicit SampleTarget(WorkspaceResult<S>& to) : workspace(to), conditioning(to.find(kConditioning)) {}
+  WorkspaceResult<S>& workspace;
   std::vector<S>* conditioning;  ///< null if it is not requested
 };
 
 /// Adds one sample.
-/// @param inertia   from inertia_values()
-/// @param mirrored  as of add_inertia()
+/// @param inertia   result of inertia_values()
+/// @param mirrored  see add_inertia()
 template <class S>
 void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S>& pose, const S& conditioning,
                 const std::vector<S>& inertia, bool mirrored, const SampleTarget<S>& to) {
-  to.survey.weight.push_back(weight);
+  to.workspace.weight.push_back(weight);
   if (to.conditioning) to.conditioning->push_back(conditioning);
-  if (contents.poses) to.survey.pose.push_back(pose);
-  if (contents.inertia) add_inertia(inertia, mirrored, to.survey);
+  if (contents.poses) to.workspace.pose.push_back(pose);
+  if (contents.inertia) add_inertia(inertia, mirrored, to.workspace);
 }
 
-/// Which of the planes y (near) and L0 - y (far) are sampled; y <= L0/2 is that of the design.
+/// Which planes are sampled: y (near), L0 - y (far) or both, where y <= L0/2 is the plane of the design.
 enum class Planes { near, far, both };
 
 /// Adds weighted samples of one plane or both: the nodes of a Gauss rule in theta, delta and z on every interval on
@@ -216,14 +215,14 @@ enum class Planes { near, far, both };
 template <class S>
 void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes planes, const S& weight,
             const GaussRule& theta_rule, const GaussRule& inner_rule, const ClearanceTest* test,
-            ColumnScratch<S>& scratch, WorkspaceResult<S>& survey) {
+            ColumnScratch<S>& scratch, WorkspaceResult<S>& workspace) {
   const Geometry<S>& g = d.g;
-  const SampleTarget<S> to(survey);
+  const SampleTarget<S> to(workspace);
   std::vector<S>&inertia = scratch.inertia[0], &inertia_across = scratch.inertia[1];
   const auto add_images = [&](const S& own_weight, const S& theta, const SinCosOf<S>& turn, const Column<S>& col,
                               const std::array<S, 2>& z_c, const S& index, bool symmetric) {
     const auto find_inertia = [&](const Column<S>& at, const std::array<S, 2>& at_z_c, std::vector<S>& values) {
-      inertia_values(joint_inertia(g, contents.masses, turn.sin, turn.cos, at.x, at.sigma, at_z_c), survey, values);
+      inertia_values(joint_inertia(g, contents.masses, turn.sin, turn.cos, at.x, at.sigma, at_z_c), workspace, values);
     };
     if (contents.inertia) {
       find_inertia(col, z_c, inertia);

@@ -42,7 +42,7 @@ template <class S, class T>
   return inverse_condition(m, S(4.0));  // J is diag(2) and this 3 x 3 matrix
 }
 
-/// The same for `count` poses in SIMD batches; the arrays are padded to a multiple of kLanes.
+/// Computes the conditioning of `count` poses in SIMD batches; the arrays are padded to a multiple of kLanes.
 template <InstructionSet set>
 void conditioning_of_poses(const ColumnPoses<double>& column, const double* z_c1, const double* z_c2, std::size_t count,
                            double* result);

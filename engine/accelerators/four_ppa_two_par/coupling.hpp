@@ -59,20 +59,20 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S&
   return M;
 }
 
-/// Computes the values of all inertia fields of a survey at a pose, in their order.
+/// Computes the values of all requested inertia fields at a pose, in the order of the fields.
 template <class S>
-void inertia_values(const Matrix<S, 4, 4>& M_q, WorkspaceResult<S>& survey, std::vector<S>& values) {
+void inertia_values(const Matrix<S, 4, 4>& M_q, WorkspaceResult<S>& workspace, std::vector<S>& values) {
   values.clear();
-  evaluate_inertia(M_q, survey, nullptr,
+  evaluate_inertia(M_q, workspace, nullptr,
                    [&](auto&, std::span<const S> of) { values.insert(values.end(), of.begin(), of.end()); });
 }
 
-/// Adds the values of inertia_values() to the fields.
+/// Appends the values computed by inertia_values() to the inertia fields.
 /// @param mirrored  the pose is the mirror image (theta -> -theta), with the two sliders of each rail exchanged
 template <class S>
-void add_inertia(const std::vector<S>& values, bool mirrored, WorkspaceResult<S>& survey) {
+void add_inertia(const std::vector<S>& values, bool mirrored, WorkspaceResult<S>& workspace) {
   auto value = values.begin();
-  for (auto& [quantity, field] : survey.fields) {
+  for (auto& [quantity, field] : workspace.fields) {
     if (!quantity->needs_inertia()) continue;
     const std::size_t count = quantity->per_joint ? 4 : 1;
     for (std::size_t i = 0; i < count; ++i) field[mirrored && count > 1 ? i ^ 1 : i].push_back(value[i]);

@@ -87,8 +87,8 @@ Links<S> links(const Geometry<S>& g, const Placement<S>& p) {
   return all;
 }
 
-/// Two groups between whose links the clearance is measured; for the sliders of one limb twice, between the two
-/// sliders.
+/// Two groups between whose links the clearance is measured. If both are the sliders of one limb, it is measured
+/// between these two sliders.
 struct GroupPair {
   int first, second;
 };

@@ -33,7 +33,7 @@ struct Masses {
 /// Throws DesignError, with a sentence, if a mass or an inertia of a link is not positive.
 void check_positive(const Masses<double>& b);
 
-/// Checked by check_positive().
+/// The masses and inertias of a design, checked by check_positive().
 /// @param p  all parameters
 template <class S>
 Masses<S> masses(std::span<const S> p) {

@@ -33,13 +33,13 @@ S switching_function(const SlicedDesign<S>& d, std::size_t index, const S& theta
   return switching_functions(slice(d, s, c))[index];
 }
 
-/// All other cases that select the formula of the area.
+/// The cases that select the formula of the area, apart from the signs of the switching functions.
 struct Formula {
   EndKind end;
   bool low;                         ///< delta_low > 0
   bool stroke_limits_1;             ///< the stroke limits the depth of limb 1
-  bool stroke_limits_2;             ///< that of limb 2
-  bool stroke_limits_2_at_far_end;  ///< with the stroke to the far end of the rail
+  bool stroke_limits_2;             ///< the stroke limits the depth of limb 2
+  bool stroke_limits_2_at_far_end;  ///< it is the stroke to the far end of the rail
   bool operator==(const Formula&) const = default;
 };
 /// Combinatorial type of a slice.
@@ -68,7 +68,7 @@ struct Crossing {
 Crossing find_crossing(const SlicedDesign<double>& d, double low, const Signature& at_low, double high,
                        const Signature& at_high);
 
-/// The design as constants of another scalar.
+/// The design with its numbers as constants of another scalar type.
 template <class To, class From>
 SlicedDesign<To> constant_design(const SlicedDesign<From>& d) {
   return sliced_design(constant<To>(d.g), constant<To>(d.l), To(value_of(d.y)));
@@ -93,7 +93,7 @@ template <class S>
 void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = d.g;
   const Limits<S>& l = d.l;
-  // each with flags: whether the area has a square-root singularity below and above
+  // add values of w or of shift, with flags: whether the area has a square-root singularity below and above them
   const auto at_w = [&](const S& w, bool root_below, bool root_above) {
     const S c = (g.b - w) / g.a;
     if (value_of(c) > 0 && value_of(c) < 1) values.push_back({acos(c), root_below, root_above});

@@ -29,7 +29,7 @@ struct VoxelPlane {
 struct GridPart {
   std::int64_t xs, thetas;  ///< number of x and theta, from the first
   bool mirrored_x = false, mirrored_theta = false;
-  bool centre_x = false, centre_theta = false;  ///< the last one is its own mirror image
+  bool centre_x = false, centre_theta = false;  ///< the last x or theta is its own mirror image
 
   /// Number of columns that the column at x index i and theta index k represents.
   int images(std::int64_t i, std::int64_t k) const {
@@ -95,7 +95,7 @@ class VoxelCounter {
   double cos_theta(std::int64_t k) const { return cos_[static_cast<std::size_t>(k)]; }
 
  private:
-  static constexpr std::int64_t kColumns = 64;  ///< x of a tile
+  static constexpr std::int64_t kColumns = 64;  ///< number of x values per tile
   std::int64_t tiles_per_block() const { return (cells_[0] + kColumns - 1) / kColumns; }
   void fill_block(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part, ColumnBlock& block) const;
   ColumnsAtThetas columns(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part) const;
