@@ -36,7 +36,7 @@ template <class S>
 class ColumnSamples {
  public:
   /// @param poses  scratch memory
-  ColumnSamples(const SlicedDesign<S>& d, const FieldRequest& request, PoseList& poses, WorkspaceResult<S>& survey)
+  ColumnSamples(const SlicedDesign<S>& d, const FieldRequest& request, PoseList& poses, WorkspaceResult<S>& workspace)
       : design_{.L1 = d.g.L1,
                 .L2 = d.g.L2,
                 .L3 = d.g.L3,
@@ -45,14 +45,14 @@ class ColumnSamples {
                 .signs = {1.0 * d.signs[0], 1.0 * d.signs[1], 1.0 * d.signs[2]},
                 .length = request.characteristic_length ? S(*request.characteristic_length) : d.g.e},
         poses_(poses),
-        survey_(survey),
-        index_(survey.find(kConditioning)) {
+        workspace_(workspace),
+        index_(workspace.find(kConditioning)) {
     poses_.clear();
   }
 
   [[gnu::always_inline]] void add(const S& z, const S& beta, const S& weight) {
     if (!index_ || !(value_of(weight) > 0)) return;
-    survey_.weight.push_back(weight);
+    workspace_.weight.push_back(weight);
     if constexpr (std::is_same_v<S, double>) {
       if (beta != beta_) sincos_ = sincos(beta_ = beta);
       poses_.z.push_back(z);
@@ -83,7 +83,7 @@ class ColumnSamples {
  private:
   ConditioningDesign<S> design_;
   PoseList& poses_;
-  WorkspaceResult<S>& survey_;
+  WorkspaceResult<S>& workspace_;
   std::vector<S>* index_;  ///< null if it is not requested
   double beta_ = 0;        ///< of the previous column
   SinCosOf<double> sincos_{0, 1};
@@ -104,33 +104,33 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   static constexpr int kSampleNodes = 8;  // per strip of z and interval of beta
 
   template <class S>
-  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& survey) const {
-    survey.clear(settings_.request.fields);
+  void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& workspace) const {
+    workspace.clear(settings_.request.fields);
     ColumnScratch<S>& scratch = memory.get<ColumnScratch<S>>();
     const SlicedDesign<S> d = sliced(settings_, parameters);
     const S stroke = stroke_factor(d.l, settings_.plan);
     if (!(value_of(stroke) > 0)) return;
     find_outer_intervals(d, sliced_constant<double>(parameters), sliced_constant<Dual<1>>(parameters), scratch);
     if (!has_fixed_rules_) {
-      set_volume(volume(d, columns_.tolerance, scratch), survey);
-      survey.volume *= stroke;
+      set_volume(volume(d, columns_.tolerance, scratch), workspace);
+      workspace.volume *= stroke;
       if (!settings_.request.has(kConditioning)) return;
     }
-    ColumnSamples<S> samples(d, settings_.request, scratch.poses, survey);
+    ColumnSamples<S> samples(d, settings_.request, scratch.poses, workspace);
     visit_nodes(scratch.intervals, beta_rule_, [&](const S& beta, const S& jacobian, double rule_weight) {
       const S outer = jacobian * rule_weight * stroke;
       visit_columns(d, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
         const S weight = outer * inner * length;
         samples.add(z, beta, weight);
         if (!has_fixed_rules_) return;
-        survey.volume += weight;
-        ++survey.columns;
+        workspace.volume += weight;
+        ++workspace.columns;
       });
     });
     samples.finish();
   }
 
-  /// The design as constants of another scalar.
+  /// The design with its numbers as constants of another scalar type.
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(settings_, std::span<const To>(constants<To, kParameters>(parameters)));
@@ -150,7 +150,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 
  private:
   friend GridEvaluator;
-  static constexpr std::int64_t kBetas = 8;  ///< of a block
+  static constexpr std::int64_t kBetas = 8;  ///< number of beta values per block
 
   struct Worker {
     PoseList poses;
@@ -158,7 +158,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   };
   using Buffers = GridBuffers<VoxelHeights, Worker>;
 
-  /// Calls visit(k) for the numbers of the beta of a block.
+  /// Calls visit(k) for the index k of each beta value of a block.
   template <class Visit>
   static void for_each_beta(const VoxelColumns& columns, std::size_t block, const Visit& visit) {
     const auto first = static_cast<std::int64_t>(block) * kBetas;

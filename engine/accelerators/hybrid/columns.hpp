@@ -17,11 +17,11 @@ struct ColumnScratch {
   std::vector<Subinterval<S>> intervals;  ///< one for each of beta.intervals
   std::vector<QuadratureCell<S>> integrals;
   StripScratch strips;
-  Decomposition decomposition;  ///< of a beta outside the intervals
+  Decomposition decomposition;  ///< used for a beta outside the intervals
   PoseList poses;
 };
 
-/// The decomposition of a slice. In an interval of beta, that of the previous slice there is updated if possible.
+/// The decomposition of a slice. If the previous slice in the same interval of beta has one, it is updated if possible.
 template <class S>
 const Decomposition& decomposition_of(const Slice<double>& s, double beta, ColumnScratch<S>& scratch) {
   const auto contains = [&](const Subinterval<S>& p) { return value_of(p.lower) < beta && beta < value_of(p.upper); };
@@ -35,7 +35,7 @@ const Decomposition& decomposition_of(const Slice<double>& s, double beta, Colum
 
 /// Fills scratch.intervals with the intervals of beta on which slices are not empty and have one type. Decisions depend
 /// on values only, never on derivatives.
-/// @param plain, by_beta  as of find_beta_intervals()
+/// @param plain, by_beta  see find_beta_intervals()
 template <class S>
 void find_outer_intervals(const SlicedDesign<S>& d, const SlicedDesign<double>& plain,
                           const SlicedDesign<Dual<1>>& by_beta, ColumnScratch<S>& scratch) {

@@ -43,7 +43,7 @@ template <class S, class T>
   return select(regular, inverse_condition(homogeneous_jacobian(z, j, S(g.length))), S(0.0));
 }
 
-/// The same for `count` poses, a multiple of kLanes.
+/// Computes the conditioning of `count` poses in SIMD batches; `count` is a multiple of kLanes.
 template <InstructionSet set>
 void conditioning_of_poses(const ConditioningDesign<double>& design, const double* z, const double* sine,
                            const double* cosine, std::size_t count, double* result);

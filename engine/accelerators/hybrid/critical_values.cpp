@@ -31,7 +31,7 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
   const auto heights = [](const StripBound& first, const StripBound& second) {
     return Degeneracy{Degeneracy::Kind::heights, first, second};
   };
-  const auto changes = [&](const StripBound& first, const StripBound& second) {  // their order
+  const auto changes = [&](const StripBound& first, const StripBound& second) {  // whether their order differs
     const Degeneracy candidate = heights(first, second);
     return (distance(s, candidate) >= 0) != (distance(t, candidate) >= 0);
   };

@@ -36,7 +36,7 @@ struct Degeneracy {
 /// An interval of beta on which slices have one type.
 struct BetaInterval {
   double lower = 0, upper = 0;
-  std::optional<Degeneracy> at_lower, at_upper;  ///< at its endpoints, if known
+  std::optional<Degeneracy> at_lower, at_upper;  ///< degeneracies at the endpoints, if known
   Decomposition decomposition;                   ///< near the lower endpoint
 };
 

@@ -65,7 +65,7 @@ double circle_intersection(const Slice<double>& s, const Edge& first, const Edge
 }  // namespace
 
 double intersection(const Slice<double>& s, const Edge& first, const Edge& second, double p, double q) {
-  if (of_chain(first, second)) return std::fmin(std::fmax(chain_intersection(s, first, second), p), q);
+  if (are_bounds_of_chain(first, second)) return std::fmin(std::fmax(chain_intersection(s, first, second), p), q);
   if (const double z = circle_intersection(s, first, second, 0.5 * (p + q), p, q); z == z) return z;
   const double at_p = gap(s, first, second, p).value, at_q = gap(s, first, second, q).value;
   return refine_root_newton([&](double z) { return gap(s, first, second, z); }, p, q, at_p >= 0,
@@ -74,7 +74,7 @@ double intersection(const Slice<double>& s, const Edge& first, const Edge& secon
 }
 
 double intersection_near(const Slice<double>& s, const Edge& first, const Edge& second, double z) {
-  if (of_chain(first, second)) return chain_intersection(s, first, second);
+  if (are_bounds_of_chain(first, second)) return chain_intersection(s, first, second);
   constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   if (const double at = circle_intersection(s, first, second, z, 0, kUnbounded); at == at) return at;
   constexpr int kMaxSteps = 8;

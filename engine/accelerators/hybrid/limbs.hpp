@@ -7,7 +7,7 @@
 
 namespace pkm::hybrid {
 
-/// Relative rounding error: a radicand within it counts as 0, so that the limb is normal to its rail.
+/// Relative rounding error. A smaller radicand counts as 0; the limb is then normal to its rail.
 inline constexpr double kRoundoff = 1e-12;
 
 /// (a + a_z z) (b + b_z z)
@@ -22,7 +22,7 @@ struct Limbs {
   S k, N1, N2;   ///< [m], [m], [m^2]
 };
 
-/// @param g     lengths L1, L2, L3, d, e [m]
+/// Solves the loop-closure equations of the limbs at a pose. @param g  lengths L1, L2, L3, d, e [m]
 /// @param root  root(n_i^2, L_i, i) returns n_i in the working mode, and any number for a limb out of reach
 template <class S, class Lengths, class Root>
 [[gnu::always_inline]] inline Limbs<S> limbs(const Lengths& g, const S& z, const S& sin_b, const S& cos_b,

@@ -15,7 +15,9 @@ namespace pkm::hybrid {
 /// Order of the pose-level limits that a study may set.
 enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
 
-/// Thresholds of the pose-level constraints.
+/// Thresholds of the pose-level constraints, named as in README.md: strokes s, minimum height z_clear of O'' and C'
+/// above the base, range of beta, distances tau from singularities, maximum joint angles, minimum distance of the
+/// carriages A and B, length lw of the shaft.
 template <class S>
 struct Limits {
   std::array<S, 4> s_min, s_max;  ///< [m]

@@ -31,7 +31,7 @@ enum ParameterIndex {
   kH2,
   kTheta0,
   kSMin,              ///< of s1 to s4
-  kSMax = kSMin + 4,  ///< likewise
+  kSMax = kSMin + 4,  ///< of s1 to s4
   kZClear = kSMax + 4,
   kBetaMin,
   kBetaMax,

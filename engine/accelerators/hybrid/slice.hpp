@@ -26,7 +26,7 @@ struct SlicedDesign {
   bool empty = true;  ///< that range is empty, or the branch is N2 < 0
 };
 
-/// Computes z_low, z_high and empty.
+/// Computes the members z_low, z_high and empty.
 template <class S>
 void find_heights(SlicedDesign<S>& d) {
   const Geometry<S>& g = d.g;
@@ -135,7 +135,7 @@ template <class S>
 Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   const Geometry<S>& g = d.g;
   const Limits<S>& l = d.l;
-  const S none(-1.0), all(1e4), zero(0.0), one(1.0);  // below and above all z in reach
+  const S none(-1.0), all(1e4), zero(0.0), one(1.0);  // bounds below and above all z in reach
   const auto [sin_b, cos_b] = sincos(beta);
   const S lift = g.e * sin_b;                          // N1 = z + lift
   const S width = (g.d - g.e * cos_b) * home_side(g);  // D; < 0 beyond the constraint singularity

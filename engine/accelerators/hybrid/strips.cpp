@@ -28,12 +28,13 @@ double x_at(const Slice<double>& s, const Edge& e, const Node& n) {
   return s.constant(e) + n.root[e.curve] * s.sign(e);
 }
 
-/// Test whether `above` can intersect `below` between two heights at which it is not below it. A convex function is
-/// above its tangents, a concave one above its chord, which gives a piecewise linear lower bound of the difference.
+/// Tests whether the edge `above` can intersect the edge `below` between two heights, at both of which `above` is not
+/// below `below`. A convex function is above its tangents, a concave one above its chord, which gives a piecewise
+/// linear lower bound of the difference.
 /// @return a height at which this bound is negative; kNoIntersection if there is none
 double possible_intersection(const Slice<double>& s, const Edge& above, const Edge& below, const Node& p,
                              const Node& q) {
-  if (of_chain(above, below)) return kNoIntersection;
+  if (are_bounds_of_chain(above, below)) return kNoIntersection;
   const double high = s.sign(above), low = s.sign(below);
   const bool above_is_convex = high<0, below_is_concave = low> 0;  // convex, and the other concave
   const double width = q.z - p.z, gap_p = x_at(s, above, p) - x_at(s, below, p),
@@ -169,7 +170,7 @@ void add_positive(const Slice<double>& s, const Edge& left, const Edge& right, c
     strips.push_back({p.end, q.end, left, right});
 }
 
-/// Finds the strips between two heights that the first `curves` curves bound.
+/// Finds the strips between two heights, using only the first `curves` curves as bounds of x.
 void find_strips(const Slice<double>& s, std::size_t curves, const StripBound& low, const StripBound& high,
                  StripScratch& scratch, std::vector<Strip>& strips) {
   strips.clear();
@@ -198,7 +199,7 @@ void find_strips(const Slice<double>& s, std::size_t curves, const StripBound& l
 
 /// Subtracts the strips `inner` from `outer`.
 void subtract(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
-  const auto same = [](const StripBound& p, const StripBound& q) {  // up to the accuracy of the heights
+  const auto same = [](const StripBound& p, const StripBound& q) {  // equal within the accuracy of the heights
     return same_type(p, q) && std::fabs(p.z - q.z) < kRootTolerance;
   };
   strips.clear();

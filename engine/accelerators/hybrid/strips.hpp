@@ -23,8 +23,8 @@ struct StripBound {
   enum class Kind : std::uint8_t { lower, upper, hole, intersection };
   double z = 0;
   Kind kind = Kind::intersection;
-  std::uint8_t index = 0;  ///< number of the bound of z
-  Edge first, second;      ///< if they intersect
+  std::uint8_t index = 0;  ///< index of the bound of z
+  Edge first, second;      ///< the edges of an intersection
 };
 
 struct Strip {
@@ -43,7 +43,7 @@ inline bool same_type(const Strip& p, const Strip& q) {
 struct Decomposition {
   std::vector<Strip> strips;         ///< non-empty ones in ascending z; beside a hole, two over the same interval
   std::size_t lower = 0, upper = 0;  ///< numbers of the active bounds of z
-  enum class Hole { none, below, all } hole = Hole::none;  ///< for which z between them x has a hole
+  enum class Hole { none, below, all } hole = Hole::none;  ///< part of the z range in which x has a hole
 };
 inline bool same_type(const Decomposition& p, const Decomposition& q) {
   return std::ranges::equal(p.strips, q.strips, [](const Strip& a, const Strip& b) { return same_type(a, b); });

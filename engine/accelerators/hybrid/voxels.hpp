@@ -29,7 +29,7 @@ struct VoxelColumns : GriddedDesign {
 
   /// Number of feasible cells at beta number k.
   /// @param runs     scratch memory
-  /// @param touches  set to true if one of them is at a face of the box
+  /// @param touches  set to true if a feasible cell is at a boundary of the box
   std::int64_t count(std::int64_t k, CellRuns& runs, bool& touches) const;
 
   /// Calls visit(run) for every run of feasible cells along x at beta number k.
