@@ -71,7 +71,7 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
     roots[k] = roots_of(c);
     is_positive[k] = c[2] != 0 ? c[2] > 0 : roots[k].count > 0 ? c[1] < 0 : c[0] >= 0;
     if ((plan_.formula.all & bit(k)) == 0 || is_positive[k]) continue;
-    const auto [r, count] = roots[k];  // it is >= 0 between its roots, or above a single one
+    const auto [r, count] = roots[k];  // the polynomial is >= 0 between two roots, or above a single root
     if (count == 0 || !(r[0] <= range[1]) || !(count == 1 || r[1] >= range[0])) return false;
     const double rest = count == 2 ? 1e-2 * (r[1] - r[0]) : beyond;
     range[0] = std::max(range[0], r[0] - rest);
@@ -126,7 +126,7 @@ double Column::root_error_bound(const std::pair<double, EndLabel>& end, std::spa
 }
 
 /// Drops intervals shorter than the error bounds of their endpoints, and labels coincident endpoints by the lowest
-/// constraint number, so that the type does not depend on rounding.
+/// constraint number. The type then does not depend on rounding.
 void Column::merge_coincident_roots(std::span<const double> registers, double tie, ColumnScratch& scratch) const {
   const auto are_one = [&](const auto& x, const auto& y) {
     const double distance = std::fabs(x.first - y.first);
@@ -241,7 +241,7 @@ Dual4 Column::differentiable_end(const std::pair<double, EndLabel>& end, std::sp
   Dual4 f;
   double slope = 0;
   if (surface.is_transcendental) {
-    set_z<Dual4>(z, dual_registers);
+    evaluate_stage_of_z<Dual4>(z, dual_registers);
     f = dual_registers[surface.coefficients[0]];
     slope = dual_registers[surface.coefficients[1]].a;
   } else {

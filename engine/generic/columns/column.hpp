@@ -13,6 +13,7 @@ namespace pkm::generic {
 
 /// Scratch memory of Column. The label of an endpoint is twice its surface, plus one if the constraint decreases there.
 struct ColumnScratch {
+  /// A feasible interval of the column.
   struct Piece {
     std::pair<double, EndLabel> lower, upper;
   };
@@ -20,12 +21,12 @@ struct ColumnScratch {
   Ends ends;                     ///< all relevant sign changes of constraints
   Ends quadratic;                ///< sign changes of quadratic and transcendental constraints, in ascending order
   Ends high_degree;              ///< sign changes of constraints of degree three and four between two of those
-  std::vector<EndLabel> labels;  ///< of the endpoints of pieces
+  std::vector<EndLabel> labels;  ///< labels of the endpoints of pieces
   SliceType type = 0;
   double error = 0;  ///< total length of intervals in which the sign of a transcendental constraint is unknown
   SignChangeScratch sign_changes;
   long operations = 0;      ///< interval operations so far, in all columns
-  long max_operations = 0;  ///< after so many, intervals with unknown signs are not bisected, but count as error
+  long max_operations = 0;  ///< limit, after which intervals with unknown signs count as error
 };
 
 /// Whether a column has so many endpoints that it takes much longer than a microsecond.
@@ -33,11 +34,12 @@ inline bool is_long(const ColumnScratch& scratch) { return scratch.ends.size() >
 
 class Column {
  public:
-  /// @param plan  of lines: its CoordinateOrder has no v
+  /// @param plan  a plan whose slices are lines: its CoordinateOrder has no v
   explicit Column(SlicePlan plan);
 
   const SlicePlan& plan() const { return plan_; }
-  /// Computes the length, the type and the pieces. @param registers  of the program, after all stages but that of z
+  /// Computes the length of the column, its type and its feasible intervals (pieces). @param registers  values of the
+  /// program's registers after all stages except that of z
   double measure(std::span<double> registers, ColumnScratch& scratch) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
   void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
@@ -59,9 +61,9 @@ class Column {
  private:
   bool find_quadratic_roots(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
                             ColumnScratch& scratch) const;
-  /// Evaluates the stage of z; S is double or Dual4.
+  /// Evaluates the stage of the program that depends on z. S is double or Dual4.
   template <class S>
-  void set_z(const S& z, std::span<S> registers) const {
+  void evaluate_stage_of_z(const S& z, std::span<S> registers) const {
     const expression::Program& program = plan_.program;
     for (const auto& input : program.stages().back().inputs) registers[input.to] = z;
     program.run<S>(program.stages().size() - 1, registers);

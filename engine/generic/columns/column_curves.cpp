@@ -7,13 +7,14 @@
 
 namespace pkm::generic {
 
-/// Appends the roots to the quadratic ones. @param signs  receives those of transcendental constraints at the lower end
+/// Appends the roots of transcendental constraints to those of quadratic ones. @param signs  receives the signs of
+/// transcendental constraints at the lower end
 void Column::find_transcendental_roots(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
                                        ColumnScratch& scratch) const {
-  constexpr long kMaxEvaluations = 4000;  // in a column
+  constexpr long kMaxEvaluations = 4000;  // per column
   const std::size_t stage = plan_.program.stages().size() - 1;
-  const long operations = static_cast<long>(plan_.program.stages()[stage].steps.size());  // of an evaluation
-  set_z<double>(range[0], registers);
+  const long operations = static_cast<long>(plan_.program.stages()[stage].steps.size());  // per evaluation
+  evaluate_stage_of_z<double>(range[0], registers);
   for (std::size_t i = 0; i < curves_.size(); ++i)
     if (is_satisfied(registers[curves_[i].value])) signs |= bit(curve_surfaces_[i]);
   const long left = std::max(0L, scratch.max_operations - scratch.operations) / operations;
@@ -29,7 +30,7 @@ void Column::add_gradient_of_transcendental(const Surface& surface, double z, do
                                             std::span<double> registers, std::span<double> adjoints) const {
   const expression::Program& program = plan_.program;
   const std::size_t stage = program.stages().size() - 1;
-  set_z<double>(z, registers);
+  evaluate_stage_of_z<double>(z, registers);
   adjoints[surface.coefficients[0]] += factor / registers[surface.coefficients[1]];
   backward_sweep(program, stage, registers, adjoints);
   for (const auto& input : program.stages()[stage].inputs) adjoints[input.to] = 0;

@@ -15,7 +15,8 @@ constexpr double kOuterBias = 16;  // prefer bisecting outer coordinates: contra
 double middle_of(const Interval& x) { return 0.5 * (x.lower + x.upper); }
 double magnitude_of(const Interval& x) { return std::max(std::fabs(x.lower), std::fabs(x.upper)); }
 
-/// Contracts [from, to] in [0, 1] to where c[0] + c[1] x + c[2] x^2 can be >= 0. @return false if it is empty
+/// Contracts [from, to], a part of [0, 1], to the part where c[0] + c[1] x + c[2] x^2 can be >= 0. @return false if it
+/// is empty
 bool cut(const std::array<double, 3>& c, double& from, double& to) {
   const Roots roots = roots_of(c);
   from = c[0] >= 0 ? 0 : 2;
@@ -121,7 +122,7 @@ void ComponentSearch::add_samples(std::size_t side, std::optional<double> at, in
   std::ranges::sort(scratch.uncovered);
   for (std::size_t i = 0; i < scratch.uncovered.size();) {
     auto [from, to] = scratch.uncovered[i];
-    int boxes = 1;  // number of adjacent ones
+    int boxes = 1;  // number of adjacent boxes
     for (++i; i < scratch.uncovered.size() && scratch.uncovered[i][0] <= to; ++i) {
       boxes += scratch.uncovered[i][0] > scratch.uncovered[i - 1][0] ? 1 : 0;
       to = std::max(to, scratch.uncovered[i][1]);
@@ -158,8 +159,8 @@ double ComponentSearch::volume(const SearchScratch::Box& box) const {
   return volume;
 }
 
-/// Evaluates the stages that differ from the previous box. @return false if an independent constraint is violated
-/// everywhere in it
+/// Evaluates the stages whose inputs differ from those of the previous box. @return false if an independent constraint
+/// is violated everywhere in the box
 bool ComponentSearch::evaluate(const SearchScratch::Box& box, SearchScratch& scratch) const {
   const auto& stages = plan_.program.stages();
   bool differs = false;

@@ -12,11 +12,11 @@ namespace pkm::generic {
 struct SearchScratch {
   struct Box {
     std::array<Interval, kMaxCoordinates> side;  ///< of each outer coordinate, v and z, if they exist
-    Signs open = ~Signs{0};                      ///< constraints that can be negative there
+    Signs open = ~Signs{0};                      ///< constraints that can be negative in the box
 
     const Interval& outermost() const { return side[0]; }
   };
-  std::vector<Box> boxes;  ///< that can contain feasible points
+  std::vector<Box> boxes;  ///< boxes that can contain feasible points
   std::size_t examined = 0;
 
   Box whole;                                            ///< the ranges of all coordinates
@@ -31,7 +31,7 @@ class ComponentSearch {
  public:
   explicit ComponentSearch(const SlicePlan& plan) : plan_(plan) {}
 
-  /// Begins without boxes. @param registers  after the stage of the design
+  /// Begins a search without boxes. @param registers  values of the registers after the stage of the design
   void start(std::span<const double> registers, SearchScratch& scratch) const;
   /// Adds a box: an interval of the outermost coordinate and the whole ranges of the others.
   void add(double from, double to, SearchScratch& scratch) const;
@@ -44,8 +44,8 @@ class ComponentSearch {
   void bisect(SearchScratch& scratch) const;
   /// Removes the boxes that contain a non-empty slice: the refinement around that slice covers them.
   void remove_containing(double at, SearchScratch& scratch) const;
-  /// Adds samples on one side of the boxes: in each interval that they cover without gaps as many as there are adjacent
-  /// boxes, at least `count`.
+  /// Adds samples of one coordinate, given by its index among the sides of a box: in each interval that the boxes cover
+  /// without gaps, as many samples as there are adjacent boxes, but at least `count`.
   /// @param at  only boxes that contain this value of the outermost coordinate; std::nullopt: all boxes
   void add_samples(std::size_t side, std::optional<double> at, int count, std::vector<double>& places,
                    SearchScratch& scratch) const;

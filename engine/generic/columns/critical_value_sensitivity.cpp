@@ -9,14 +9,14 @@ namespace pkm::generic {
 namespace {
 
 constexpr double kCoincidence = 1e-3;  // relative to the slice: closer vertices coincide at the critical value
-constexpr std::size_t kMostThatMeet = 3;
+constexpr std::size_t kMaxDegenerateCurves = 3;
 
 bool are_near(const ArcEnd& x, const ArcEnd& y, const PlanarSliceScratch& scratch) {
   return std::fabs(x.v - y.v) < kCoincidence * scratch.v[1] && std::fabs(x.z - y.z) < kCoincidence * scratch.z[1];
 }
 
 /// Removes the elements that both lists contain.
-void drop_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const PlanarSliceScratch& scratch) {
+void remove_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const PlanarSliceScratch& scratch) {
   std::erase_if(x, [&](const ArcEnd& end) {
     const auto same = std::ranges::find_if(y, [&](const ArcEnd& other) {
       return other.label == end.label && other.surface == end.surface && are_near(other, end, scratch);
@@ -27,23 +27,26 @@ void drop_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const PlanarSli
   });
 }
 
-/// Factors of a vanishing linear combination of the gradients, if there is one.
-std::array<double, kMostThatMeet> factors_of(std::span<const PlanarSliceSensitivity::Boundary> meet) {
-  const auto cross = [&](std::size_t i, std::size_t j) { return meet[i].t * meet[j].s - meet[i].s * meet[j].t; };
-  if (meet.size() == 1) return {1, 0, 0};
-  if (meet.size() == 3) return {cross(1, 2), cross(2, 0), cross(0, 1)};
-  const bool along_t = std::fabs(meet[0].t) > std::fabs(meet[0].s);
-  return along_t ? std::array{meet[1].t, -meet[0].t, 0.0} : std::array{meet[1].s, -meet[0].s, 0.0};
+/// Factors of a linear combination of the gradients that vanishes if they are linearly dependent.
+std::array<double, kMaxDegenerateCurves> dependency_factors(std::span<const PlanarSliceSensitivity::Boundary> curves) {
+  const auto cross = [&](std::size_t i, std::size_t j) {
+    return curves[i].t * curves[j].s - curves[i].s * curves[j].t;
+  };
+  if (curves.size() == 1) return {1, 0, 0};
+  if (curves.size() == 3) return {cross(1, 2), cross(2, 0), cross(0, 1)};
+  const bool along_t = std::fabs(curves[0].t) > std::fabs(curves[0].s);
+  return along_t ? std::array{curves[1].t, -curves[0].t, 0.0} : std::array{curves[1].s, -curves[0].s, 0.0};
 }
 
-/// Whether the linear combination vanishes. @param size  of the terms of one gradient
-bool depend(std::span<const PlanarSliceSensitivity::Boundary> meet, const std::array<double, kMostThatMeet>& factors,
-            double size) {
+/// Whether the linear combination of the gradients with these factors vanishes. @param size  magnitude of the terms of
+/// a gradient
+bool are_dependent(std::span<const PlanarSliceSensitivity::Boundary> curves,
+                   const std::array<double, kMaxDegenerateCurves>& factors, double size) {
   double t = 0, s = 0;
-  for (std::size_t i = 0; i < meet.size(); ++i) {
-    t += factors[i] * meet[i].t;
-    s += factors[i] * meet[i].s;
-    if (meet.size() > 1) size += std::fabs(factors[i]) * std::hypot(meet[i].t, meet[i].s);
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    t += factors[i] * curves[i].t;
+    s += factors[i] * curves[i].s;
+    if (curves.size() > 1) size += std::fabs(factors[i]) * std::hypot(curves[i].t, curves[i].s);
   }
   return std::hypot(t, s) <= kCoincidence * size;
 }
@@ -66,7 +69,7 @@ std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd
                                                    const PlanarSliceScratch& scratch,
                                                    const PlanarSliceSensitivity& by_design,
                                                    const PlanarSliceSensitivity& by_x) {
-  drop_common(inside, outside, scratch);
+  remove_common(inside, outside, scratch);
   inside.insert(inside.end(), outside.begin(), outside.end());
   // Turning points are no vertices, unless nothing else changes: then a complete conic appears or vanishes.
   const auto turns = [](const ArcEnd& end) { return (end.label & kKind) == kTurningPoint; };
@@ -92,17 +95,17 @@ std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd
       add(kind == kSide || kind == kIndependent ? end.label : number);
     }
   }
-  if (bounds.size() > kMostThatMeet) return {};
+  if (bounds.size() > kMaxDegenerateCurves) return {};
   const double t = (v - scratch.v[0]) / scratch.v[1], s = (z - scratch.z[0]) / scratch.z[1];
-  std::vector<PlanarSliceSensitivity::Boundary> meet;
-  for (const std::uint32_t bound : bounds) meet.push_back(by_design.boundary(bound, t, s));
-  const auto factors = factors_of(meet);
-  if (!depend(meet, factors, meet.size() == 1 ? scratch.conics[bounds[0] & ~kKind].scale : 0)) return {};
+  std::vector<PlanarSliceSensitivity::Boundary> curves;
+  for (const std::uint32_t bound : bounds) curves.push_back(by_design.boundary(bound, t, s));
+  const auto factors = dependency_factors(curves);
+  if (!are_dependent(curves, factors, curves.size() == 1 ? scratch.conics[bounds[0] & ~kKind].scale : 0)) return {};
   Components<4> change;
-  double slope = 0, size = 0;  // of the sum, and of the terms
-  for (std::size_t i = 0; i < meet.size(); ++i) {
+  double slope = 0, size = 0;  // of the linear combination, and of its terms
+  for (std::size_t i = 0; i < curves.size(); ++i) {
     const double each = factors[i] * by_x.boundary(bounds[i], t, s).change[0];
-    change = change + meet[i].change * factors[i];
+    change = change + curves[i].change * factors[i];
     slope += each;
     size += std::fabs(each);
   }

@@ -49,7 +49,7 @@ bool CriticalValueSolver::has_changed(const BoundaryFeature& feature) const {
   return std::ranges::find(changed_, feature.key) != changed_.end();
 }
 
-/// @return whether both sides are known, so that sizes can be computed
+/// Stores a sample. @return true if there are samples on both sides, from which sizes can be computed
 bool CriticalValueSolver::record(bool is_upper, SliceType type, const BoundaryFeatures& features) {
   Side& side = sides_[is_upper];
   const bool is_other = !side.is_known || side.type != type;

@@ -15,7 +15,7 @@ namespace pkm::generic {
 /// A feature of the boundary of a slice: a vertex of a planar slice or an endpoint of a column, with its position.
 struct BoundaryFeature {
   std::uint64_t key;   ///< identical in all slices of one type
-  std::uint64_t of;    ///< constraint surface; the distance of two features of one surface vanishes like a square root
+  std::uint64_t of;    ///< constraint surface; the distance of two features of a surface vanishes like a square root
   double t, s = 0;     ///< position; s: in planar slices only
   bool bounds = true;  ///< false: a redundant root, not part of the boundary
 };
@@ -27,9 +27,9 @@ class CriticalValueSolver {
   /// roots
   void reset(bool features_persist);
   /// Adds a sample below or above the critical value.
-  /// @param type      0: the slice is empty
-  /// @param distance  distance(feature, other): of a feature from the surfaces through a feature of the other side;
-  /// infinity if it is zero or unknown
+  /// @param type      type of the slice; 0: empty
+  /// @param distance  distance(feature, other): distance of a feature from the surfaces through `other`, on the other
+  ///                  side; infinity if it is zero or unknown
   template <class Distance>
   void add_sample(double at, bool is_upper, SliceType type, const BoundaryFeatures& features,
                   const Distance& distance) {
@@ -55,7 +55,7 @@ class CriticalValueSolver {
     SliceType type = 0;
     BoundaryFeatures features;
     bool is_known = false;
-    std::array<Point, 3> points;  ///< the last ones
+    std::array<Point, 3> points;  ///< the last samples
     int count = 0;
   };
 

@@ -8,7 +8,7 @@
 
 namespace pkm::generic {
 
-/// An endpoint of a column: twice the surface, plus the number of its root.
+/// Label of an endpoint of a column: twice the index of the surface, plus the number of its root.
 using EndLabel = std::uint32_t;
 
 inline constexpr double kMergeDistance = 1e-13;  ///< closer points are merged

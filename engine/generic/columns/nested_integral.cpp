@@ -14,9 +14,9 @@ namespace {
 constexpr double kMinWidth = 1e-12;  // relative to the range: shorter intervals are ignored
 constexpr double kMinResolvableWidth =
     1e-6;  // relative to the range: shorter intervals can have types that rounding mixes
-constexpr double kBlurredInLines = 1e-4;
+constexpr double kMinResolvableWidthInLines = 1e-4;  // the same limit if slices are lines
 constexpr std::size_t kMaxIntervals = 3000;
-constexpr int kBisectionsOfJump = 5;    // consecutive ones that leave nearly all of a change in one half
+constexpr int kBisectionsOfJump = 5;    // consecutive bisections that leave nearly all of a change in one half
 constexpr double kEndTolerance = 1e-7;  // relative to the largest slice, if derivatives will be computed
 
 /// Value at t in [0, 1] of the polynomial through the nodes of kronrod_rule(), by the barycentric formula.
@@ -126,7 +126,7 @@ bool NestedIntegral::is_exhausted(const IntegralScratch& scratch) const {
 
 double NestedIntegral::find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const {
   constexpr long kMaxEvaluations = 40'000;
-  constexpr double kMostUndecided = 0.01;
+  constexpr double kMaxUndecidedShare = 0.01;
   scratch.changes.found.clear();
   if (univariate_.empty()) return 0;
   const expression::Program& program = plan().univariate;
@@ -140,7 +140,8 @@ double NestedIntegral::find_univariate_changes(std::span<const double> inputs, I
   if (!(high > low)) return 0;
   find_sign_changes(program, 1, univariate_, low, high, kMaxEvaluations, scratch.univariate, scratch.changes);
   double unknown = scratch.changes.undecided;
-  if (unknown > kMostUndecided * (high - low)) scratch.max_evaluations = 0;  // the measure will not be known
+  if (unknown > kMaxUndecidedShare * (high - low))
+    scratch.max_evaluations = 0;  // gives up: the measure would remain unknown
   for (std::size_t i = 1; i < plan().range.size() && unknown > 0; ++i) unknown *= std::fabs(range(i)[1] - range(i)[0]);
   return unknown;
 }
@@ -175,7 +176,8 @@ Slice NestedIntegral::set_slice(std::size_t level, double at, IntegralScratch& s
   return found;
 }
 
-/// The operations that differ between lines are evaluated in SIMD batches.
+/// Computes the slices at several values of a coordinate. If the slices are lines, the operations that differ between
+/// them are evaluated in SIMD batches.
 void NestedIntegral::find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
                                  IntegralScratch& scratch) const {
   if (!lines_ || level + 1 < levels()) {
@@ -308,8 +310,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     embedded += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
-  if (!same && depth < kMaxDepth && width > (ends_in_lines() ? kBlurredInLines : kMinResolvableWidth) * whole &&
-      !is_exhausted(scratch)) {
+  if (!same && depth < kMaxDepth &&
+      width > (ends_in_lines() ? kMinResolvableWidthInLines : kMinResolvableWidth) * whole && !is_exhausted(scratch)) {
     CriticalValues& critical_values = own.critical_values[static_cast<std::size_t>(depth) + 1];
     const Slice below{.measure = part.beyond_lower, .violated = part.lower};
     const Slice above{.measure = part.beyond_upper, .violated = part.upper};
@@ -339,7 +341,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
 /// polynomial is inaccurate at the endpoints.
 void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& scratch) const {
   IntegralScratch::Level& own = scratch.levels[level];
-  // The error of an inner integral need not be below what the largest one allows.
+  // The error of an inner integral may be as large as is allowed for the largest one.
   const double share = level == 0 ? 1 : ends_in_lines() ? 0.5 : 0.1;
   const double least = level == 0 ? 0 : share * tolerance_ * scratch.levels[level - 1].largest;
   const double may_miss = std::max(kEndTolerance, 10 * tolerance_) * own.largest;

@@ -23,15 +23,15 @@ namespace pkm::generic {
 struct Slice {
   double at = 0, measure = 0, error = 0;
   SliceType hash = 0;          ///< type; 0: empty
-  std::uint32_t violated = 0;  ///< if empty: 1 + the number of the independent constraint that is violated
+  std::uint32_t violated = 0;  ///< if the slice is empty: 1 + number of the violated independent constraint
 };
 
-/// What bounds an integration interval: a critical value, a face of the box, or an independent constraint (1 + its
+/// Bound of an integration interval: a critical value, a bound of the search box, or an independent constraint (1 + its
 /// number).
 using IntervalBound = std::uint32_t;
 inline constexpr IntervalBound kCriticalValue = 0, kBox = ~IntervalBound{0};
 
-/// A critical value. `below` and `above` are slices beside it.
+/// A critical value. `below` and `above` are slices just below and just above it.
 struct CriticalValue {
   double at;
   bool root;  ///< the measure or its derivative can have a square-root singularity there
@@ -45,7 +45,7 @@ struct SmoothInterval {
   Subinterval<double> piece;
   Slice below, above;  ///< just inside its endpoints
   IntervalBound lower = kCriticalValue, upper = kCriticalValue;
-  double beyond_lower = 0, beyond_upper = 0;  ///< measures just outside its endpoints
+  double beyond_lower = 0, beyond_upper = 0;  ///< measures of slices just outside its endpoints
   std::array<double, NestedRule::kNodes> at{}, weight{};
   double value = 0, error = 0;
   double irreducible_error = 0;  ///< error that subdivision cannot reduce
@@ -68,7 +68,7 @@ struct IntegralScratch {
     std::vector<SmoothInterval> parts;
     std::array<std::vector<CriticalValue>, kMaxDepth + 1>
         critical_values;  ///< of the range, and of intervals by their depth
-    double at = 0;        ///< the coordinate
+    double at = 0;        ///< current value of the coordinate
     /// Intervals of this coordinate at values of the next outer one, in ascending order.
     struct ExpectedIntervals {
       double outside;
@@ -77,12 +77,12 @@ struct IntegralScratch {
     std::vector<ExpectedIntervals> seen;
     std::size_t seen_count = 0;    ///< elements of `seen` in use
     std::vector<double> hints;     ///< where components are expected
-    std::vector<double> places;    ///< of the first samples
+    std::vector<double> places;    ///< abscissas of the first samples
     std::vector<Slice> scanned;    ///< slices at these samples
     double largest = 0;            ///< largest measure so far
-    double irreducible_error = 0;  ///< of intervals that were abandoned
-    CriticalValueSolver solver;    ///< of the critical value being bracketed
-    BoundaryFeatures features;     ///< of the last slice
+    double irreducible_error = 0;  ///< error of intervals that are not subdivided further
+    CriticalValueSolver solver;    ///< for the critical value being bracketed
+    BoundaryFeatures features;     ///< features of the last slice
   };
   PlanarSliceScratch planar_slice;
   ColumnScratch column;
@@ -90,9 +90,9 @@ struct IntegralScratch {
   std::vector<double> registers, adjoints;
   std::vector<double> own;         ///< derivatives of one constraint with respect to the registers
   std::vector<double> univariate;  ///< registers of SlicePlan::univariate
-  SignChangeScratch changes;       ///< of its constraints along the first coordinate
+  SignChangeScratch changes;       ///< sign changes of its constraints along the first coordinate
   std::vector<double> ends;        ///< the sorted abscissas of these changes, and the ends of the range
-  expression::Rows rows;           ///< of several lines, for SIMD batches
+  expression::Rows rows;           ///< registers of several lines, for SIMD batches
   std::vector<Dual4> dual_registers,
       along;  ///< registers with derivatives with respect to the design, and to an outer coordinate
   std::vector<Level> levels;
@@ -100,11 +100,12 @@ struct IntegralScratch {
   bool is_scanning = false;   ///< the outermost coordinate is being sampled
   bool measured = false;      ///< the measure is complete: further slices change nothing
   bool for_gradient = false;  ///< derivatives will be computed
-  /// Then, for two outer coordinates: intervals of the inner one at the nodes of the outermost one.
+  /// If derivatives will be computed and there are two outer coordinates: intervals of the inner one at the nodes of
+  /// the outermost one.
   std::vector<std::vector<SmoothInterval>> kept;
   std::unique_ptr<IntegralScratch> other;  ///< for the other side of a critical value
   long evaluations = 0;
-  long max_evaluations = 0;  ///< after so many, the search for critical values ends; undecided parts count as error
+  long max_evaluations = 0;  ///< limit, after which the search for critical values ends; undecided parts count as error
 };
 
 class NestedIntegral {
@@ -120,12 +121,13 @@ class NestedIntegral {
     long evaluations = 0;             ///< evaluations of slices; 0: a limit that is rarely reached
     long operations = 1'000'000'000;  ///< interval operations for transcendental constraints: about ten seconds
   };
-  /// @param inputs  of the graph, with fixed coordinates
+  /// @param inputs  values of the graph's inputs, including the fixed coordinates
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch) const {
     return measure(inputs, scratch, Budget{});
   }
-  /// The same with critical values accurate enough for derivatives, and with intermediate results for add_gradient().
+  /// measure() with critical values that are accurate enough for derivatives, and with intermediate results for
+  /// add_gradient().
   Integral<double> measure_for_gradient(std::span<const double> inputs, IntegralScratch& scratch) const;
   /// Adds the derivatives of the measure with respect to the inputs of the graph, after measure_for_gradient().
   void add_gradient(std::span<double> by_input, IntegralScratch& scratch) const;
@@ -146,18 +148,18 @@ class NestedIntegral {
   bool ends_in_lines() const { return std::holds_alternative<Column>(innermost_); }
   Integral<double> measure_all(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
   void set(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// Whether the budget is used up: what is not known then counts as error.
+  /// Whether the budget is used up. Parts of the workspace that are undecided by then count as error.
   bool is_exhausted(const IntegralScratch& scratch) const;
-  /// Finds all sign changes of constraints along the first coordinate. @return bound of the measure that those which
-  /// remain unknown can affect
+  /// Finds all sign changes of constraints along the first coordinate. @return upper bound of the part of the measure
+  /// that sign changes which remain unknown can affect
   double find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const;
   /// The measure over the coordinates from `level` on, with the coordinates before `level` set.
   Slice inside(std::size_t level, IntegralScratch& scratch) const;
   /// Sets the coordinate of `level`. @return the slice there
   Slice slice(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// The same, if the coordinate is set already.
+  /// The slice at a value of the coordinate of `level` that is set already.
   Slice set_slice(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// Computes several slices.
+  /// Computes the slices at several values of the coordinate of `level`.
   void find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
                    IntegralScratch& scratch) const;
   void choose_samples(std::size_t level, double low, double high, IntegralScratch& scratch) const;
@@ -214,7 +216,8 @@ class NestedIntegral {
                                           IntegralScratch& scratch) const;
   Dual4 differentiable_end(std::size_t level, const SmoothInterval& part, bool upper, IntegralScratch& scratch) const;
 
-  /// To be called after inside(level).
+  /// Calls visit(outer coordinates, v, z, weight) at the quadrature nodes of the coordinates from `level` on; to be
+  /// called after inside(level).
   template <class S, class Visit>
   void visit_nodes(std::size_t level, const S& weight, const GaussRule& outer, const GaussRule& inner,
                    std::vector<S>& place, IntegralScratch& scratch, const Visit& visit) const {
@@ -263,7 +266,7 @@ class NestedIntegral {
   std::variant<PlanarSlice, Column> innermost_;
   std::optional<expression::BatchStage>
       lines_;                                  ///< if slices are lines: the operations that differ from one to the next
-  std::vector<std::uint32_t> line_registers_;  ///< its registers that Column reads
+  std::vector<std::uint32_t> line_registers_;  ///< registers of this stage that Column reads
   std::vector<WithDerivative> univariate_;     ///< registers of SlicePlan::univariate
   double tolerance_;
 };

@@ -55,7 +55,7 @@ void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& 
     const bool extrapolates = more < 2;
     bracket(level, low, high, whole, extrapolates, scratch);
     for (int again = 0; again < 4 && level + 1 < levels() && is_discontinuous(low, high, level, scratch); ++again) {
-      // A component that was missed on one side is found there now.
+      // If a component was missed on one side, the search there finds it now.
       const bool is_low = low.measure < high.measure;
       const Slice found = slice(level, is_low ? low.at : high.at, scratch);
       if (found.hash == (is_low ? low : high).hash) break;

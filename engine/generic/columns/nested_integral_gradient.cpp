@@ -11,7 +11,8 @@ void NestedIntegral::add_gradient(std::span<double> by_input, IntegralScratch& s
   for (const auto& input : plan().program.stages()[0].inputs) by_input[input.position] += scratch.adjoints[input.to];
 }
 
-/// To be called after inside(level). Takes the intervals out of scratch.kept.
+/// Adds `factor` times the gradient of the integral over the coordinates from `level` on. To be called after
+/// inside(level). Moves the intervals out of scratch.kept.
 void NestedIntegral::add_gradient(std::size_t level, double factor, IntegralScratch& scratch) const {
   if (level == levels()) {
     if (const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_))
@@ -38,7 +39,7 @@ void NestedIntegral::add_gradient(std::size_t level, double factor, IntegralScra
   }
 }
 
-/// Contribution of an endpoint: its derivative times the measure of the slice there.
+/// Adds the contribution of an endpoint of an interval: its derivative times the measure of the slice there.
 void NestedIntegral::add_side(std::size_t level, const SmoothInterval& part, bool upper, double factor,
                               IntegralScratch& scratch) const {
   const IntervalBound closing = upper ? part.upper : part.lower;

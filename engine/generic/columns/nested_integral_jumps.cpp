@@ -65,7 +65,7 @@ double step_at(const SmoothInterval& part, bool upper) {
 
 /// The set of points that are feasible on the side `in` of a critical value and infeasible on the side `out`.
 struct NestedIntegral::OneSided {
-  std::size_t level;  ///< of the critical value
+  std::size_t level;  ///< level of the critical value
   IntegralScratch &in, &out;
   const OneSidedVisitor& visit;
 };
@@ -87,7 +87,7 @@ void NestedIntegral::visit_one_sided(std::size_t level, const SmoothInterval& pa
   for (std::size_t i = 0; i < out.levels.size(); ++i) {
     const IntegralScratch::Level& own = scratch.levels[i];
     out.levels[i].largest = own.largest;
-    if (i <= level) continue;                   // these are not integrated over again
+    if (i <= level) continue;                   // outer coordinates are not integrated over again
     out.levels[i].seen_count = own.seen_count;  // expected intervals
     out.levels[i].seen.assign(own.seen.begin(), own.seen.begin() + static_cast<std::ptrdiff_t>(own.seen_count));
   }
@@ -134,7 +134,7 @@ double NestedIntegral::unexplained_jump(std::size_t level, const CriticalValue& 
   return std::max(0.0, std::fabs(jump) - explained);
 }
 
-/// To be called after inside(level) on both sides.
+/// Visits the points that are feasible on the side `in` only. To be called after inside(level) on both sides.
 void NestedIntegral::visit_one_sided(std::size_t level, double weight, bool in_is_empty, bool out_is_empty,
                                      const OneSided& one_sided_points) const {
   if (in_is_empty) return;

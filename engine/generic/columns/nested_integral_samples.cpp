@@ -16,7 +16,7 @@ constexpr int kSamples[] = {40, 24}, kSamplesInLines[] = {kSamplesOfLines, 192, 
 
 /// The i-th of several samples, not equidistant, because symmetric mechanisms can have their critical values at equal
 /// distances.
-double add_samples(double low, double high, int i, int places) {
+double sample_position(double low, double high, int i, int places) {
   const double step = 0.618 * i;
   return low + (high - low) * (i + 0.4 + 0.2 * (step - std::floor(step))) / places;
 }
@@ -49,7 +49,7 @@ void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   const auto is_found = [](const Slice& slice) { return slice.hash != 0; };
   const auto found = static_cast<std::size_t>(std::ranges::count_if(scanned, is_found));
   const bool has_found = found > 0;
-  if (levels() > 1 && has_found) {  // its slices are integrals, which are expensive
+  if (levels() > 1 && has_found) {  // the slices are integrals, which are expensive
     if (kSparseRatio * found <= scanned.size()) search_sparse_components(scratch);
     return;
   }
@@ -124,7 +124,7 @@ void NestedIntegral::refine_support(IntegralScratch& scratch) const {
   const double low = (first == scanned.begin() ? first : first - 1)->at,
                high = (last == scanned.rbegin() ? last : last - 1)->at;
   for (int i = 0; i < kSamplesInside; ++i)
-    scanned.push_back(slice(0, add_samples(low, high, i, kSamplesInside), scratch));
+    scanned.push_back(slice(0, sample_position(low, high, i, kSamplesInside), scratch));
   std::ranges::sort(scanned, {}, &Slice::at);
 }
 
@@ -147,7 +147,7 @@ void NestedIntegral::choose_samples(std::size_t level, double low, double high, 
                       : level == 0     ? kSamplesInLines[0]
                                        : kSamplesInLines[scratch.is_scanning ? 1 : 2];
   own.places.assign({low + kClearDistance * whole, high - kClearDistance * whole});
-  for (int i = 0; i < samples; ++i) own.places.push_back(add_samples(low, high, i, samples));
+  for (int i = 0; i < samples; ++i) own.places.push_back(sample_position(low, high, i, samples));
   if (level > 0 && scratch.has_hints) own.places.insert(own.places.end(), own.hints.begin(), own.hints.end());
   if (level > 0) add_expected_samples(scratch.levels[level - 1].at, own);
   std::ranges::sort(own.places);

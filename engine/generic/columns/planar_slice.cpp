@@ -44,7 +44,7 @@ void PlanarSlice::find_column(double t, const double* registers, PlanarSliceScra
     }
     if (plan_.formula.holds(signs, registers) != is_in) {
       is_in = !is_in;
-      // of coincident endpoints, the one of the first surface that changes in this direction
+      // coincident endpoints are labelled by the first surface that changes its sign in this direction
       EndLabel label = ~EndLabel{0}, any = ~EndLabel{0};
       for (std::size_t j = i; j < end; ++j) {
         const EndLabel each = scratch.ends[j].second;
@@ -61,7 +61,7 @@ void PlanarSlice::find_column(double t, const double* registers, PlanarSliceScra
   }
 }
 
-void PlanarSlice::set_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const {
+void PlanarSlice::evaluate_stage_of_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const {
   const expression::Program& program = plan_.program;
   for (const auto& input : program.stages()[stage_of_v()].inputs) registers[input.to] = scratch.v[0] + scratch.v[1] * t;
   program.run<double>(stage_of_v(), registers);
@@ -69,13 +69,14 @@ void PlanarSlice::set_v(double t, std::span<double> registers, const PlanarSlice
 
 void PlanarSlice::evaluate_independent(double t, std::span<double> registers, const PlanarSliceScratch& scratch,
                                        std::vector<double>& values) const {
-  set_v(t, registers, scratch);
+  evaluate_stage_of_v(t, registers, scratch);
   values.clear();
   for (const std::uint32_t at : plan_.independent.back()) values.push_back(registers[at]);
 }
 
-bool PlanarSlice::independent_hold(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const {
-  set_v(t, registers, scratch);
+bool PlanarSlice::independent_constraints_hold(double t, std::span<double> registers,
+                                               const PlanarSliceScratch& scratch) const {
+  evaluate_stage_of_v(t, registers, scratch);
   return std::ranges::all_of(plan_.independent.back(), [&](std::uint32_t at) { return is_satisfied(registers[at]); });
 }
 
@@ -90,7 +91,8 @@ void PlanarSlice::find_pieces(bool independent, std::span<double> registers, Pla
   const auto add = [&](double to, std::size_t to_vertex) {
     const double middle = 0.5 * (from + to);
     scratch.column.clear();
-    if (!independent || independent_hold(middle, registers, scratch)) find_column(middle, registers.data(), scratch);
+    if (!independent || independent_constraints_hold(middle, registers, scratch))
+      find_column(middle, registers.data(), scratch);
     if (scratch.column.empty()) return;
     PlanarSliceScratch::Piece* const last = scratch.pieces.empty() ? nullptr : &scratch.pieces.back();
     if (last && last->to == from && std::ranges::equal(std::span(scratch.spans).subspan(last->first), scratch.column)) {
@@ -227,7 +229,7 @@ std::vector<std::array<double, 2>> PlanarSlice::columns(double v, std::span<doub
                                                         PlanarSliceScratch& scratch) const {
   std::vector<std::array<double, 2>> found;
   const double t = (v - scratch.v[0]) / scratch.v[1];
-  const bool holds = plan_.independent.back().empty() || independent_hold(t, registers, scratch);
+  const bool holds = plan_.independent.back().empty() || independent_constraints_hold(t, registers, scratch);
   if (!holds || scratch.pieces.empty() || t < scratch.pieces.front().from || t > scratch.pieces.back().to) return found;
   find_column(t, registers.data(), scratch);
   for (const auto& [lower, upper] : scratch.column)

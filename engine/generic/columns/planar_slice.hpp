@@ -15,12 +15,12 @@ namespace pkm::generic {
 
 /// Scratch memory of PlanarSlice, in coordinates t, s in [-1, 1] for v and z.
 struct PlanarSliceScratch {
-  /// A point at which arcs can end.
+  /// A vertex of the slice: a point at which arcs can end.
   struct Vertex {
     double t;
     std::uint32_t label;
     bool touches = false;  ///< an intersection of conics that are tangent there
-    double s = 0;          ///< of intersections and turning points
+    double s = 0;          ///< ordinate of intersections and turning points
   };
   /// A feasible interval of the columns of a piece, by the labels of its endpoints.
   struct Span {
@@ -41,7 +41,7 @@ struct PlanarSliceScratch {
   std::array<Conic, kMaxSurfaces> conics;
   std::array<Meaning, kMaxSurfaces> meaning;
   std::array<double, 2> v, z;       ///< centre and half width
-  std::vector<std::size_t> active;  ///< conics that change their sign in the slice, each once
+  std::vector<std::size_t> active;  ///< conics that change their sign in the slice, without duplicates
   Signs always = 0;                 ///< constraints that are >= 0 in the whole slice
   std::vector<Vertex> vertices;
   std::vector<Piece> pieces;
@@ -70,8 +70,9 @@ class PlanarSlice {
   explicit PlanarSlice(SlicePlan plan) : plan_(std::move(plan)) {}
 
   const SlicePlan& plan() const { return plan_; }
-  /// Computes the area, the type and the pieces. @param registers  after all stages but that of v
-  /// @param changes  of constraints that are independent of z, along v; null: they are found by samples
+  /// Computes the area of the slice, its type and its pieces. @param registers  values after all stages except that of
+  /// v
+  /// @param changes  sign changes along v of constraints that are independent of z; null: they are found by samples
   double measure(std::span<double> registers, PlanarSliceScratch& scratch,
                  const std::vector<SignChange>* changes = nullptr) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
@@ -143,17 +144,17 @@ class PlanarSlice {
   void find_independent_vertices(std::span<double> registers, PlanarSliceScratch& scratch) const;
   void find_pieces(bool independent, std::span<double> registers, PlanarSliceScratch& scratch) const;
   void find_column(double t, const double* registers, PlanarSliceScratch& scratch) const;
-  /// Computes all registers that depend on v, but not on z, for v = t.
-  void set_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
+  /// Computes the registers that depend on v, but not on z, for the value of v given by t in [-1, 1].
+  void evaluate_stage_of_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
   /// Evaluates the constraints that are independent of z at t.
   void evaluate_independent(double t, std::span<double> registers, const PlanarSliceScratch& scratch,
                             std::vector<double>& values) const;
-  bool independent_hold(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
+  bool independent_constraints_hold(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
   /// Integrals of 1, s and s^2 over the columns of a piece at t.
   std::array<double, 3> moments(const PlanarSliceScratch::Piece& piece, double t,
                                 const PlanarSliceScratch& scratch) const;
   void find_combinatorial_type(PlanarSliceScratch& scratch) const;
-  /// Whether the length of columns has a square-root singularity there.
+  /// Whether the length of columns has a square-root singularity at a vertex.
   static bool has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch);
   std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
 

@@ -69,7 +69,7 @@ void PlanarSlice::add_gradient(double factor, std::span<double> registers, std::
 
 double PlanarSlice::slope_of_independent(std::size_t k, double t, std::span<double> registers,
                                          const PlanarSliceScratch& scratch, std::vector<double>& by) const {
-  set_v(t, registers, scratch);
+  evaluate_stage_of_v(t, registers, scratch);
   return stage_derivative(plan_.program, stage_of_v(), plan_.independent.back()[k], registers, by);
 }
 

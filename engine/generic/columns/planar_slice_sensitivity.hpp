@@ -1,4 +1,4 @@
-// Sensitivities of the vertices and columns of a planar slice. The quadrature nodes between them move with them.
+// Sensitivities of the vertices and columns of a planar slice.
 #pragma once
 
 #include <vector>

@@ -32,7 +32,7 @@ void drop_touching(std::vector<PlanarSliceScratch::Vertex>& vertices) {
 
 }  // namespace
 
-/// Adds a vertex, unless the point is infeasible whatever the signs of the surfaces `of` are.
+/// Adds a vertex, unless the point is infeasible for all signs of the surfaces `of`.
 void PlanarSlice::add_vertex(double t, double s, Signs of, std::uint32_t label, PlanarSliceScratch& scratch) const {
   if (!(std::fabs(s) <= 1 + 1e-9)) return;
   Signs maybe = scratch.always;

@@ -31,7 +31,8 @@ double bracketed_root_of(std::span<const double> c, double low, double high, dou
 
 /// Whether all Bernstein coefficients on [-1, 1] have one sign, so that there is no root.
 bool has_one_sign(std::span<const double> c) {
-  // of (1 - x)^(n-k) (1 + x)^k, up to positive factors, by c_j sum over i of (-1)^(j-i) C(k, i) C(n-k, j-i)
+  // The coefficient of (1 - x)^(n-k) (1 + x)^k is, up to a positive factor, the sum over j of c_j times the sum over i
+  // of (-1)^(j-i) C(k, i) C(n-k, j-i).
   static constexpr int kBinomial[5][5] = {
       {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
   static const auto table = [] {

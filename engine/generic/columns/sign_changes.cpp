@@ -24,7 +24,7 @@ class Search {
   void run(double from, double to, long max_evaluations) {
     const double narrow = kNarrow * (to - from);
     s_.parts.assign(1, {from, to, constraints_.size() < 64 ? bit(constraints_.size()) - 1 : ~Signs{0}});
-    // breadth first, so that the limit of evaluations leaves no part of the range unexamined
+    // breadth first: then the limit of evaluations leaves no part of the range unexamined
     while (!s_.parts.empty()) {
       s_.halves.clear();
       for (SignChangeScratch::Part part : s_.parts) {

@@ -19,7 +19,7 @@ struct WithDerivative {
 
 struct SignChange {
   double at;
-  std::size_t constraint;  ///< its number among those that were given
+  std::size_t constraint;  ///< its index in the list of given constraints
   bool falls;              ///< it is violated beyond `at`
 };
 
@@ -27,7 +27,7 @@ struct SignChange {
 struct SignChangeScratch {
   std::vector<SignChange> found;  ///< in no particular order
   double undecided = 0;           ///< total length of intervals in which signs are unknown
-  long evaluations = 0;           ///< of intervals, in the last search
+  long evaluations = 0;           ///< intervals evaluated in the last search
 
   struct Part {
     double from, to;
@@ -39,8 +39,8 @@ struct SignChangeScratch {
 
 /// Finds the sign changes in [from, to] of constraints that a stage computes from a single coordinate.
 /// @param constraints      at most kMaxSurfaces
-/// @param max_evaluations  of intervals; a few more are possible
-/// @param registers        after all earlier stages; those of this stage are overwritten
+/// @param max_evaluations  limit on evaluations of intervals; it may be exceeded by a few
+/// @param registers        values after all earlier stages; those of this stage are overwritten
 void find_sign_changes(const expression::Program& program, std::size_t stage,
                        std::span<const WithDerivative> constraints, double from, double to, long max_evaluations,
                        std::span<double> registers, SignChangeScratch& scratch);

@@ -5,7 +5,7 @@
 
 namespace pkm::generic {
 
-// Kinds of vertices; of coincident ones the first kind in this order represents all.
+// Kinds of vertices. Coincident vertices are represented by the one whose kind comes first in this order.
 inline constexpr std::uint32_t kSide = 1U << 28, kIndependent = 2U << 28, kVertical = 3U << 28, kCrossing = 4U << 28,
                                kTurningPoint = 5U << 28, kKind = 15U << 28;
 
