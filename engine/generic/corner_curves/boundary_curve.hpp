@@ -45,9 +45,9 @@ struct BoundaryCurve {
   std::array<Samples, 3> values;    ///< at the nodes: u, w and c of CurveAt
   std::array<Samples, 3> series;    ///< their coefficients
   std::array<Samples, 3> equation;  ///< b and c of the curve's equation, at the nodes
-  std::size_t terms = kNodes;       ///< of the series
+  std::size_t terms = kNodes;       ///< number of coefficients of the series in use
   double tail = 0;                  ///< interpolation error of the series, estimated from its last coefficients
-  double error = 0;                 ///< the same, with a bound of the rounding errors
+  double error = 0;                 ///< `tail` plus a bound of the rounding errors
   std::array<double, 3> size{};     ///< maxima of |u|, |w|, |c|
 
   bool is_circle() const { return kind == Kind::circle; }

@@ -16,7 +16,7 @@ namespace pkm::generic::corner_curves {
 
 inline constexpr double kUnitRoundoff = 0x1p-53;
 
-/// Values at the nodes, or coefficients.
+/// Values of a function at the nodes, or its coefficients.
 struct alignas(64) Samples : std::array<double, kNodes> {};
 
 /// The nodes, in descending order.
@@ -28,11 +28,12 @@ void to_coefficients(const Samples& values, Samples& coefficients);
 /// Node n of the interpolation with `nodes` nodes, 8, 16 or kNodes.
 double chebyshev_node(std::size_t n, std::size_t nodes);
 
-/// From derivatives by the coefficients to derivatives by the values at `nodes` nodes, 8, 16 or kNodes: the transpose
-/// of the interpolation, for functions of which `nodes` coefficients suffice.
+/// Converts derivatives with respect to the coefficients to derivatives with respect to the values at `nodes` nodes (8,
+/// 16 or kNodes), by the transpose of the interpolation; for functions for which `nodes` coefficients are sufficient.
 void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samples& by_values);
 
-/// The number of leading coefficients, of `terms`, beyond which the sum of magnitudes is at most `size`; at least 1.
+/// The number of leading coefficients that are significant, at least 1: the sum of the magnitudes of the others, up to
+/// coefficient `terms`, is at most `size`.
 std::size_t significant_terms(const Samples& coefficients, std::size_t terms, double size);
 
 /// c[0] T_0(x) + ... + c[terms - 1] T_(terms - 1)(x), by Clenshaw's recurrence.
@@ -46,7 +47,7 @@ inline double evaluate_series(const double* c, std::size_t terms, double x) {
   return c[0] + x * next - after;
 }
 
-/// Coefficients on [-1, 0] and on [0, 1], each in its own variable in [-1, 1].
+/// Restricts a series to [-1, 0] and to [0, 1]: coefficients of both halves, each in its own variable in [-1, 1].
 /// @param terms  number of coefficients; those beyond them are not read, and those of the halves are undefined
 void restrict_to_halves(const Samples& coefficients, std::size_t terms, Samples& lower, Samples& upper);
 
@@ -54,7 +55,7 @@ void restrict_to_halves(const Samples& coefficients, std::size_t terms, Samples&
 /// @param values  by series, kPoints each
 void evaluate_at_points(const std::array<Samples, 3>& series, std::size_t terms, const double* points, double* values);
 
-/// Coefficients of the derivative, of which there are terms - 1.
+/// Computes the terms - 1 coefficients of the derivative of a series.
 void differentiate_series(const double* coefficients, std::size_t terms, double* derivative);
 
 }  // namespace pkm::generic::corner_curves

@@ -26,7 +26,7 @@ bool is_outside(const CurveAt& curve, const CurveAt& other) {
 /// @param touching  index of the pair that touches, whose crossings are not followed
 void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                      const std::array<CurvePair*, 3>& pairs, std::size_t touching) {
-  constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};  // of each pair
+  constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};  // positions of each pair in the triple
   const auto [a, b] = kMembers[touching];
   const std::size_t first = triple[a], second = triple[b], middle = kNodes / 2;
   const CurveAt f = curves[first].at_node(middle), g = curves[second].at_node(middle);

@@ -10,16 +10,16 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-constexpr double kTiny = 1e-13;       // of tau: shorter intervals are not sampled
-constexpr double kShort = 1e-7;       // of tau: signs in shorter intervals are uncertain
+constexpr double kTiny = 1e-13;       // minimum length in tau of intervals that are sampled
+constexpr double kShort = 1e-7;       // minimum length in tau of intervals in which signs are reliable
 constexpr double kParallel = 1e-13;   // relative distance of the centres, or sine of the angle, of parallel curves
 constexpr double kUnresolved = 1e-9;  // maximum relative error of a function
 
 /// Constraints that have to be satisfied: curves on one side of which no point is feasible.
-struct Necessary {
+struct NecessaryConstraints {
   Signs inside = 0, outside = 0;
 
-  explicit Necessary(const SliceFormula& formula) {
+  explicit NecessaryConstraints(const SliceFormula& formula) {
     const Signs all = formula.formula.all;
     for (std::size_t i = 0; i < formula.literals.size(); ++i) {
       const auto [out, in] = formula.literals[i];
@@ -121,8 +121,8 @@ class Builder {
   CurveAt curve_at(std::size_t k, const Place& place) const {
     return place.node < kNodes ? curves_[k].at_node(place.node) : curves_[k].at(place.tau);
   }
-  /// A place inside a range: a node near its middle, where values are known already, if there is one.
-  static Place place_in(double low, double high) {
+  /// A value of tau inside a range: if possible, a node near its middle, at which the values of the curves are known.
+  static Place sample_place(double low, double high) {
     const Samples& nodes = chebyshev_nodes();
     const double middle = 0.5 * (low + high);
     auto at = std::ranges::lower_bound(nodes, middle, std::greater<>());
@@ -142,7 +142,7 @@ class Builder {
     return signs;
   }
 
-  /// Interpolates a function and isolates its roots. @return false if it is not resolved
+  /// Interpolates a function and isolates its roots. @return false if the interpolant is not accurate enough
   bool find_roots(const Sampled& function, std::vector<Root>& roots) {
     roots.clear();
     ++out_.functions;
@@ -247,9 +247,9 @@ class Builder {
     }
   }
 
-  /// Whether a constraint that has to hold is violated wherever two curves cross; then their crossings are not
-  /// followed. One sample in each range in which they cross is sufficient if the curve of this constraint never passes
-  /// through a crossing.
+  /// Whether a necessary constraint is violated wherever two curves cross; their crossings are then not followed. One
+  /// sample in each range in which they cross is sufficient if the curve of this constraint never passes through a
+  /// crossing.
   bool is_infeasible(Pair& pair) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
@@ -259,7 +259,7 @@ class Builder {
     double low = -1;
     for (std::size_t e = 0; e <= pair.ends.size(); ++e) {
       const double high = e == pair.ends.size() ? 1 : pair.ends[e].at;
-      const Place place = place_in(low, high);
+      const Place place = sample_place(low, high);
       const bool is_short = high - low <= kTiny;
       low = high;
       if (is_short) continue;
@@ -370,7 +370,7 @@ class Builder {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
     if (pair.has_branches) {
-      const Place place = place_in(low, high);
+      const Place place = sample_place(low, high);
       if (!has_crossing(curve_at(i, place), curve_at(j, place))) return;
     }
     root_at_low = root_at_low && pair.has_branches;
@@ -395,7 +395,7 @@ class Builder {
       double from = low, width = 0;
       bool is_divided = false;
       const auto sample = [&](double to) {
-        const Place place = place_in(from, to);
+        const Place place = sample_place(from, to);
         const CurveAt first = curve_at(i, place), second = curve_at(j, place);
         const Vector p = crossing(first, second, branch);
         stale = (stale | unknown) & ~constant;
@@ -440,7 +440,7 @@ class Builder {
       if (high - from > std::fmax(kTiny, width)) sample(high);
       if (high - from > kShort) {
         const Signs followed = ~(stale | unknown | constant) & (bit(count_) - 1);
-        if (!are_signs(i, j, branch, place_in(from, high), followed, signs)) out_.unbalanced += high - low;
+        if (!are_signs(i, j, branch, sample_place(from, high), followed, signs)) out_.unbalanced += high - low;
       }
       finish(high, root_at_high);
     }
@@ -495,7 +495,7 @@ class Builder {
   std::vector<BoundaryCurve>& curves_;
   std::size_t count_;  ///< number of curves without cuts
   const SliceFormula& formula_;
-  Necessary necessary_;
+  NecessaryConstraints necessary_;
   Decomposition& out_;
   DecompositionScratch& s_;
   std::array<std::size_t, kMaxCurves> cut_of_{};  ///< by curve; 0: it is no circle

@@ -29,7 +29,7 @@ struct ActiveRange {
 
 struct Decomposition {
   std::vector<ActiveRange> ranges;
-  double undecided = 0;   ///< total length of undecided intervals, of tau
+  double undecided = 0;   ///< total length of undecided intervals of tau
   double unbalanced = 0;  ///< length of tau on which decisions contradict each other: 0 unless one is wrong
   long functions = 0;     ///< discriminants and concurrence functions examined
 };
@@ -38,14 +38,14 @@ struct Decomposition {
 struct DecompositionScratch {
   /// A root of a concurrence function of a pair and a third curve.
   struct Event {
-    double at, width;      ///< as of a Root
+    double at, width;      ///< see Root
     std::uint8_t third;    ///< curve whose sign may change
-    std::int8_t branches;  ///< 0: on both
+    std::int8_t branches;  ///< branch of the crossing, 1 or -1; 0: both
   };
   /// A third curve that passes through a crossing for all tau, and the side of it on which the perturbed crossing lies.
   struct Constant {
     std::uint8_t third;
-    std::int8_t branch;  ///< 0: both
+    std::int8_t branch;  ///< branch of the crossing, 1 or -1; 0: both branches
     bool outside;
   };
   /// Two curves that cross for some tau.

@@ -1,5 +1,6 @@
-// Gradient of a volume: the adjoints of the curves' series become adjoints of the surfaces' coefficients at the
-// Chebyshev nodes, and the program is run backwards once for each node.
+// Gradient of a volume by reverse-mode differentiation: the adjoints of the curves' series become adjoints of the
+// surfaces' coefficients at the Chebyshev nodes, from which one backward sweep through the program follows for each
+// node.
 //
 // The nodes move with the ends of their segment, t = low + (high - low) phi, so that curves that behave like square
 // roots at an end have finite derivatives at every node.
@@ -60,7 +61,7 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   for (std::size_t n = 0; n < nodes; ++n) {
     const double tau = chebyshev_node(n, nodes), t = map_node(range, 0.5 * (1 + tau)).point;
     run_outer_stage(plan_, t, registers);
-    if (!limits.active.empty()) run_limits(plan_, t, limits);
+    if (!limits.active.empty()) evaluate_limits_at_t(plan_, t, limits);
     add_node_gradient(segment, n, tau, scratch);
     double by_t = sweep_outer_stage(plan_.program, registers, scratch.adjoints);
     if (!limits.active.empty()) by_t += sweep_outer_stage(plan_.limits, limits.registers, limits.adjoints);
@@ -81,7 +82,7 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
     const CurveAt curve = segment.slices.curves[i].at(tau);
     const CurveSource& source = segment.slices.sources[i];
     const auto& by = scratch.by_curve[i];
-    // The curve is in the coordinates of its frame, and the area there is that of the slice over scale^2.
+    // The curve is given in the coordinates of its frame, in which areas are smaller by the factor scale^2.
     const double u = frame.scale * by[0][node], w = frame.scale * by[1][node], c = by[2][node];
     if (source.kind == Kind::limit) {
       add_limit_gradient(source.surface, frame.v - frame.scale * curve.c, -frame.scale * c, scratch);
@@ -131,10 +132,11 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
   }
 }
 
-/// Adds the adjoint of a root v of a limit, by the implicit function theorem. To be called after run_limits().
+/// Adds the adjoint of a root v of a limit, by the implicit function theorem. To be called after
+/// evaluate_limits_at_t().
 void Volume::add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const {
   LimitScratch& s = scratch.segments.limits;
-  run_limits_at(plan_, v, s);
+  evaluate_limits_at_v(plan_, v, s);
   const std::uint32_t* const outputs = &plan_.limits.outputs()[3 * limit];
   s.adjoints[outputs[0]] -= adjoint / s.registers[outputs[1]];
   expression::backward_sweep(plan_.limits, 2, s.registers, s.adjoints);
@@ -155,8 +157,8 @@ void Volume::add_end_gradient(const SegmentEnd& end, bool upper, double derivati
   auto& registers = is_fold ? limits.registers : scratch.segments.registers;
   own.assign(program.registers(), 0);
   if (is_fold) {
-    run_limits(plan_, end.at, limits);
-    run_limits_at(plan_, end.v, limits);
+    evaluate_limits_at_t(plan_, end.at, limits);
+    evaluate_limits_at_v(plan_, end.v, limits);
     own[program.outputs()[3 * end.function]] = 1;
     expression::backward_sweep(program, 2, registers, own);
     for (const auto& input : program.stages()[2].inputs) own[input.to] = 0;

@@ -23,7 +23,7 @@ inline double outer_derivative(const OuterRange& range, double tau) {
 /// A subinterval of an active range.
 struct RangeCell {
   std::uint32_t range;
-  Subinterval<double> interval;  ///< of tau
+  Subinterval<double> interval;  ///< subinterval of tau
   double value, error, size;     ///< size: integral of the magnitude
 };
 
@@ -37,15 +37,15 @@ struct SegmentIntegral {
 
   /// Integrates all ranges with one rule each.
   void start();
-  /// Bisects the subinterval with the largest error. @return false if all are too short
+  /// Bisects the subinterval with the largest error. @return false if all subintervals are too short
   bool refine();
   void sum();
 };
 
-/// Derivatives of the volume by the functions u, w, c of a curve, by the coefficients of their series.
+/// Derivatives of the volume with respect to the series coefficients of the functions u, w and c of a curve.
 using CurveAdjoints = std::array<Samples, 3>;
 
-/// Adds the derivatives of the integral of a segment by the first coefficients.
+/// Adds the derivatives of the integral of a segment with respect to the first coefficients of all series.
 /// @param terms     number of coefficients, at least 2
 /// @param adjoints  by curve
 void add_adjoints(const SegmentIntegral& segment, std::size_t terms, std::vector<CurveAdjoints>& adjoints);

@@ -8,15 +8,16 @@
 
 namespace pkm::generic::corner_curves {
 
-inline constexpr std::size_t kNodes = 32;   ///< of Chebyshev interpolation
-inline constexpr std::size_t kPoints = 16;  ///< that series_at_points() evaluates at once
+inline constexpr std::size_t kNodes = 32;   ///< number of nodes of Chebyshev interpolation
+inline constexpr std::size_t kPoints = 16;  ///< number of points that series_at_points() evaluates at once
 
-/// Coefficients from values at the nodes. @param table  T_k at node n < kNodes/2: even k, then odd k, by rows of kNodes
+/// Computes the coefficients of an interpolant from its values at the nodes. @param table  T_k at node n < kNodes/2:
+/// even k, then odd k, by rows of kNodes
 template <InstructionSet set>
 void transform(const double* table, const double* values, double* coefficients);
 
-/// Coefficients on [-1, 0] and [0, 1]. @param table  coefficients of T_k on [0, 1], by rows of kNodes
-/// @param terms  of c; coefficients beyond them up to a multiple of kLanes are set to 0
+/// Restricts a series to [-1, 0] and [0, 1]. @param table  coefficients of T_k on [0, 1], by rows of kNodes
+/// @param terms  number of coefficients c; further ones up to a multiple of kLanes are set to 0
 template <InstructionSet set>
 void restrict_to_halves(const double* table, const double* c, std::size_t terms, double* lower, double* upper);
 

@@ -15,8 +15,9 @@ bool is_analytic(const std::string& name) {
 }
 
 /// The function at whose roots a step of the program is not analytic; std::nullopt if there is none.
-/// @param served  set to false if these points have no such function
-std::optional<OuterFunction> divider_of(const Program::Step& step, bool& served) {
+/// @param is_supported  set to false if the step may be non-analytic at points that are not the roots of such a
+///                      function
+std::optional<OuterFunction> function_at_singularities(const Program::Step& step, bool& is_supported) {
   using Kind = OuterFunction::Kind;
   switch (step.code) {
     case Code::sqrt:
@@ -31,7 +32,7 @@ std::optional<OuterFunction> divider_of(const Program::Step& step, bool& served)
     case Code::other:
       if (step.operation->name == "asin" || step.operation->name == "acos")
         return OuterFunction{.kind = Kind::one_minus_square, .registers = {step.from[0]}, .has_root = true};
-      if (!is_analytic(step.operation->name)) served = false;
+      if (!is_analytic(step.operation->name)) is_supported = false;
       return {};
     default:
       return {};
@@ -81,10 +82,10 @@ OuterPlan::OuterPlan(const SlicePlan& plan) {
   const auto is_zero = [&](std::uint32_t at) { return is_number(at) && numbers[at] == 0; };
   const auto varies = [&](std::uint32_t at) { return program.stage_of()[at] == 1; };
 
-  bool served = true;
+  bool is_supported = true;
   for (const Program::Step& step : program.stages()[1].steps) {
-    const auto function = divider_of(step, served);
-    if (!served) {
+    const auto function = function_at_singularities(step, is_supported);
+    if (!is_supported) {
       why_not = "a formula of the outer coordinate contains '" + step.operation->name + "'";
       return;
     }

@@ -11,13 +11,13 @@
 
 namespace pkm::generic::corner_curves {
 
-/// A function of t, by its registers.
+/// A function of t, given by registers of the program.
 struct OuterFunction {
   enum class Kind : std::uint8_t { value, difference, one_minus_square, discriminant };
   Kind kind = Kind::value;
   std::array<std::uint32_t, 3> registers{};
   bool has_root = false;     ///< curves behave like square roots where it vanishes
-  bool is_required = false;  ///< a constraint: >= 0 where anything is feasible
+  bool is_required = false;  ///< a constraint: >= 0 wherever a slice has feasible points
 
   double value(std::span<const double> all) const;
   /// Derivatives by the registers.

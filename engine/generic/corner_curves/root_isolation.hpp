@@ -20,7 +20,7 @@ struct Root {
   double width = 0;  ///< > 0: length of the undecided interval around `at`; 0: a simple root
 };
 
-/// Bounds the error of an interpolant: its last coefficients, and rounding.
+/// Error bound of an interpolant, from its last coefficients and the rounding errors.
 /// @param rounding  bound of the rounding errors of the values
 inline double interpolation_error(const Samples& coefficients, double rounding) {
   double tail = 0;

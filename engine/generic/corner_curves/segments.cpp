@@ -36,7 +36,7 @@ class Divider {
     return s_.levels[depth];
   }
 
-  /// @param depth  of recursion; the level's `known` is set
+  /// @param depth  recursion depth; `known` of this level must be set
   bool divide(SegmentEnd lower, SegmentEnd upper, std::size_t depth, int divisions) {
     check_stop();
     if (depth == kMaxRecursion) return false;
@@ -119,7 +119,7 @@ class Divider {
     if (defined < static_cast<std::ptrdiff_t>(kNodes)) return State::pending;
     double largest = 0;
     for (const double value : values) largest = std::fmax(largest, std::fabs(value));
-    if (largest == 0) return State::resolved;  // at its threshold everywhere
+    if (largest == 0) return State::resolved;  // the function is 0 everywhere
     Samples series;
     to_coefficients(values, series);
     const double error = interpolation_error(series, 0);

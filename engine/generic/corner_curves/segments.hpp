@@ -19,9 +19,9 @@ struct SegmentEnd {
   enum class Kind : std::uint8_t { box, function, fold, division };  ///< division: bisected for convergence only
   double at;
   Kind kind;
-  std::size_t function = 0;  ///< of a fold: the limit
+  std::size_t function = 0;  ///< index of the function; of a fold: index of the limit
   bool has_root = false;     ///< curves behave like square roots
-  double v = 0;              ///< of a fold
+  double v = 0;              ///< v of a fold
 };
 
 struct Segment {
@@ -48,15 +48,15 @@ struct SegmentScratch {
   std::size_t count = 0;
   DecompositionScratch decomposition;
   LimitScratch limits;
-  long runs = 0;  ///< of the program's stage of the outer coordinate
+  long runs = 0;  ///< number of evaluations of the stage of the outer coordinate
 };
 
 /// Runs the stage of the outer coordinate.
 void run_outer_stage(const SlicePlan& plan, double t, std::span<double> registers);
 
 /// Divides the range for a design, and decomposes the segments that are not empty.
-/// @param scratch  with the registers after the design's stage
-/// @return false if the design cannot be served
+/// @param scratch  contains the registers after the design's stage
+/// @return false if corner curves do not support the design
 bool divide(const SlicePlan& plan, const OuterPlan& outer, SegmentScratch& scratch);
 
 }  // namespace pkm::generic::corner_curves

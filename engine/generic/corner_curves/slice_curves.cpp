@@ -9,7 +9,7 @@ namespace pkm::generic::corner_curves {
 namespace {
 
 constexpr double kSame = 1e-12;   // difference of equal curves
-constexpr double kMargin = 1e-9;  // by which a curve misses the rectangle
+constexpr double kMargin = 1e-9;  // minimum distance of a curve that misses the rectangle
 constexpr std::size_t kMiddle = kNodes / 2;
 
 /// Enclosure of a series.
@@ -168,7 +168,7 @@ void SliceCurves::add_bound(BoundaryCurve& line, bool upper) {
 
 /// Adds the roots of limits as lines: no point is feasible in the intervals of v in which a limit is violated.
 bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
-  std::size_t before = 0;  // the line of the previous root
+  std::size_t before = 0;  // index of the line of the previous root
   for (std::size_t i = 0; i < roots.size(); ++i) {
     const bool is_first = i == 0 || roots[i - 1].limit != roots[i].limit,
                is_last = i + 1 == roots.size() || roots[i + 1].limit != roots[i].limit;
@@ -201,7 +201,7 @@ void SliceCurves::remove_constant(std::size_t i, bool outside) {
     }
     const bool is_first = strip->first == i;
     auto& other = formula.literals[is_first ? strip->second : strip->first];
-    if (is_first == outside) {  // the point is on the strip's side of this line: the other one decides
+    if (is_first == outside) {  // the point is on the strip's side of this line: the other line decides
       const bool is_other_inside = is_first == strip->is_inside;
       (is_other_inside ? other.inside : other.outside) |= strip->surface;
       if (strip->surface == 0) formula.bounds.push_back({is_first ? strip->second : strip->first, !is_other_inside});

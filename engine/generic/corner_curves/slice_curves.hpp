@@ -22,8 +22,8 @@ struct Frame {
 struct CurveSource {
   enum class Kind : std::uint8_t { circle, line, lower_root, upper_root, v_bound, limit };
   Kind kind;
-  std::size_t surface;  ///< of a bound: 0 the lower one, 1 the upper one; of a limit: its number
-  double sign;          ///< of a line's normal relative to the surface's gradient
+  std::size_t surface;  ///< surface; v_bound: 0 lower, 1 upper bound; limit: its index
+  double sign;          ///< sign of a line's normal relative to the surface's gradient
 };
 
 /// Values of all registers that the curves need, by node.

@@ -11,7 +11,7 @@ inline constexpr std::size_t kMaxCurves = 64;
 inline Signs bit(std::size_t i) { return Signs{1} << i; }
 
 struct SliceFormula {
-  /// Surfaces that are >= 0 on one side of a curve.
+  /// Surfaces that are >= 0 on one side of a curve h = 0.
   struct Literals {
     Signs outside = 0, inside = 0;  ///< where h > 0, and where h < 0
   };
@@ -19,18 +19,18 @@ struct SliceFormula {
   /// other, or elsewhere.
   struct Strip {
     std::size_t first, second;  ///< curves
-    Signs surface;              ///< 0: where it is violated, nothing is feasible
+    Signs surface;              ///< bit of the surface; 0: no point is feasible where it is violated
     bool is_inside;
   };
 
   /// A curve on one side of which no point is feasible, in addition to the formula.
   struct Bound {
     std::size_t curve;
-    bool outside;  ///< where the feasible points are: h > 0
+    bool outside;  ///< true: feasible points have h > 0
   };
 
   Formula formula;
-  const double* registers = nullptr;  ///< of the program
+  const double* registers = nullptr;  ///< registers of the program
   Signs constant = 0;                 ///< surfaces that are >= 0 in the whole slice
   std::vector<Literals> literals;     ///< by curve
   std::vector<Strip> strips;

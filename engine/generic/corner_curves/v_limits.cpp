@@ -10,7 +10,7 @@ namespace {
 using Cell = LimitScratch::Cell;
 using Search = LimitScratch::Search;
 
-constexpr int kMaxBisections = 8;              // of the range of v
+constexpr int kMaxBisections = 8;              // bisections of the range of v
 constexpr int kBisectionsBeforeCurvature = 3;  // shorter subintervals are often monotone
 
 int sign_of(const Interval& x) { return x.lower > 0 ? 1 : x.upper < 0 ? -1 : 0; }
@@ -38,7 +38,7 @@ class LimitRootFinder {
         return LimitState::unresolved;
     }
     for (std::size_t n = 0; n < kNodes && !s_.searches.empty(); ++n) {
-      run_limits(plan_, map_node(outer_, 0.5 * (1 + chebyshev_nodes()[n])).point, s_);
+      evaluate_limits_at_t(plan_, map_node(outer_, 0.5 * (1 + chebyshev_nodes()[n])).point, s_);
       for (Search& search : s_.searches) solve(search, n);
     }
     for (const Search& search : s_.searches)
@@ -91,7 +91,7 @@ class LimitRootFinder {
   /// Finds the groups of adjacent cells that contain roots. @return false if the number of roots is unknown
   bool add_searches(std::size_t limit) {
     const std::vector<Cell>& cells = s_.cells;
-    int sign = 0, first_sign = 0;  // beyond the cells so far, and the first one in the range of v; 0: unknown
+    int sign = 0, first_sign = 0;  // sign above the cells so far, and first sign in the range of v; 0: unknown
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (cells[i].is_undefined) continue;
       if (cells[i].sign != 0) {
@@ -123,7 +123,7 @@ class LimitRootFinder {
   }
   static int sign_beside(const Cell& cell) { return cell.is_undefined ? 0 : cell.sign; }
 
-  /// Finds the roots at node n of the segment. run_limits() must have been called for this node.
+  /// Finds the roots at node n of the segment. evaluate_limits_at_t() must have been called for this node.
   void solve(Search& search, std::size_t n) {
     const auto guess = [&](const Samples& v) { return n > 0 ? v[n - 1] : 0.5 * (search.lower + search.upper); };
     if (search.curvature == 0) {
@@ -132,7 +132,7 @@ class LimitRootFinder {
       return;
     }
     const auto slope_at = [&](double v) {
-      run_limits_at(plan_, v, s_);
+      evaluate_limits_at_v(plan_, v, s_);
       search.scale = std::fmax(search.scale, std::fabs(s_.registers[at(search.limit, 0)]));
       return s_.registers[at(search.limit, 1)] * search.curvature;
     };
@@ -140,7 +140,7 @@ class LimitRootFinder {
     if (!search.has_extremum) return;
     const double extremum =
         root_of(search.limit, 1, search.lower, search.upper, -search.curvature, guess(search.extremum));
-    run_limits_at(plan_, extremum, s_);
+    evaluate_limits_at_v(plan_, extremum, s_);
     search.extremum[n] = extremum;
     search.value_there[n] = s_.registers[at(search.limit, 0)];
     if (search.value_there[n] * search.curvature >= 0) return;
@@ -151,7 +151,7 @@ class LimitRootFinder {
   /// Newton's method with a bracket, for the limit or one of its derivatives along v.
   double root_of(std::size_t limit, std::size_t derivative, double lower, double upper, int sign_at_lower, double v) {
     const auto limit_at = [&](double x) {
-      run_limits_at(plan_, x, s_);
+      evaluate_limits_at_v(plan_, x, s_);
       return ValueAndDerivative{s_.registers[at(limit, derivative)], s_.registers[at(limit, derivative + 1)]};
     };
     const auto converged = [](const ValueAndDerivative&, double x, double next) {
@@ -165,9 +165,9 @@ class LimitRootFinder {
   LimitFold fold_near(const Search& search, double t) {
     double v = 0.5 * (search.lower + search.upper);
     const auto extremum = [&](double place) {
-      run_limits(plan_, place, s_);
+      evaluate_limits_at_t(plan_, place, s_);
       v = root_of(search.limit, 1, search.lower, search.upper, -search.curvature, v);
-      run_limits_at(plan_, v, s_);
+      evaluate_limits_at_v(plan_, v, s_);
       return s_.registers[at(search.limit, 0)];
     };
     const double step = 1e-4 * (outer_.upper - outer_.lower);
@@ -181,7 +181,7 @@ class LimitRootFinder {
     return {search.limit, t, v};
   }
 
-  /// Appends the roots, or the folds. @return false if the extremum is not resolved
+  /// Appends the roots of a search, or its folds. @return false if the extremum is not resolved
   bool add_roots(const Search& search) {
     constexpr double kConverged = 1e-11;
     if (search.curvature == 0) {
@@ -239,11 +239,11 @@ void start_limits(const SlicePlan& plan, std::span<const double> inputs, const s
   program.run<double>(0, inputs, scratch.registers);
 }
 
-void run_limits(const SlicePlan& plan, double t, LimitScratch& scratch) {
+void evaluate_limits_at_t(const SlicePlan& plan, double t, LimitScratch& scratch) {
   for (const auto& input : plan.limits.stages()[1].inputs) scratch.registers[input.to] = t;
   plan.limits.run<double>(1, std::span(scratch.registers));
 }
-void run_limits_at(const SlicePlan& plan, double v, LimitScratch& scratch) {
+void evaluate_limits_at_v(const SlicePlan& plan, double v, LimitScratch& scratch) {
   for (const auto& input : plan.limits.stages()[2].inputs) scratch.registers[input.to] = v;
   plan.limits.run<double>(2, std::span(scratch.registers));
 }

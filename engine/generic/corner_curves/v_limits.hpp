@@ -20,7 +20,7 @@ namespace pkm::generic::corner_curves {
 /// A root of a limit on a segment.
 struct LimitRoot {
   std::size_t limit;
-  bool rises;  ///< the limit is satisfied beyond it
+  bool rises;  ///< true: the limit is satisfied above the root
   Samples v;
 };
 
@@ -34,7 +34,7 @@ struct LimitFold {
 struct LimitScratch {
   std::vector<double> registers, adjoints;
   std::vector<std::size_t> active;  ///< limits that are not certified to be satisfied by the design everywhere
-  std::vector<LimitRoot> roots;     ///< of the last segment, in ascending order for each limit
+  std::vector<LimitRoot> roots;     ///< roots on the last segment, in ascending order for each limit
   std::vector<LimitFold> folds;
 
   std::vector<Interval> inputs, intervals;
@@ -50,14 +50,14 @@ struct LimitScratch {
     std::size_t limit;
     double lower, upper;
     int sign_at_lower;
-    int curvature;  ///< 0: there is one root
+    int curvature;  ///< sign of the curvature at the extremum; 0: one root
     double scale;   ///< magnitude of the limit at the ends of an interval with an extremum
     Samples extremum, value_there;
     std::array<Samples, 2> root;
     bool has_extremum;
   };
   std::vector<Search> searches;
-  std::vector<int> signs;  ///< of each active limit at a place in the range of v; 0: it is undefined everywhere
+  std::vector<int> signs;  ///< sign of each active limit at a point in the range of v; 0: undefined everywhere
   std::vector<Root> isolated;
 };
 
@@ -66,9 +66,10 @@ struct LimitScratch {
 void start_limits(const SlicePlan& plan, std::span<const double> inputs, const std::array<Interval, 2>& box,
                   LimitScratch& scratch);
 
-/// Evaluates the stage of the outer coordinate of SlicePlan::limits at t, or, after that, the stage of v.
-void run_limits(const SlicePlan& plan, double t, LimitScratch& scratch);
-void run_limits_at(const SlicePlan& plan, double v, LimitScratch& scratch);
+/// Evaluates the stage of SlicePlan::limits that depends on the outer coordinate, at t.
+void evaluate_limits_at_t(const SlicePlan& plan, double t, LimitScratch& scratch);
+/// Evaluates the stage of SlicePlan::limits that depends on v, after evaluate_limits_at_t().
+void evaluate_limits_at_v(const SlicePlan& plan, double v, LimitScratch& scratch);
 
 /// Result of find_limit_roots().
 enum class LimitState { resolved, violated, divided, unresolved };

@@ -18,9 +18,9 @@ double Volume::Scratch::work() const {
 }
 
 std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, Scratch& scratch) const {
-  constexpr double kBalanced = 1e-10;  // of tau: longer contradictions among the decisions are not accepted
+  constexpr double kBalanced = 1e-10;  // maximum length in tau on which decisions may contradict each other
   constexpr std::size_t kMaxCells = 4000;
-  constexpr double kBetter = 0.1;  // of the tolerance
+  constexpr double kBetter = 0.1;  // share of the tolerance
   SegmentScratch& s = scratch.segments;
   const expression::Program& program = plan_.program;
   s.registers.resize(program.registers());

@@ -24,8 +24,8 @@ class Volume {
   const std::string& why_not() const { return outer_.why_not; }
   const SlicePlan& plan() const { return plan_; }
 
-  /// @param inputs  of the graph, with fixed coordinates
-  /// @return std::nullopt if the design is not served: a degeneracy, or functions that do not converge
+  /// @param inputs  values of the graph's inputs, including the fixed coordinates
+  /// @return std::nullopt if the design is not supported: a degeneracy, or functions that do not converge
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch) const;
   /// Adds the derivatives of the volume by the graph's inputs, after measure().
   void add_gradient(std::span<double> by_input, Scratch& scratch) const;
