@@ -49,7 +49,7 @@ std::optional<Affine> square_on(const Face& face) {
   return Affine{face.centre * 2.0, r * r - dot(face.centre, face.centre)};
 }
 
-/// The same quadric as a function of p - c. For spheres and planes.
+/// Rewrites a quadric as a function of p - c. For spheres and planes.
 Quadric relative_to(const Vector3& c, const Quadric& q) {
   return {.square = q.square, .v = q.v + c * (2 * q.square), .k = q.square * dot(c, c) + dot(q.v, c) + q.k};
 }
@@ -208,7 +208,8 @@ bool add_curves_of_mirror_images(const Face& a, const Face& b, std::vector<Curve
   return false;
 }
 
-/// @return false if the surfaces are the same
+/// Adds the intersection of a torus with another surface as an implicit curve. @return false if the surfaces are the
+/// same
 bool add_implicit(const Face& torus, const Face& other, std::vector<Curve>& curves) {
   const double length = torus.body->crank + torus.body->radius;
   const TorusFunction function(torus, other);

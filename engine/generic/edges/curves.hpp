@@ -38,8 +38,8 @@ struct Curve {
   Trigonometric D{};
   std::optional<Affine> square{};  ///< |p|^2 on a sphere
   Quadric with{};                  ///< on_torus: the other surface, relative to the centre of the torus
-  std::optional<Quadric> cut{};    ///< where this vanishes, the two surfaces touch
-  TorusFunction function{};        ///< implicit: of the second surface on the first one
+  std::optional<Quadric> cut{};    ///< the surfaces touch where this function vanishes
+  TorusFunction function{};        ///< implicit: function of the second surface on the first one
 };
 
 /// Part of one branch of a curve: u in [0, length].

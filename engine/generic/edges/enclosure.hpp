@@ -88,8 +88,8 @@ struct SineCosine {
 inline SineCosine sine_cosine(const Enclosure& x) {
   const auto [s, c] = portable::sincos(x.value);
   const double reach = std::min(x.reach(), 2.0);
-  const double most_s = std::min(1.0, std::fabs(s) + reach), most_c = std::min(1.0, std::fabs(c) + reach);
-  return {x.through(s, c, most_c, most_s), x.through(c, -s, most_s, most_c)};
+  const double max_sine = std::min(1.0, std::fabs(s) + reach), max_cosine = std::min(1.0, std::fabs(c) + reach);
+  return {x.through(s, c, max_cosine, max_sine), x.through(c, -s, max_sine, max_cosine)};
 }
 /// sin(x) / x
 /// @param of_x  sine_cosine(x)

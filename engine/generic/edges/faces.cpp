@@ -9,7 +9,8 @@ bool is_up_to_half_turn(const Body& body) { return body.kind == Body::Kind::slid
 
 using Bits = std::array<bool, kFunctions>;
 
-/// The rule of limbs::CrankRange. A slide has the rule of a crank whose range is less than half a revolution.
+/// Membership of a body by the rule of limbs::CrankRange. A slide has the rule of a crank whose range is less than half
+/// a revolution.
 bool is_in_body(const Bits& is, bool is_first_root, bool half_turn) {
   const bool after_from = is[2], before_to = !is[3];
   if (is[0] != is[1]) return is_first_root == is[0];

@@ -15,7 +15,7 @@ enum class Part : std::uint8_t { first, second, fold };
 
 enum class Surface : std::uint8_t { plane, sphere, cylinder, torus };
 
-/// v . p + k
+/// The affine function v . p + k.
 struct Affine {
   Vector3 v{};
   double k = 0;
@@ -42,7 +42,7 @@ struct Face {
   Vector3 away_from_pole{};  ///< sphere: opposite of the point where its form has a pole
 };
 
-/// The faces of a body, as far as they are not empty.
+/// Appends the faces of a body that are not empty.
 void add_faces(const PreparedBody& body, std::size_t number, std::vector<Face>& faces);
 
 /// A point p of a curve.
@@ -70,7 +70,7 @@ inline constexpr std::array<SignSets, kFunctions> kPositive{0xaaaaaaaaaaaaaaaa, 
 /// Whether a point belongs to a body or, if it lies on the surface of one of its faces, to that face.
 struct Rule {
   SignSets holds = 0;
-  /// By function: the combinations in which its sign decides.
+  /// By function: the combinations in which membership depends on its sign.
   std::array<SignSets, kFunctions> depends{};
 };
 /// The rule of a body, or of one of its faces.

@@ -205,7 +205,7 @@ class Evaluator {
         return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
       });
       if ((rule.holds & possible) == 0) {
-        if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);  // often decides the next interval, too
+        if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);  // the test often decides the next interval as well
         return;
       }
       if ((~rule.holds & possible) == 0) {

@@ -9,12 +9,12 @@ namespace {
 using Bilinear = std::array<std::array<double, 3>, 3>;
 using Coefficients = std::array<Trigonometric, 5>;
 
-/// The product of two of 1, cos t, sin t.
+/// Products of two of the functions 1, cos t, sin t.
 constexpr Trigonometric kProduct[3][3] = {{{1, 0, 0, 0, 0}, {0, 1, 0, 0, 0}, {0, 0, 1, 0, 0}},
                                           {{0, 1, 0, 0, 0}, {0.5, 0, 0, 0.5, 0}, {0, 0, 0, 0, 0.5}},
                                           {{0, 0, 1, 0, 0}, {0, 0, 0, 0, 0.5}, {0.5, 0, 0, -0.5, 0}}};
 
-/// Adds factor x y.
+/// Adds the product factor x y to `to`.
 void add_product(const Bilinear& x, const Bilinear& y, double factor, Coefficients& to) {
   for (std::size_t i = 0; i < 9; ++i)
     for (std::size_t j = 0; j < 9; ++j) {

@@ -51,10 +51,10 @@ struct TorusBox {
 /// A curve along which f = 0, with one of q and b as its parameter, and bounds that hold in its box.
 struct TorusArc {
   std::size_t along = 0;           ///< the parameter: 0: q, 1: b
-  double from = 0, to = 0;         ///< its range
+  double from = 0, to = 0;         ///< range of the parameter
   std::array<double, 2> across{};  ///< the range of the other coordinate
-  double max_slope = 0;            ///< of the other coordinate by the parameter
-  double least = 0;                ///< least magnitude of the derivative of f by the other coordinate
+  double max_slope = 0;            ///< maximum derivative of the other coordinate by the parameter
+  double least = 0;                ///< minimum magnitude of the derivative of f by the other coordinate
 };
 
 struct CurveInBox {
@@ -64,7 +64,7 @@ struct CurveInBox {
   std::optional<TorusArc> arc{};  ///< found: the curve, cut to the box
 };
 /// Whether f = 0 has a zero in a box, and its curve if it is a function of one coordinate there.
-/// @param rounding_error  of f
+/// @param rounding_error  bound of the rounding error of f
 CurveInBox find_curve_in(const TorusFunction& function, const TorusBox& box, double rounding_error);
 
 /// A point of an arc: the other coordinate, with its derivative by the parameter and a bound of the second one.
