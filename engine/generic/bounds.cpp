@@ -242,7 +242,8 @@ PoseCertificate certify_motion(const Evaluation& e, std::span<const double> para
   };
   PoseCertificate found = certify_until(motion.duration(), matrices ? &*matrices : nullptr);
   const auto time_of = [](const PropertyResult& finding) { return (*finding.pose)[0]; };
-  // The infeasible instant that was found need not be the first one: search before it until it stays there.
+  // The infeasible instant that was found need not be the first one: search before it repeatedly, until no earlier one
+  // is found.
   double later = motion.duration();
   while (found.feasible.kind == PropertyResult::Kind::fails &&
          later - time_of(found.feasible) > 1e-6 * motion.duration()) {

@@ -109,7 +109,7 @@ NormalisedConstraints normalised(PoseConstraints& known, Groups z) {
   return made;
 }
 
-/// Groups of the inputs that each stage provides.
+/// The groups of inputs that each stage of the program provides.
 std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector<std::size_t>& order) {
   std::array<Groups, 4> groups{~Groups{0}, 0, 0, 0};
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -120,7 +120,8 @@ std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector
   return groups;
 }
 
-/// Merges a disjunction of two, one of which does not depend on z, into one ColumnConstraint with an alternative.
+/// Merges a disjunction of two constraints, one of which does not depend on z, into one ColumnConstraint with an
+/// alternative.
 /// @param all  one constraint per polynomial of the clause
 CellPlan::Disjunction merge_constant(const expression::Clause& clause, CellPlan::Disjunction all, Node zero) {
   if (clause.size() != 2) return all;

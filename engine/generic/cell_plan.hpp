@@ -33,7 +33,7 @@ struct CellPlan {
   /// @param order  axes, from the outermost loop to the innermost one
   CellPlan(const Evaluation& evaluation, const std::vector<int>& swept, std::vector<std::size_t> order,
            std::size_t mode);
-  /// The plan with the order of loops whose estimated time is the shortest for a grid of these cells.
+  /// The plan with the order of loops that has the shortest estimated time for a grid with the given numbers of cells.
   static CellPlan fastest(const Evaluation& evaluation, const std::vector<int>& swept,
                           const std::array<std::int64_t, 3>& cells, std::size_t mode);
 

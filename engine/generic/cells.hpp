@@ -46,14 +46,14 @@ class CellTest {
   bool at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const;
 
   /// Computes everything that does not depend on the swept coordinates.
-  /// @param inputs  of the graph, with the fixed coordinates
+  /// @param inputs  values of the graph's inputs, including the fixed coordinates
   void start(const std::vector<double>& inputs, CellScratch& scratch) const;
   /// Finds the feasible cells of a slice, after start().
   /// @param want_bits  whether to compute scratch.bits
   CellTally test(const VoxelGrid& grid, std::size_t outer, bool want_bits, CellScratch& scratch) const;
 
  private:
-  /// Columns [first, first + count) of a slice.
+  /// Finds the feasible cells of columns [first, first + count) of a slice.
   CellTally test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count, bool want_bits,
                          CellScratch& scratch) const;
   /// Finds the ranges of cells that satisfy plan_.columns. @return true if scratch.hole contains holes in them
@@ -66,7 +66,7 @@ class CellTest {
   /// Clears the bits of cells that violate a disjunction, the range of a crank or a constraint of the inner loop.
   void clear_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
                   CellScratch& scratch) const;
-  /// The cells of `count` columns that satisfy one constraint.
+  /// Finds the cells of `count` columns that satisfy one constraint.
   void bits_of(const ColumnConstraint& constraint, const ColumnGrid& column_grid, std::size_t count,
                CellScratch& scratch, std::vector<std::uint64_t>& bits) const;
   /// Evaluates limbs::CrankRange for the cells of `count` columns.

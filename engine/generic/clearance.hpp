@@ -6,8 +6,8 @@
 
 namespace pkm::generic {
 
-/// The pairs of links whose clearance is tested: not two fixed links, links with a common group, or links with a common
-/// end, which are joined there. Ascending.
+/// The pairs of links whose clearance is tested: all except pairs of fixed links, of links with a common group, and of
+/// links with a common end, which are joined there. Ascending.
 std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<LinkNodes>& links);
 
 /// Indices of the links that move and whose clearance is tested.
@@ -23,7 +23,7 @@ std::optional<double> clearance_of(const Model& model, const LimitSpec& limits);
 void refuse_clearance(const Model& model, const LimitSpec& limits, const std::string& why);
 
 /// All links of a pose that assembles; empty if a position is undefined.
-/// @param inputs  of the graph, with the pose
+/// @param inputs  values of the graph's inputs, including the pose
 template <class S>
 std::vector<Capsule<S>> capsules_at(const Evaluation& evaluation, const std::vector<S>& inputs);
 
@@ -34,8 +34,8 @@ struct NearestBodies {
   std::string first, second;
 };
 
-/// std::nullopt if no clearance is tested.
-/// @param inputs  as for capsules_at()
+/// The two bodies with the minimum clearance at a pose; std::nullopt if no clearance is tested.
+/// @param inputs  see capsules_at()
 template <class S>
 std::optional<NearestBodies<S>> nearest_bodies(const Evaluation& evaluation, const std::vector<S>& inputs,
                                                const Obstacles& obstacles);
@@ -53,7 +53,7 @@ class ClearanceBatch {
   ClearanceBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode, double limit,
                  const Obstacles& obstacles);
 
-  /// As PoseBatch::start() and add().
+  /// See PoseBatch::start() and PoseBatch::add().
   void start(const std::vector<double>& inputs, ClearanceScratch& scratch) const;
   bool add(const Pose<double>& pose, ClearanceScratch& scratch) const { return batch_.add(pose, scratch.poses); }
   /// Calls visit(k) for each pose of the batch that violates the limit, in order, and empties the batch.

@@ -15,10 +15,12 @@ struct ColumnGrid {
   double first, step, cells;
 };
 
-/// What is known of the leading coefficient c[2] of a quadratic: a constant 0, < 0 or > 0, or not a constant.
+/// Sign of the leading coefficient c[2] of a quadratic: linear if it is always 0, concave if it is a negative constant,
+/// convex if it is a positive constant, any if it varies.
 enum class Shape { linear, concave, convex, any };
 
-/// c[0] + c[1] z + c[2] z^2 >= 0; if has_alternative, this or `alternative` >= 0, which does not depend on z.
+/// The constraint c[0] + c[1] z + c[2] z^2 >= 0. If has_alternative, it is also satisfied where `alternative` >= 0,
+/// which does not depend on z.
 struct ColumnConstraint {
   Shape shape = Shape::any;
   std::array<expression::Operand, 3> c{};
@@ -26,7 +28,7 @@ struct ColumnConstraint {
   expression::Operand alternative{};
 };
 
-/// By column: the cells [from, to) except those in [hole_from, hole_to). Whole numbers.
+/// Feasible cells by column: [from, to) except those in [hole_from, hole_to). The numbers are whole.
 struct CellRanges {
   alignas(64) std::array<double, expression::kRow> from, to, hole_from, hole_to;
 };
@@ -35,7 +37,7 @@ struct CellRanges {
 /// it is violated. The holes of all columns are overwritten if the constraint can have any (convex, any), and otherwise
 /// left unchanged.
 /// @param count            a multiple of kLanes
-/// @param registers, rows  as for expression::BatchStage
+/// @param registers, rows  see expression::BatchStage
 /// @return true if a column has a hole inside its range
 template <InstructionSet set>
 bool contract(const ColumnConstraint& constraint, const double* registers, const double* rows, const ColumnGrid& grid,

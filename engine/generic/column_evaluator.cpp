@@ -42,7 +42,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
   friend WithGradients<GenericColumns>;
   static constexpr int kSampleNodes = 6;
 
-  /// The last volume with derivatives.
+  /// The volume and its derivatives that were computed last.
   struct LastGradient {
     const GenericColumns* of = nullptr;
     std::vector<Dual4> inputs;

@@ -60,10 +60,11 @@ CoordinateRanges box_of(const Sweep& sweep, std::size_t coordinates, const Colum
 
 struct Plans {
   std::vector<SlicePlan> all;
-  std::string why_not;  ///< if there are no plans
+  std::string why_not;  ///< the reason, if there are no plans
 };
 
-/// Planar slices bounded by conics if possible, otherwise lines bounded by polynomials, otherwise any lines.
+/// Plans with planar slices bounded by conics if possible, otherwise with lines bounded by polynomials, otherwise with
+/// any lines.
 /// @param max_plans  maximum number of plans
 Plans plans_of(const Evaluation& evaluation, std::size_t mode, const WorkspacePlan& plan, const ColumnOptions& columns,
                std::size_t max_plans = 100) {
@@ -132,7 +133,7 @@ std::vector<double> ColumnVolume::inputs_of_default_design() const {
   return inputs;
 }
 
-/// The plan whose analysis of the default design at low accuracy takes the least work.
+/// Chooses the plan whose analysis of the default design at low accuracy takes the least work.
 SlicePlan ColumnVolume::choose_slices() const {
   const SlicePlan& first = plans_.front();
   const double tolerance = first.order.v ? 1e-3 : 1e-2;
@@ -141,7 +142,7 @@ SlicePlan ColumnVolume::choose_slices() const {
   const std::vector<double> inputs = inputs_of_default_design();
   IntegralScratch scratch;
   const SlicePlan* best = nullptr;
-  // interval operations, or surfaces in slices: about a second
+  // limit on interval operations, or on surfaces times slices: about a second
   long least = has_curves ? 100'000'000 : 10'000'000;
   for (const SlicePlan& plan : plans_) {
     const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
@@ -160,7 +161,7 @@ SlicePlan ColumnVolume::choose_slices() const {
   return best ? *best : first;
 }
 
-/// Among the plans that corner curves serve, the one that takes the least work for the default design.
+/// Chooses, among the plans that corner curves can integrate, the one that takes the least work for the default design.
 void ColumnVolume::choose_corner_curves(double tolerance) {
   corner_curves::Volume::Scratch scratch;
   double least = std::numeric_limits<double>::infinity();
@@ -181,7 +182,7 @@ Integral<double> ColumnVolume::measure(std::vector<double>& inputs, std::span<do
   return has_outermost() ? outermost_.measure(inputs, by_input, inner) : inner(inputs, by_input);
 }
 
-/// Over at most three coordinates.
+/// The volume over the coordinates inside the outermost quadrature, at most three.
 Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, std::span<double> by_input,
                                               Scratch& scratch) const {
   const bool needs_gradient = !by_input.empty();

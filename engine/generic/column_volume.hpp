@@ -33,7 +33,7 @@ class ColumnVolume {
                bool needs_samples);
 
   /// The volume over all swept and integrated coordinates.
-  /// @param inputs    of the graph; those of the outermost coordinates are overwritten
+  /// @param inputs    values of the graph's inputs; those of the outermost coordinates are overwritten
   /// @param by_input  if not empty, the derivatives of the volume are added
   Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, Scratch& scratch) const;
 

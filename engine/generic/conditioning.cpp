@@ -13,8 +13,9 @@
 namespace pkm::generic {
 namespace {
 
-/// Coordinate rates by the twist of the platform: for three rotations about moving axes, the angle rates by the angular
-/// velocity. The axes of one or two rotations are orthonormal, so that the rates are the components themselves.
+/// Map from the twist of the platform to the coordinate rates: for three rotations about moving axes, from the angular
+/// velocity to the angle rates. The axes of one or two rotations are orthonormal; the rates are then the components
+/// themselves.
 template <class S>
 AxisMatrix<S> rates_by_twist(const Model& model, const Pose<S>& pose) {
   const std::size_t n = pose.size();
@@ -60,7 +61,7 @@ S singular_ratio(const AxisMatrix<S>& A) {
   return A.rows() >= A.cols() && value_of(maximum) > 0 ? S(minimum / maximum) : S(0.0);
 }
 
-/// The coordinate of a column of included_columns().
+/// Index of the coordinate that belongs to a column of included_columns().
 std::size_t included_coordinate(const Model& model, std::size_t column) {
   return model.conditioning_coordinates.empty() ? column : model.conditioning_coordinates[column];
 }

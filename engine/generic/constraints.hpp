@@ -10,7 +10,7 @@ namespace pkm::generic {
 /// The constraints as nodes of a separate graph, in which the signs of the working mode are constants.
 struct PoseConstraints {
   Graph graph;
-  std::vector<Node> all;  ///< satisfied if >= 0: those of Model::domains, then margins, then defined
+  std::vector<Node> all;  ///< Model::domains, then margins, then defined; satisfied if >= 0
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
   std::vector<RodAndPathNodes> paths;

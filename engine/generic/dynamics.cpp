@@ -27,7 +27,7 @@ class Outputs {
   ValueOf value_;
 };
 
-/// @return true if the pose assembles; otherwise `d` is incomplete
+/// Reads the equations of motion from the outputs. @return true if the pose assembles; otherwise `d` is incomplete
 template <class S, class ValueOf>
 bool read(const Inputs& at, std::size_t domains, Outputs<ValueOf> next, PoseDynamics<S>& d) {
   const std::size_t n = at.coordinates, m = at.joints;

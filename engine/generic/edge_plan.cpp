@@ -11,10 +11,10 @@ namespace {
 constexpr std::size_t kCoefficients = 10;
 using NodeQuadric = std::array<Node, kCoefficients>;
 
-/// Converts formulas to quadrics in three coordinates, whose coefficients do not depend on these.
-class QuadricLowering {
+/// Converts formulas to quadrics in three coordinates, with coefficients that do not depend on these coordinates.
+class QuadricConverter {
  public:
-  QuadricLowering(Graph& graph, const std::array<Groups, 3>& groups) : graph_(graph), groups_(groups) {}
+  QuadricConverter(Graph& graph, const std::array<Groups, 3>& groups) : graph_(graph), groups_(groups) {}
 
   bool is_independent(Node node) const { return (graph_[node].groups & (groups_[0] | groups_[1] | groups_[2])) == 0; }
 
@@ -25,7 +25,7 @@ class QuadricLowering {
     return result;
   }
 
-  /// A conjunction of disjunctions.
+  /// Converts a constraint to a conjunction of disjunctions of quadrics.
   std::optional<std::vector<std::vector<NodeQuadric>>> clauses(Node constraint) const {
     for (std::size_t first = 0; first < 3; ++first)
       if (auto found = clauses_along(constraint, first)) return found;
@@ -79,7 +79,7 @@ class QuadricLowering {
   std::array<Groups, 3> groups_;
 };
 
-/// An upper bound on direction . p in a body.
+/// An upper bound of direction . p over the points p of a body.
 /// @param direction  unit vector
 double extent(const Body& body, const Vector3& direction) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity(), kParallel = 1e-14;
@@ -121,7 +121,7 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
     coordinates[i] = static_cast<std::size_t>(swept[i]);
     groups[i] = Inputs::coordinate_group(coordinates[i]);
   }
-  const QuadricLowering lowering(graph, groups);
+  const QuadricConverter converter(graph, groups);
   std::vector<Node> constants, outputs;
   std::vector<bool> is_covered(known.all.size());
   for (const RodAndPathNodes& path : known.paths) {
@@ -129,13 +129,13 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
     std::array<Node, 3> offset{};
     bool is_translation = graph[path.branch].is_number();
     for (std::size_t i = 0; i < 3 && is_translation; ++i) {
-      const auto v = lowering.quadric(path.v[i]);
+      const auto v = converter.quadric(path.v[i]);
       for (std::size_t k = 1; v && k < kCoefficients; ++k) {
         const expression::Entry& entry = graph[(*v)[k]];
         is_translation = is_translation && entry.is_number() && entry.number == (k == i + 1 ? 1 : 0);
       }
       is_translation =
-          is_translation && v && lowering.is_independent(path.axis[i]) && lowering.is_independent(path.zero[i]);
+          is_translation && v && converter.is_independent(path.axis[i]) && converter.is_independent(path.zero[i]);
       if (v) offset[i] = v->front();
     }
     if (!is_translation) continue;
@@ -149,11 +149,11 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
   for (std::size_t i = 0; i < known.all.size(); ++i) {
     const Node node = known.all[i];
     if (is_covered[i]) continue;
-    if (lowering.is_independent(node)) {
+    if (converter.is_independent(node)) {
       constants.push_back(node);
       continue;
     }
-    const auto clauses = lowering.clauses(node);
+    const auto clauses = converter.clauses(node);
     if (!clauses) {
       why_not_ = "'" + constraint_name(model, i) + "' is no quadric";
       return;

@@ -17,18 +17,18 @@ class EdgePlan {
  public:
   /// @param swept      coordinates; the others are inputs
   /// @param box        by coordinate; std::nullopt: the range of the model
-  /// @param tolerance  of the volume, relative
+  /// @param tolerance  relative error of the volume
   EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::vector<int>& swept,
            const std::vector<std::optional<std::array<double, 2>>>& box, double tolerance);
 
-  /// Why the workspace is no such solid; empty if it is one.
+  /// Why the workspace is not an intersection of such bodies; empty if it is.
   const std::string& why_not() const { return why_not_; }
 
   struct Scratch;
 
   /// The volume of a design, if why_not() is empty; std::nullopt if a quadric is no plane, sphere or cylinder, two
   /// faces are on the same surface, or the edges are not closed.
-  /// @param inputs    of the model's graph
+  /// @param inputs    values of the inputs of the model's graph
   /// @param by_input  if not empty, the derivatives of the volume are added
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch,
                                           std::span<double> by_input = {}) const;
@@ -41,19 +41,19 @@ class EdgePlan {
     std::size_t output;  ///< index of the first output: B - A at the origin, axis, zero, rod, crank, from, to
     bool is_crank, is_first_root;
   };
-  /// Origin of a body of the solid: a rod, a quadric constraint, or a face of the search box.
+  /// Source of a body of the solid: a rod, a quadric constraint, or a bound of the search box.
   struct Source {
     enum class Kind { rod, quadric, box };
     Kind kind;
     std::size_t output;  ///< index of the first output that describes it
-    double side = 0;     ///< box: 1: upper bound
+    double side = 0;     ///< bound of the box only: 1: upper bound
   };
   /// The solid of one design.
   struct Design {
     std::vector<double> registers, outputs;
     Vector3 origin;
     Solid solid;
-    std::vector<Source> sources;  ///< by body
+    std::vector<Source> sources;  ///< source of each body
     bool is_empty = false;
 
     /// Bound on the distance of the solid from the origin of the coordinates.

@@ -16,7 +16,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::Vector3d;
 
 Vector3d vector(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Numbers of nodes at a pose.
+/// Evaluates nodes at a pose.
 class Numbers {
  public:
   Numbers(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
@@ -68,7 +68,7 @@ class Energy {
       rows.col(first_[joint] + 3 + static_cast<Index>(k)) = vector(system_.joints[joint].couples[k]);
     return rows;
   }
-  /// Joints of the same drive share its force.
+  /// Adds the energy of elastic drives. Joints of the same drive share its force.
   void add_drives() {
     std::map<std::size_t, Eigen::RowVectorXd> forces;
     std::map<std::size_t, double> compliances;
@@ -82,8 +82,8 @@ class Energy {
     }
     for (const auto& [drive, sum] : forces) Q_ += compliances[drive] * sum.transpose() * sum;
   }
-  /// A beam from `near`, where it is clamped, to `far`, with the loads of all other joints at its end. The moment is a
-  /// linear function of the place along the beam; the integral of its square follows from its values at both ends.
+  /// Adds the energy of a beam from `near`, where it is clamped, to `far`, with the loads of all other joints at its
+  /// end. The moment is linear along the beam; the integral of its square follows from its values at both ends.
   void add_beam(std::size_t solid, const SolidNodes::Beam& beam) {
     const Vector3d near = numbers_(beam.near), far = numbers_(beam.far);
     const double length = (far - near).norm();
@@ -185,7 +185,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
   const MatrixXd back = (basis.transpose() * wrenches).inverse();
   MatrixXd C = back.transpose() * (x.transpose() * scaled_Q * x) * back;
   C = ((C + C.transpose()) / 2).eval();
-  constexpr double kRounding = 1e-13;  // what is smaller, relative to the diagonal, is a rounding error
+  constexpr double kRounding = 1e-13;  // relative to the diagonal: smaller elements are rounding errors
   for (Index i = 0; i < C.rows(); ++i)
     for (Index j = 0; j < C.cols(); ++j)
       if (i != j && std::fabs(C(i, j)) < kRounding * std::sqrt(C(i, i) * C(j, j))) C(i, j) = 0;

@@ -17,7 +17,7 @@
 namespace pkm::generic {
 
 /// @param evaluation  of a model with Model::jointed
-/// @param pose        assembles
+/// @param pose        a pose that assembles
 PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<const double> parameters,
                                        const Pose<double>& pose, std::size_t mode);
 

@@ -126,7 +126,7 @@ class Equations {
     }
   }
 
-  /// M_X and h_X.
+  /// Adds the inertia terms to M_X and h_X.
   void add_inertia(EquationNodes& e) {
     std::vector<Term> M(n_ * n_, number(0)), h(n_, number(0));
     const auto add_to = [](Term& sum, const Term& x) { sum = sum + x; };

@@ -17,7 +17,7 @@ namespace pkm::generic {
 /// Adds the equations of motion to the graph of a model with bodies.
 EquationNodes equations_of(Model& model);
 
-/// EquationNodes::J only, for models without bodies.
+/// The Jacobian EquationNodes::J alone, for models without bodies.
 std::vector<Node> jacobian_of(Model& model);
 
 }  // namespace pkm::generic

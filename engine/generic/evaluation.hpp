@@ -24,8 +24,8 @@ struct Evaluation {
   // Programs of a design. Those of values that the file does not define have no outputs.
   expression::Program requirements;  ///< both ends of each range, required
   expression::Program tests, masses, size, length, radius;
-  expression::Program total_mass;                                                           ///< of all bodies
-  std::vector<expression::Program> derived;                                                 ///< by limit
+  expression::Program total_mass;            ///< total mass of all bodies
+  std::vector<expression::Program> derived;  ///< by limit
   std::vector<expression::Program> lower, upper, default_values, reach_lower, reach_upper;  ///< by coordinate
 
   /// The thresholds of limits: given, derived from the parameters, or inactive.
@@ -52,7 +52,7 @@ struct Evaluation {
   /// Range of a coordinate in the search box of the file; std::nullopt if the file does not define it.
   std::optional<std::array<double, 2>> range(std::span<const double> parameters, const LimitSpec& limits,
                                              std::size_t mode, std::size_t coordinate) const;
-  /// As range(); throws std::invalid_argument with a message if the file does not define it.
+  /// The range of range(); throws std::invalid_argument with a message if the file does not define it.
   std::array<double, 2> required_range(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
                                        std::size_t coordinate) const;
   /// Search box of a workspace analysis, by axis: that of the plan, otherwise the ranges of the swept coordinates.

@@ -88,7 +88,7 @@ Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
   return {{}, is_defined_at_start};
 }
 
-/// The working mode that has these joints at a pose; "" if there is none.
+/// The working mode whose inverse kinematics gives the joints at a pose; "" if there is none.
 std::string mode_with(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                       const AxisVector<double>& joints) {
   const MechanismInfo& info = e.model.info;
@@ -143,7 +143,8 @@ class AssemblySet {
   AssemblySet(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, Angles angles)
       : e_(e), parameters_(parameters), joints_(joints), angles_(angles) {}
 
-  /// @return whether the pose has the joints in a working mode, and no earlier one is the same rigid-body pose
+  /// Adds a pose, if the inverse kinematics of a working mode reproduces the joints there, and no earlier pose is the
+  /// same rigid-body pose. @return whether it was added
   bool add(Pose<double> pose) {
     const Model& model = e_.model;
     for (std::size_t i = 0; i < pose.size(); ++i)
@@ -159,7 +160,7 @@ class AssemblySet {
     if (angles_ == Angles::principal) make_principal(pose, rigid, working_mode);
     const double size = std::fabs(*std::ranges::max_element(pose, {}, [](double x) { return std::fabs(x); }));
     for (double& x : pose)
-      if (std::fabs(x) < 1e-14 * size) x = 0;  // rounding alone
+      if (std::fabs(x) < 1e-14 * size) x = 0;  // a rounding error
     modes_.push_back(
         {.pose = pose, .mode = "found " + std::to_string(modes_.size() + 1), .working_mode = working_mode});
     rigid_.push_back(rigid);
@@ -175,8 +176,8 @@ class AssemblySet {
  private:
   static constexpr double kSamePose = 1e-6;  // [m, 1], larger than the error of Newton's method by a factor of 1000
 
-  /// Replaces the angles by equivalent ones in the principal ranges (rigid_pose.hpp), if a working mode has the joints
-  /// there.
+  /// Replaces the angles by equivalent ones in the principal ranges (rigid_pose.hpp), if the inverse kinematics of a
+  /// working mode reproduces the joints at this pose.
   void make_principal(Pose<double>& pose, const RigidPose& rigid, std::string& working_mode) const {
     Pose<double> principal = pose;
     set_angles(e_.model, rigid.rotation, principal);

@@ -9,12 +9,14 @@ namespace pkm::generic {
 /// assemblies_of() stops after kMaxIdleStarts consecutive starts without a new pose, or after kMaxStarts.
 inline constexpr std::size_t kMaxIdleStarts = 64, kMaxStarts = 1024;
 
-/// Finds distinct rigid-body poses with these joint values, starting from poses in the search box of the file, for each
-/// working mode with closures of its own, and from the mirror image of each pose found. Need not find all.
+/// Finds distinct rigid-body poses with the given joint values, starting from poses in the search box of the file, for
+/// each working mode with closures of its own, and from the mirror image of each pose found. The list may be
+/// incomplete.
 std::vector<AssemblyMode> assemblies_of(const Evaluation& evaluation, std::span<const double> parameters,
                                         const AxisVector<double>& joints);
 
-/// The poses to which Newton's method converges from one pose, one for each such mode at most.
+/// The poses to which Newton's method converges from one start pose, at most one for each working mode with closures of
+/// its own.
 std::vector<AssemblyMode> assemblies_near(const Evaluation& evaluation, std::span<const double> parameters,
                                           const AxisVector<double>& joints, const Pose<double>& from);
 

@@ -20,7 +20,7 @@ class InertiaBatch {
   InertiaBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
                const std::vector<double>& rotors);
 
-  /// As PoseBatch::start().
+  /// Prepares the evaluation at poses of one design, like PoseBatch::start().
   void start(const std::vector<double>& inputs, InertiaScratch& scratch) const;
   /// Adds a pose, whose values are appended to the fields of the result when the batch is full or finish() is called.
   void add(const Pose<double>& pose, InertiaScratch& scratch, WorkspaceResult<double>& to) const;

@@ -39,8 +39,8 @@ std::optional<Node> radicand(const Graph& graph, Node node) {
   return entry.arguments[0];
 }
 
-/// Squares c - sqrt(a) >= 0 and sqrt(a) - c >= 0; the latter becomes a >= 0 for c = 0. Other constraints are returned
-/// unchanged.
+/// Rewrites c - sqrt(a) >= 0 and sqrt(a) - c >= 0 by squaring; the latter becomes a >= 0 for c = 0. Other constraints
+/// are returned unchanged.
 Node squared(Graph& graph, Node constraint, const std::vector<Interval>& inputs) {
   const Entry entry = graph[constraint];
   if (!entry.operation || entry.operation->code != Code::subtract) return constraint;
@@ -53,8 +53,9 @@ Node squared(Graph& graph, Node constraint, const std::vector<Interval>& inputs)
   return constraint;
 }
 
-/// Takes cosines in c - acos(u) >= 0 and acos(u) - c >= 0. For u = k / sqrt(a), the constraint is also multiplied by
-/// sqrt(a). That u is in [-1, 1] is a constraint of its own, or always true. Other constraints are returned unchanged.
+/// Rewrites c - acos(u) >= 0 and acos(u) - c >= 0 by taking cosines. For u = k / sqrt(a), the constraint is also
+/// multiplied by sqrt(a). That u is in [-1, 1] is a constraint of its own, or always true. Other constraints are
+/// returned unchanged.
 /// @param quotient  receives u = k / sqrt(a), which has to be finite
 Node without_acos(Graph& graph, Node constraint, const std::vector<Interval>& inputs, std::optional<Node>& quotient) {
   const Entry entry = graph[constraint];
@@ -73,7 +74,7 @@ Node without_acos(Graph& graph, Node constraint, const std::vector<Interval>& in
   return (is_upper ? k - bound : bound - k).node();
 }
 
-/// Satisfied if a node is finite.
+/// A constraint that is satisfied if a node is finite.
 Node is_finite(Graph& graph, Node node) {
   return graph.apply(expression::operation("*"), std::array{node, graph.number(0)});
 }

@@ -13,9 +13,9 @@ struct IntervalConstraints {
   std::vector<bounds::NamedConstraint> all;  ///< nodes of `graph`
 };
 
-/// Rewrites the domains and margins. All of the result are satisfied if and only if all of the model are, but they
-/// contain fewer roots and inverse functions, and their roots are defined on whole boxes. Here c depends on the design
-/// only.
+/// Rewrites the domains and margins of a model. The resulting constraints are all satisfied if and only if those of the
+/// model are, but contain fewer roots and inverse functions, and their roots are defined on whole boxes. In the table,
+/// c depends on the design only.
 ///
 ///     c - sqrt(a) >= 0, c >= 0             c^2 - a >= 0
 ///     sqrt(a) - c >= 0, c >= 0             a - c^2 >= 0
@@ -25,7 +25,7 @@ struct IntervalConstraints {
 ///     acos(u), asin(u), if -1 <= u <= 1    acos(min(max(u, -1), 1)), asin(..)
 ///
 /// The last row applies to u = k / h if h - k >= 0 and h + k >= 0 are constraints, and to any u if 1 - |u| >= 0 is one.
-/// @param inputs  of the graph, for the design
+/// @param inputs  values of the graph's inputs for the design
 IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs);
 
 }  // namespace pkm::generic

@@ -11,15 +11,16 @@ namespace pkm::generic {
 /// that are compiled for another instruction set.
 struct InertiaKernelData {
   const expression::Operand *J, *M_X;  ///< n x n, row-major
-  const double *registers, *rows;      ///< as for expression::BatchStage
-  std::size_t n, count;                ///< joints; poses, a multiple of kLanes
+  const double *registers, *rows;      ///< see expression::BatchStage
+  std::size_t n, count;                ///< number of joints; number of poses, a multiple of kLanes
   const double* rotors;                ///< n numbers that are added to the diagonal of M_q
   double* M_q;                         ///< n x n rows of expression::kRow numbers
   double* indices;                     ///< coupling indices, n rows
   double* found;  ///< by pose: 1, or 0 if it has to be evaluated alone (nearly singular or infinite)
 };
 
-/// The results have the same bits as those of joint_inertia() and coupling_indices() for each pose.
+/// Computes M_q and the coupling indices of all poses. The results have the same bits as those of joint_inertia() and
+/// coupling_indices() for each pose.
 template <InstructionSet set>
 void find_joint_inertia(const InertiaKernelData& data);
 

@@ -24,7 +24,7 @@ template <class L, class Mask>
 template <class L, class Mask, int n>
 struct LuDecomposition {
   L u[n][n], factor[n][n];
-  int pivot[n];         ///< by step: pivot row of all lanes; -1: lanes have different ones
+  int pivot[n];         ///< by step: pivot row of all lanes; -1: it differs between lanes
   Mask is_pivot[n][n];  ///< by step and row, if the lanes have different pivot rows
 
   /// Exchanges row k with the pivot row of step k, in the columns from `first` on.

@@ -41,7 +41,7 @@ AxisVector<double> axis_vector(std::span<const double> values) {
   return axes;
 }
 
-/// PoseReport::T. @param inputs  of the graph, with the pose
+/// Computes PoseReport::T. @param inputs  values of the graph's inputs, including the pose
 AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inputs) {
   constexpr std::size_t kDirections = 12;  // index of rotation_directions among the outputs of Evaluation::frame
   const std::size_t n = e.model.inputs.coordinates;
@@ -64,7 +64,8 @@ std::vector<double> inputs_at(const Evaluation& e, std::span<const double> param
   return inputs;
 }
 
-/// Combines margins according to Model::reported_margins. @param shown  values of ReportedMargin::shown, in order
+/// Combines margins according to Model::reported_margins. @param shown  values of all ReportedMargin::shown that exist,
+/// in order
 NamedValues reported_margins(const Model& model, const NamedValues& margins,
                              std::vector<double>::const_iterator shown) {
   NamedValues list;
@@ -105,7 +106,8 @@ void add_clearance(const Model& model, const NearestBodies<double>& nearest, con
         ": " + nearest.first + " and " + nearest.second + (nearest.clearance < 0 ? " overlap" : " are too near");
 }
 
-/// Adds Jq, G, J, their determinants and the conditioning. @param inputs  of the graph, with the pose and its joints
+/// Adds Jq, G, J, their determinants and the conditioning. @param inputs  values of the graph's inputs, including the
+/// pose and its joints
 void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                    std::span<const double> inputs, PoseReport& report);
 

@@ -12,16 +12,16 @@ PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> pa
                         std::size_t mode, const LimitSpec& limits);
 
 /// @return true if all joints have a solution
-/// @param inputs  of the graph, with the pose
+/// @param inputs  values of the graph's inputs, including the pose
 bool assembles_at(const Evaluation& evaluation, const std::vector<double>& inputs);
 
-/// As inspect_pose(), for a pose that is known to be feasible: without margins, angles and quantities, and without heap
-/// allocation.
-/// @param inputs  of the graph, with the pose; receives the joints
+/// Variant of inspect_pose() for a pose that is known to be feasible: without margins, angles and quantities, and
+/// without heap allocation.
+/// @param inputs  values of the graph's inputs, including the pose; receives the joints
 PoseReport inspect_sample(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                           std::span<double> inputs);
 
-/// Values of Model::quantities.
+/// Values of Model::quantities at a pose and motion.
 std::vector<double> quantities_at(const Evaluation& evaluation, std::span<const double> parameters, std::size_t mode,
                                   const LimitSpec& limits, const MotionSample& at);
 

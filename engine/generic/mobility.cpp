@@ -22,7 +22,7 @@ namespace {
 using Eigen::Index, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
 using VectorNodes = std::array<Node, 3>;
 
-constexpr double kRankThreshold = 1e-9;  // relative to the greatest singular value
+constexpr double kRankThreshold = 1e-9;  // relative to the maximum singular value
 
 Eigen::JacobiSVD<MatrixXd> decomposed(const MatrixXd& A) {
   Eigen::JacobiSVD<MatrixXd> decomposition(A, Eigen::ComputeFullU | Eigen::ComputeFullV);

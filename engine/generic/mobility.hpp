@@ -22,11 +22,11 @@ struct PlatformMobility {
   std::vector<std::string> assumed;
 };
 
-/// At a pose that assembles, for a model with Model::jointed.
+/// The mobility at a pose that assembles, for a model with Model::jointed.
 PlatformMobility mobility_at(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                              std::size_t mode);
 
-/// The same for a mechanism; std::nullopt if it is not from a file that describes the joints.
+/// The mobility of a mechanism; std::nullopt if it is not from a file that describes the joints.
 /// @param mode  one of MechanismInfo::modes
 std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, std::span<const double> parameters,
                                                   const Pose<double>& pose, const std::string& mode);

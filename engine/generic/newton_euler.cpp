@@ -126,7 +126,7 @@ class System {
       for (std::size_t k = 0; k < 3; ++k) inertia(k, k) = number((*body.inertia)[k]);
       return R_ * inertia * transpose(R_);
     }
-    if (!solid.line) return inertia;  // no rotation, no effect
+    if (!solid.line) return inertia;  // the body does not rotate: its inertia has no effect
     const Vec u = unit(at(*solid.line).x);
     return (Mat::identity() - outer(u, u)) * number((*body.inertia)[1]);
   }

@@ -6,10 +6,10 @@
 
 namespace pkm::generic {
 
-/// The equations at a state of motion. Throws DesignError if a mass is not positive.
+/// The Newton-Euler equations at a state of motion. Throws DesignError if a mass is not positive.
 /// @param evaluation  of a model with Model::jointed
-/// @param state       its pose assembles
-/// @param wrench      on the platform, at Model::wrench_point
+/// @param state       state with a pose that assembles
+/// @param wrench      load on the platform, at Model::wrench_point
 NewtonEuler newton_euler(const Evaluation& evaluation, std::span<const double> parameters, std::size_t mode,
                          const MotionState<double>& state, const AxisVector<double>& acceleration,
                          const Wrench<double>& wrench);

@@ -20,11 +20,11 @@ class OuterQuadrature {
 
   const std::vector<std::size_t>& coordinates() const { return coordinates_; }
 
-  /// Returns the volume over the inner coordinates at the values of the outer ones in `inputs`. Adds its derivatives by
-  /// the inputs, unless `by_input` is empty.
+  /// Function that returns the volume over the inner coordinates at the values of the outer ones in `inputs`, and adds
+  /// its derivatives by the inputs, unless `by_input` is empty.
   using Inner = std::function<Integral<double>(std::span<const double> inputs, std::span<double> by_input)>;
   /// The volume over all coordinates.
-  /// @param inputs    of the graph; those of the coordinates are overwritten
+  /// @param inputs    values of the graph's inputs; those of the coordinates are overwritten
   /// @param by_input  if not empty, the derivatives of the volume are added
   Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, const Inner& inner) const {
     return measure(0, inputs, by_input, inner);

@@ -24,7 +24,7 @@ class PoseBatch {
   PoseBatch(const Model& model, std::vector<Node> outputs, const std::vector<int>& swept, std::size_t mode);
 
   /// Evaluates the operations that do not depend on the swept coordinates, and empties the batch.
-  /// @param inputs  of the graph, with the fixed coordinates
+  /// @param inputs  values of the graph's inputs, including the fixed coordinates
   void start(const std::vector<double>& inputs, PoseBatchScratch& scratch) const;
   /// Adds a pose to the batch. @return true if the batch is full
   bool add(const Pose<double>& pose, PoseBatchScratch& scratch) const;

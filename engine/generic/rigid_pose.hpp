@@ -11,11 +11,11 @@
 namespace pkm::generic {
 
 struct RigidPose {
-  Eigen::Vector3d origin;    ///< of the platform frame, in the base frame [m]
+  Eigen::Vector3d origin;    ///< origin of the platform frame, in the base frame [m]
   Eigen::Matrix3d rotation;  ///< from the platform frame to the base frame
 };
 
-/// @param inputs  of the graph, with the pose
+/// @param inputs  values of the graph's inputs, including the pose
 RigidPose rigid_pose(const Evaluation& e, const std::vector<double>& inputs);
 
 /// True if the rotation matrices, origins and translations of two poses are equal to `tolerance` [1, m].
@@ -32,7 +32,7 @@ void set_angles(const Model& model, const Eigen::Matrix3d& rotation, Pose<double
 /// then in the plane of the base: two reflections are a rigid-body motion. Both planes are least-squares planes of the
 /// points; for a planar mechanism they are lines. If the points do not lie in planes, or the coordinates cannot
 /// represent the pose, the result is an approximation.
-/// @param inputs  of the graph, with the pose and the signs of its working mode
+/// @param inputs  values of the graph's inputs, including the pose and the signs of its working mode
 /// @return std::nullopt if there are fewer than two rods
 std::optional<Pose<double>> mirror_image(const Evaluation& e, std::vector<double> inputs);
 

@@ -14,7 +14,7 @@ using Vec = Vector<double, 3>;
 
 /// Component of a joint's force along a unit vector; std::nullopt if it is undetermined.
 std::optional<double> along(const Vec& u, const std::array<std::optional<double>, 3>& force) {
-  constexpr double kNormal = 1e-9;  // components of u that do not count
+  constexpr double kNormal = 1e-9;  // smaller components of u are neglected
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (std::fabs(u[k]) < kNormal) continue;
@@ -24,9 +24,9 @@ std::optional<double> along(const Vec& u, const std::array<std::optional<double>
   return sum;
 }
 
-/// The rods of a model, and the nodes of their numbers.
+/// The rods of a model, and the nodes of their data.
 struct Rods {
-  static constexpr std::size_t kNumbers = 8;  // both ends, E I, area
+  static constexpr std::size_t kNumbers = 8;  // coordinates of both ends, E I, area
   std::vector<std::size_t> solids;
   std::vector<Node> nodes;
 

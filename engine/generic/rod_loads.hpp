@@ -25,7 +25,7 @@ struct RodLoad {
   /// not determine them.
   std::optional<std::array<double, 2>> ends;
 
-  /// The force of larger magnitude [N]; the compression, >= 0 [N]. `ends` is set.
+  /// The end force of larger magnitude [N], and the compression, >= 0 [N]. Precondition: `ends` is set.
   double axial() const { return std::fabs((*ends)[0]) > std::fabs((*ends)[1]) ? (*ends)[0] : (*ends)[1]; }
   double compression() const { return std::max({0.0, -(*ends)[0], -(*ends)[1]}); }
   /// Buckling force divided by the compression; std::nullopt without compression.
@@ -34,8 +34,8 @@ struct RodLoad {
   }
 };
 
-/// The rods of which both joints are among the reactions; empty if no rod section has Young's modulus.
-/// @param pose       assembles
+/// The loads of all rods whose joints are both among the reactions; empty if no rod section has Young's modulus.
+/// @param pose       a pose that assembles
 /// @param reactions  of the mechanism at this pose
 std::vector<RodLoad> rod_loads(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
                                const Pose<double>& pose, const Reactions& reactions);
@@ -46,12 +46,12 @@ struct PeakRodLoad {
   double buckling_force = 0;            ///< [N]
   double tension = 0, compression = 0;  ///< maxima [N]; 0: none
   double stress = 0;                    ///< maximum magnitude [Pa]
-  std::optional<double> reserve;        ///< the minimum; std::nullopt without compression
+  std::optional<double> reserve;        ///< minimum over the trajectory; std::nullopt without compression
   std::size_t critical = 0;             ///< index of the first sample with this reserve
   bool is_determined = true;            ///< false: the axial force is undetermined at a sample
 };
 
-/// @param trajectory  with reactions at all samples (add_reactions)
+/// Finds the extrema for each rod. @param trajectory  has reactions at all samples (add_reactions)
 std::vector<PeakRodLoad> peak_rod_loads(const Mechanism& mechanism, std::span<const double> parameters,
                                         const std::string& mode, const Trajectory& trajectory);
 

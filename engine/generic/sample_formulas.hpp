@@ -14,11 +14,11 @@ struct FormulaScratch {
 
 class SampleFormulas {
  public:
-  /// @param fields  of a FieldRequest; those that are not formulas are ignored
+  /// @param fields  fields of a FieldRequest; those that are not formulas are ignored
   SampleFormulas(const Evaluation& evaluation, const std::vector<const PoseQuantity*>& fields,
                  const std::vector<int>& swept, std::size_t mode);
 
-  /// As PoseBatch::start().
+  /// Prepares the evaluation at poses of one design, like PoseBatch::start().
   void start(const std::vector<double>& inputs, FormulaScratch& scratch) const { batch_.start(inputs, scratch.poses); }
   /// Adds a pose, whose values are appended to the fields of the result when the batch is full or finish() is called:
   /// NaN where a formula is undefined.

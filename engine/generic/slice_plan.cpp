@@ -15,10 +15,10 @@ using NodeClause = std::vector<NodeSurface>;
 /// Index of the coefficient of z^i v^j of a conic.
 constexpr std::size_t kPlace[3][3] = {{0, 1, 3}, {2, 4, 6}, {5, 6, 6}};
 
-/// Converts conditions to clauses of surfaces: conics in v and z, or without v polynomials in z.
-class SurfaceLowering {
+/// Converts constraints to clauses of surfaces: conics in v and z, or without v polynomials in z.
+class SurfaceConverter {
  public:
-  SurfaceLowering(Graph& graph, Groups v, Groups z) : graph_(graph), v_(v), z_(z) {}
+  SurfaceConverter(Graph& graph, Groups v, Groups z) : graph_(graph), v_(v), z_(z) {}
 
   std::optional<std::vector<NodeClause>> conditions(Node node) {
     if (v_ == 0) return polynomials(node);
@@ -26,7 +26,7 @@ class SurfaceLowering {
       if (auto clauses = lowered_by(node, z_first)) return clauses;
     return {};
   }
-  /// A clause of a single surface.
+  /// Converts a constraint to a clause that consists of a single surface.
   std::optional<NodeSurface> surface(Node node) {
     const auto found = conditions(node);
     if (!found || found->size() != 1 || found->front().size() != 1) return {};
@@ -70,8 +70,9 @@ class SurfaceLowering {
   Groups v_, z_;
 };
 
-/// Whether all operations are defined wherever their domains, which are conditions, are satisfied.
-bool is_known_to_exist(const Graph& graph, Node node) {
+/// Whether all operations that a node depends on are defined wherever their domains, which are constraints, are
+/// satisfied.
+bool is_defined_in_domains(const Graph& graph, Node node) {
   static const std::vector<std::string> known = {"sin", "cos", "asin", "acos", "atan", "atan2", "turn", "log", "exp"};
   return std::ranges::all_of(graph.reachable({&node, 1}), [&](Node each) {
     const expression::Operation* const operation = graph[each].operation;
@@ -89,10 +90,10 @@ class Planner {
         graph_(known_.graph),
         v_(order.v ? Inputs::coordinate_group(*order.v) : 0),
         z_(Inputs::coordinate_group(order.z)),
-        lowering_(graph_, v_, z_),
+        converter_(graph_, v_, z_),
         transcendental_(curves) {
     plan_.order = order;
-    take_cranks();
+    convert_cranks();
     for (std::size_t i = 0; i < known_.all.size() && plan_.why_not.empty(); ++i)
       if (!covered_[i]) add_condition(i);
     for (const std::size_t coordinate : order.outer) ends_.push_back(ends_of(coordinate, box));
@@ -144,7 +145,7 @@ class Planner {
   }
 
   /// Expresses the ranges and folds of cranks by surfaces.
-  void take_cranks() {
+  void convert_cranks() {
     covered_.assign(known_.all.size(), false);
     std::vector<std::optional<Signs>> reaches(known_.crank_ranges.size());
     for (const AnnulusNodes& annulus : known_.annuli) {
@@ -173,11 +174,11 @@ class Planner {
     for (std::size_t i = 0; i < known_.all.size(); ++i)
       covered_[i] = covered_[i] || std::ranges::find(conditions, known_.all[i]) != conditions.end();
   }
-  /// The bits of surfaces for these functions; std::nullopt if one of them cannot be a surface.
+  /// The bits of the surfaces of given functions; std::nullopt if one of them cannot be a surface.
   std::optional<std::vector<Signs>> bits_of(std::initializer_list<Node> surfaces) {
     std::vector<NodeSurface> found;
     for (const Node surface : surfaces) {
-      const auto one = lowering_.surface(surface);
+      const auto one = converter_.surface(surface);
       if (!one) return {};
       found.push_back(*one);
     }
@@ -192,14 +193,14 @@ class Planner {
       plain_.push_back(node);
       return;
     }
-    if (auto clauses = lowering_.conditions(node)) {
+    if (auto clauses = converter_.conditions(node)) {
       for (const NodeClause& clause : *clauses) add_clause(clause);
       for (const Node finite : finiteness_constraints(graph_, node, v_ | z_))
         if (std::ranges::find(plain_, finite) == plain_.end()) plain_.push_back(finite);
       return;
     }
     const bool is_joint = number >= model_.domains.size() + model_.margins.size();
-    if (is_joint && is_known_to_exist(graph_, node)) return;
+    if (is_joint && is_defined_in_domains(graph_, node)) return;
     if ((graph_[node].groups & z_) == 0)
       plain_.push_back(node);
     else if (transcendental_)
@@ -261,7 +262,7 @@ class Planner {
       plan_.formula.any.push_back(bits);
   }
 
-  /// Bounds of z.
+  /// Adds the bounds of z as surfaces.
   void add_box_of_z() {
     const limbs::Term from(graph_, ends_.back()[0]), to(graph_, ends_.back()[1]);
     const std::size_t place_of_z = v_ == 0 ? 1 : kPlace[1][0];
@@ -293,7 +294,7 @@ class Planner {
   PoseConstraints known_;
   Graph& graph_;
   Groups v_, z_;
-  SurfaceLowering lowering_;
+  SurfaceConverter converter_;
   bool transcendental_;
   SlicePlan plan_;
   std::vector<bool> covered_;

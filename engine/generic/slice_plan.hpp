@@ -15,7 +15,7 @@ struct Surface {
   /// Coefficients of 1, v, z, v^2, v z, z^2; without v of 1, z, z^2, z^3, z^4. Transcendental: f(z) and its derivative,
   /// which the last stage of the program computes.
   std::array<std::uint32_t, 6> coefficients;
-  bool has_z;              ///< for a conic
+  bool has_z;              ///< for a conic: it depends on z
   bool is_high_degree;     ///< for a polynomial: its degree is three or four
   bool is_transcendental;  ///< for a line: the constraint is no polynomial in z
 };
@@ -43,7 +43,7 @@ struct SlicePlan {
   /// respect to it, of each; stages are those of `program`.
   expression::Program univariate;
   std::vector<std::array<std::uint32_t, 2>> range;  ///< registers of the bounds of each outer coordinate, v and z
-  std::string why_not;                              ///< if not empty: why these slices have no closed form
+  std::string why_not;                              ///< why the slices have no closed form; "" if they have
 };
 
 /// Plans the slices of a workspace for one order of the coordinates. If they have no closed form, SlicePlan::why_not is

@@ -47,7 +47,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
  private:
   friend GridEvaluator;
   struct WorkerScratch {
-    std::optional<std::size_t> number;  ///< of the grid for which it is prepared
+    std::optional<std::size_t> number;  ///< index of the grid for which the memory is prepared
     std::vector<double> inputs;
     CellScratch cells;
     InertiaScratch inertia;
@@ -104,7 +104,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     }
   }
 
-  /// Prepares the scratch memory for the grid with a number.
+  /// Prepares the scratch memory for the grid with the index `number`.
   void prepare(const Common& common, std::size_t number, WorkerScratch& scratch) const {
     if (scratch.number == number) return;
     scratch.number = number;
@@ -182,7 +182,8 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
       if (!satisfied) scratch.cells.bits[bit / 64] &= ~(std::uint64_t{1} << bit % 64);
     });
   }
-  /// Inspects a feasible pose as far as the quantities need it. Writes the coordinates of the pose to scratch.inputs.
+  /// Computes the parts of the report of a feasible pose that the quantities need. Writes the coordinates of the pose
+  /// to scratch.inputs.
   PoseReport report_at(std::span<const double> parameters, const Pose<double>& pose, WorkerScratch& scratch,
                        const std::vector<const PoseQuantity*>& quantities) const {
     std::ranges::copy(pose, scratch.inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
@@ -192,7 +193,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
                                : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
   }
 
-  /// Appends the samples of a slice to the survey.
+  /// Appends the samples of a slice to the result.
   void add_slice(std::span<const double> parameters, const VoxelGrid& grid, std::size_t slice, double measure,
                  WorkerScratch& scratch, WorkspaceResult<double>& to) const {
     const auto [slices, columns, cells] = test_.shape(grid);

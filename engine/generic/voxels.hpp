@@ -15,7 +15,7 @@ using BoxOfDesign = std::function<Box(std::span<const double> parameters)>;
 /// Makes the evaluator of voxels for a plan. Throws std::invalid_argument with a message if the mechanism does not
 /// support the plan.
 /// @param evaluation   must outlive the evaluator
-/// @param default_box  null: the box of the file
+/// @param default_box  search box of plans without one; null: the box of the mechanism file
 std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Evaluation& evaluation, const WorkspacePlan& plan,
                                                      const VoxelOptions& voxels, const FieldRequest& request,
                                                      BoxOfDesign default_box = {});

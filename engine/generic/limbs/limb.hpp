@@ -44,7 +44,7 @@ struct CrankRange {
 /// arm' = q' axis x arm, where q' = rod . B' / rod . (axis x arm). The pivot may move, but only along the axis.
 struct Arm {
   Vector3 arm;        ///< from the pivot to C; formulas that contain square roots but no angles
-  Vector3 axis, rod;  ///< axis: unit vector
+  Vector3 axis, rod;  ///< axis: unit vector; rod: vector from C to B
 };
 
 /// The annulus |crank - rod| <= |v| <= crank + rod that a planar crank and rod reach, as two quadratic constraints
@@ -65,12 +65,12 @@ struct Limb {
   std::vector<Constraint> constraints;  ///< under which the limb assembles
   /// Loop-closure equation closure = 0; with Jq = -d/dq and G = d/dX the velocities satisfy Jq qdot = G Xdot.
   Term closure;
-  Vector3 C;  ///< where the rod begins: end of the crank, elbow, slide; A for a telescope
-  Vector3 S;  ///< slide; A for cranks and telescopes
+  Vector3 C;  ///< inner end of the rod: end of the crank, elbow, slide; A for a telescope
+  Vector3 S;  ///< position of the slide; A for cranks and telescopes
   std::optional<CrankRange> crank_range{};
   std::optional<Arm> arm{};
   std::optional<Annulus> annulus{};  ///< equivalent to all constraints, for a planar crank
-  std::optional<RodAndPath> path{};  ///< of a rod with ball joints, without Ends::across
+  std::optional<RodAndPath> path{};  ///< for a rod with ball joints, without Ends::across
 };
 
 /// The joints of a limb on the base and on the platform.

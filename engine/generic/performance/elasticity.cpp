@@ -6,7 +6,7 @@
 namespace pkm::generic {
 namespace {
 
-/// A compliance by the coordinates, as numerator / denominator, so that its inverse is defined at singular poses.
+/// A compliance in the coordinates, as numerator / denominator; its inverse is then defined at singular poses.
 struct Compliance {
   TermMatrix numerator;
   Term denominator;

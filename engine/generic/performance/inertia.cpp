@@ -6,7 +6,8 @@ namespace {
 
 Term min(const Term& x, const Term& y) { return call(expression::operation("min"), x, y); }
 
-/// The inner distance of the faces of a zonotope { sum t_i w_i, |t_i| <= 1 } with normal n from the point `offset`.
+/// Signed distance of the point `offset` from the nearer of the two faces with normal n of a zonotope { sum t_i w_i,
+/// |t_i| <= 1 }; positive inside.
 Term face_distance(const TermMatrix& W, const TermMatrix& offset, const std::vector<Term>& n) {
   const auto along = [&](const TermMatrix& A, std::size_t j) {
     Term sum = n[0] * A(0, j);

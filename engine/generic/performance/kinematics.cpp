@@ -10,7 +10,7 @@ Node coordinate(Model& model, std::size_t i) {
   return model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
 }
 
-/// Omits rows of zeros.
+/// The matrix without its rows of zeros.
 TermMatrix without_zero_rows(const TermMatrix& A) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < A.rows(); ++i)

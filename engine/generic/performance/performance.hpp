@@ -1,6 +1,6 @@
-// Quantities that say what a pose is worth: transmission of velocities and forces, accuracy, stiffness, natural
-// frequency, effective mass, acceleration. All are formulas of the pose in the expression graph of the mechanism, so
-// that limits, statistics, maps and derivatives treat them like any [[quantity]].
+// Performance indices of a pose: transmission of velocities and forces, accuracy, stiffness, natural frequency,
+// effective mass, acceleration. All are formulas of the pose in the expression graph of the mechanism; limits,
+// statistics, maps and derivatives treat them like any [[quantity]].
 //
 // J maps the rates x' of the coordinates to those of the joints, q' = J x'. T_v x' is the velocity of the origin of the
 // platform's frame and T_w x' its angular velocity. Where J is singular, J^-1 = adj(J) / det(J) is infinite; quantities
@@ -37,7 +37,7 @@ FirstOrderKinematics first_order_kinematics(Model& model);
 /// `velocity_transmission` and `force_transmission`, and for rotations `angular_velocity_transmission` and
 /// `moment_transmission`: minimum singular values of V = T J^-1, which maps joint rates to velocities of the platform,
 /// and of its inverse, 1 / sigma_max(V). They are in the units of the joints, which have to be the same for all.
-/// @param at  with inverse
+/// @param at  must have an inverse
 std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& at);
 
 /// Bounds of the errors that act along each joint: those of the joint itself, and those of dimensions, by the effect
@@ -51,7 +51,7 @@ struct JointErrors {
 ///
 /// The worst case is the maximum of |T J^-1 e| over |e_i| <= bound_i. The norm is convex, so that it is at a vertex of
 /// the box of errors: all 2^(n-1) pairs of vertices are compared.
-/// @param at  with inverse
+/// @param at  must have an inverse
 std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& at, const JointErrors& errors);
 
 /// One limb as a spring: the force along `row`, by the rates of the coordinates, compresses it by `compliance` times
