@@ -13,7 +13,7 @@ namespace pkm::crr_cru {
 struct AnalysisSettings {
   Platform platform;
   MassModel mass_model;
-  WorkingMode mode;  ///< for the inertia; feasibility does not depend on it
+  WorkingMode mode;  ///< working mode for the inertia; feasibility does not depend on it
   FixedCoordinate fixed;
   Limits limits;
   FieldRequest request;

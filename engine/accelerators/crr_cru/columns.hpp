@@ -118,7 +118,8 @@ double roundoff(const SlicedDesign<S>& s, const std::vector<Subinterval<S>>& int
   return 4e-16 * size * size * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }
 
-/// Whether u is a turning point of a circle that bounds the column, so that its length behaves like a square root.
+/// Whether u is a turning point of a circle that bounds the column. The length of the column then behaves like a square
+/// root.
 template <class S>
 bool has_sqrt_singularity(const Slice<S>& slice, const Column& column, double u) {
   constexpr double kRoundoff = 1e-9;

@@ -77,7 +77,7 @@ void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<CriticalValu
   };
   struct Line {
     S at;
-    bool tangent;  ///< to a circle of limb 1
+    bool tangent;  ///< true: tangent to a circle of limb 1
   };
   // Calls visit(value along one axis, whether the area has a square-root singularity there) for the turning points of
   // the circles of a limb and their intersections with lines across the other axis.

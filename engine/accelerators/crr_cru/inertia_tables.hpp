@@ -14,7 +14,7 @@ namespace pkm::crr_cru {
 class InertiaTables {
  public:
   /// Fills the tables for one phi.
-  /// @param coordinate  of each axis of the grid: 0 to 2, or 3 for phi, which the tables do not depend on
+  /// @param coordinate  coordinate of each axis of the grid: 0 to 2, or 3 for phi, on which the tables do not depend
   /// @param along       axis of the rows
   /// @param fixed       value of the fixed coordinate, if it is a position
   void fill(const Geometry<double>& g, const Masses<double>& b, const WorkingMode& mode, double phi,

@@ -49,7 +49,7 @@ struct Masses {
   std::array<S, 4> I_1, I_2;       ///< about the rod's centre, axis e_i [kg m^2]
   S m, I_zz, c;                    ///< moving platform: mass, inertia about its centre, distance of the centre from D
   S m_middle, I_middle;            ///< middle platform: m_1, I_1zz
-  S slide;                         ///< of one slide
+  S slide;                         ///< mass of one slide
   S payload, c_payload;            ///< point mass on the arm D-C_4, and its distance from D
   std::array<double, 4> rotors{};  ///< inertia of drive trains at the joints [kg], added to M_q only
 };

@@ -144,7 +144,7 @@ struct Limb {
   Vector3<S> A, B, C;    ///< the limb's joints [m]
   Vector<S, 2> d;        ///< C - A in the limb's plane, along p and q [m]
   Vector<S, 2> u1, u2;   ///< unit vectors along the rods, along p and q
-  S sin_2, cos_2;        ///< of theta_i2
+  S sin_2, cos_2;        ///< sine and cosine of theta_i2
   bool reaches = false;  ///< |d| is in [|l_i1 - l_i2|, l_i1 + l_i2]
 };
 

@@ -77,8 +77,8 @@ void intersect(Interval<S>& interval, const S& lower, const S& upper, EndpointLa
 /// The positions that are feasible at one phi: those in all ranges and all annuli.
 template <class S>
 struct PositionSet {
-  std::array<Interval<S>, 3> range;  ///< of x, y, z
-  std::array<Vector3<S>, 4> center;  ///< of the annulus of each limb; the coordinate along e_i has no meaning
+  std::array<Interval<S>, 3> range;  ///< ranges of x, y, z
+  std::array<Vector3<S>, 4> center;  ///< centre of each limb's annulus; the coordinate along e_i has no meaning
   bool singular;                     ///< kappa_p < c_min: no position is feasible
 };
 

@@ -26,7 +26,7 @@ struct IntervalSet {
 };
 
 /// Intersects a set with the annulus of a limb, on a line at some distance from its centre.
-/// @param center          of the annulus, along the line
+/// @param center          centre of the annulus: coordinate along the line
 /// @param outer2, inner2  squared half chords of its circles, R^2 - distance^2
 template <class S>
 void intersect_annulus(IntervalSet<S>& set, const S& center, const S& outer2, const S& inner2, std::size_t limb) {
@@ -98,7 +98,7 @@ struct CriticalPoint {
 
 /// A cell of the decomposition: an interval of u over which the column of v has the same endpoints.
 struct Column {
-  CriticalPoint lower, upper;                                        ///< in u
+  CriticalPoint lower, upper;                                        ///< ends of the interval of u
   std::array<EndpointLabel, 2 * IntervalSet<double>::kMaxSize> end;  ///< endpoints of v: Kind v_bound or on_circle
   std::size_t ends = 0;
 };

@@ -27,7 +27,7 @@ struct GriddedSlices : GriddedDesign {
   Design<double> d;
   Masses<double> masses;
   GridAxes axes;
-  bool over_phi;                     ///< phi is the outer coordinate, so that each slice has its own
+  bool over_phi;                     ///< phi is the outer coordinate: each slice has its own phi
   std::array<std::size_t, 3> swept;  ///< the coordinate of each axis of the grid, ascending
   double fixed;                      ///< value of the fixed coordinate
   const CellsAtPhi& common;          ///< cells shared by all slices, if phi is fixed

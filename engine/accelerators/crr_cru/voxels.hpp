@@ -37,7 +37,7 @@ struct BitTable {
 /// The feasible cells at one phi, in planes normal to the coordinate n. Threads can share a filled object.
 class SliceCells {
  public:
-  /// Fills the tables. @return false if one of them is empty, so that no cell is feasible
+  /// Fills the tables. @return false if one of them is empty: then no cell is feasible
   bool fill(const Design<double>& d, const FixedCoordinate& fixed, const VoxelGrid& grid, double phi);
 
   /// Calls visit(u) for every column along v with feasible cells.

@@ -174,7 +174,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   }
   /// Whether only the number of cells is needed.
   bool counts(const GriddedPlanes& planes) const { return !planes.test && !request_.needs_samples(); }
-  /// The part of a plane to search. Conditioning is the same at mirrored poses, so that one can represent all of them.
+  /// The part of a plane to search. A pose can represent its mirror images, because conditioning is the same for all.
   GridPart representative_part(const GriddedPlanes& planes, const VoxelPlane& at) const {
     return planes.test || planes.wanted.distinguishes_images() ? counter_.whole() : counter_.representative_part(at);
   }

@@ -16,9 +16,9 @@ struct ColumnsAtThetas {
   double sin_par_min, cos_theta_min;   ///< as in Limits
   double x_min, x_max, z_low, z_high;  ///< as in Ranges
   double y;
-  double x_lower, x_step, z_lower, z_step;  ///< of the grid
+  double x_lower, x_step, z_lower, z_step;  ///< lower bounds and steps of the grid
   double z_cells;
-  const double *sines, *cosines;  ///< of kLanes thetas
+  const double *sines, *cosines;  ///< sines and cosines of kLanes thetas
   std::int64_t thetas;            ///< number of thetas with cells, from the first
   std::int64_t columns;           ///< number of x, from the first
 };

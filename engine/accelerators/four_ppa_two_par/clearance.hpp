@@ -33,7 +33,7 @@ class ClearanceTest {
   double h_min() const { return h_min_; }
   /// Minimum of sin(beta) that keeps lower bars and platform clear.
   double sin_beta_min() const { return sin_beta_min_; }
-  /// Whether these two limits imply the clearance, so that no pair has to be tested.
+  /// Whether h_min() and sin_beta_min() imply the clearance. If so, no pair has to be tested.
   bool complete() const { return suspended_pairs_.empty() && moving_pairs_.empty(); }
 
   /// Margin of the clearance at a pose [m]. If positive, it is only a lower bound of the actual margin.

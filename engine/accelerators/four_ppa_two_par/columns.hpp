@@ -16,7 +16,7 @@ namespace pkm::four_ppa_two_par {
 template <class S>
 struct ColumnScratch {
   std::vector<CriticalValue<S>> critical_values;
-  std::vector<Subinterval<S>> intervals;  ///< of theta
+  std::vector<Subinterval<S>> intervals;  ///< subintervals of theta
   std::vector<QuadratureCell<S>> integrals;
   std::vector<Subinterval<S>> deltas, heights;  ///< intervals of delta, of z
   ClearanceScratch clearance;
@@ -209,7 +209,7 @@ enum class Planes { near, far, both };
 ///
 /// A node represents its mirror images. The slice at -theta is the mirror image in x = b/2 of the slice at theta; if
 /// both limbs have the same depth, each slice is symmetric; and the slice of the plane L0 - y at -theta is that of the
-/// plane y at theta. Conditioning is the same for all images, so that one sample with their total weight is sufficient.
+/// plane y at theta. Since conditioning is the same for all images, one sample with their total weight is sufficient.
 /// Inertia is permuted among the joints, and poses differ: then every image is a separate sample.
 /// @param test  clearance test of poses, or null
 template <class S>

@@ -23,8 +23,8 @@ enum MassIndex {
 
 template <class S>
 struct Masses {
-  S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< of one link [kg]
-  S I_upper, I_lower;              ///< of a bar about its centre, axis normal to the bar [kg m^2]
+  S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< mass of each link [kg]
+  S I_upper, I_lower;              ///< inertia of a bar about its centre, axis normal to the bar [kg m^2]
   S I_platform;                    ///< about its centre, axis z [kg m^2]
   S c_payload;                     ///< [m]
   std::array<double, 4> rotors{};  ///< inertia of drive trains at the sliders [kg], added to M_q only

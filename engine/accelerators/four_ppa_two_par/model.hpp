@@ -48,7 +48,7 @@ struct Limits {
   S sin_beta_max, cos_beta_max;
   S h_min;               ///< [m]
   S sin_par_min;         ///< sin(phi), minimum of sin(beta_1 + beta_2)
-  S sin_half, cos_half;  ///< of phi/2
+  S sin_half, cos_half;  ///< sine and cosine of phi/2
   S cos_theta_min;
   std::optional<double> clearance_min;  ///< [m]
 

@@ -27,7 +27,7 @@ namespace pkm::four_ppa_two_par {
 /// Ranges of lengths that the limits allow in the mode lower,lower [m].
 template <class S>
 struct Ranges {
-  S x_min, x_max;   ///< of x_j: l_d sin(beta_min), l_d sin(beta_max)
+  S x_min, x_max;   ///< range of x_j: l_d sin(beta_min), l_d sin(beta_max)
   S z_low, z_high;  ///< maximum and minimum of -z_cj for unlimited stroke: sqrt(l_u^2 - h_min^2), l_u sin(alpha_min)
   S stroke_free;    ///< l_u cos(alpha_min): a larger stroke does not limit z
   S chord_min, chord_max;  ///< of 2 l_d sin p, 2p = beta_1 + beta_2, for sin_par_min = sin(phi): 2 l_d sin, cos(phi/2)
@@ -180,7 +180,7 @@ Chord<S> chord(const SlicedDesign<S>& d, const Slice<S>& t, const S& delta) {
 template <class S>
 struct Column {
   std::array<S, 2> x, sigma;  ///< of the two limbs [m]
-  S length;                   ///< of the z interval [m]
+  S length;                   ///< length of the z interval [m]
   S derivative;               ///< du / d(delta)
   std::size_t leaning;
 

@@ -45,7 +45,7 @@ struct Formula {
 /// Combinatorial type of a slice.
 struct Signature {
   std::optional<Formula> formula;                   ///< std::nullopt: the slice is empty
-  std::array<double, kSwitchingFunctions> value{};  ///< of the switching functions; compared by sign
+  std::array<double, kSwitchingFunctions> value{};  ///< values of the switching functions; compared by sign
 
   explicit operator bool() const { return formula.has_value(); }
   bool operator==(const Signature& other) const {

@@ -85,7 +85,7 @@ class ColumnSamples {
   PoseList& poses_;
   WorkspaceResult<S>& workspace_;
   std::vector<S>* index_;  ///< null if it is not requested
-  double beta_ = 0;        ///< of the previous column
+  double beta_ = 0;        ///< beta of the previous column
   SinCosOf<double> sincos_{0, 1};
 };
 

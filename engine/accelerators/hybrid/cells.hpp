@@ -14,7 +14,7 @@ namespace pkm::hybrid {
 /// another instruction set.
 struct ColumnsAtBeta {
   Product<double> C, Q, P, L, H;  ///< curves of the slice: bounds of x, squared
-  double sign, lo_C, hi_C;        ///< of limb C
+  double sign, lo_C, hi_C;        ///< limb C: sign of n3, constants of its bounds of x
   double z_high, hole_end;        ///< maximum z of columns, and of the hole
   double x_lower, x_step, cells;
   const double *z, *left, *right;  ///< z, and the range of x that limbs A and B allow there; padded

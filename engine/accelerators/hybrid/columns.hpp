@@ -69,7 +69,7 @@ S area_at(const SlicedDesign<S>& d, const S& beta, ColumnScratch<S>& scratch) {
 template <class S>
 double roundoff(const SlicedDesign<S>& d, const std::vector<Subinterval<S>>& intervals) {
   if (intervals.empty()) return 0;
-  double size = value_of(max(d.g.L1, max(d.g.L2, d.g.L3)));  // of the terms that cancel in the area
+  double size = value_of(max(d.g.L1, max(d.g.L2, d.g.L3)));  // magnitude of the terms that cancel in the area
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(value_of(d.lo[i])) + std::fabs(value_of(d.hi[i]));
   return 4e-16 * size * value_of(d.z_high) * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }

@@ -26,7 +26,7 @@ struct PoseList {
 template <class S>
 struct ConditioningDesign {
   S L1, L2, L3, d, e;           ///< as in Geometry [m]
-  std::array<double, 3> signs;  ///< of n1, n2, n3
+  std::array<double, 3> signs;  ///< signs of n1, n2, n3
   S length;                     ///< characteristic length [m]
 };
 

@@ -70,8 +70,8 @@ S edge_at_end(const Slice<S>& s, const Edge& edge, const StripBound& end) {
   return edge.curve == vanishing_curve(end) ? S(0.0) : edge_at(s, edge, height(s, end));
 }
 
-/// Whether the area of the slice at z behaves like |z - z0|^(3/2) near the degeneracy z0, so that its derivative has a
-/// square-root singularity: at a tangency, or at a bound of z at which the radicand of a root is zero.
+/// Whether the derivative of the area has a square-root singularity at a degeneracy, i.e. the area behaves like the
+/// power 3/2 of the distance: at a tangency, or at a bound of z at which the radicand of a root is zero.
 inline bool has_sqrt_singularity(const Degeneracy& degeneracy) {
   return degeneracy.kind == Degeneracy::Kind::tangency || vanishing_curve(degeneracy.first) != kCurves ||
          (degeneracy.kind == Degeneracy::Kind::heights && vanishing_curve(degeneracy.second) != kCurves);

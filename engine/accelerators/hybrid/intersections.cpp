@@ -79,7 +79,7 @@ double intersection_near(const Slice<double>& s, const Edge& first, const Edge& 
   if (const double at = circle_intersection(s, first, second, z, 0, kUnbounded); at == at) return at;
   constexpr int kMaxSteps = 8;
   Gap here{};
-  double first_derivative = 0;  // of the gap at z
+  double first_derivative = 0;  // derivative of the gap at z
   const auto step = [&](double at) {
     here = gap(s, first, second, at);
     if (first_derivative == 0) first_derivative = here.derivative;

@@ -119,11 +119,11 @@ inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
 template <class S>
 struct Slice {
   std::array<Curve<S>, kCurves> curve;
-  std::array<std::array<double, kCurves>, kSides> signs;  ///< of the roots in the bounds of x
+  std::array<std::array<double, kCurves>, kSides> signs;  ///< signs of the roots in the bounds of x
   std::array<std::array<S, kCurves>, kSides> constants;   ///< added to the roots [m]
   std::array<S, kLowerEnds> lower;                        ///< bounds of z [m]; inactive ones have values out of reach
   std::array<S, kUpperEnds> upper;
-  S hole_end;  ///< for z up to this one x has a hole
+  S hole_end;  ///< x has a hole for all z up to this value
   /// For curves Q, P, L, H: the squares of x are ((m + m_z z) / cos(phi_max))^2 minus a common term.
   std::array<double, 4> m, m_z;
 

@@ -1,5 +1,5 @@
 // Hybrid robot: voxels over (x, z, beta). At given z and beta the feasible x form an interval, possibly with a hole
-// (slice.hpp), so that cells are counted by its endpoints.
+// (slice.hpp), whose cells are counted by its endpoints.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct VoxelHeights {
 /// A design on its grid, column by column along x.
 struct VoxelColumns : GriddedDesign {
   SlicedDesign<double> design;
-  const VoxelHeights& heights;  ///< of this design and grid
+  const VoxelHeights& heights;  ///< heights of this design and grid
 
   /// Number of feasible cells at beta number k.
   /// @param runs     scratch memory
