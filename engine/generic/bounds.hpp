@@ -12,7 +12,7 @@ void require_bounds(const Model& model, const WorkspacePlan& plan);
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& evaluation, std::span<const double> parameters,
                           const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options);
 /// Decides whether all poses of a box are feasible and regular.
-/// @param ranges  by coordinate
+/// @param ranges  range of each coordinate
 PoseCertificate certify_box(const Evaluation& evaluation, std::span<const double> parameters, const WorkspacePlan& plan,
                             std::size_t mode, std::span<const std::array<double, 2>> ranges,
                             const BoundsOptions& options);

@@ -16,7 +16,7 @@ namespace pkm::generic::edges {
 class EdgePlan {
  public:
   /// @param swept      coordinates; the others are inputs
-  /// @param box        by coordinate; std::nullopt: the range of the model
+  /// @param box        range of each coordinate; std::nullopt: the range of the model
   /// @param tolerance  relative error of the volume
   EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::vector<int>& swept,
            const std::vector<std::optional<std::array<double, 2>>>& box, double tolerance);

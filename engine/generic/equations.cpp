@@ -50,8 +50,8 @@ class Equations {
  private:
   /// The derivatives of a function f of the pose.
   struct Derivatives {
-    std::vector<Term> by;  ///< by the coordinates: f_X
-    Term rate;             ///< by time: f'
+    std::vector<Term> by;  ///< partial derivatives by the coordinates: f_X
+    Term rate;             ///< time derivative f'
   };
   /// Weights of products f' g', by the indices of f and g in functions_, f <= g.
   using Products = std::map<std::pair<std::size_t, std::size_t>, Term>;
@@ -157,7 +157,7 @@ class Equations {
   std::size_t n_;
   std::vector<Derivatives> arm_angles_;
   std::vector<Derivatives> functions_;
-  std::map<std::vector<Node>, std::size_t> indices_;  ///< of functions_, by their partial derivatives
+  std::map<std::vector<Node>, std::size_t> indices_;  ///< indices in functions_, by partial derivatives
   Products products_;
 };
 

@@ -203,7 +203,7 @@ class AssemblySet {
   const AxisVector<double>& joints_;
   Angles angles_;
   std::vector<AssemblyMode> modes_;
-  std::vector<RigidPose> rigid_;  ///< of these modes
+  std::vector<RigidPose> rigid_;  ///< rigid-body poses of these modes
 };
 
 }  // namespace

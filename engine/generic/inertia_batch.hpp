@@ -15,7 +15,7 @@ struct InertiaScratch {
 
 class InertiaBatch {
  public:
-  /// @param evaluation  of a model with bodies
+  /// @param evaluation  evaluation of a model with bodies
   /// @param rotors      FieldRequest::rotors
   InertiaBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
                const std::vector<double>& rotors);

@@ -167,7 +167,7 @@ class JointsAtPose {
   }
 
   const JointedBodies& of_;
-  const std::array<VectorNodes, 3>& rotation_;  ///< of the platform, by rows
+  const std::array<VectorNodes, 3>& rotation_;  ///< rotation matrix of the platform, by rows
   std::size_t platform_, drives_;
   std::vector<std::map<Node, Taylor>> values_;  ///< by coordinate
   Vector3d origin_;

@@ -19,7 +19,7 @@ namespace pkm::generic {
 /// Loads of a rod at one state.
 struct RodLoad {
   std::string name;           ///< "rod 1 of arm1"
-  double area = 0;            ///< of its cross-section [m^2]
+  double area = 0;            ///< area of its cross-section [m^2]
   double buckling_force = 0;  ///< the compression at which the rod buckles [N]
   /// Forces at both ends [N], tension > 0; the inertia of the rod makes them differ. std::nullopt if the equations do
   /// not determine them.
@@ -36,7 +36,7 @@ struct RodLoad {
 
 /// The loads of all rods whose joints are both among the reactions; empty if no rod section has Young's modulus.
 /// @param pose       a pose that assembles
-/// @param reactions  of the mechanism at this pose
+/// @param reactions  reactions in the joints of the mechanism at this pose
 std::vector<RodLoad> rod_loads(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
                                const Pose<double>& pose, const Reactions& reactions);
 

@@ -49,7 +49,7 @@ struct SlicePlan {
 /// Plans the slices of a workspace for one order of the coordinates. If they have no closed form, SlicePlan::why_not is
 /// not empty.
 /// @param curves  whether transcendental constraints are allowed in lines
-/// @param box     by coordinate; std::nullopt: the range of the model
+/// @param box     range of each coordinate; std::nullopt: the range of the model
 SlicePlan plan_slices(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,
                       const CoordinateRanges& box);
 

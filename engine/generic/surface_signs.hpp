@@ -18,11 +18,11 @@ struct CrankSigns {
 };
 
 struct Formula {
-  Signs all = 0;           ///< all of these have to be set
-  std::vector<Signs> any;  ///< of each of these at least one has to be set
+  Signs all = 0;           ///< all of these bits have to be set
+  std::vector<Signs> any;  ///< at least one bit of each of these has to be set
   std::vector<CrankSigns> cranks;
 
-  /// @param registers  of the program
+  /// @param registers  registers of the program
   bool holds(Signs signs, const double* registers) const {
     if ((signs & all) != all) return false;
     for (const Signs one_of : any)

@@ -92,7 +92,8 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
   return true;
 }
 
-/// Finds the roots of high-degree constraints between two other roots. @param signs  of these constraints at `from`
+/// Finds the roots of high-degree constraints between two other roots. @param signs  signs of these constraints at
+/// `from`
 void Column::find_high_degree_roots(std::span<const double> registers, double from, double to, Signs& signs,
                                     ColumnScratch& scratch) const {
   scratch.high_degree.clear();

@@ -11,7 +11,7 @@ namespace pkm::generic {
 /// Scratch memory of ComponentSearch.
 struct SearchScratch {
   struct Box {
-    std::array<Interval, kMaxCoordinates> side;  ///< of each outer coordinate, v and z, if they exist
+    std::array<Interval, kMaxCoordinates> side;  ///< range of each outer coordinate, of v and of z, if they exist
     Signs open = ~Signs{0};                      ///< constraints that can be negative in the box
 
     const Interval& outermost() const { return side[0]; }

@@ -325,7 +325,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     critical_values.push_back({part.piece.upper, part.piece.sqrt_at_upper, part.above, above, part.upper == kBox});
     return add_intervals(level, critical_values, whole, depth + 1, scratch);
   }
-  // As rule_error(), but in an order of operations that decides which of two symmetric intervals is bisected first.
+  // Not rule_error(): the order of operations decides which of two symmetric intervals is bisected first.
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
     spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
   part.error = quadpack_error(std::fabs(part.value - embedded), spread);

@@ -67,7 +67,7 @@ struct IntegralScratch {
   struct Level {
     std::vector<SmoothInterval> parts;
     std::array<std::vector<CriticalValue>, kMaxDepth + 1>
-        critical_values;  ///< of the range, and of intervals by their depth
+        critical_values;  ///< critical values of the range, and of intervals by their depth
     double at = 0;        ///< current value of the coordinate
     /// Intervals of this coordinate at values of the next outer one, in ascending order.
     struct ExpectedIntervals {

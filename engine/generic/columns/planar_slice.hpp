@@ -132,7 +132,7 @@ class PlanarSlice {
   /// is on them, or if one of the two is not an intersection.
   static double distance(const BoundaryFeature& vertex, const BoundaryFeature& other,
                          const PlanarSliceScratch& scratch);
-  /// Derivative with respect to v of constraint k, which is independent of z, at t. @param by  as of
+  /// Derivative with respect to v of constraint k, which is independent of z, at t. @param by  see
   /// expression::stage_derivative()
   double slope_of_independent(std::size_t k, double t, std::span<double> registers, const PlanarSliceScratch& scratch,
                               std::vector<double>& by) const;

@@ -21,7 +21,7 @@ class PlanarSliceSensitivity {
 
   /// @param scratch         after measure()
   /// @param dual_registers  registers with derivatives, after all stages but that of v
-  /// @param registers       their values
+  /// @param registers       values of `dual_registers`
   PlanarSliceSensitivity(const PlanarSlice& planar_slice, const PlanarSliceScratch& scratch,
                          std::span<const Dual4> dual_registers, std::span<double> registers)
       : slice_(planar_slice), scratch_(scratch), dual_registers_(dual_registers), registers_(registers) {}

@@ -29,7 +29,7 @@ double bracketed_root_of(std::span<const double> c, double low, double high, dou
       [](const ValueAndDerivative&, double x, double next) { return std::fabs(next - x) <= 2e-16; });
 }
 
-/// Whether all Bernstein coefficients on [-1, 1] have one sign, so that there is no root.
+/// Whether all Bernstein coefficients on [-1, 1] have one sign. If so, there is no root.
 bool has_one_sign(std::span<const double> c) {
   // The coefficient of (1 - x)^(n-k) (1 + x)^k is, up to a positive factor, the sum over j of c_j times the sum over i
   // of (-1)^(j-i) C(k, i) C(n-k, j-i).

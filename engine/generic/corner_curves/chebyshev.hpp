@@ -52,7 +52,7 @@ inline double evaluate_series(const double* c, std::size_t terms, double x) {
 void restrict_to_halves(const Samples& coefficients, std::size_t terms, Samples& lower, Samples& upper);
 
 /// Values of three series at kPoints places.
-/// @param values  by series, kPoints each
+/// @param values  kPoints values for each series
 void evaluate_at_points(const std::array<Samples, 3>& series, std::size_t terms, const double* points, double* values);
 
 /// Computes the terms - 1 coefficients of the derivative of a series.

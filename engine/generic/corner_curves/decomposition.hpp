@@ -64,7 +64,7 @@ struct DecompositionScratch {
   };
   std::vector<Pair> pairs;
   std::size_t pair_count = 0;
-  std::vector<int> pair_of;  ///< by curves; -1: they do not cross
+  std::vector<int> pair_of;  ///< index of the pair of two curves; -1: they do not cross
   std::vector<Meeting> meetings;
   std::vector<Root> roots;
   std::vector<double> places;

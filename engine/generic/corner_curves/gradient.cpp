@@ -43,7 +43,7 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   by_curve.resize(segment.integral.curves.size());
   for (auto& curve : by_curve)
     for (Samples& each : curve) each.fill(0);
-  // As many nodes as the curves' series need, and some more for their derivatives.
+  // The number of nodes that the curves' series need, and some more for their derivatives.
   std::size_t terms = 1;
   for (const BoundaryCurve& curve : segment.slices.curves) terms = std::max(terms, curve.terms);
   const std::size_t nodes = terms <= 4 ? 8 : terms <= 14 ? 16 : kNodes;

@@ -47,7 +47,7 @@ using CurveAdjoints = std::array<Samples, 3>;
 
 /// Adds the derivatives of the integral of a segment with respect to the first coefficients of all series.
 /// @param terms     number of coefficients, at least 2
-/// @param adjoints  by curve
+/// @param adjoints  adjoints of each curve
 void add_adjoints(const SegmentIntegral& segment, std::size_t terms, std::vector<CurveAdjoints>& adjoints);
 
 }  // namespace pkm::generic::corner_curves

@@ -22,7 +22,7 @@ template <InstructionSet set>
 void restrict_to_halves(const double* table, const double* c, std::size_t terms, double* lower, double* upper);
 
 /// Values of `count` series, each with kNodes coefficients, of which `terms` are used, at kPoints places.
-/// @param values  by series, kPoints each
+/// @param values  kPoints values for each series
 template <InstructionSet set>
 void series_at_points(const double* const* series, std::size_t count, std::size_t terms, const double* points,
                       double* values);

@@ -36,7 +36,7 @@ struct SliceFormula {
   std::vector<Strip> strips;
   std::vector<Bound> bounds;
 
-  /// @param outside  by curve: h > 0
+  /// @param outside  one bit per curve: set if h > 0
   bool holds(Signs outside) const {
     for (const Bound& bound : bounds)
       if (((outside & bit(bound.curve)) != 0) != bound.outside) return false;

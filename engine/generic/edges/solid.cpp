@@ -30,7 +30,7 @@ struct Panel {
   std::size_t range;
   Subinterval<double> interval;
   double value = 0, error = 0;
-  std::array<Moments, 2> moments{};  ///< of the two faces
+  std::array<Moments, 2> moments{};  ///< moments of the two faces
 };
 
 Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].value}}; }

@@ -38,7 +38,7 @@ class TorusFunction {
   double size() const { return size_; }
 
  private:
-  std::array<Trigonometric, 5> c_{};  ///< of products of a function of q and one of b
+  std::array<Trigonometric, 5> c_{};  ///< coefficients of products of a function of q and one of b
   std::array<double, 3> bend_{};      ///< qq, qb, bb
   double size_ = 0;
 };

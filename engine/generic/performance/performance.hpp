@@ -27,10 +27,10 @@ struct NamedTerm {
 
 /// Velocities of joints and platform by the rates of the coordinates: one column for each coordinate.
 struct FirstOrderKinematics {
-  TermMatrix J;            ///< by joint
+  TermMatrix J;            ///< one row per joint
   TermMatrix translation;  ///< T_v without the directions in which the origin does not move; at most three rows
   TermMatrix rotation;     ///< T_w; for one or two rotations, whose axes are orthonormal, the components along these
-  std::optional<expression::Inverse> inverse;  ///< of J, if there are as many joints as coordinates
+  std::optional<expression::Inverse> inverse;  ///< inverse of J, if there are as many joints as coordinates
 };
 FirstOrderKinematics first_order_kinematics(Model& model);
 
@@ -49,8 +49,8 @@ struct JointErrors {
 /// `accuracy` and `accuracy_rms` [m] of the origin of the platform, `accuracy_angle` and `accuracy_angle_rms` [rad] of
 /// its orientation, to first order: the error of the pose is J^-1 times the errors e of the joints.
 ///
-/// The worst case is the maximum of |T J^-1 e| over |e_i| <= bound_i. The norm is convex, so that it is at a vertex of
-/// the box of errors: all 2^(n-1) pairs of vertices are compared.
+/// The worst case is the maximum of |T J^-1 e| over |e_i| <= bound_i. Since the norm is convex, the maximum is at a
+/// vertex of the box of errors: all 2^(n-1) pairs of vertices are compared.
 /// @param at  must have an inverse
 std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& at, const JointErrors& errors);
 
