@@ -48,7 +48,7 @@ bool ParetoArchive::add(std::span<const std::int64_t> rows) {
 }
 
 bool ParetoArchive::fix_reference_point(const Scores& feasible) {
-  constexpr double kMargin = 0.1;             // of the range, beyond the worst value
+  constexpr double kMargin = 0.1;             // distance from the worst value, relative to the range
   if (feasible.objectives > 3) return false;  // hypervolumes are computed for two and three objectives
   sample_.values.insert(sample_.values.end(), feasible.values.begin(), feasible.values.end());
   if (sample_.size() < std::max<std::size_t>(min_feasible_designs_, 2)) return false;

@@ -1,5 +1,5 @@
 // Reproduction in evolutionary algorithms: parent selection, crossover, mutation and elimination of duplicate designs.
-// Only the rank of the parents is used, so that one and several objectives are handled alike.
+// One and several objectives are handled alike, because only the rank of the parents is used.
 #pragma once
 
 #include <cstdint>

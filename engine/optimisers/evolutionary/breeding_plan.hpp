@@ -13,7 +13,7 @@ namespace pkm {
 
 struct BreedingPlan {
   std::size_t population = 20;
-  Start sampling = Start::sobol;  ///< of the initial population
+  Start sampling = Start::sobol;  ///< sampling method of the initial population
   Selection selection;
   Crossover crossover;
   double crossover_probability = 0.85;

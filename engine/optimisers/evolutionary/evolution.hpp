@@ -38,7 +38,7 @@ class SurvivorSelection {
   virtual const std::vector<std::int64_t>& population() const = 0;
   /// Best row so far (several objectives: compromise solution); -1 while there is none.
   virtual std::int64_t best_row() const = 0;
-  /// True if the target of the study is reached, so that the run stops.
+  /// True if the target of the study is reached; the run then stops.
   virtual bool target_reached() const { return false; }
   /// Several objectives: the Pareto front so far. Otherwise null.
   virtual const Front* front() const { return nullptr; }

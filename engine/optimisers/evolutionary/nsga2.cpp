@@ -77,7 +77,7 @@ class Nsga2Selection final : public SurvivorSelection {
 
   void select_by_fronts() {
     non_dominated_sort(scores_, front_index_);
-    std::vector<std::vector<std::size_t>> members;  // of each front, as indices into feasible_rows_
+    std::vector<std::vector<std::size_t>> members;  // members of each front, as indices into feasible_rows_
     for (std::size_t i = 0; i < feasible_rows_.size(); ++i) {
       if (front_index_[i] >= members.size()) members.resize(front_index_[i] + 1);
       members[front_index_[i]].push_back(i);
@@ -117,8 +117,8 @@ class Nsga2Selection final : public SurvivorSelection {
   ParetoArchive archive_;
   std::vector<std::int64_t> rows_;           // rows of the population
   std::vector<std::int64_t> feasible_rows_;  // feasible members of population and children
-  Scores scores_;                            // of feasible_rows_
-  std::vector<std::uint32_t> front_index_;   // of feasible_rows_
+  Scores scores_;                            // scores of feasible_rows_
+  std::vector<std::uint32_t> front_index_;   // front of each of feasible_rows_
   RankKey best_infeasible_;
   double last_hypervolume_ = -1;
 };

@@ -1,8 +1,8 @@
 // Solver stage with Ipopt (interior-point method): exact gradients and a limited-memory quasi-Newton Hessian.
 //
-// Debian's MUMPS is not thread-safe and Ipopt 3.11 does not protect it, so that a mutex is locked from the construction
-// of an Ipopt application to its destruction. A file ipopt.opt in the working folder is not read. An exception in a
-// callback ends the solver with a separate status, which is also how a run is stopped.
+// Debian's MUMPS is not thread-safe and Ipopt 3.11 does not protect it. Therefore a mutex is locked from the
+// construction of an Ipopt application to its destruction. A file ipopt.opt in the working folder is not read. An
+// exception in a callback ends the solver with a separate status, which is also how a run is stopped.
 #include <algorithm>
 #include <map>
 #include <mutex>

@@ -57,7 +57,7 @@ class MultistartMerger {
   std::size_t next_ = 0;         ///< index of the start being merged
   std::size_t merged_rows_ = 0;  ///< number of merged rows of that start
   std::atomic<bool> stopped_ = false;
-  std::optional<ScalarisedProblem> scalarised_;  ///< of the start being merged
+  std::optional<ScalarisedProblem> scalarised_;  ///< scalarised problem of the start being merged
   RankKey best_, best_of_start_;
   std::int64_t evaluations_left_ = 0;
   std::size_t next_count_size_ = 0;  ///< table size at which evaluations_left_ is recomputed

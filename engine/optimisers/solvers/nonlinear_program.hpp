@@ -31,7 +31,7 @@ struct StartLimits {
 struct StartContext {
   const Problem& problem;
   Evaluator& evaluator;
-  EvaluationTable& table;  ///< of this start only; initially empty
+  EvaluationTable& table;  ///< evaluations of this start only; initially empty
   const Scalarisation& scalarisation;
   std::function<bool()> evaluated;  ///< called after each evaluation; returns false to stop the solver
 };

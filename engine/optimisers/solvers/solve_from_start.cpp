@@ -83,7 +83,7 @@ SolverResult solve_repeatedly(const Solver& solver, NonlinearProgram& program, c
 /// second difference.
 bool has_wrong_zero_gradient(NonlinearProgram& program) {
   constexpr double kStep = 1e-3;           // unit coordinates
-  constexpr double kRelativeNoise = 1e-7;  // of the objective: larger than its numerical errors
+  constexpr double kRelativeNoise = 1e-7;  // relative to the objective: larger than its numerical errors
   const std::vector<double> start = program.recall(0);
   const NonlinearProgram::Point centre = program.point();
   const auto is_inside = [](double u) { return u >= kStep && u <= 1 - kStep; };
@@ -136,7 +136,7 @@ std::optional<StartOutcome> solve_from_start(const Solver& solver, NonlinearProg
   outcome.optimality = program.optimality(static_cast<std::size_t>(outcome.end_row));
   const StopReason reason = stop_reason(program.stop(), result, outcome.optimality);
   outcome.stop = words(reason);
-  // The penalty value of failed evaluations is constant, so that a solver may report convergence.
+  // The penalty value of failed evaluations is constant; a solver may therefore report convergence.
   if (start_evaluated && reason == StopReason::tolerance && program.best().status == Status::failed) {
     outcome.message = "all evaluations failed";
     outcome.stop = words(StopReason::failed);

@@ -40,7 +40,7 @@ struct SolverPlan {
   std::int64_t multistart = 0;  ///< number of additional starts from Sobol points
   bool concurrent = true;       ///< the solver library may run in several threads at once
   Detail detail = Detail::complete;
-  Scalarisation scalarisation = {};  ///< of several objectives; the stage's input sets the extents
+  Scalarisation scalarisation = {};  ///< for several objectives; its extents are set from the stage's input
   std::string objective = {};        ///< epsilon-constraint: the minimised objective; "": the first
 };
 
