@@ -6,7 +6,7 @@
 namespace pkm {
 
 /// A number formatted by std::printf; "-" for NaN. Negative zero is written as zero.
-/// @param format  of at most 39 characters, with one conversion of a double such as "%.4g"
+/// @param format  at most 39 characters, with one conversion of a double such as "%.4g"
 std::string formatted(const char* format, double value);
 
 }  // namespace pkm

@@ -121,7 +121,7 @@ class SharedLoop {
  private:
   std::atomic<std::uint64_t> next_ = kNoIteration;  ///< number of the loop << 32 | first unclaimed iteration
   std::atomic<const WorkRef*> work_ = nullptr;
-  std::atomic<const StopScope*> scope_ = nullptr;  ///< of the thread that started the loop
+  std::atomic<const StopScope*> scope_ = nullptr;  ///< scope of the thread that started the loop
   std::atomic<std::uint32_t> iterations_ = 0, done_ = 0;
   std::exception_ptr failure_ = nullptr;
 };

@@ -32,7 +32,7 @@ struct SimulationSetup {
   std::function<AxisVector<double>(double time)> forces;  ///< actuator forces tau [N, N m]
   /// Friction forces as a function of the joint speeds, positive against a positive speed [N, N m]; empty: no friction.
   std::function<AxisVector<double>(const AxisVector<double>& speeds)> friction;
-  Wrench<double> wrench;  ///< on the platform, constant
+  Wrench<double> wrench;  ///< constant load on the platform
   /// Returns "" or a sentence why the simulation stops at a pose, for example a violated limit; empty: no such check.
   std::function<std::string(const Pose<double>&)> refuse;
   double duration = 0;      ///< [s], > 0

@@ -14,7 +14,7 @@ namespace pkm::expression {
 
 struct Token {
   std::string text;
-  std::size_t position = 0;              ///< of its first character, from 0
+  std::size_t position = 0;              ///< position of its first character, from 0
   std::optional<double> number = {};     ///< value of a number
   std::optional<std::size_t> name = {};  ///< index of a variable
   const Operation* function = nullptr;   ///< called function; the next token is its '('
@@ -26,7 +26,7 @@ bool may_be_name(const std::string& name);
 
 /// Throws std::invalid_argument with the formula's text and the predicate `error`: the formula "a +" ends where ...
 [[noreturn]] void refuse(const std::string& text, const std::string& error);
-/// "'x' at character 3". @param position  of the first character, from 0; printed from 1
+/// "'x' at character 3". @param position  position of the first character, from 0; printed from 1
 std::string quote(std::string_view token, std::size_t position);
 
 /// Splits a formula into tokens. Throws std::invalid_argument on unknown names and functions, wrong numbers of

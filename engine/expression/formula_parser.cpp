@@ -43,8 +43,8 @@ class Parser {
   struct Pending {
     enum class Kind { operation, parenthesis, question, colon };
     Kind kind;
-    const Operation* operation = nullptr;  ///< of a parenthesis: the called function; null: it only groups
-    std::size_t count = 0;                 ///< of a parenthesis: number of arguments so far
+    const Operation* operation = nullptr;  ///< parenthesis: the called function; null: it only groups
+    std::size_t count = 0;                 ///< parenthesis: number of arguments so far
   };
   using Kind = Pending::Kind;
   struct Value {

@@ -8,7 +8,7 @@
 namespace pkm::expression {
 namespace {
 
-constexpr std::size_t kMaxCoefficients = 5;  // of intermediate polynomials: squares of quadratics have degree four
+constexpr std::size_t kMaxCoefficients = 5;  // limit for intermediate polynomials: squares of quadratics have 5
 // Limits of the nesting depth and of the number of nodes visited; beyond them a constraint is not converted.
 constexpr int kMaxDepth = 500, kMaxSteps = 100'000;
 

@@ -14,7 +14,7 @@ namespace pkm::expression {
 /// Backward sweep through one stage: propagates the adjoints of the registers that it computes to those of its inputs
 /// and of the earlier stages, and sets them to 0. Contributions that are not finite are dropped.
 /// @param registers  values after the stage was run
-/// @param adjoints   by register; contributions are added
+/// @param adjoints   adjoint of each register; contributions are added
 void backward_sweep(const Program& program, std::size_t stage, std::span<const double> registers,
                     std::span<double> adjoints);
 

@@ -23,7 +23,7 @@ template <class S>
 struct CriticalValue {
   S at;
   bool root_below = false;  ///< the measure has a square-root singularity when `at` is approached from below
-  bool root_above = false;  ///< likewise from above
+  bool root_above = false;  ///< the singularity exists when `at` is approached from above
 };
 
 /// A root t(p) of f(p, t) = 0 with its derivatives with respect to the design p by the implicit function theorem:
@@ -50,7 +50,7 @@ void find_subintervals(const std::vector<CriticalValue<S>>& values, double merge
                        const Changes& changes, std::vector<Subinterval<S>>& intervals) {
   intervals.clear();
   if (values.empty()) return;
-  Signature before{};  // of the previous subinterval
+  Signature before{};  // signature of the previous subinterval
   CriticalValue<S> from = values.front();
   const auto split = [&](const CriticalValue<S>& to, const Signature& now) {
     const bool joins = !intervals.empty() && now == before && value_of(intervals.back().upper) == value_of(from.at) &&

@@ -1,10 +1,10 @@
 // Elementary functions with bit-identical results on every processor.
 //
-// glibc selects variants of sin, cos, exp, log and pow with fused multiply-add at run time, so that about one call in
-// 1500 differs in the last bit between two processors. The results stored in a study must be reproducible on any
-// machine. Therefore they are computed with the functions of this file: argument reduction and truncated power series
-// in IEEE operations in a fixed order (the build disables contraction). The truncation error is below 1e-17, and the
-// total error below 3 ulp (sin, cos: below 1.5 * 2^-53 absolute), as measured by the tests.
+// glibc selects variants of sin, cos, exp, log and pow with fused multiply-add at run time. As a consequence, about one
+// call in 1500 differs in the last bit between two processors. The results stored in a study must be reproducible on
+// any machine. Therefore they are computed with the functions of this file: argument reduction and truncated power
+// series in IEEE operations in a fixed order (the build disables contraction). The truncation error is below 1e-17, and
+// the total error below 3 ulp (sin, cos: below 1.5 * 2^-53 absolute), as measured by the tests.
 #pragma once
 
 #include <bit>

@@ -21,7 +21,7 @@ template <class S>
 struct Subinterval {
   S lower, upper;
   bool sqrt_at_lower = false;  ///< the integrand behaves like a square root at `lower`
-  bool sqrt_at_upper = false;  ///< likewise at `upper`
+  bool sqrt_at_upper = false;  ///< the integrand behaves like a square root at `upper`
 };
 
 /// A quadrature node, mapped from [0, 1] to a subinterval.
@@ -75,7 +75,7 @@ struct NestedRule {
     std::size_t nodes;
     std::array<double, kNodes> weight, fewer;  ///< of the rule, and of the embedded rule with fewer nodes
   };
-  std::array<double, kNodes> node;  ///< in the order in which the rules add them
+  std::array<double, kNodes> node;  ///< nodes of all rules, in the order in which the rules add them
   std::vector<Level> level;
 };
 

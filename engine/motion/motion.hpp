@@ -57,8 +57,8 @@ struct NamedMotion {
 /// `count` >= 2 samples at equidistant times, including the start and the end.
 std::vector<MotionSample> sample(const Motion& motion, std::size_t count);
 
-/// True if pose, velocity and acceleration at the end equal those at the start, within 1e-9 in SI units, so that the
-/// motion can be repeated without a discontinuity. Angles may differ by full turns.
+/// True if the motion can be repeated without a discontinuity: pose, velocity and acceleration at the end equal those
+/// at the start, within 1e-9 in SI units. Angles may differ by full turns.
 bool is_periodic(const Motion& motion, std::span<const AxisInfo> coordinates);
 
 }  // namespace pkm
