@@ -57,7 +57,7 @@ struct PoseQuantity {
   const char* meaning;        ///< "inverse condition number of the Jacobian"
   double lower, upper;        ///< range of possible values
   Worst worst;                ///< whether the minimum or the maximum over a workspace is the worst case
-  double value_if_undefined;  ///< for poses where the value is not finite, and for workspaces without poses
+  double value_if_undefined;  ///< value of poses where it is not finite, and of workspaces without poses
   bool per_joint = false;
   std::array<NamedStatistic, 4> results = {};  ///< an entry without a statistic is unused
   // Source of the values at a pose, one or one per joint: exactly one of the following is set.

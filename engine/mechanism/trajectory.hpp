@@ -24,7 +24,7 @@ struct TrajectoryPoint {
   std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
   std::optional<AxisVector<double>> forces, power;          ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
   std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, if there are drive trains [N m, rad/s]
-  std::vector<double> quantities;                           ///< by MechanismInfo::quantities; NaN: undefined
+  std::vector<double> quantities;                           ///< values of MechanismInfo::quantities; NaN: undefined
   std::optional<Reactions> reactions;                       ///< reactions in the joints, set by add_reactions()
 };
 
@@ -60,7 +60,7 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
                               const Wrench<double>& wrench = {});
 
 /// Names and values of the quantities of a pose and motion: all but those of the design.
-/// @param values  by MechanismInfo::quantities; may be empty
+/// @param values  values of MechanismInfo::quantities; may be empty
 NamedValues pose_quantities_of(const MechanismInfo& info, const std::vector<double>& values);
 
 /// Names and values of the inputs with their rates and accelerations, then of the quantities; undefined values are NaN.

@@ -53,7 +53,7 @@ struct WorkspaceFields {
   std::vector<WorkspaceAxis> fixed;     ///< the fixed coordinates: lower = upper is the value, no cells
   std::vector<std::string> fixed_note;  ///< origin of these values: "default value of the design"
   std::vector<WorkspaceField> fields;
-  double volume = 0;  ///< of the feasible cells
+  double volume = 0;  ///< volume of the feasible cells
   std::string volume_unit;
   bool touches_box = false;  ///< the plan has a box, and feasible cells lie in its outermost layer
 
@@ -78,7 +78,7 @@ class PoseMargin {
  public:
   /// @param mechanism  must outlive this object
   PoseMargin(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits);
-  /// @param scratch  of the calling thread
+  /// @param scratch  scratch memory of the calling thread
   double operator()(const Pose<double>& pose, Scratch& scratch) const;
 
  private:
@@ -90,7 +90,7 @@ class PoseMargin {
 /// Evaluates the fields of one design, in parallel on the caller's threads; the result does not depend on their number.
 /// Throws DesignError if a parameter is outside its range.
 /// @param parameters  all parameters of the mechanism, SI
-/// @param plan        as in the study, but a plan of columns is replaced by kPictureCells voxels per axis, and an
+/// @param plan        plan of the study; a plan of columns is replaced by kPictureCells voxels per axis, and an
 ///                    integrated coordinate is fixed at its default value
 /// @param mode        working mode for quantities of inertia; "": the mechanism's first. All other fields are those of
 ///                    the first working mode

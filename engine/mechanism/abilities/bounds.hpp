@@ -56,7 +56,7 @@ class RigorousBounds {
   virtual VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               const BoundsOptions& options) const = 0;
   /// Feasibility and regularity of all poses of a box, under the plan's limits.
-  /// @param ranges  by coordinate; lower = upper fixes the coordinate
+  /// @param ranges  range of each coordinate; lower = upper fixes the coordinate
   virtual PoseCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
   /// Feasibility and regularity at every instant of a motion. If it is infeasible, PropertyResult::time is the first

@@ -53,7 +53,7 @@ class PoseMargins {
   /// Appends the margins of all poses; they are finite. A pose that cannot be assembled also has margins, of which at
   /// least one is negative.
   /// @param mode     one of MechanismInfo::modes, or "": the first
-  /// @param scratch  of the calling thread
+  /// @param scratch  scratch memory of the calling thread
   virtual void append(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
                       std::span<const Pose<double>> poses, Scratch& scratch, std::vector<double>& margins) const = 0;
   virtual void append(std::span<const Dual4> parameters, const std::string& mode, const LimitSpec& limits,

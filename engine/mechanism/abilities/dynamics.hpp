@@ -35,7 +35,7 @@ class Dynamics {
 class JointReactions {
  public:
   virtual ~JointReactions() = default;
-  /// @param acceleration  of the platform coordinates
+  /// @param acceleration  acceleration of the platform coordinates
   /// @param wrench        external load on the platform [N, N m]
   virtual Reactions find(std::span<const double> parameters, const std::string& mode, const MotionState<double>& state,
                          const AxisVector<double>& acceleration, const Wrench<double>& wrench) const = 0;

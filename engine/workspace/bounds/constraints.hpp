@@ -54,7 +54,7 @@ class Constraints {
   std::size_t size() const { return all_.size(); }
   std::size_t axes() const { return axes_.size(); }
   const std::string& name(std::size_t k) const { return all_[k].name; }
-  expression::Node node(std::size_t k) const { return all_[k].node; }  ///< in the graph passed to the constructor
+  expression::Node node(std::size_t k) const { return all_[k].node; }  ///< node in the graph passed to the constructor
   bool depends(std::size_t k, std::size_t axis) const { return all_[k].depends[axis]; }
   Scratch make_scratch() const { return initial_; }
 

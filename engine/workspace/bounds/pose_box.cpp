@@ -160,7 +160,7 @@ struct Box {
   // Results of examine():
   std::optional<std::size_t> violated;   ///< a constraint that is violated at the midpoint or on the whole box
   std::optional<std::size_t> undecided;  ///< the first matrix without a proof of full rank
-  int determinant_sign = 0;              ///< of that matrix at the midpoint; 0: unknown
+  int determinant_sign = 0;              ///< sign of its determinant at the midpoint; 0: unknown
   bool is_singular_at_midpoint = false;  ///< that matrix is singular there to working precision
   std::size_t axis = 0;                  ///< axis of the next bisection
 };

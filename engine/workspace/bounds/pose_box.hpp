@@ -62,7 +62,7 @@ class Matrices {
 };
 
 /// Examines a box of poses.
-/// @param ranges    by axis
+/// @param ranges    range of each axis
 /// @param matrices  null: regularity is not examined
 PoseCertificate certify(const Constraints& constraints, const Matrices* matrices,
                         std::span<const std::array<double, 2>> ranges, const BoundsOptions& options);

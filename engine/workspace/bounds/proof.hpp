@@ -12,10 +12,10 @@ namespace pkm::bounds {
 /// The statement to be proved.
 struct Statement {
   const expression::Graph& graph;
-  const Constraints& constraints;        ///< of the graph
+  const Constraints& constraints;        ///< constraints on the graph's inputs
   std::vector<std::string> axes;         ///< names, the column coordinate last
   std::vector<std::size_t> positions;    ///< by axis: index among the graph's inputs
-  Ranges ranges;                         ///< by axis
+  Ranges ranges;                         ///< range of each axis
   std::vector<Interval> inputs;          ///< all inputs of the graph
   std::vector<std::string> input_names;  ///< by input, for people; may be ""
   std::string title;
