@@ -13,7 +13,7 @@ namespace pkm {
 /// One reason of a diagnosis, or one contradiction.
 struct Reason {
   std::string kind;                ///< "contradiction", "constraint", "limit" (of a pose) or "failure"
-  std::vector<std::string> names;  ///< of the constraints, limits or coordinates concerned
+  std::vector<std::string> names;  ///< names of the constraints, limits or coordinates concerned
   std::string sentence;
 };
 

@@ -21,7 +21,7 @@ struct ExpressionName {
   std::string unit;
   std::string meaning;
   Origin origin = Origin::parameter;
-  std::size_t index = 0;  ///< in the mechanism's parameters or limits, or in analysis_results(info)
+  std::size_t index = 0;  ///< index in the mechanism's parameters or limits, or in analysis_results()
 };
 
 /// A scalar result of a workspace analysis: the volume or a statistic of a pose quantity.
@@ -32,7 +32,7 @@ struct AnalysisResult {
   std::string statistic = {};              ///< see NamedStatistic
 
   /// The value of this result. With derivatives (Dual4), a worst case is replaced by a smooth approximation.
-  /// @param sharpness  of the smooth approximation
+  /// @param sharpness  sharpness of the smooth approximation
   template <class S>
   S value(const WorkspaceResult<S>& workspace, double sharpness, Scratch& scratch) const;
 };

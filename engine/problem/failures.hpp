@@ -18,7 +18,7 @@ struct FailureReason {
 struct Failures {
   std::size_t evaluations = 0, failed = 0;
   std::size_t examined = 0;            ///< failed designs that were evaluated again
-  std::vector<FailureReason> reasons;  ///< of the examined designs, the most frequent first
+  std::vector<FailureReason> reasons;  ///< reasons of the examined designs, the most frequent first
 };
 
 /// Evaluates up to 64 failed designs again, equally spaced in their order; fewer if their first evaluations took more

@@ -85,7 +85,7 @@ std::size_t compromise(const Scores& front) {
 }
 
 std::vector<std::size_t> knees(const Scores& front) {
-  constexpr double kRadius = 0.2;  // of the neighbourhood, in normalised scores
+  constexpr double kRadius = 0.2;  // radius of the neighbourhood, in normalised scores
   constexpr double kMinGain =
       0.01;  // lower cost than the extreme points; excludes their neighbours and rounding effects
   const Scores scaled = normalised(front);

@@ -14,12 +14,12 @@ namespace pkm {
 /// A Pareto front: the feasible non-dominated designs of a stage, up to the size limit of the archive. In a solver
 /// stage, the results of its starts.
 struct Front {
-  std::vector<std::int64_t> rows;  ///< of the stage's table, sorted by the first objective, best first
+  std::vector<std::int64_t> rows;  ///< rows of the stage's table, sorted by the first objective, best first
   /// Reference point of the hypervolume, in the objectives' units, and the hypervolume. Only designs that are better
   /// than the reference point in every objective contribute. Empty and NaN if there is no reference point yet.
   std::vector<double> reference = {};
   double hypervolume = std::numeric_limits<double>::quiet_NaN();
-  double spread = std::numeric_limits<double>::quiet_NaN();    ///< of the part in the population (see crowding.hpp)
+  double spread = std::numeric_limits<double>::quiet_NaN();    ///< spacing of the part in the population (crowding.hpp)
   double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< distance to the reference front; NaN without one
 };
 

@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxReasons = 4;  // of one tally: more would hide the important ones
+constexpr std::size_t kMaxReasons = 4;  // maximum for one tally: more would hide the important ones
 
 std::string three_digits(double value) {
   char text[32];

@@ -67,7 +67,7 @@ struct PoseStatistic {
   const PoseQuantity& quantity;
   std::string statistic;        ///< "mean", "std", "min", "max" or a quantile such as "p95" (without derivatives)
   std::string joint = "worst";  ///< see reduced_field()
-  double sharpness = 200;       ///< of the smooth approximation of "min" and "max" with derivatives
+  double sharpness = 200;       ///< sharpness of the smooth approximation of "min" and "max" with derivatives
 
   template <class S>
   S operator()(const WorkspaceResult<S>& workspace, Scratch& scratch) const {
@@ -101,7 +101,8 @@ struct PoseStatistic {
     std::vector<S> field;
   };
 
-  /// The smooth approximation of "min" or "max" of values scaled to [0, 1], so that it does not depend on their unit.
+  /// The smooth approximation of "min" or "max". The values are scaled to [0, 1]; the result is then independent of
+  /// their unit.
   template <class S>
   S scaled_extremum(const std::vector<S>& weight, const std::vector<S>& field, std::vector<S>& scaled) const {
     const S lower = minimum(field), range = maximum(field) - lower;

@@ -86,8 +86,8 @@ struct EntryContext {
   const Mechanism& mechanism;
   const WorkspacePlan& plan;  ///< plan of the workspace analysis that the entry uses
   const Options& options;
-  std::span<const Region> regions = {};       ///< of the study
-  std::span<const NamedMotion> motions = {};  ///< of the study
+  std::span<const Region> regions = {};       ///< regions of the study
+  std::span<const NamedMotion> motions = {};  ///< motions of the study
 };
 
 /// Bounds on the values of a quantity, for any design.

@@ -27,7 +27,7 @@ std::string_view words(StopReason reason);
 
 /// Outcome of one multistart run of a solver. Row numbers refer to the stage's table.
 struct StartOutcome {
-  std::string origin;          ///< of the starting point: "best so far", "Sobol point 3"
+  std::string origin;          ///< origin of the starting point: "best so far", "Sobol point 3"
   std::int64_t first_row = 0;  ///< row of its first evaluation, the starting point
   std::int64_t rows = 0;       ///< number of evaluations
   std::int64_t end_row = 0;    ///< row of the result: the best evaluated design, including starting and final point

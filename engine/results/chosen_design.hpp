@@ -19,7 +19,7 @@ struct DesignChoice {
   std::optional<std::int64_t> generation;  ///< from 0, as listed by `pkmopt show`
   std::optional<std::int64_t> individual;  ///< position in the population of `generation`, from 1
   std::optional<std::int64_t> front;       ///< point of a stage's Pareto front, from 1
-  std::optional<std::int64_t> stage;       ///< of `generation` or `front`, from 1; default: the last that has one
+  std::optional<std::int64_t> stage;       ///< stage of `generation` or `front`, from 1; default: the last that has one
 };
 
 struct ChosenDesign {

@@ -22,7 +22,7 @@ struct DesignTable {
     std::string kind;  ///< "variable", "objective", "output", "constraint" or "certified" (bounds of the volume)
     std::string name, unit, meaning;
     std::vector<std::optional<double>> values, published;  ///< one value per column; one value per reference design
-    std::optional<Gain> gain;                              ///< of the first column over the baseline
+    std::optional<Gain> gain;                              ///< gain of the first column over the baseline
   };
   std::vector<Column> columns;  ///< best design first, baseline last; empty while nothing has been evaluated
   std::vector<Line> lines;

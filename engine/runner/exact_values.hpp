@@ -17,11 +17,11 @@ class ExactValues {
  public:
   static constexpr const char* kNoValues = "no exact values of the ";  ///< beginning of the notes added by evaluate()
 
-  /// @param parts  of the problem of the voxel study; must outlive this object
+  /// @param parts  problem of the voxel study; must outlive this object
   explicit ExactValues(const ProblemParts& parts);
 
   /// Evaluates one design.
-  /// @param name   of the design, for the note
+  /// @param name   name of the design, for the note
   /// @param notes  receives the reason if there are no exact values, but only for mechanisms that support the method
   std::optional<DesignRecord> evaluate(const char* name, std::span<const double> parameters,
                                        std::vector<std::string>& notes) const;

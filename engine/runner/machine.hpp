@@ -12,8 +12,8 @@ std::string describe_processor();
 std::string describe_machine();
 
 /// "2 threads", "4 ranks x 16 threads".
-/// @param threads        of this rank
-/// @param total_threads  of all ranks together
+/// @param threads        number of threads of this rank
+/// @param total_threads  number of threads of all ranks together
 std::string describe_team(int threads, int total_threads);
 
 /// The hosts of the ranks: "node1, node2".

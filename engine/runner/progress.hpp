@@ -13,8 +13,8 @@ struct ProgressReport {
   std::size_t stage = 0, stages = 1;
   std::string optimiser;
   std::int64_t generation = 0;
-  std::int64_t evaluations = 0;       ///< of the stage so far
-  std::int64_t evaluation_limit = 0;  ///< of the stage; 0: none
+  std::int64_t evaluations = 0;       ///< evaluations of the stage so far
+  std::int64_t evaluation_limit = 0;  ///< limit of the stage; 0: none
   double evaluations_per_second = 0;  ///< average of this run
   std::optional<double> left = {};    ///< estimated maximum remaining time [s], if known
   double seconds = 0;                 ///< wall time of this run
@@ -24,7 +24,7 @@ struct ProgressReport {
   std::size_t front = 0;              ///< several objectives: size of the front, shown instead of `best`
   double hypervolume = 0;             ///< NaN: not computed
   double violation = 0;               ///< smallest constraint violation of any design, while none is feasible
-  double feasible_share = 0;          ///< of the population, in [0, 1]
+  double feasible_share = 0;          ///< share of the population, in [0, 1]
 };
 
 /// Interface of progress displays; the default implementation displays nothing.

@@ -25,7 +25,7 @@ ProblemRecord problem_record(const Study& study);
 Study study_of(const StudyContents& contents, const Catalogues& catalogues, const StudyChanges& changes = {});
 
 /// Rebuilds the study of a study file in order to resume it. Throws StorageError also if recorded values differ.
-/// @param path  of the file, for messages
+/// @param path  path of the file, for messages
 Study study_to_continue(const StudyContents& contents, const std::string& path, const Catalogues& catalogues);
 
 /// @return one line "name = value" per option

@@ -119,7 +119,7 @@ RemainingTime::RemainingTime(const Study& study, const RunCost& cost, int thread
 std::optional<double> RemainingTime::update(std::size_t stage, std::int64_t left, std::int64_t made, double seconds) {
   constexpr double kStartUp = 1;         // s; the rate at the beginning is not representative
   constexpr double kMinWindow = 2;       // s; the rate is averaged over recent evaluations, because their cost changes
-  constexpr double kSafetyFactor = 1.5;  // of upper bounds: evaluations of a solver may become slower
+  constexpr double kSafetyFactor = 1.5;  // factor of upper bounds: evaluations of a solver may become slower
   if (stage != stage_) {
     stage_ = stage;
     begin_ = last_;

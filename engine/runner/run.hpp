@@ -25,7 +25,7 @@ namespace pkm {
 
 class Run final : public Monitor {
  public:
-  /// @param contents  of the study file so far, which the run replays and continues
+  /// @param contents  contents of the study file so far, which the run replays and continues
   /// @param output    null on worker ranks, which write nothing
   Run(const Study& study, StudyContents contents, StudyOutput* output, const RunOptions& options, Progress& progress);
 
@@ -95,7 +95,7 @@ class Run final : public Monitor {
   /// Time of the first stop request [s of this run].
   std::atomic<double> stop_requested_at_ = std::numeric_limits<double>::infinity();
   std::optional<RemainingTime> remaining_;                    ///< rank 0
-  int threads_ = 0;                                           ///< of all ranks together
+  int threads_ = 0;                                           ///< number of threads of all ranks together
   double initial_exchange_ = ranks::communication_seconds();  ///< time spent in messages before this run [s]
   std::vector<std::string> warnings_;
 };

@@ -21,7 +21,7 @@ inline constexpr std::int64_t kAlgorithms = 8;
 /// Program version and arguments, which must be the same on all ranks.
 struct ProgramVersion {
   std::string version, revision;
-  std::string arguments = {};  ///< of the command line, on one line
+  std::string arguments = {};  ///< arguments of the command line, on one line
 };
 
 struct RunOptions {

@@ -11,7 +11,7 @@ namespace pkm {
 
 class TimedEvaluator final : public Evaluator {
  public:
-  /// @param threads  as for ParallelEvaluator
+  /// @param threads  see ParallelEvaluator
   explicit TimedEvaluator(int threads) : inner_(threads) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
 
