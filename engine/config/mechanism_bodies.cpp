@@ -1,7 +1,7 @@
 // Reader of masses: parts of limbs, links, the platform, [[body]].
 //
-// Parts of limbs and links are thin: they rotate with the line between their ends, without spin about it, so that their
-// inertia is one number: about the centre of mass, across that line.
+// Parts of limbs and links are thin: they rotate with the line between their ends, without spin about it. Their inertia
+// is therefore one number: about an axis through the centre of mass, normal to that line.
 
 #include <algorithm>
 

@@ -272,7 +272,7 @@ class JointReader {
   std::vector<SolidNodes> solids_;
   std::vector<JointNodes> joints_;
   std::map<std::string, std::vector<std::size_t>>
-      made_of_;  ///< by body of the model: the solids that it consists of or belongs to
+      made_of_;  ///< by name of a body of the model: indices of the solids made from it
 };
 
 }  // namespace

@@ -96,7 +96,7 @@ void warn_of_empty_workspace(Study& study) {
                            (plan.box() ? " in the box" : "") + " is feasible");
 }
 
-/// Warns if the target of a stage is outside the range of the objective, so that it is never reached.
+/// Warns if the target of a stage can never be reached, because it is outside the range of the objective.
 void warn_of_targets(Study& study) {
   const auto& objectives = study.problem->parts().objectives;
   for (std::size_t s = 0; objectives.size() == 1 && s < study.stages.size(); ++s) {

@@ -111,8 +111,8 @@ struct Depth {
   std::size_t brackets = 0, parts = 0;
 };
 
-/// The line (1-based) at which tables are nested more deeply than in any study, so that recursive functions, such as
-/// the parser, would run out of stack; 0 if there is none. It is found from the text alone, up to the first syntax
+/// The line (1-based) at which tables are nested so deeply that recursive functions, such as the parser, would run out
+/// of stack; 0 if there is none. No study needs this depth. It is found from the text alone, up to the first syntax
 /// error.
 int line_too_deep(std::string_view text) {
   constexpr Depth kMax{32, 16};

@@ -138,7 +138,7 @@ class KeyScanner {
   std::string_view text_;
   std::size_t at_ = 0;
   int line_ = 1;
-  Path table_;  ///< of the last header
+  Path table_;  ///< table of the last header
   std::vector<TomlKey> keys_;
 };
 

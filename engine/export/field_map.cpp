@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kTail = 0.02;       // share of the values at either end that may lie beyond an open scale
 constexpr double kConstant = 1e-9;   // relative range of a field that is constant up to rounding errors
-constexpr double kMinIntervals = 7;  // of a scale
+constexpr double kMinIntervals = 7;  // minimum number of intervals of a scale
 
 /// Divides polygons into triangles around their centres. A point on an edge of a triangle is identified by the indices
 /// of both ends of the edge, a vertex by its index, twice.
@@ -95,10 +95,10 @@ class TriangleField {
   }
 
   std::vector<PlanePoint> points_;  ///< vertices of the mesh, then centres of polygons
-  std::vector<double> values_;      ///< of the points
+  std::vector<double> values_;      ///< field values at the points
   std::vector<MeshPolygon> defined_, undefined_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<PathEdge> boundary_;  ///< of the polygons in which the field is defined
+  std::vector<PathEdge> boundary_;  ///< boundary of the polygons in which the field is defined
 };
 
 /// The largest of 1, 2 or 5 times a power of ten that divides a length into at least kMinIntervals.

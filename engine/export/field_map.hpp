@@ -16,7 +16,7 @@ namespace pkm {
 struct ContourLevels {
   std::vector<double> values;  ///< round, from the lower to the upper end of the scale; a single one: a constant field
   bool open_below = false, open_above = false;  ///< whether the field has values beyond the ends
-  double minimum = 0, maximum = 0;              ///< of the field
+  double minimum = 0, maximum = 0;              ///< extreme values of the field
 
   /// The levels that separate two colours.
   std::vector<double> thresholds() const;

@@ -57,7 +57,7 @@ class Nodes {
   }
 
  private:
-  static constexpr std::size_t kLayers = 2;  ///< on each face of the box
+  static constexpr std::size_t kLayers = 2;  ///< number of layers on each face of the box
 
   /// Number of the nearest cell along an axis.
   std::size_t nearest(const Index& n, std::size_t axis) const {

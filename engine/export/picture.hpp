@@ -19,9 +19,9 @@ struct Picture {
     std::string content;
     Anchor anchor = Anchor::begin;
     bool bold = false;
-    double angle = 0;                                 ///< of the baseline, counter-clockwise [deg]
-    Colour colour = {0, 0, 0};                        ///< of the letters
-    std::optional<Colour> background = std::nullopt;  ///< of a border around the letters
+    double angle = 0;                                 ///< angle of the baseline, counter-clockwise [deg]
+    Colour colour = {0, 0, 0};                        ///< colour of the letters
+    std::optional<Colour> background = std::nullopt;  ///< colour of a border around the letters
   };
   struct Line {
     double x1, y1, x2, y2;
@@ -41,7 +41,7 @@ struct Picture {
   std::vector<Area> areas;
   std::vector<Polyline> lines;
   std::vector<SliceOutline::Loop> outline;  ///< closed
-  bool outline_is_filled = true;            ///< by the even-odd rule, in one colour
+  bool outline_is_filled = true;            ///< whether it is filled by the even-odd rule, in one colour
   std::array<double, 4> frame{};            ///< left, top, width, height
 };
 
@@ -51,7 +51,7 @@ Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& 
 
 /// Draws a field on a slice as filled contours, with labelled contour lines and a colour bar. Angles are labelled in
 /// degrees, lengths in mm or, if all are below 1 mm, in um. Areas where the field is undefined are grey.
-/// @param field  its values are those at the vertices of the mesh
+/// @param field  field with one value per vertex of the mesh
 /// @param lines  text above the drawing, the title first; meaning and range of the field are appended
 Picture draw_map(const SliceMesh& mesh, const WorkspaceField& field, std::vector<std::string> lines);
 

@@ -16,10 +16,10 @@ namespace {
 
 using Anchor = Picture::Anchor;
 
-constexpr double kTolerance = 0.05;                             // of simplified lines [pixel]
+constexpr double kTolerance = 0.05;                             // tolerance of simplified lines [pixel]
 constexpr double kLetterUnit = 1.5;                             // pixels per unit of the stroke font
 constexpr double kRight = 150;                                  // space for the colour bar [pixel]
-constexpr double kBarGap = 24, kBarWidth = 18, kBarArrow = 14;  // of the colour bar [pixel]
+constexpr double kBarGap = 24, kBarWidth = 18, kBarArrow = 14;  // dimensions of the colour bar [pixel]
 constexpr Colour kUndefined = {0xc8, 0xc8, 0xc8}, kBarFrame = {0x22, 0x22, 0x22};
 
 /// Converts a field to the unit of the labels: degrees, mm or um. Returns the unit, "1" for mixed units.

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kIntervals = 240, kNodesPerRow = kIntervals + 1;  // of the grid, along each axis
+constexpr std::size_t kIntervals = 240, kNodesPerRow = kIntervals + 1;  // intervals and nodes of the grid per axis
 constexpr double kEdgeFraction = 0x1p-20;  // accuracy of a boundary point, relative to the edge of a square
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 

@@ -11,7 +11,7 @@ struct SliceOutline {
   using Loop = std::vector<PlanePoint>;
   std::array<WorkspaceAxis, 2> axes;  ///< horizontal and vertical
   std::vector<Loop> loops;  ///< closed polygons: counter-clockwise around feasible regions, clockwise around holes
-  double area = 0;          ///< of the polygons, in the product of the axes' units
+  double area = 0;          ///< area within the polygons, in the product of the axes' units
 };
 
 SliceOutline trace_outline(const SliceMesh& mesh);

@@ -111,7 +111,7 @@ std::vector<Junction> junctions_of(const std::vector<TreeLink>& links, const std
 
 /// Spanning tree of the links, rooted at the frame.
 struct Tree {
-  std::vector<ParentJoint> joints;             ///< of each link; that of the frame has no meaning
+  std::vector<ParentJoint> joints;             ///< joint of each link with its parent; the frame's entry is unused
   std::vector<std::size_t> order = {};         ///< parents before their children
   std::vector<Junction> cuts = {};             ///< junctions that are not joints of the tree: each closes a loop
   std::vector<std::size_t> disconnected = {};  ///< roots of the parts without a connection to the frame
@@ -158,7 +158,7 @@ std::string origin(const Position& position, const Position& angles = {}) {
 
 /// A cylinder along the axis of the capsule; a sphere if the axis is a point. In URDF, the axis of a cylinder is along
 /// z before the rotations about x, y and z.
-/// @param origin_of_link  in the frame of the capsule
+/// @param origin_of_link  origin of the link, in the frame of the capsule
 std::string visual(const Capsule<double>& capsule, const Position& origin_of_link) {
   const Position along = difference(capsule.axis.to, capsule.axis.from);
   const double length = std::sqrt(dot(along, along));

@@ -16,7 +16,7 @@ namespace pkm {
 /// comment.
 /// @param moved  the same links at another pose: ends that do not move are taken as connected to the frame; empty: only
 ///               ends on the capsules of the frame are
-/// @param name   of the robot
+/// @param name   name of the robot
 /// @param title  text of a comment
 std::string links_urdf(const std::vector<PlacedLink>& links, const std::vector<PlacedLink>& moved,
                        const std::string& name, const std::string& title);

@@ -40,7 +40,7 @@ struct PageDetail {
 /// Designs of one mechanism, evaluated with the same plan.
 struct ShownDesigns {
   const Mechanism& mechanism;
-  WorkspacePlan plan;                ///< of the workspace analysis: voxels, limited by `detail`
+  WorkspacePlan plan;                ///< plan of the workspace analysis: voxels, limited by `detail`
   LimitSpec limits;                  ///< limits of poses
   std::string mode;                  ///< working mode
   std::vector<NamedMotion> motions;  ///< the first motions of the study, limited by the size of a page
@@ -60,7 +60,7 @@ ShownDesigns evaluate_shown_designs(const PageStudy& page);
 ShownDesigns evaluate_front_designs(const PageStudy& page);
 
 /// Evaluates one design, without a study.
-/// @param plan    of the workspace analysis; columns are replaced by voxels
+/// @param plan    plan of the workspace analysis; columns are replaced by voxels
 /// @param mode    one of MechanismInfo::modes; "": the first
 /// @param design  its name, and all parameters of the mechanism in SI
 ShownDesigns evaluate_shown_designs(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,

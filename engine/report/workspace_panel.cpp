@@ -81,7 +81,7 @@ Json workspace_json(const std::string& name, const WorkspaceFields& found, const
 }
 
 /// Converts the map in a study file, which has the feasible cells of the best design but not the values of the fixed
-/// coordinates. The margin is 1 or -1, so that the isosurface runs half-way between feasible and infeasible cells.
+/// coordinates. The margin is 1 or -1; the isosurface then runs half-way between feasible and infeasible cells.
 WorkspaceFields fields_of_map(const MapRecord& map, const DesignRecord& best, const std::string& volume_unit) {
   WorkspaceFields found;
   for (std::size_t i = 0; i < map.axes.size() && !map.axes[i].empty(); ++i)

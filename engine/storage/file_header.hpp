@@ -29,7 +29,7 @@ void seal(std::string& file, int schema);
 /// Verifies signature, schema, size and checksum. Throws StorageError with a specific sentence for each way in which
 /// the file is invalid.
 /// @param file  all bytes of the file
-/// @param path  for messages
+/// @param path  path of the file, for messages
 /// @param newest_schema  files with a higher schema version are rejected
 /// @return the schema version of the file
 int verify_header(const std::string& file, const std::string& path, int newest_schema);

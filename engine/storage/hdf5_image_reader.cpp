@@ -58,7 +58,7 @@ void check_storage(hid_t dataset, const std::string& what) {
 /// Size of the values of a dataset in memory [bytes]. Throws ImageError if it exceeds what deflate can have compressed
 /// into the stored bytes, so that a forged extent cannot cause a huge allocation.
 std::size_t checked_size(hid_t dataset, const Extent& extent, std::size_t value_bytes, const std::string& what) {
-  constexpr std::size_t kMaxCompressionRatio = 1032;  // of deflate
+  constexpr std::size_t kMaxCompressionRatio = 1032;  // upper limit for deflate
   if (std::ranges::find(extent, std::size_t{0}) != extent.end()) return 0;
   const std::size_t max_bytes = H5Dget_storage_size(dataset) * kMaxCompressionRatio;
   std::size_t bytes = value_bytes;

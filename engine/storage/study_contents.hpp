@@ -57,7 +57,7 @@ struct GenerationRecords {
   std::vector<std::int64_t> first_row;         ///< the generation's first row in the evaluation table
   std::vector<std::int64_t> best_row;          ///< row of the best evaluation so far; -1: none
   std::vector<double> feasible_share;          ///< feasible share of the population, in [0, 1]
-  std::vector<double> diversity;               ///< of the population, see record_generation()
+  std::vector<double> diversity;               ///< diversity of the population, see record_generation()
   std::vector<double> seconds;                 ///< wall time of the study at the end of the generation
   std::vector<std::int64_t> population_first;  ///< index in `population` of the generation's first member
   std::vector<std::int64_t> population;        ///< table rows of the members, one generation after the other
@@ -78,7 +78,7 @@ struct ActiveRecord {
   std::string name;
   std::string kind;       ///< "lower bound", "upper bound" or "constraint"
   double multiplier = 0;  ///< improvement of the objective per unit by which the bound or constraint is relaxed
-  std::string unit;       ///< of the bound or constraint
+  std::string unit;       ///< unit of the bound or constraint
 };
 
 /// Sensitivity of the objective with respect to one parameter.
@@ -98,7 +98,7 @@ struct OptimalityRecord {
 
 /// The Pareto front of a stage (see Front) and its quality indicators after each generation.
 struct FrontRecord {
-  std::vector<std::int64_t> rows;  ///< of the stage's table, ordered from best to worst in the first objective
+  std::vector<std::int64_t> rows;  ///< rows of the stage's table, from best to worst in the first objective
   std::vector<double> reference;   ///< reference point of the hypervolume; empty: none
   std::vector<double> hypervolume, spread, igd_plus;  ///< one entry per generation; empty for solver stages
 };
@@ -153,7 +153,7 @@ struct FinalRecord {
   std::optional<DesignRecord> baseline;
   /// Voxel studies: the same designs evaluated by the exact method (columns), if the mechanism supports it.
   std::optional<DesignRecord> best_exact, baseline_exact;
-  std::optional<MapRecord> map;  ///< of `best`
+  std::optional<MapRecord> map;  ///< voxel map of `best`
   std::string volume_unit;
   std::vector<std::string> active;  ///< active bounds and constraints of `best`, one sentence each
 };

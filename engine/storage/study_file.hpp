@@ -30,7 +30,7 @@ StudyContents read_study(const std::string& path);
 
 /// Parses the bytes of a study file whose header has been verified. Throws ImageError if they do not follow the schema.
 /// @param bytes   the whole file, header included
-/// @param schema  as returned by verify_header()
+/// @param schema  schema version returned by verify_header()
 StudyContents parse_study(const std::string& bytes, int schema);
 
 }  // namespace pkm

@@ -16,7 +16,7 @@ void set_check_command(std::vector<std::string> command);
 
 /// Runs the checking process on the bytes of a file whose header has been verified. Throws ImageError if the process
 /// finds that they do not follow the schema, StorageError if it crashes, exceeds its limits or cannot be started.
-/// @param path  for messages
+/// @param path  path of the file, for messages
 void check_in_subprocess(const std::string& bytes, const std::string& path);
 
 /// The main function of the checking process: sets its limits, parses standard input as a study and prints the reason
