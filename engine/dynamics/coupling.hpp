@@ -28,10 +28,11 @@ auto coupling_indices(const M& M_q) {
 
 /// Converts the elements of M_q to a 4 x 4 matrix.
 template <class S>
-Matrix<S, 4, 4> matrix_of(const JointInertia<S>& of) {
+Matrix<S, 4, 4> matrix_of(const JointInertia<S>& elements) {
   Matrix<S, 4, 4> M;
-  M.m = {of.m00, of.m01, of.m02, of.m03, of.m01, of.m11, of.m12, of.m13,
-         of.m02, of.m12, of.m22, of.m23, of.m03, of.m13, of.m23, of.m33};
+  M.m = {elements.m00, elements.m01, elements.m02, elements.m03, elements.m01, elements.m11,
+         elements.m12, elements.m13, elements.m02, elements.m12, elements.m22, elements.m23,
+         elements.m03, elements.m13, elements.m23, elements.m33};
   return M;
 }
 

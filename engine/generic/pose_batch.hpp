@@ -49,8 +49,9 @@ class PoseBatch {
 
   /// Location of an output of the batch.
   expression::Operand operand(std::size_t output) const { return stage_->operand(program_.outputs()[output]); }
-  static double value(const expression::Operand& of, std::size_t pose, const PoseBatchScratch& scratch) {
-    return of.row ? scratch.rows[of.index * expression::kRow + pose] : scratch.registers[of.index];
+  /// Value of an output at a pose of the batch.
+  static double value(const expression::Operand& operand, std::size_t pose, const PoseBatchScratch& scratch) {
+    return operand.row ? scratch.rows[operand.index * expression::kRow + pose] : scratch.registers[operand.index];
   }
 
  private:

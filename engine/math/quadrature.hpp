@@ -105,7 +105,7 @@ struct Integral {
 };
 
 /// Regularity of the integrand between the endpoints of a subinterval: smooth, or continuous with kinks.
-enum class Between { smooth, kinks };
+enum class Regularity { smooth, kinks };
 
 /// QUADPACK's error estimate for a smooth integrand (Piessens et al. 1983),
 /// spread * min(1, (200 difference / spread)^1.5).
@@ -121,14 +121,14 @@ inline double quadpack_error(double difference, double spread) {
 /// @param value  result of the rule: the sum of weight * term
 template <class S>
 double rule_error(const NestedRule::Level& level, const std::array<S, NestedRule::kNodes>& term, double value,
-                  Between between = Between::smooth) {
+                  Regularity regularity = Regularity::smooth) {
   double embedded = 0, spread = 0;
   for (std::size_t i = 0; i < level.nodes; ++i) {
     embedded += level.fewer[i] * value_of(term[i]);
     spread += level.weight[i] * std::fabs(value_of(term[i]) - value);
   }
   const double difference = std::fabs(value - embedded);
-  return between == Between::kinks ? difference : quadpack_error(difference, spread);
+  return regularity == Regularity::kinks ? difference : quadpack_error(difference, spread);
 }
 
 /// A subinterval of the adaptive subdivision, with the integrand at its nodes and its integral.
@@ -144,25 +144,25 @@ struct QuadratureCell {
 /// kinks, where that estimate is too large by a factor of 100 or more, it is the difference to the embedded rule.
 struct Quadrature {
   const NestedRule& rule = kronrod_rule();
-  Between between = Between::smooth;
+  Regularity regularity = Regularity::smooth;
   int depth = 16;  ///< maximum number of successive bisections
 };
 
 /// Applies the next rule of the sequence to a subinterval.
 template <class S, class F>
-void apply_rule(const F& f, const Quadrature& how, QuadratureCell<S>& cell) {
-  const std::size_t known = cell.levels > 0 ? how.rule.level[cell.levels - 1].nodes : 0;
-  const NestedRule::Level& level = how.rule.level[cell.levels++];
+void apply_rule(const F& f, const Quadrature& settings, QuadratureCell<S>& cell) {
+  const std::size_t known = cell.levels > 0 ? settings.rule.level[cell.levels - 1].nodes : 0;
+  const NestedRule::Level& level = settings.rule.level[cell.levels++];
   Integral<S>& result = cell.integral;
   result.value = S(0.0);
   for (std::size_t i = 0; i < level.nodes; ++i) {
     if (i >= known) {
-      const auto [point, jacobian] = map_node(cell.interval, how.rule.node[i]);
+      const auto [point, jacobian] = map_node(cell.interval, settings.rule.node[i]);
       cell.term[i] = f(point) * jacobian;
     }
     result.value += cell.term[i] * level.weight[i];
   }
-  result.error = rule_error(level, cell.term, value_of(result.value), how.between);
+  result.error = rule_error(level, cell.term, value_of(result.value), settings.regularity);
   result.evaluations += static_cast<long>(level.nodes - known);
 }
 
@@ -191,15 +191,15 @@ void bisect_cell(std::vector<Cell>& cells, std::size_t index, const Integrate& i
 /// Refines a subinterval until its error estimate is at most `tolerance` (absolute): first by the higher rules, then by
 /// recursive bisection to at most the given depth. Decisions depend on values only, never on derivatives.
 template <class S, class F>
-void refine(const F& f, double tolerance, const Quadrature& how, int depth, QuadratureCell<S>& cell) {
-  while (!(cell.integral.error <= tolerance) && cell.levels < how.rule.level.size()) apply_rule(f, how, cell);
+void refine(const F& f, double tolerance, const Quadrature& settings, int depth, QuadratureCell<S>& cell) {
+  while (!(cell.integral.error <= tolerance) && cell.levels < settings.rule.level.size()) apply_rule(f, settings, cell);
   if (cell.integral.error <= tolerance || depth == 0) return;
   Integral<S> sum;
   sum.evaluations = cell.integral.evaluations;
   for (const Subinterval<S>& interval : halves(cell.interval)) {
     QuadratureCell<S> half{.interval = interval};
-    apply_rule(f, how, half);
-    refine(f, tolerance / 2, how, depth - 1, half);
+    apply_rule(f, settings, half);
+    refine(f, tolerance / 2, settings, depth - 1, half);
     sum += half.integral;
   }
   cell.integral = sum;
@@ -208,10 +208,10 @@ void refine(const F& f, double tolerance, const Quadrature& how, int depth, Quad
 /// Integral of f over one subinterval. @param tolerance  absolute
 template <class S, class F>
 Integral<S> integrate_interval(const F& f, const Subinterval<S>& interval, double tolerance,
-                               const Quadrature& how = {}) {
+                               const Quadrature& settings = {}) {
   QuadratureCell<S> cell{.interval = interval};
-  apply_rule(f, how, cell);
-  refine(f, tolerance, how, how.depth, cell);
+  apply_rule(f, settings, cell);
+  refine(f, tolerance, settings, settings.depth, cell);
   return cell.integral;
 }
 
@@ -222,7 +222,7 @@ Integral<S> integrate_interval(const F& f, const Subinterval<S>& interval, doubl
 /// @param scratch    scratch memory
 template <class S, class F>
 Integral<S> integrate(const F& f, const std::vector<Subinterval<S>>& intervals, double tolerance, double floor,
-                      std::vector<QuadratureCell<S>>& scratch, const Quadrature& how = {}) {
+                      std::vector<QuadratureCell<S>>& scratch, const Quadrature& settings = {}) {
   scratch.resize(intervals.size());
   const auto total = [&] {
     Integral<S> sum;
@@ -233,13 +233,13 @@ Integral<S> integrate(const F& f, const std::vector<Subinterval<S>>& intervals, 
     scratch[i].interval = intervals[i];
     scratch[i].levels = 0;
     scratch[i].integral = {};
-    apply_rule(f, how, scratch[i]);
+    apply_rule(f, settings, scratch[i]);
   }
   const Integral<S> sum = total();
   const double allowed = std::fmax(floor, tolerance * std::fabs(value_of(sum.value)));
   if (sum.error <= allowed) return sum;
   for (QuadratureCell<S>& cell : scratch)
-    refine(f, allowed / static_cast<double>(intervals.size()), how, how.depth, cell);
+    refine(f, allowed / static_cast<double>(intervals.size()), settings, settings.depth, cell);
   return total();
 }
 

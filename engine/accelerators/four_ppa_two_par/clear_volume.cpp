@@ -84,7 +84,7 @@ Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const Clear
 Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch) {
   constexpr double kInnerTolerance = 0.02;  // relative to the outer one: errors look like kinks to the outer rule
-  const Quadrature outer{.between = Between::kinks}, inner{.between = Between::kinks, .depth = 12};
+  const Quadrature outer{.regularity = Regularity::kinks}, inner{.regularity = Regularity::kinks, .depth = 12};
   static const GaussRule coarse = gauss_legendre(5);
   const Integral<double> guess = clear_volume_by_rule(d, test, over_y, coarse, coarse, scratch);  // finds the intervals
   double range = 0;

@@ -33,7 +33,8 @@ Compliance compliance_of(const std::vector<LimbSpring>& springs) {
 
 }  // namespace
 
-std::vector<NamedTerm> stiffness_quantities(const FirstOrderKinematics& at, const std::vector<LimbSpring>& springs,
+std::vector<NamedTerm> stiffness_quantities(const FirstOrderKinematics& kinematics,
+                                            const std::vector<LimbSpring>& springs,
                                             const std::optional<TermMatrix>& M_X) {
   const Compliance C = compliance_of(springs);
   std::vector<NamedTerm> found;
@@ -41,8 +42,8 @@ std::vector<NamedTerm> stiffness_quantities(const FirstOrderKinematics& at, cons
     if (T.rows() > 0)
       found.push_back({name, unit, text, C.denominator / eigenvalue_range(T * C.numerator * T.transposed())[1]});
   };
-  add(at.translation, "stiffness", "N/m", "minimum over all directions of force by deflection");
-  add(at.rotation, "rotational_stiffness", "N m/rad", "minimum over all directions of moment by rotation");
+  add(kinematics.translation, "stiffness", "N/m", "minimum over all directions of force by deflection");
+  add(kinematics.rotation, "rotational_stiffness", "N m/rad", "minimum over all directions of moment by rotation");
   if (M_X) {
     const TermMatrix L = cholesky_factor(*M_X);
     const Term omega = sqrt(C.denominator / greatest_eigenvalue(L.transposed() * C.numerator * L));

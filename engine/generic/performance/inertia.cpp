@@ -40,8 +40,8 @@ std::vector<std::vector<Term>> face_normals(const TermMatrix& W) {
 
 }  // namespace
 
-std::vector<NamedTerm> inertia_quantities(const FirstOrderKinematics& at, const TermMatrix& M_X) {
-  const TermMatrix& T = at.translation;
+std::vector<NamedTerm> inertia_quantities(const FirstOrderKinematics& kinematics, const TermMatrix& M_X) {
+  const TermMatrix& T = kinematics.translation;
   if (T.rows() == 0 || T.rows() > T.columns()) return {};
   const auto [adjugate, determinant] = inverse_of(M_X);
   const auto [least, greatest] = eigenvalue_range(T * adjugate * T.transposed());
@@ -51,13 +51,13 @@ std::vector<NamedTerm> inertia_quantities(const FirstOrderKinematics& at, const 
            least / greatest}};
 }
 
-std::optional<NamedTerm> acceleration_quantity(const FirstOrderKinematics& at, const TermMatrix& M_X,
+std::optional<NamedTerm> acceleration_quantity(const FirstOrderKinematics& kinematics, const TermMatrix& M_X,
                                                const std::vector<Term>& G_X, const std::vector<Term>& peak) {
-  const TermMatrix& T = at.translation;
+  const TermMatrix& T = kinematics.translation;
   if (T.rows() == 0) return {};
   const auto [adjugate, determinant] = inverse_of(M_X);
   const TermMatrix by_force = T * adjugate * (Term(M_X.graph(), 1.0) / determinant);
-  TermMatrix forces = at.J.transposed(), weight(M_X.graph(), G_X.size(), 1);
+  TermMatrix forces = kinematics.J.transposed(), weight(M_X.graph(), G_X.size(), 1);
   for (std::size_t i = 0; i < forces.rows(); ++i) {
     weight(i, 0) = G_X[i];
     for (std::size_t j = 0; j < forces.columns(); ++j) forces(i, j) = forces(i, j) * peak[j];

@@ -67,14 +67,14 @@ FirstOrderKinematics first_order_kinematics(Model& model) {
   return {J, without_zero_rows(translation), rotation, J.rows() == n ? std::optional(inverse_of(J)) : std::nullopt};
 }
 
-std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& at) {
-  const Term determinant = abs(at.inverse->determinant);
+std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& kinematics) {
+  const Term determinant = abs(kinematics.inverse->determinant);
   const bool turns = model.info.joints.front().turns();
   std::vector<NamedTerm> found;
   const auto add = [&](const TermMatrix& T, const std::string& velocity, const std::string& force,
                        const std::string& velocity_text, const std::string& force_text, bool is_rotation) {
     if (T.rows() == 0 || T.rows() > T.columns()) return;
-    const TermMatrix V = T * at.inverse->adjugate;
+    const TermMatrix V = T * kinematics.inverse->adjugate;
     const auto [least, greatest] = eigenvalue_range(V * V.transposed());
     const std::string unit = is_rotation == turns ? "1" : is_rotation ? "rad/m" : "m/rad";
     const std::string inverse_unit = is_rotation == turns ? "1" : is_rotation ? "m/rad" : "rad/m";
@@ -83,19 +83,19 @@ std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderK
     found.push_back(
         {force, inverse_unit, "minimum " + force_text + " for joint forces of norm 1", determinant / sqrt(greatest)});
   };
-  add(at.translation, "velocity_transmission", "force_transmission", "speed of the platform", "force at the platform",
-      false);
-  add(at.rotation, "angular_velocity_transmission", "moment_transmission", "angular speed of the platform",
+  add(kinematics.translation, "velocity_transmission", "force_transmission", "speed of the platform",
+      "force at the platform", false);
+  add(kinematics.rotation, "angular_velocity_transmission", "moment_transmission", "angular speed of the platform",
       "moment at the platform", true);
   return found;
 }
 
-std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& at, const JointErrors& errors) {
-  const Term determinant = abs(at.inverse->determinant);
+std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& kinematics, const JointErrors& errors) {
+  const Term determinant = abs(kinematics.inverse->determinant);
   std::vector<NamedTerm> found;
   const auto add = [&](const TermMatrix& T, const std::string& name, const std::string& unit, const std::string& text) {
     if (T.rows() == 0) return;
-    TermMatrix worst = T * at.inverse->adjugate, spread = worst;
+    TermMatrix worst = T * kinematics.inverse->adjugate, spread = worst;
     for (std::size_t i = 0; i < worst.rows(); ++i)
       for (std::size_t j = 0; j < worst.columns(); ++j) {
         worst(i, j) = worst(i, j) * errors.bound[j];
@@ -107,8 +107,8 @@ std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& at, const
     found.push_back({name, unit, "maximum first-order " + text, longest_sum(worst) / determinant});
     found.push_back({name + "_rms", unit, "root mean square of the first-order " + text, sqrt(variance) / determinant});
   };
-  add(at.translation, "accuracy", "m", "position error of the platform");
-  add(at.rotation, "accuracy_angle", "rad", "orientation error of the platform");
+  add(kinematics.translation, "accuracy", "m", "position error of the platform");
+  add(kinematics.rotation, "accuracy_angle", "rad", "orientation error of the platform");
   return found;
 }
 

@@ -37,8 +37,8 @@ FirstOrderKinematics first_order_kinematics(Model& model);
 /// `velocity_transmission` and `force_transmission`, and for rotations `angular_velocity_transmission` and
 /// `moment_transmission`: minimum singular values of V = T J^-1, which maps joint rates to velocities of the platform,
 /// and of its inverse, 1 / sigma_max(V). They are in the units of the joints, which have to be the same for all.
-/// @param at  must have an inverse
-std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& at);
+/// @param kinematics  must have an inverse
+std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& kinematics);
 
 /// Bounds of the errors that act along each joint: those of the joint itself, and those of dimensions, by the effect
 /// that they have on the joint coordinate at this pose.
@@ -51,8 +51,8 @@ struct JointErrors {
 ///
 /// The worst case is the maximum of |T J^-1 e| over |e_i| <= bound_i. Since the norm is convex, the maximum is at a
 /// vertex of the box of errors: all 2^(n-1) pairs of vertices are compared.
-/// @param at  must have an inverse
-std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& at, const JointErrors& errors);
+/// @param kinematics  must have an inverse
+std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& kinematics, const JointErrors& errors);
 
 /// One limb as a spring: the force along `row`, by the rates of the coordinates, compresses it by `compliance` times
 /// its value. The row is the power of a unit force, f . (dB/dx), so that the limb's stiffness in the coordinates is
@@ -66,19 +66,20 @@ struct LimbSpring {
 /// where the columns a_i of A^-1 are the displacements by which limb i alone gives way. With more limbs than
 /// coordinates it is (A^T diag(1 / c) A)^-1, for which all compliances have to be positive.
 /// With `M_X`, the inertia by the coordinates, also `natural_frequency` [Hz], the lowest one: det(K - omega^2 M_X) = 0.
-std::vector<NamedTerm> stiffness_quantities(const FirstOrderKinematics& at, const std::vector<LimbSpring>& springs,
+std::vector<NamedTerm> stiffness_quantities(const FirstOrderKinematics& kinematics,
+                                            const std::vector<LimbSpring>& springs,
                                             const std::optional<TermMatrix>& M_X);
 
 /// `effective_mass` [kg], the maximum over all directions of the mass that a force at the origin of the platform has to
 /// accelerate, 1 / lambda_min(T_v M_X^-1 T_v^T), and `effective_mass_ratio`, its minimum divided by its maximum.
-std::vector<NamedTerm> inertia_quantities(const FirstOrderKinematics& at, const TermMatrix& M_X);
+std::vector<NamedTerm> inertia_quantities(const FirstOrderKinematics& kinematics, const TermMatrix& M_X);
 
 /// `acceleration` [m/s^2]: the acceleration of the platform's origin that the drives reach in every direction, from
 /// rest and under gravity. The accelerations for |tau_i| <= peak_i are the zonotope of the vectors
 /// w_i = peak_i T_v M_X^-1 J_i^T, moved by the weight; the result is the radius of the largest ball about 0 inside,
 /// the minimum over its faces; it is negative where the drives do not hold the weight.
 /// @param peak  by joint: maximum force or torque
-std::optional<NamedTerm> acceleration_quantity(const FirstOrderKinematics& at, const TermMatrix& M_X,
+std::optional<NamedTerm> acceleration_quantity(const FirstOrderKinematics& kinematics, const TermMatrix& M_X,
                                                const std::vector<Term>& G_X, const std::vector<Term>& peak);
 
 }  // namespace pkm::generic
