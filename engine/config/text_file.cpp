@@ -19,8 +19,8 @@ std::string read_text_file(const std::string& path, const std::string& expected,
   std::string text;
   std::array<char, std::size_t{1} << 14> buffer;  // small, because clearing 16 MiB takes 10 ms
   do {
-    file.read(piece.data(), piece.size());
-    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+    file.read(buffer.data(), buffer.size());
+    text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
     if (text.size() > largest)
       throw ConfigError({path, 0, ""}, "more than " + std::to_string(largest >> 20) + " MiB", expected);
   } while (file);
