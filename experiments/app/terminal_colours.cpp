@@ -45,13 +45,13 @@ std::string coloured_label(Text line) {
 }
 
 /// A cell of a table with the spaces before it.
-struct Cell {
+struct TableCell {
   Text gap, text;
 };
 
 /// The cells of a line: they are separated by at least two spaces.
-std::vector<Cell> cells_of(Text line) {
-  std::vector<Cell> cells;
+std::vector<TableCell> cells_of(Text line) {
+  std::vector<TableCell> cells;
   while (!line.empty()) {
     const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
     const std::size_t end = std::min(line.find("  ", begin), line.size());
@@ -61,11 +61,11 @@ std::vector<Cell> cells_of(Text line) {
   return cells;
 }
 
-bool is_number(const Cell& cell) { return decimal_point_index(cell.text).has_value(); }
+bool is_number(const TableCell& cell) { return decimal_point_index(cell.text).has_value(); }
 
 /// @return true if the line seems to be the header of the row below: it has no numbers, and it either begins further to
 /// the right or has more than two cells while the row below has numbers
-bool is_header(const std::vector<Cell>& line, const std::vector<Cell>& next) {
+bool is_header(const std::vector<TableCell>& line, const std::vector<TableCell>& next) {
   if (next.empty() || next[0].gap.empty() || std::ranges::any_of(line, is_number)) return false;
   return line[0].gap.size() > next[0].gap.size() || (line.size() > 2 && std::ranges::any_of(next, is_number));
 }
@@ -79,10 +79,11 @@ Text style_of(Text cell) {
   return kPlain;
 }
 
-std::string coloured_row(const std::vector<Cell>& cells, const std::vector<Cell>& next) {
+std::string coloured_row(const std::vector<TableCell>& cells, const std::vector<TableCell>& next) {
   const bool header = is_header(cells, next);
   std::string text;
-  for (const Cell& cell : cells) text.append(cell.gap).append(styled(header ? kFaint : style_of(cell.text), cell.text));
+  for (const TableCell& cell : cells)
+    text.append(cell.gap).append(styled(header ? kFaint : style_of(cell.text), cell.text));
   return text;
 }
 

@@ -1,0 +1,45 @@
+// Converts nodes of an expression graph to statements of a programming language.
+//
+// Nodes that several others use become named constants, in topological order; a node that is used once is written where
+// it is used, unless the expression becomes long. The operations and their order are those of the graph, so that the
+// values have the same bits as the engine's, except for the elementary functions of the language's library.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/export/code/code_module.hpp"
+
+namespace pkm::code {
+
+/// How a language writes numbers, inputs and operations.
+struct Syntax {
+  std::string (*number)(double value, bool single_precision);
+  std::string (*input)(const InputPlace& place);
+  /// The operation on operands that are names, numbers or in parentheses. An expression with operators is in
+  /// parentheses.
+  std::string (*call)(const std::string& operation, const std::vector<std::string>& operands);
+  /// The definition of a constant: "const real t1 = a + b;".
+  std::string (*define)(const std::string& name, const std::string& expression);
+};
+
+struct Statements {
+  std::vector<std::string> definitions;
+  std::vector<std::string> values;  ///< expressions of the roots
+};
+
+/// @param roots  nodes of module.graph
+Statements statements_of(const Module& module, const std::vector<expression::Node>& roots, const Syntax& syntax);
+
+/// A number with the fewest digits that give it back: "0.1", "1e-05".
+std::string shortest_number(double value);
+/// The text with every `from` replaced.
+std::string with_replacements(std::string text, const std::string& from, const std::string& to);
+/// The expression without the parentheses around it.
+std::string without_parentheses(const std::string& expression);
+
+/// "x: x [m], y [m]": names and units of the elements of an array, for comments.
+std::string elements_text(const std::vector<NamedUnit>& elements);
+
+}  // namespace pkm::code
