@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Builds the packages in packages/: one for Debian 12, and an archive for other distributions that includes the required
-# libraries. Both are without MPI; for a cluster, build from source.
+# Builds the packages in packages/: one for Debian 12, an archive for other distributions that includes the required
+# libraries, and a wheel of the Python package with these libraries. All are without MPI; for a cluster, build from
+# source.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source experiments/debian-packages.sh
 
-pkm_install_missing "${pkm_build_packages[@]}" dpkg-dev file
+pkm_install_missing "${pkm_build_packages[@]}" dpkg-dev file python3
 
 build=build/package
 for bundle in OFF ON; do
@@ -13,5 +14,8 @@ for bundle in OFF ON; do
   cmake --build --preset package --parallel "$(nproc)"
   cpack --config $build/CPackConfig.cmake -B packages
 done
-rm -rf packages/_CPack_Packages
+cmake --install $build --prefix $build/tree > $build/install.log  # that of the archive
+version=$(sed -n 's/^set(CPACK_PACKAGE_VERSION "\(.*\)")/\1/p' $build/CPackConfig.cmake)
+python3 bindings/python/make_wheel.py $build/tree "$version" packages
+rm -rf packages/_CPack_Packages $build/tree
 ls -l packages

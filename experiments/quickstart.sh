@@ -16,3 +16,4 @@ study=$build/paper-problem.h5
 
 echo
 printf 'Show the result again with:  %q show %q\n' "$PWD/$build/bin/pkmopt" "$PWD/$study"
+printf 'Use it from Python with:     PYTHONPATH=%q python3 -c "import pkmopt"\n' "$PWD/bindings/python"

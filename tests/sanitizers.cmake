@@ -3,7 +3,7 @@
 # Watched and unoptimised, they take some twenty times as long.
 set(PKM_FILES_OF_RELEASE
   contracts/same_bits_contract contracts/derivative_contract contracts/workspace_fields_contract crr_cru/derivatives
-  generic/bounded_columns accelerators/agreement accelerators/golden_grids generic/sample_slopes
+  cli/generate cli/table_input generic/bounded_columns accelerators/agreement accelerators/golden_grids generic/sample_slopes
   four_ppa_two_par/derivatives hybrid/breaks storage/h5py cli/changed_study cli/crr_cru cli/mechanism_file_study
   cli/expression cli/extension cli/golden cli/hybrid cli/messages cli/next_step cli/corrupted_file cli/outputs
   cli/sensitivity cli/stop cli/tool_error cli/diagnosis)
@@ -46,7 +46,11 @@ set(PKM_TESTS_OF_RELEASE
   TooManyCellsAreRejected ADeviationFromTheRecord LongLinesTakeNoTime AHigherEvaluationLimitResumes ThreadsDoNotMatter/ipopt
   ExampleFindsTheLargestWorkspace OfRandomDesignsAreThoseOfSlices OfLimitsOfTwoCoordinates AgreeWithDenseSlices
   OfRandomSolidsIs HaveDerivativesThatAgreeWithDifferences/rotarydelta ExampleOfAccuracyReaches ExampleOfStiffnessEnds
-  ExampleOfTransmissionImproves Performance.HasDerivatives
+  ExampleOfTransmissionImproves Performance.HasDerivatives AlongTheOutermostCoordinateAre EachFieldHasItsOwnMap
+  LimitsAreThresholdsOfTheCommandLine BoundsHoldTheExactVolumesOfTheBuiltIn MapShowsAFieldWithUnit
+  HybridVoxels.CountsAndIndices Quantity.IsAFieldOfTheWorkspace Quantity.IsPrintedWith RecognisesPlanesSpheres
+  OnlyTheFirstMotionsAreEmbedded SaysWhetherItsVolumeDepends HasTheAccuracyForJointErrors FromInertiaInVoxels
+  CallsLeaveNoMemoryBehind
   NanIsFailedAndNeverBest/ipopt RespectsBounds/ipopt CatalogueMdIsUpToDate NumberOfThreadsFromEnvironment)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.

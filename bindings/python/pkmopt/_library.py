@@ -137,7 +137,7 @@ library.pkmopt_free.argtypes = [ctypes.c_void_p]
 library.pkmopt_free.restype = None
 
 _evaluate = library.pkmopt_study_evaluate
-_evaluate.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_int] + 5 * [ctypes.c_void_p]
+_evaluate.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_int, *5 * [ctypes.c_void_p]]
 
 version: str = library.pkmopt_version().decode()
 
@@ -263,7 +263,7 @@ def text(name: str, *arguments: Any) -> str:
 
 def _taken(pointer: ctypes.c_void_p) -> str:
     try:
-        return ctypes.string_at(pointer).decode("utf-8")  # type: ignore[arg-type]
+        return ctypes.string_at(pointer).decode("utf-8")
     finally:
         library.pkmopt_free(pointer)
 
@@ -281,7 +281,7 @@ def taken_array(pointer: ctypes.c_void_p, shape: Tuple[int, ...], dtype: Any) ->
     """A copy of an allocated array, which is freed."""
     try:
         count = int(np.prod(shape))
-        bytes_ = ctypes.string_at(pointer, count * np.dtype(dtype).itemsize)  # type: ignore[arg-type]
+        bytes_ = ctypes.string_at(pointer, count * np.dtype(dtype).itemsize)
         return np.frombuffer(bytes_, dtype=dtype).reshape(shape).copy()
     finally:
         library.pkmopt_free(pointer)

@@ -64,20 +64,31 @@ class Links(NamedTuple):
     radius: Array  #: [count, links]
 
 
-class Fields(NamedTuple):
-    """Quantities on a grid over a workspace."""
+class Fields:
+    """Quantities on a grid over a workspace; ``fields["lti"]`` is that of a name."""
 
-    axes: Dict[str, Array]  #: centres of the cells along each swept coordinate
-    fixed: Dict[str, float]  #: values of the other coordinates
-    values: Dict[str, Array]  #: by name, each with one dimension per axis; NaN where undefined
-    units: Dict[str, str]
-    volume: float  #: of the feasible cells
-    volume_unit: str
+    def __init__(self, info: Mapping[str, Any], values: Array) -> None:
+        #: centres of the cells along each swept coordinate
+        self.axes: Dict[str, Array] = {}
+        for axis in info["axes"]:
+            step = (axis["upper"] - axis["lower"]) / axis["cells"]
+            self.axes[axis["name"]] = axis["lower"] + step * (np.arange(axis["cells"]) + 0.5)
+        #: values of the other coordinates
+        self.fixed: Dict[str, float] = {fixed["name"]: fixed["value"] for fixed in info["fixed"]}
+        #: by name, each with one dimension per axis; NaN where undefined
+        self.values: Dict[str, Array] = {field["name"]: values[i] for i, field in enumerate(info["fields"])}
+        self.units: Dict[str, str] = {field["name"]: field["unit"] for field in info["fields"]}
+        #: of the feasible cells
+        self.volume: float = info["volume"]
+        self.volume_unit: str = info["volume_unit"]
 
     def __getitem__(self, name: str) -> Array:
         if name not in self.values:
             raise KeyError("%r; expected one of %s" % (name, ", ".join(self.values)))
         return self.values[name]
+
+    def __repr__(self) -> str:
+        return "<Fields over %s: %s>" % (", ".join(self.axes), ", ".join(self.values))
 
 
 class Surface(NamedTuple):
@@ -477,19 +488,7 @@ class Workspace:
         )
         info = lib.taken_json(description)
         shape = tuple(axis["cells"] for axis in info["axes"])
-        array = lib.taken_array(values, (len(info["fields"]),) + shape, np.float64)
-        axes = {}
-        for axis in info["axes"]:
-            step = (axis["upper"] - axis["lower"]) / axis["cells"]
-            axes[axis["name"]] = axis["lower"] + step * (np.arange(axis["cells"]) + 0.5)
-        return Fields(
-            axes,
-            {fixed["name"]: fixed["value"] for fixed in info["fixed"]},
-            {field["name"]: array[i] for i, field in enumerate(info["fields"])},
-            {field["name"]: field["unit"] for field in info["fields"]},
-            info["volume"],
-            info["volume_unit"],
-        )
+        return Fields(info, lib.taken_array(values, (len(info["fields"]),) + shape, np.float64))
 
     def surface(self, threads: int = 0) -> Surface:
         """The boundary surface; the workspace is over three coordinates."""

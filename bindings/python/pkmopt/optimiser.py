@@ -168,8 +168,8 @@ class Optimiser:
         counted = [None] * 4
         lib.call("pkmopt_optimiser_evaluations", self._handle, ctypes.byref(rows), *counted, ctypes.byref(best))
         n = rows.value
-        found = [np.empty((n, width)) for width in (self._variables, self._objectives, self._constraints)]
-        status = np.empty(n, dtype=np.uint8)
+        found: List[Array] = [np.empty((n, w)) for w in (self._variables, self._objectives, self._constraints)]
+        status: Any = np.empty(n, dtype=np.uint8)
         lib.call(
             "pkmopt_optimiser_evaluations",
             self._handle,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, List, Optional
 
 import numpy as np
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def _axes(axes: Any, projection: Optional[str] = None) -> Any:
     if axes is not None:
         return axes
-    from matplotlib import pyplot
+    from matplotlib import pyplot  # type: ignore[import]
 
     return pyplot.figure().add_subplot(projection=projection)
 
@@ -54,8 +54,8 @@ def slice(fields: "Fields", name: str, axes: Any = None, **at: float) -> Any:
     """A field in a plane of the workspace: ``at`` gives the coordinates that are not drawn, ``z=-0.4``. A workspace
     over two coordinates needs none."""
     axes = _axes(axes)
-    values = fields[name]
-    drawn = []
+    values: Any = fields[name]
+    drawn: List[str] = []
     for axis, centres in reversed(list(enumerate(fields.axes.items()))):
         coordinate, cells = centres
         if coordinate in at:
@@ -69,7 +69,7 @@ def slice(fields: "Fields", name: str, axes: Any = None, **at: float) -> Any:
             "at gives %s; expected all but two of %s" % (", ".join(at) or "nothing", ", ".join(fields.axes))
         )
     x, y = (fields.axes[coordinate] for coordinate in drawn)
-    image = axes.pcolormesh(x, y, np.ma.masked_invalid(values).T, shading="nearest")
+    image = axes.pcolormesh(x, y, values.T, shading="nearest")
     axes.figure.colorbar(image, ax=axes, label=_label(name, fields.units[name]))
     axes.set_xlabel(drawn[0])
     axes.set_ylabel(drawn[1])

@@ -327,7 +327,8 @@ class ScipyProblem:
         return self._sign * float(self._evaluated(x).objectives[0])
 
     def jac(self, x: Any) -> Array:
-        return self._sign * self._differentiated(x).objectives[0]
+        slopes: Array = self._sign * self._differentiated(x).objectives[0]
+        return slopes
 
     def margins(self, x: Any) -> Array:
         return self._evaluated(x).constraints
@@ -484,12 +485,11 @@ class Results:
         number = self._stage(stage)
         study = self.study
         count = int(self.stages[number]["rows"])
-        blocks = [
-            np.empty((count, len(names)))
-            for names in (study.variables, study.objectives, study.constraints, study.outputs)
-        ]
-        status, generation = np.empty(count, dtype=np.uint8), np.empty(count, dtype=np.int64)
-        seconds = np.empty(count)
+        widths = [len(study.variables), *study._widths]
+        blocks: List[Array] = [np.empty((count, width)) for width in widths]
+        status: Any = np.empty(count, dtype=np.uint8)
+        generation: Any = np.empty(count, dtype=np.int64)
+        seconds: Array = np.empty(count)
         lib.call(
             "pkmopt_results_evaluations",
             self._open_handle(),
@@ -530,7 +530,7 @@ class Results:
 
     def to_dataframe(self, stage: int = -1) -> Any:
         """The evaluations as a pandas.DataFrame."""
-        import pandas
+        import pandas  # type: ignore[import]
 
         return pandas.DataFrame.from_records(self.evaluations(stage))
 
