@@ -19,7 +19,7 @@ struct Bounds {
 Bounds bounds(const Options& options) {
   if (options.has("min") && options.has("max"))
     throw std::invalid_argument(
-        "found both min and max; a constraint has one of them (write two [[constraint]] tables)");
+        "found both min and max; give one of them, and write a second [[constraint]] for the other");
   Bounds bounds;
   if (options.has("max")) bounds.max = options.number("max");
   if (options.has("min")) bounds.min = options.number("min");

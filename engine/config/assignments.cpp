@@ -49,7 +49,7 @@ std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::st
       const std::string name{trimmed(std::string_view(item).substr(0, equals))};
       const Assignable* const target = find_named(known, name);
       if (!target && known.empty())
-        throw ConfigError(place, "the unknown name '" + name + "'", "no name, for there is none");
+        throw ConfigError(place, "the unknown name '" + name + "'", "no name, because there is nothing to assign");
       if (!target)
         throw ConfigError(place, "the unknown name '" + name + "'", "one of " + join(names), nearest_name(name, names));
       auto& text = texts[static_cast<std::size_t>(target - known.data())];
@@ -204,7 +204,7 @@ std::vector<std::optional<std::array<double, 2>>> parse_some_ranges(const std::v
     const std::string found = known[i].name + "=" + *texts[i];
     if (ends.size() != 2) throw ConfigError(place_of(option), found, "name=from:to");
     const std::array range = {parse_value(ends[0], option, known[i]), parse_value(ends[1], option, known[i])};
-    if (!(range[0] < range[1])) throw ConfigError(place_of(option), found, "a range whose first end is the lower one");
+    if (!(range[0] < range[1])) throw ConfigError(place_of(option), found, "a range from:to with from < to");
     ranges[i] = range;
   }
   return ranges;

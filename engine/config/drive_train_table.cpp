@@ -14,8 +14,8 @@ void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
   if (!no_forces) return;
   for (const char* const key : {"rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"})
     if (const auto given = table.find(key))
-      throw given->refusal("inertias and losses of drive trains need dynamics, and " + *no_forces +
-                           "; gear and lead do without");
+      throw given->refusal("inertias and losses of drive trains need dynamics, but " + *no_forces +
+                           "; gear and lead need none");
 }
 
 /// Whether the table has only keys that quantities of the pose need: stiffness and peak_force.
@@ -30,9 +30,11 @@ DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
   DriveTrain train;
   train.ratio = table.number_at("gear");
   const auto lead = table.find("lead");
-  if (turns && lead) throw lead->refusal("the joint " + joint.name + " turns; a lead is that of a sliding joint");
+  if (turns && lead)
+    throw lead->refusal("the joint " + joint.name + " is revolute; the key lead applies to prismatic joints only");
   if (!turns) {
-    const ConfigValue way = table.at("lead", "how far " + joint.name + " goes in a turn of its screw: \"10 mm\"");
+    const ConfigValue way =
+        table.at("lead", "the travel of " + joint.name + " per revolution of its screw, such as \"10 mm\"");
     train.ratio *= 2 * kPi / way.number();
   }
   train.rotor = table.number_at("rotor_inertia");
@@ -71,7 +73,8 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
   DriveTrains all;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!trains[i])
-      throw tables.front().refusal("the joint " + joints[i].name + " has no drive train; all or none have");
+      throw tables.front().refusal("the joint " + joints[i].name +
+                                   " has no drive train; give one for every joint, or none");
     all.push_back(*trains[i]);
   }
   draft.parts.mechanism = with_drive_trains(draft.parts.mechanism, std::move(all));

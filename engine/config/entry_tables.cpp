@@ -26,7 +26,7 @@ std::string entry_name(const ConfigValue& table, const std::string& type, const 
   if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
     throw given->error("a name of letters, digits, '-', '_' and '.'");
   if (find_named(before, name))
-    throw table.refusal("there is already one called '" + name + "'; tell them apart with name = \"...\"");
+    throw table.refusal("the name '" + name + "' is already used; give this one another name with name = \"...\"");
   return name;
 }
 
@@ -53,14 +53,15 @@ std::string default_name(const ObjectiveEntry& entry, const Options& options) {
 void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest& request) {
   if (own.needs_jacobian()) {
     if (request.needs_jacobian() && own.characteristic_length != request.characteristic_length)
-      throw table.refusal("conditioning is requested with two different characteristic lengths; a study has one");
+      throw table.refusal(
+          "conditioning is requested with two different characteristic lengths; use one length in all tables");
     request.characteristic_length = own.characteristic_length;
   }
   const auto uses_mode = [](const FieldRequest& of) { return of.needs_inertia() || of.poses; };
   if (uses_mode(own)) {
     if (uses_mode(request) && own.mode != request.mode)
-      throw table.refusal("the workspace is requested in two different working modes, " + request.mode + " and " +
-                          own.mode + "; an analysis has one (name another [[region]] for the other)");
+      throw table.refusal("the same workspace analysis is requested in two working modes, " + request.mode + " and " +
+                          own.mode + "; use a [[region]] for one of them");
     request.mode = own.mode;
   }
   request.poses = request.poses || own.poses;
@@ -72,9 +73,10 @@ std::size_t analysis_index(const ConfigValue& table, const ObjectiveEntry& entry
   const auto named = table.find("region");
   if (!named) return 0;
   if (!entry.uses_workspace)
-    throw named->refusal("the objective " + entry.name + " reads no survey, so it has no region");
+    throw named->refusal("the objective " + entry.name +
+                         " does not use a workspace analysis, so the key region has no effect");
   const auto names = names_of(draft.parts.regions);
-  if (names.empty()) throw named->refusal("the study names no [[region]]");
+  if (names.empty()) throw named->refusal("the study has no [[region]]");
   return static_cast<std::size_t>(std::ranges::find(names, named->word(names)) - names.begin()) + 1;
 }
 
@@ -94,7 +96,7 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
   const std::size_t survey = analysis_index(table, entry, draft);
   if (survey > 0 && options.has("motion"))
     throw table.find("region")->refusal("the objective " + entry.name +
-                                        " is evaluated along a motion or in a region; found both");
+                                        " is evaluated either along a motion or in a region; give one of them");
   Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
   const EntryContext context{*draft.parts.mechanism, region ? region->plan : draft.parts.plan, options,
                              draft.parts.regions, draft.study.motions};
@@ -135,9 +137,9 @@ void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entr
   const ConfigValue table = value.described_by(bounded_objective_keys(), entry.options);
   const auto least = table.find("min"), greatest = table.find("max");
   if (!least && !greatest)
-    throw table.refusal("the objective " + entry.name + " becomes a constraint by min = .. or max = ..; give one");
+    throw table.refusal("give min = .. or max = ..: the objective " + entry.name + " is used as a constraint");
   if (least && greatest)
-    throw table.refusal("found both min and max; a constraint has one of them (write two [[constraint]] tables)");
+    throw table.refusal("found both min and max; give one of them, and write a second [[constraint]] for the other");
   NamedQuantity made = make_objective(table, entry, draft.study.constraints, draft);
   const double bound = (least ? least : greatest)->number(made.unit);
   (least ? made.lower_bound : made.upper_bound) = bound;
@@ -249,7 +251,7 @@ void read_pose_constraint(const ConfigValue& value, const ConstraintEntry& entry
     all.derived[i] = own.derived[i];
     set.push_back(info.limits[i].name);
   }
-  const std::string role = set.empty() ? "sets no threshold" : "cuts the workspace by " + join(set);
+  const std::string role = set.empty() ? "sets no threshold" : "restricts the workspace by " + join(set);
   draft.study.constraints.push_back({entry.name, entry.name, role, specs, options});
 }
 
@@ -282,7 +284,7 @@ void check_thresholds(const ConfigValue& root, const StudyDraft& draft) {
   for (std::size_t i = 0; i < limits.size(); ++i)
     if (const auto varied = variables->find(limits[i].name); varied && draft.parts.plan.limits.given[i])
       throw varied->refusal("the threshold " + limits[i].name + " is set in " + draft.study.limit_origins[i] +
-                            "; it can either vary or be set");
+                            ", so it cannot be a variable");
 }
 
 }  // namespace

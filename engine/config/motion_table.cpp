@@ -52,7 +52,7 @@ Pace pace_of(const ConfigValue& table, const Pace& general) {
   const bool accelerates = std::min(acceleration, angular_acceleration) < kUnbounded,
              bounded = accelerates || std::min(speed, angular_speed) < kUnbounded;
   if (pace.time && bounded)
-    throw table.find("time")->refusal(std::string("the time follows from the peak ") +
+    throw table.find("time")->refusal(std::string("the time of the move also follows from the peak ") +
                                       (accelerates ? "acceleration" : "speed") + "; give one of them");
   return pace.time || bounded ? pace : general;
 }
@@ -65,12 +65,15 @@ double time_of(const ConfigValue& point, const Coordinates& names, const Pose<do
   for (std::size_t i = 0; i < names.size(); ++i)
     if (to[i] - from[i] != 0) (names[i].turns() ? turns : moves) = true;
   const PeakRates& most = pace.most;
-  if (!moves && !turns) throw point.refusal("it is the point before; give the time to stay there as its wait");
+  if (!moves && !turns)
+    throw point.refusal("this point equals the previous one; to stay there, give the previous point a wait = ..");
   if (moves && std::min(most.acceleration, most.speed) == kUnbounded)
-    throw point.refusal("nothing says how fast to move there; give time = .., acceleration = .. or speed = ..");
+    throw point.refusal(
+        "the duration of the move to this point is not determined; give time = .., acceleration = .. or speed = ..");
   if (turns && !moves && std::min(most.angular_acceleration, most.angular_speed) == kUnbounded)
     throw point.refusal(
-        "nothing says how fast to turn there; give time = .., angular_acceleration = .. or angular_speed = ..");
+        "the duration of the rotation to this point is not determined; give time = .., angular_acceleration = .. or "
+        "angular_speed = ..");
   return min_move_duration(law, names, from, to, most);
 }
 
@@ -80,7 +83,7 @@ std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Coordi
   const ConfigValue list = table.at("points", expected);
   std::vector<ConfigValue> points;
   for (const ConfigValue& point : list.elements(expected)) points.push_back(point.table(coordinate_keys(point, names)));
-  if (points.size() < 2) throw list.error("two points at least");
+  if (points.size() < 2) throw list.error("at least two points");
   const TimeLaw law = law_of(table);
   const Pace general = pace_of(table, {});
   Names of_start = names_of(names);
@@ -110,7 +113,7 @@ std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Coordi
 std::shared_ptr<const Motion> read_oscillation(const ConfigValue& table, const Coordinates& names) {
   const SpaceAxes axes = space_axes(names);
   if (!axes.x && !axes.y && !axes.z)
-    throw table.refusal("an oscillation moves x, y and z, and the mechanism's poses have none of them");
+    throw table.refusal("an oscillation needs a coordinate x, y or z, and the mechanism has none of them");
   return oscillation(axes, pose_at(table, names), table.number_at("amplitude"), table.number_at("period"),
                      table.number_at("cycles"));
 }
@@ -131,7 +134,7 @@ std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, cons
   cycle.axes = space_axes(names);
   const auto expect = [&table](const std::optional<std::size_t>& axis, const std::string& name, double way) {
     if (!axis && way != 0)
-      throw table.refusal("this pick-and-place moves " + name + ", which the mechanism's poses lack");
+      throw table.refusal("this pick-and-place changes " + name + ", but the mechanism has no such coordinate");
   };
   const auto [sine, cosine] = sincos(cycle.direction);
   expect(cycle.axes.z, "z", cycle.lift);

@@ -44,13 +44,13 @@ void read_obstacles(const ConfigValue& root, StudyDraft& draft) {
   WorkspacePlan& plan = draft.parts.plan;
   const auto limit = std::ranges::find(info.limits, "clearance", &LimitInfo::group);
   if (limit == info.limits.end())
-    throw tables.front().refusal("links keep clear of obstacles, and mechanism " + info.name +
-                                 " has no links with a radius that could meet anything");
+    throw tables.front().refusal("obstacles need links with a radius, and mechanism " + info.name +
+                                 " has none that could collide with them");
   for (const ConfigValue& table : tables) plan.limits.obstacles.push_back(read_obstacle(table, plan.limits.obstacles));
   if (!requires_clearance(info, plan))
     draft.study.warnings.push_back(
-        "the obstacles cut nothing from the workspace, because the study asks for no clearance; [[constraint]] type = "
-        "\"clearance\" does");
+        "the obstacles do not restrict the workspace, because no clearance is required; add a [[constraint]] with "
+        "type = \"clearance\"");
 }
 
 }  // namespace pkm

@@ -40,7 +40,7 @@ void read_run_tables(const ConfigValue& root, StudyDraft& draft) {
     if (const auto round = table->find("round")) {
       // The step has the unit that all variables share; "1" if their units differ.
       const auto& variables = draft.parts.space.variables();
-      if (variables.empty()) throw round->refusal("a design is rounded in its variables, and the study has none");
+      if (variables.empty()) throw round->refusal("only [variables] are rounded, and the study has none");
       std::string& unit = draft.study.round_unit = variables.front().unit;
       for (const auto& variable : variables)
         if (variable.unit != unit) unit = "1";
@@ -89,7 +89,7 @@ void warn_of_empty_workspace(Study& study) {
     const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
     const FixedCoordinate fixed = how_fixed(plan, coordinate);
     if (fixed.kind == Kind::value) where += " on the plane " + axis.name + " = " + with_unit(fixed.value, axis.unit);
-    if (fixed.kind == Kind::default_value) where += " on its middle plane";
+    if (fixed.kind == Kind::default_value) where += " at the default value of " + axis.name;
     if (fixed.kind == Kind::integrated) where += " at any " + axis.name;
   }
   study.warnings.push_back("the workspace of " + what + " is empty: no pose" + where +
@@ -187,7 +187,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
                       const std::optional<SourceText>& description, const StudyChanges& changes,
                       ImpliedConstraints implied) {
   const auto known = [&](const ConfigValue& file) {
-    if (!description) throw file.refusal("what the mechanism's file holds is not known here");
+    if (!description) throw file.refusal("the contents of the mechanism file are not available here");
     return *description;
   };
   return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, known, changes, implied);

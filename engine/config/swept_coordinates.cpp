@@ -89,7 +89,7 @@ void read_sweep(const ConfigValue& list, const MechanismInfo& info, WorkspacePla
   for (const Sweep& sweep : info.sweeps) offered.push_back(quoted_list(coordinate_names(info, sweep.swept)));
   constexpr std::size_t kMostOffered = 8;
   if (offered.size() > kMostOffered) offered = {"one to three coordinates"};
-  throw list.error("what the mechanism " + info.name + " has a survey of: " + join(offered, " or "));
+  throw list.error("coordinates that the mechanism " + info.name + " can sweep together: " + join(offered, " or "));
 }
 
 void read_fixed_coordinates(const ConfigValue& table, const MechanismInfo& info, bool of_region, WorkspacePlan& plan) {

@@ -60,7 +60,7 @@ void override_cells(StudyDraft& draft) {
     if (changes.cells.empty()) continue;
     const SourceLocation place{"", 0, "--cells"};
     if (!plan.voxels())
-      throw ConfigError(place, join(changes.cells) + " for a study by exact columns, which has no cells",
+      throw ConfigError(place, join(changes.cells) + " although the study uses exact columns, which have no cells",
                         "a study whose [workspace] has method = \"voxels\"");
     const std::vector<std::string> names = names_with_cells(draft.info(), plan);
     const std::vector<std::int64_t> cells = parse_cells(changes.cells, names);
@@ -86,7 +86,7 @@ Box read_box(const ConfigValue& given, const MechanismInfo& info, const std::vec
       if (unit == "rad" && std::fabs(value) > kPi) throw ends[end].error(angle_expectation(ends[end], value));
       box[k][end] = value;
     }
-    if (!(box[k][0] < box[k][1])) throw range.error("a range whose first end is the lower one");
+    if (!(box[k][0] < box[k][1])) throw range.error("a range [from, to] with from < to");
   }
   return box;
 }
@@ -97,7 +97,7 @@ void read_nodes(const ConfigValue& given, const MechanismInfo& info, const Sweep
   const std::vector<std::string> names = coordinate_names(info, others);
   const std::string& along = info.coordinates[static_cast<std::size_t>(sweep.column)].name;
   if (const auto own = given.table().find(along))
-    throw own->refusal("columns are lines along " + along + ", whose nodes cannot be set; expected " + join(names));
+    throw own->refusal("columns run along " + along + ", which has no nodes; expected " + join(names));
   const ConfigValue table = given.table_of_names(names);
   for (std::size_t k = 0; k < names.size(); ++k)
     columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer());
@@ -105,14 +105,14 @@ void read_nodes(const ConfigValue& given, const MechanismInfo& info, const Sweep
 
 /// Reads `certified`: true, or the relative gap of the bounds.
 std::optional<double> read_certified(const ConfigValue& value, const Mechanism& mechanism) {
-  const std::string expected = "true, false, or the gap of the bounds: a number between 0 and 2";
+  const std::string expected = "true, false, or the relative gap of the bounds, a number between 0 and 2";
   if (value.is_flag() && !value.flag()) return {};
   if (value.is_text() || value.is_list() || value.is_table()) throw value.error(expected);
   const double gap = value.is_flag() ? kDefaultGap : value.number("1");
   if (!(gap > 0 && gap < 2)) throw value.error(expected);
   if (!mechanism.bounds())
     throw value.refusal(
-        "certified bounds are of mechanisms from files, whose formulas can be computed over intervals; " +
+        "certified bounds evaluate the formulas of a mechanism file in interval arithmetic, but mechanism " +
         mechanism.info().name + " is written in C++");
   return gap;
 }
@@ -122,7 +122,7 @@ std::optional<double> read_certified(const ConfigValue& value, const Mechanism& 
 /// @return time limit of the exact values [s]; 0: they are not computed
 double read_exact(const ConfigValue& value, const Mechanism& mechanism, double default_seconds) {
   if (value.is_flag() && !value.flag()) return 0;
-  const std::string expected = "true, false, or the time that exact values may take: a time > 0 s, such as \"10 s\"";
+  const std::string expected = "true, false, or a time limit of the exact values > 0 s, such as \"10 s\"";
   if (value.is_list() || value.is_table()) throw value.error(expected);
   const double seconds = value.is_flag() ? default_seconds : value.number("s");
   if (!(seconds > 0)) throw value.error(expected);
@@ -171,7 +171,7 @@ std::vector<std::string> fixable_coordinates(const MechanismInfo& info) {
 }
 
 ConfigError error_of_other_method(const ConfigValue& key, const WorkspacePlan& plan) {
-  return key.refusal(std::string("this key belongs to method = ") +
+  return key.refusal(std::string("this key requires method = ") +
                      (plan.voxels() ? "\"columns\", but the study's method is \"voxels\""
                                     : "\"voxels\", but the study's method is \"columns\""));
 }
@@ -188,7 +188,7 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
   const auto tolerance = table.find("tolerance"), nodes = table.find("nodes");
   const double relative = table.number_at("tolerance");
   if (tolerance && nodes)
-    throw nodes->refusal("either tolerance (" + tolerance->line() + ") or nodes set the accuracy; give one of them");
+    throw nodes->refusal("tolerance (" + tolerance->line() + ") and nodes both set the accuracy; give one of them");
   if (const auto list = table.find("sweep")) read_sweep(*list, info, plan);
   read_fixed_coordinates(table, info, of_region,
                          plan);  // determines the swept coordinates, if the study does not name them

@@ -98,7 +98,7 @@ TEST_F(ChangedStudy, RejectsInvalidChanges) {
       << "[mechanism]\ntype = \"4ppa-2par\"\n[[objective]]\ntype = \"workspace-volume\"\n"
          "[variables]\na = { min = 0.15, max = 0.3 }\n[[stage]]\noptimiser = \"sweep\"\n";
   EXPECT_EQ(run({"check", "columns.toml", "--cells", "40"}), 2);
-  EXPECT_THAT(output_, HasSubstr("--cells: found 40 for a study by exact columns, which has no cells"));
+  EXPECT_THAT(output_, HasSubstr("--cells: found 40 although the study uses exact columns, which have no cells"));
   EXPECT_EQ(run({"check", kFiles + "/par4.toml", "--cells", "40"}), 2);
   EXPECT_THAT(output_, HasSubstr("--cells 40: changes a study, and this is a mechanism file"));
 }

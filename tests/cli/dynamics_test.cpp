@@ -149,7 +149,7 @@ TEST(CliCoupling, SeveralAnglesAndInvalidArguments) {
   EXPECT_NEAR(found["statistics"]["mean"]["worst"], mean, 1e-12) << "all cells are feasible at each angle";
   EXPECT_EQ(found["each"][1]["phi"], 0.0);
   EXPECT_EQ(pkmopt({"coupling", "quadrupteron", "--box", "x=0.1:0"}).err,
-            "pkmopt: --box: found x=0.1:0; expected a range whose first end is the lower one\n");
+            "pkmopt: --box: found x=0.1:0; expected a range from:to with from < to\n");
   EXPECT_THAT(pkmopt({"coupling", "quadrupteron", "--phi", "0:1:x"}).err, HasSubstr("from:to:count"));
   EXPECT_EQ(pkmopt({"coupling", "4ppa-2par", "--phi", "0"}).err,
             "pkmopt: --phi: phi is not a fixed coordinate; fixed: y\n");

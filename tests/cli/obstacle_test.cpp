@@ -67,8 +67,9 @@ TEST_F(Obstacle, IsListedByCheck) {
   EXPECT_EQ(printed[1]["radius"], 0.04);
   write("s.toml", study(kDeltaFile, kTable));
   ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
-  EXPECT_THAT(output_, HasSubstr("warning: the obstacles cut nothing from the workspace, because the study asks for no "
-                                 "clearance; [[constraint]] type = \"clearance\" does"));
+  EXPECT_THAT(output_,
+              HasSubstr("warning: the obstacles do not restrict the workspace, because no clearance is required; "
+                        "add a [[constraint]] with type = \"clearance\""));
 }
 
 TEST_F(Obstacle, IsNamedInTheReasonOfAnInfeasiblePose) {
@@ -151,7 +152,7 @@ TEST_F(Obstacle, InvalidDefinitionsAreRefused) {
   write("bare.toml", bare.str());
   EXPECT_THAT(refusal(changed(study("file = \"bare.toml\"", kBall), "r = { min = 0.04, max = 0.06 }",
                               "L = { min = 0.4, max = 0.6 }")),
-              HasSubstr("has no links with a radius that could meet anything"));
+              HasSubstr("has none that could collide with them"));
   EXPECT_THAT(refusal(changed(study(kDeltaFile, kBall + kClearance),
                               "method = \"voxels\"\ncells = { x = 12, y = 12, z = 12 }", "method = \"columns\"")),
               HasSubstr("rotary-delta has no columns"));

@@ -163,7 +163,7 @@ TEST(Quantity, MessagesExplainWhatIsMissing) {
   EXPECT_THAT(check(voxels + "limits = { stifness = { min = 1 } }\n"), HasSubstr("did you mean 'stiffness'?"));
   EXPECT_THAT(check(voxels, "[accuracy]\n"), HasSubstr("s.toml:8: accuracy: the table is empty; expected joint_error"));
   EXPECT_THAT(check("nodes = { x = 4, y = 4, z = 4 }\n"),
-              HasSubstr("workspace.nodes.z: columns are lines along z, whose nodes cannot be set; expected x, y"));
+              HasSubstr("workspace.nodes.z: columns run along z, which has no nodes; expected x, y"));
   const auto map = pkmopt({"workspace", PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml", "--cut", "y=0", "--field",
                            "accuracy", "-o", folder.path() + "/map.svg"});
   EXPECT_EQ(map.exit_code, 2);

@@ -66,8 +66,7 @@ TEST_F(SlowSteps, ExactValuesCanBeSwitchedOff) {
 }
 
 TEST_F(SlowSteps, InvalidTimeLimitsAreRefused) {
-  const std::string expected =
-      "expected true, false, or the time that exact values may take: a time > 0 s, such as \"10 s\"";
+  const std::string expected = "expected true, false, or a time limit of the exact values > 0 s, such as \"10 s\"";
   set_exact("\"0 s\"");
   EXPECT_EQ(run({"check", "study.toml"}), 2);
   EXPECT_THAT(output_, HasSubstr("study.toml:11: workspace.exact: found \"0 s\"; " + expected));
@@ -76,7 +75,7 @@ TEST_F(SlowSteps, InvalidTimeLimitsAreRefused) {
   EXPECT_THAT(output_, HasSubstr(expected));
   change("slow-exact.toml", "method = \"voxels\"\ncells = { x = 24, y = 24 }", "method = \"columns\"\nexact = true");
   EXPECT_EQ(run({"check", "study.toml"}), 2);
-  EXPECT_THAT(output_, HasSubstr("this key belongs to method = \"voxels\""));
+  EXPECT_THAT(output_, HasSubstr("this key requires method = \"voxels\""));
 }
 
 TEST_F(SlowSteps, ResultsAreStoredBeforeExactValuesAreComputed) {

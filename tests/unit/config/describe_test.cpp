@@ -82,7 +82,7 @@ objectives
   volume: minimise, in m^2 rad
 
 constraints
-  gap: cuts the workspace by gap_min
+  gap: restricts the workspace by gap_min
     angle_max  not set  (default)
   big-enough (volume): >= 0.5 m^2 rad
   linear: margin >= 0, in m

@@ -66,7 +66,8 @@ TEST(ExpressionErrors, Objectives) {
       {"expression = \"conditioning_min\"\nsharpness = 0",
        "s.toml:10: objective[1].sharpness: found 0; expected a number in [1, 1e+06]"},
       {"expression = \"conditioning_mean\"\ncharacteristic_length = 0.1\n[[output]]\ntype = \"conditioning\"",
-       "s.toml:11: output[1]: conditioning is requested with two different characteristic lengths; a study has one"},
+       "s.toml:11: output[1]: conditioning is requested with two different characteristic lengths; use one length in "
+       "all tables"},
       {"expression = \"a\"\nmin = 1",
        "s.toml:10: objective[1].min: found an unknown key; expected one of type, name, "
        "direction, region, expression, unit, characteristic_length, sharpness"},
@@ -82,8 +83,8 @@ TEST(ExpressionErrors, Constraints) {
   const std::pair<std::string, std::string> cases[] = {
       {"", "s.toml:9: constraint[1].expression: found nothing; expected text"},
       {"expression = \"a\"\nmin = 1\nmax = 2",
-       "s.toml:9: constraint[1]: found both min and max; a constraint has one of them (write two [[constraint]] "
-       "tables)"},
+       "s.toml:9: constraint[1]: found both min and max; give one of them, and write a second [[constraint]] for the "
+       "other"},
       {"expression = \"a\"\nmin = \"100 mm\"",
        "s.toml:12: constraint[1].min: found \"100 mm\"; expected a number, or text "
        "such as \"5 %\""},
@@ -100,9 +101,11 @@ TEST(ExpressionErrors, Constraints) {
        "s.toml:12: constraint[1].mx: found an unknown key; expected one of type, name, expression, unit, "
        "characteristic_length, sharpness, min, max; did you mean 'max'?"},
       {"expression = \"a\"\n[[constraint]]\ntype = \"expression\"\nexpression = \"b\"",
-       "s.toml:12: constraint[2]: there is already one called 'expression'; tell them apart with name = \"...\""},
+       "s.toml:12: constraint[2]: the name 'expression' is already used; give this one another name with name = "
+       "\"...\""},
       {"expression = \"conditioning_min\"\ncharacteristic_length = 0.1\n[[output]]\ntype = \"conditioning\"",
-       "s.toml:13: output[1]: conditioning is requested with two different characteristic lengths; a study has one"},
+       "s.toml:13: output[1]: conditioning is requested with two different characteristic lengths; use one length in "
+       "all tables"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(entry_complaint(head + text), message) << text;
 }

@@ -80,8 +80,8 @@ TEST(MotionSpeeds, WhatNeedsMassesIsRefusedWithout) {
               HasSubstr("needs dynamics, and mechanism linear-delta has no masses"));
   EXPECT_THAT(
       complaint("[[drive_train]]\njoint = \"all\"\nlead = 0.01\nrotor_inertia = 1e-5\n"),
-      HasSubstr("drive_train[1].rotor_inertia: inertias and losses of drive trains need dynamics, and mechanism "
-                "linear-delta has no masses; gear and lead do without"));
+      HasSubstr("drive_train[1].rotor_inertia: inertias and losses of drive trains need dynamics, but mechanism "
+                "linear-delta has no masses; gear and lead need none"));
   EXPECT_THAT(complaint(report("joint-speed", "wrench = { Fz = 1 }\n")), HasSubstr("found an unknown key"));
   EXPECT_EQ(complaint("[[constraint]]\ntype = \"joint-speed\"\nmotion = \"across\"\nmax = \"2 m/s\"\n"), "accepted");
 }

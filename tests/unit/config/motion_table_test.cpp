@@ -105,19 +105,21 @@ TEST(MotionSection, Messages) {
       {"type = \"points\"",
        "m.toml:1: points: found nothing; expected a list of points, [{ x = .., y = .., ... }, ...]"},
       {"type = \"points\"\npoints = [{ x = 0, y = 0, z = 0, phi = 0 }]",
-       "m.toml:2: points: found [{ x = 0, y = 0, z = 0, phi = 0 }]; expected two points at least"},
+       "m.toml:2: points: found [{ x = 0, y = 0, z = 0, phi = 0 }]; expected at least two points"},
       {"type = \"points\"\npoints = [{ x = 0, y = 0, z = 0 }, { x = 1 }]",
        "m.toml:2: points[1].phi: found nothing; expected a number in rad, or text with a unit made of mrad, rad, deg, "
        "°"},
       {points + "{ x = 1 }]",
-       "m.toml:2: points[2]: nothing says how fast to move there; give time = .., acceleration = .. or speed = .."},
+       "m.toml:2: points[2]: the duration of the move to this point is not determined; give time = .., "
+       "acceleration = .. or speed = .."},
       {points + "{ phi = 1 }]\nacceleration = 3",
-       "m.toml:2: points[2]: nothing says how fast to turn there; give time = .., angular_acceleration = .. or "
-       "angular_speed = .."},
+       "m.toml:2: points[2]: the duration of the rotation to this point is not determined; give time = .., "
+       "angular_acceleration = .. or angular_speed = .."},
       {points + "{ x = 0 }]\nacceleration = 3",
-       "m.toml:2: points[2]: it is the point before; give the time to stay there as its wait"},
+       "m.toml:2: points[2]: this point equals the previous one; to stay there, give the previous point a "
+       "wait = .."},
       {points + "{ x = 1, time = 1, acceleration = 3 }]",
-       "m.toml:2: points[2].time: the time follows from the peak acceleration; give one of them"},
+       "m.toml:2: points[2].time: the time of the move also follows from the peak acceleration; give one of them"},
       {points + "{ xx = 1, time = 1 }]",
        "m.toml:2: points[2].xx: found an unknown key; expected one of wait, time, acceleration, "
        "angular_acceleration, speed, angular_speed, x, y, z, phi; did you mean 'x'?"},

@@ -25,17 +25,17 @@ TEST(ProblemErrors, Workspace) {
           {"tolerance = \"1e-8 m\"",
            "s.toml:4: workspace.tolerance: found \"1e-8 m\"; expected a number, or text such as \"5 %\""},
           {"tolerance = 1e-6\nnodes = { x = 4, theta = 4 }",
-           "s.toml:5: workspace.nodes: either tolerance (line 4) or nodes set the accuracy; give one of them"},
+           "s.toml:5: workspace.nodes: tolerance (line 4) and nodes both set the accuracy; give one of them"},
           {"nodes = { x = 4 }", "s.toml:4: workspace.nodes.theta: found nothing; expected a number of nodes"},
           {"nodes = { x = 4, z = 4 }",
-           "s.toml:4: workspace.nodes.z: columns are lines along z, whose nodes cannot be set; expected x, theta"},
+           "s.toml:4: workspace.nodes.z: columns run along z, which has no nodes; expected x, theta"},
           {"nodes = { x = 0, theta = 4 }", "s.toml:4: workspace.nodes.x: found 0; expected an integer in [1, 200]"},
           {"cells = { x = 1, z = 1, theta = 1 }",
-           "s.toml:4: workspace.cells: this key belongs to method = \"voxels\", but the study's method is \"columns\""},
+           "s.toml:4: workspace.cells: this key requires method = \"voxels\", but the study's method is \"columns\""},
           {"method = \"columns\"\nbox = {}",
-           "s.toml:5: workspace.box: this key belongs to method = \"voxels\", but the study's method is \"columns\""},
+           "s.toml:5: workspace.box: this key requires method = \"voxels\", but the study's method is \"columns\""},
           {"method = \"voxels\"\ntolerance = 1e-6",
-           "s.toml:5: workspace.tolerance: this key belongs to method = \"columns\", but the study's method is "
+           "s.toml:5: workspace.tolerance: this key requires method = \"columns\", but the study's method is "
            "\"voxels\""},
           {"method = \"voxels\"\ncells = { x = 0, z = 1, theta = 1 }",
            "s.toml:5: workspace.cells.x: found 0; expected an integer in [1, 1048576]"},
@@ -54,7 +54,7 @@ TEST(ProblemErrors, Workspace) {
           {"method = \"voxels\"\nbox = { x = [0, 1], z = [0, 1] }",
            "s.toml:5: workspace.box.theta: found nothing; expected a range [from, to]"},
           {"method = \"voxels\"\nbox = { x = [1, 0], z = [0, 1], theta = [0, 1] }",
-           "s.toml:5: workspace.box.x: found [1, 0]; expected a range whose first end is the lower one"},
+           "s.toml:5: workspace.box.x: found [1, 0]; expected a range [from, to] with from < to"},
           {"method = \"voxels\"\nbox = { x = [0, 9], z = [0, 1], theta = [-90, 90] }",
            "s.toml:5: workspace.box.theta[1]: found -90; expected an angle in [-pi, pi] rad; write \"-90 deg\" for "
            "degrees"},
@@ -106,7 +106,7 @@ TEST(ProblemErrors, Objectives) {
           {"[[objective]]\ntype = \"force\"",
            "s.toml:6: objective[1].type: force needs bodies, which the mechanism slider does not describe"},
           {"[[objective]]\ntype = \"volume\"\n[[objective]]\ntype = \"volume\"",
-           "s.toml:7: objective[2]: there is already one called 'volume'; tell them apart with name = \"...\""},
+           "s.toml:7: objective[2]: the name 'volume' is already used; give this one another name with name = \"...\""},
           {"[[objective]]\ntype = \"volume\"\nname = \"a/b\"",
            "s.toml:7: objective[1].name: found \"a/b\"; expected a name of letters, digits, '-', '_' and '.'"},
           {"[[objective]]\ntype = \"shape\"\ncont = 3",
@@ -129,7 +129,8 @@ TEST(ProblemErrors, Objectives) {
           {"[[objective]]\ntype = \"shape\"\nweights = { a = 2 }",
            "s.toml:7: objective[1].weights.a: found 2; expected a number in [0, 1]"},
           {"[[objective]]\ntype = \"shape\"\nlength = 1\n[[output]]\ntype = \"shape\"\nlength = 2",
-           "s.toml:8: output[1]: conditioning is requested with two different characteristic lengths; a study has one"},
+           "s.toml:8: output[1]: conditioning is requested with two different characteristic lengths; use one length "
+           "in all tables"},
           {"[[output]]\ntype = \"volume\"\ndirection = \"minimise\"",
            "s.toml:7: output[1].direction: found an unknown key; expected one of type, name, region; did you mean "
            "'region'?"},
@@ -155,12 +156,12 @@ TEST(ProblemErrors, Constraints) {
            "mm, "
            "cm, dm, m, km, in"},
           {"[[constraint]]\ntype = \"reach\"\n[[constraint]]\ntype = \"reach\"",
-           "s.toml:9: constraint[2]: there is already one called 'reach'; tell them apart with name = \"...\""},
+           "s.toml:9: constraint[2]: the name 'reach' is already used; give this one another name with name = \"...\""},
           {"[[constraint]]\ntype = \"volume\"",
-           "s.toml:7: constraint[1]: the objective volume becomes a constraint by min = .. or max = ..; give one"},
+           "s.toml:7: constraint[1]: give min = .. or max = ..: the objective volume is used as a constraint"},
           {"[[constraint]]\ntype = \"volume\"\nmin = 1\nmax = 2",
-           "s.toml:7: constraint[1]: found both min and max; a constraint has one of them (write two [[constraint]] "
-           "tables)"},
+           "s.toml:7: constraint[1]: found both min and max; give one of them, and write a second [[constraint]] for "
+           "the other"},
           {"[[constraint]]\ntype = \"volume\"\nmin = \"1 m^3\"",
            "s.toml:9: constraint[1].min: found \"1 m^3\"; expected a number in m^2 rad, or text with a unit made of "
            "um, "

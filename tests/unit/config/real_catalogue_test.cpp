@@ -145,7 +145,7 @@ TEST(RealCatalogue, ClearanceCutsTheWorkspaceByBothMethods) {
 
 TEST(RealCatalogue, ClearanceIsSpelledOut) {
   const Study study = read_more(kClearance);
-  EXPECT_EQ(study.constraints[0].role, "cuts the workspace by clearance_min");
+  EXPECT_EQ(study.constraints[0].role, "restricts the workspace by clearance_min");
   EXPECT_EQ(study.constraints[0].options.number("min"), 0);
   EXPECT_THAT(describe(study), ::testing::ContainsRegex("clearance_min  0 m +from constraint.1. clearance .line 10."));
   EXPECT_THAT(describe(read_more("")), HasSubstr("clearance_min  -2 m"));
@@ -177,14 +177,12 @@ TEST(RealCatalogue, AParameterCannotVaryBesideTheThresholdThatTakesItsPlace) {
       "[[objective]]\ntype = \"workspace-volume\"\n" +
       kGa;
   const auto message = [&](const std::string& limit) { return real_complaint(hybrid + limit); };
-  EXPECT_EQ(
-      message("[workspace]\nlimits = { tau_s = 0.1 }\n"),
-      "s.toml:4: variables.tau_s: the threshold tau_s is set in workspace.limits (line 10); it can either vary or "
-      "be set");
-  EXPECT_EQ(
-      message("[[constraint]]\ntype = \"singularity-margin\"\ntau_s = 0.1\n"),
-      "s.toml:4: variables.tau_s: the threshold tau_s is set in constraint[1] singularity-margin (line 9); it can "
-      "either vary or be set");
+  EXPECT_EQ(message("[workspace]\nlimits = { tau_s = 0.1 }\n"),
+            "s.toml:4: variables.tau_s: the threshold tau_s is set in workspace.limits (line 10), so it cannot be a "
+            "variable");
+  EXPECT_EQ(message("[[constraint]]\ntype = \"singularity-margin\"\ntau_s = 0.1\n"),
+            "s.toml:4: variables.tau_s: the threshold tau_s is set in constraint[1] singularity-margin (line 9), so it "
+            "cannot be a variable");
 }
 
 }  // namespace

@@ -206,13 +206,13 @@ TEST(SizeObjectives, OneAnalysisHasOneWorkingMode) {
                         "points = [{ x = -0.1, y = 0.4 }, { x = 0.1 }]\n";
   const std::string& other = test::described("five-bar")->info().modes.back();
   EXPECT_THAT(complaint(file, kFiveBar + output("height") + output("footprint", "mode = \"" + other + "\"\n")),
-              HasSubstr("the workspace is requested in two different working modes, "));
+              HasSubstr("the same workspace analysis is requested in two working modes, "));
   EXPECT_EQ(complaint(file, kFiveBar + region + output("height") +
                                 output("footprint", "mode = \"" + other + "\"\nregion = \"task\"\n")),
             "accepted");
   EXPECT_THAT(
       complaint(file, kFiveBar + region + across + output("height", "region = \"task\"\nmotion = \"across\"\n")),
-      HasSubstr("the objective height is evaluated along a motion or in a region; found both"));
+      HasSubstr("the objective height is evaluated either along a motion or in a region; give one of them"));
 }
 
 }  // namespace

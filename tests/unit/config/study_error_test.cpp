@@ -19,8 +19,7 @@ TEST(StudyErrors, Document) {
       "",
       {
           {"", "s.toml: found an empty file; expected a study in TOML, with [mechanism] at least"},
-          {"# nothing\n",
-           "s.toml: found an empty file; expected a study in TOML, with [mechanism] at least"},
+          {"# nothing\n", "s.toml: found an empty file; expected a study in TOML, with [mechanism] at least"},
           {"a = 1\na = 2\n",
            "s.toml:2: found text that is not TOML (Error while parsing key-value pair: cannot redefine existing "
            "integer 'a'); expected a study in TOML"},
@@ -127,7 +126,7 @@ TEST(StudyErrors, MechanismAndParameters) {
            "or described by a file"},
           // The text is all that this reader reads: it opens no file.
           {"[mechanism]\nfile = \"m.toml\"",
-           "s.toml:2: mechanism.file: what the mechanism's file holds is not known here"},
+           "s.toml:2: mechanism.file: the contents of the mechanism file are not available here"},
           {"[mechanism]\nname = \"a\"",
            "s.toml: found the description of a mechanism; expected a study, which names such a file in [mechanism] "
            "file = \"..\""},

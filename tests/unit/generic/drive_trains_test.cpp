@@ -248,10 +248,10 @@ TEST(DriveTrainStudy, MistakesAreNamed) {
   EXPECT_EQ(message_of(kDrives), "accepted");
   EXPECT_THAT(message_of("[[drive_train]]\njoint = \"rho5\"\nlead = 0.01\n"), HasSubstr("rho4"));
   EXPECT_THAT(message_of("[[drive_train]]\njoint = \"rho1\"\nlead = 0.01\n"),
-              HasSubstr("the joint rho2 has no drive train; all or none have"));
+              HasSubstr("the joint rho2 has no drive train; give one for every joint, or none"));
   EXPECT_THAT(message_of(kDrives + "[[drive_train]]\njoint = \"rho1\"\nlead = 0.01\n"),
               HasSubstr("the joint rho1 has a drive train already"));
-  EXPECT_THAT(message_of("[[drive_train]]\njoint = \"all\"\n"), HasSubstr("in a turn of its screw"));
+  EXPECT_THAT(message_of("[[drive_train]]\njoint = \"all\"\n"), HasSubstr("per revolution of its screw"));
   EXPECT_THAT(message_of("[[drive_train]]\njoint = \"all\"\nlead = 0\n"), HasSubstr("a number > 0 m"));
   EXPECT_THAT(message_of(kDrives + "gera = 3\n"), HasSubstr("did you mean 'gear'?"));
   EXPECT_THAT(message_of("[[objective]]\ntype = \"motor-torque\"\nmotion = \"cycle\"\n"),

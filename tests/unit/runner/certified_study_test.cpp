@@ -196,21 +196,20 @@ TEST_F(CertifiedStudy, IsRejectedIfThereAreNoBounds) {
     }
     return "accepted";
   };
-  const std::string expected = "; expected true, false, or the gap of the bounds: a number between 0 and 2";
+  const std::string expected = "; expected true, false, or the relative gap of the bounds, a number between 0 and 2";
   EXPECT_EQ(message_of("certified = false"), "accepted");
   EXPECT_EQ(message_of("certified = 2"), "s.toml:8: workspace.certified: found 2" + expected);
   EXPECT_EQ(message_of("certified = 0"), "s.toml:8: workspace.certified: found 0" + expected);
   EXPECT_EQ(message_of("certified = \"yes\""), "s.toml:8: workspace.certified: found \"yes\"" + expected);
   EXPECT_EQ(message_of("certified = [0.1]"), "s.toml:8: workspace.certified: found [0.1]" + expected);
   EXPECT_THAT(message_of("method = \"voxels\"\ncertified = true"),
-              HasSubstr("workspace.certified: this key belongs to method = \"columns\", but the study's method is"));
+              HasSubstr("workspace.certified: this key requires method = \"columns\", but the study's method is"));
   EXPECT_THAT(message_of("certified = true\ny = \"integrated\""), HasSubstr("workspace: bounds are of one value of y"));
   EXPECT_THAT(message_of("certifed = true"), HasSubstr("certified"));
   mechanism_->has_bounds = false;
-  EXPECT_EQ(
-      message_of("certified = true"),
-      "s.toml:8: workspace.certified: certified bounds are of mechanisms from files, whose formulas can be computed "
-      "over intervals; 4ppa-2par is written in C++");
+  EXPECT_EQ(message_of("certified = true"),
+            "s.toml:8: workspace.certified: certified bounds evaluate the formulas of a mechanism file in interval "
+            "arithmetic, but mechanism 4ppa-2par is written in C++");
 }
 
 }  // namespace
