@@ -15,8 +15,7 @@ std::vector<OptionSpec> clearance_options(const MechanismInfo& mechanism) {
            .initial = 0.0,
            .lower = limit.lower,
            .upper = limit.upper,
-           .meaning =
-               "minimum distance of links that are not joined; 0: they do not touch; < 0: they may overlap that far"}};
+           .meaning = "minimum distance of links that are not joined; 0: no contact; < 0: permitted overlap"}};
 }
 
 LimitSpec clearance_limits(const MechanismInfo& mechanism, const Options& options) {

@@ -62,7 +62,7 @@ void add_clearance(MechanismDraft& draft) {
   if (model.link_pairs.empty()) return;
   model.clearance_limit = model.info.limits.size();
   model.info.limits.push_back({generic::kClearanceLimit, "m", kInactiveClearance, kInactiveClearance, 100, "clearance",
-                               "", "least distance of links that are not joined; < 0: they may overlap that far"});
+                               "", "minimum distance of links that are not joined; < 0: permitted overlap"});
   model.derived.emplace_back();
   model.limit_parameters.emplace_back();
 }
