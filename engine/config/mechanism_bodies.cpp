@@ -243,8 +243,8 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
       } else if (rotation) {
         if (inertia[1].node() != inertia[2].node())
           throw value->refusal(
-              "a body that turns with a link has no spin about it: [along the link, across, across], "
-              "the last two the same formula");
+              "a body that rotates with a link needs the same formula for the last two moments of inertia: [along the "
+              "link, across, across]");
         const LimbPart& link = *find_named(turning, rotation->text("a name"));
         if (link.line) body.line_rotations.push_back({nodes(*link.line), inertia[1].node()});
       }

@@ -50,11 +50,12 @@ std::string unit_of(const ConfigValue& table) {
 Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, const std::vector<Parameter>& all) {
   const Parameter* const general = find_named(all, own.parameter);
   if (!general)
-    throw table.refusal("there is no parameter '" + own.parameter + "' above, which " + own.name() + " could be of");
+    throw table.refusal("there is no common parameter '" + own.parameter + "' above, whose value " + own.name() +
+                        " could replace");
   Parameter p = *general;
   p.lower = table.find_number("min", p.unit).value_or(p.lower);
   p.upper = table.find_number("max", p.unit).value_or(p.upper);
-  if (!(p.lower < p.upper)) throw table.refusal("max is not above min");
+  if (!(p.lower < p.upper)) throw table.refusal("max must be greater than min");
   p.nominal = table.find_number("default", p.unit, p.lower, p.upper).value_or(p.nominal);
   if (table.has("meaning")) p.meaning = text_of(table, "meaning");
   return p;
@@ -73,12 +74,12 @@ void read_parameter_table(const ConfigValue& all, MechanismDraft& draft) {
     const ConfigValue table = value.table();
     if (name == generic::kClearanceLimit)
       throw table.refusal(
-          "clearance_min is the name of the limit of the links' clearance; call the parameter otherwise");
+          "the name clearance_min is reserved for the limit of the clearance of links; rename the parameter");
     Parameter p;
     p.name = name;
     p.unit = unit_of(table);
-    p.lower = table.at("min", "the least value allowed").number(p.unit);
-    p.upper = table.at("max", "the greatest value allowed").number(p.unit);
+    p.lower = table.at("min", "the minimum allowed value").number(p.unit);
+    p.upper = table.at("max", "the maximum allowed value").number(p.unit);
     if (!(p.lower < p.upper)) throw table.find("max")->error("a number above min = " + with_unit(p.lower, p.unit));
     p.nominal = table.at("default", "the default").number(p.unit, p.lower, p.upper);
     p.meaning = text_of(table, "meaning");
@@ -88,7 +89,7 @@ void read_parameter_table(const ConfigValue& all, MechanismDraft& draft) {
 }
 
 void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& asked, MechanismDraft& draft) {
-  const ConfigValue all = root.at("parameters", "a table [parameters]: what a design may choose").table();
+  const ConfigValue all = root.at("parameters", "a table [parameters] with at least one parameter").table();
   if (all.keys().empty()) throw all.error("at least one parameter");
   read_parameter_table(all, draft);
   if (draft.masses)

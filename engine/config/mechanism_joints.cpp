@@ -125,13 +125,14 @@ class JointReader {
 
   void add_limb(const NamedLimb& limb) {
     if (limb.drive == "formula")
-      throw IncompleteDescription{"limb " + limb.name + " is a formula, which does not say what its links are"};
+      throw IncompleteDescription{"limb " + limb.name + " has drive = \"formula\", so its links are unknown"};
     if (limb.parts.size() == 1)
-      throw IncompleteDescription{"limb " + limb.name + " has neither `rod` nor `links` to carry the platform by"};
+      throw IncompleteDescription{"limb " + limb.name +
+                                  " has neither `rod` nor `links` that connect it to the platform"};
     if (limb.end_on.empty())
       throw IncompleteDescription{
           "limb " + limb.name +
-          " ends at `end`; end_on = \"platform\", or the name of a [[body]], says what carries its end"};
+          " ends at `end`, but the body there is unknown; give end_on = \"platform\" or the name of a [[body]]"};
     const auto found = std::ranges::find(solids_, limb.end_on, &SolidNodes::name);
     if (found == solids_.end())
       throw IncompleteDescription{"limb " + limb.name + " ends on '" + limb.end_on +
@@ -210,10 +211,10 @@ class JointReader {
     const auto bodies = both.elements("two bodies");
     if (bodies.size() != 2) throw both.error("two bodies");
     const std::size_t first = solid_called(bodies[0]), second = solid_called(bodies[1]);
-    if (first == second) throw bodies[1].error("another body than the first");
-    joints_.push_back(joint(name, read_point(table.at("at", "a point"), name, draft_), first, second,
-                            JointNodes::Couples::all_but_about,
-                            {draft_.scope.direction(table.at("about", "the axis [x, y, z] of the base"), name)}));
+    if (first == second) throw bodies[1].error("a body other than the first");
+    joints_.push_back(joint(
+        name, read_point(table.at("at", "a point"), name, draft_), first, second, JointNodes::Couples::all_but_about,
+        {draft_.scope.direction(table.at("about", "the axis [x, y, z] in the base's frame"), name)}));
   }
 
   /// Gives each mass to the body that it belongs to.
@@ -227,11 +228,11 @@ class JointReader {
           if (owner == limb.name + "." + part.name) owner = part.name + " of " + limb.name;
       const auto owners = made_of_.find(owner);
       if (owners == made_of_.end())
-        throw IncompleteDescription{"body " + body.name + " turns with " + body.part_of +
-                                    ", which is no body of its own"};
+        throw IncompleteDescription{"body " + body.name + " rotates with " + body.part_of +
+                                    ", which is not a separate body"};
       if (owners->second.size() > 1 && body.name != owner)
         throw IncompleteDescription{"body " + body.name +
-                                    " turns with a pair of rods, and the file does not say with which"};
+                                    " rotates with one rod of a pair, but it is unknown with which"};
       for (const std::size_t solid : owners->second) solids_[solid].bodies.push_back(i);
     }
   }
@@ -247,13 +248,14 @@ class JointReader {
     }
     for (std::size_t i = 0; i < solids_.size(); ++i)
       if (!has_joint[i])
-        throw IncompleteDescription{"no joint holds the body " + solids_[i].name +
-                                    "; rotation = \"platform\" makes a body part of the platform, [[joint]] joins two"};
+        throw IncompleteDescription{
+            "the body " + solids_[i].name +
+            " has no joint; add a [[joint]], or make it part of the platform with rotation = \"platform\""};
     if (const std::size_t equations = 6 * solids_.size(); unknowns < equations)
       throw IncompleteDescription{
-          "the joints of the file hold its bodies too little (" + std::to_string(equations) + " equations have " +
-          std::to_string(unknowns) +
-          " unknowns); rods that come in pairs say `pair`, limbs of parallel revolutes `across`"};
+          "the joints of the file constrain its bodies too little: " + std::to_string(unknowns) +
+          " unknown joint forces in " + std::to_string(equations) +
+          " equations; give `pair` for rods in pairs, and `across` for limbs with parallel revolute joints"};
   }
   std::size_t couples_of(const JointNodes& joint) {
     if (joint.couples == JointNodes::Couples::along) return joint.axes.size();
@@ -288,7 +290,7 @@ void add_joints(const ConfigValue& root, MechanismDraft& draft) {
     const bool has_spring = std::ranges::any_of(
         model.jointed->joints, [](const JointNodes& joint) { return joint.drive && joint.drive->compliance; });
     if (!has_beam && !has_spring) model.why_no_elasticity = "no limb has `drive_stiffness`, or a section with `young`";
-    if (model.bodies.empty()) throw IncompleteDescription{"the file names no masses"};
+    if (model.bodies.empty()) throw IncompleteDescription{"the mechanism file has no masses"};
     model.jointed = reader.with_masses();
   } catch (const IncompleteDescription& incomplete) {
     model.why_no_reactions = incomplete.why;

@@ -43,7 +43,7 @@ Term add_joint_variable(const ConfigValue& table, const std::string& name, const
 
 std::array<Term, 2> read_range(const ConfigValue& range, const std::string& unit, const std::string& limb,
                                MechanismDraft& draft) {
-  constexpr const char* kExpected = "two numbers or formulas [least, greatest]";
+  constexpr const char* kExpected = "two numbers or formulas [minimum, maximum]";
   const auto ends = range.elements(kExpected);
   if (ends.size() != 2) throw range.error(kExpected);
   const Term from = draft.scope.of_design(ends[0], unit, limb), to = draft.scope.of_design(ends[1], unit, limb);

@@ -27,7 +27,7 @@ void refuse_oblique(const LimbCopy& copy, const Vector3& a, const Vector3& b, co
 }
 
 DrivenLimb slider_and_links(const LimbCopy& copy, const Ends& at, const Vector3& e, const Term& q) {
-  if (const auto rod = copy.table.find("rod")) throw rod->refusal("a limb has a `rod` or `links`, not both");
+  if (const auto rod = copy.table.find("rod")) throw rod->refusal("give either `rod` or `links`, not both");
   const auto [l_1, l_2] = copy.links();
   const auto given = copy.table.find("axis");
   const Vector3 axis = given ? copy.direction(*given) : e;
@@ -39,16 +39,20 @@ DrivenLimb slider_and_links(const LimbCopy& copy, const Ends& at, const Vector3&
 DrivenLimb slider(const LimbCopy& copy, const Ends& at, const Term& q) {
   const ConfigValue& table = copy.table;
   const auto along = table.find("along");
-  if (along && table.has("direction")) throw along->refusal("a slide has a `direction` or, with `links`, runs `along`");
+  if (along && table.has("direction"))
+    throw along->refusal("give `direction` for a slide without `links`, and `along` for a slide with `links`");
   const Vector3 e = copy.direction(along ? *along : table.at("direction", "the slide's direction [x, y, z]"));
   if (at.across) refuse_oblique(copy, e, *at.across, along ? "along" : "direction", "`across`");
   if (const auto across = table.find("across"); across && !table.has("rod"))
     throw across->refusal("`across` has no effect on a slide without `rod`: " +
-                          std::string(table.has("links") ? "its links move across `along`"
-                                                         : "it is where the platform's point is along `direction`"));
+                          std::string(table.has("links")
+                                          ? "its links move in the plane normal to `along`"
+                                          : "only the platform's point along `direction` determines its position"));
   if (table.has("links")) return slider_and_links(copy, at, e, q);
   if (!table.has("rod")) {
-    if (const auto sign = table.find("branch")) throw sign->refusal("a slide without rod has one way to reach a pose");
+    if (const auto sign = table.find("branch"))
+      throw sign->refusal(
+          "a slide without `rod` or `links` has one solution for every pose, so `branch` has no effect");
     return {limbs::slider(at, e, q), "q = (B - A) . e", e};
   }
   const Term rod = copy.length("rod", "the rod's length");

@@ -26,7 +26,7 @@ std::vector<std::string> names_of_drives() {
 ConfigValue limb_table(const ConfigValue& table) {
   const std::string& drive = table.choice("drive", names_of_drives());
   if (const auto copies = table.find("copies"); copies && drive == "formula")
-    throw copies->refusal("a limb of formulas has no copies; it may have several joints");
+    throw copies->refusal("a limb with drive = \"formula\" cannot be copied; list its joints in `joints`");
   const std::vector<std::string> parts = parts_of_limb(table, drive);
   const auto is_absent = [&](const std::string& key) {
     return std::ranges::any_of(kParts, [&](const std::string& part) {
@@ -56,11 +56,11 @@ std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) 
   const auto about = static_cast<std::size_t>(copies->at("about", "an axis, \"x\", \"y\" or \"z\"").word()[0] - 'x');
   std::vector<double> angles;
   if (const auto list = copies->find("angles")) {
-    if (const auto both = copies->find("number")) throw both->refusal("copies have a number or angles, not both");
+    if (const auto both = copies->find("number")) throw both->refusal("give either `number` or `angles`, not both");
     for (const ConfigValue& angle : list->elements("a list of angles")) angles.push_back(angle.number());
     if (angles.empty()) throw list->error("at least one angle");
   } else {
-    const std::int64_t count = copies->at("number", "how many copies, 1 to 8").integer();
+    const std::int64_t count = copies->at("number", "the number of copies, 1 to 8").integer();
     for (std::int64_t i = 0; i < count; ++i)
       angles.push_back(2 * kPi * static_cast<double>(i) / static_cast<double>(count));
   }
@@ -82,12 +82,15 @@ limbs::Ends read_ends(const LimbCopy& copy) {
   MechanismDraft& draft = copy.draft;
   const auto end = table.find("end");
   if (const auto both = table.find("platform"); both && end)
-    throw both->refusal("a limb ends at `platform` (in the platform's frame) or at `end` (in the base's), not both");
+    throw both->refusal(
+        "give the end point either by `platform` (in the platform's frame) or by `end` (in the base's), not both");
   const Vector3 base =
       copy.turn * draft.scope.point_of_design(table.at("base", "the base point [x, y, z]"), copy.group);
   const auto reached = [&] {
     if (end) {
-      if (table.has("copies")) throw end->refusal("copies end at `platform`; `end` is one point of the base's frame");
+      if (table.has("copies"))
+        throw end->refusal(
+            "a limb with `copies` needs `platform` instead of `end`, which is a single point in the base's frame");
       return draft.scope.point(*end, copy.group);
     }
     const ConfigValue platform = table.at("platform", "the platform's point [x, y, z]");
@@ -128,12 +131,14 @@ std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   if (!pair) return {};
   const bool is_crank = copy.drive == "crank";
   if (limb.revolute || !copy.table.has("rod"))
-    throw pair->refusal("a pair is of rods with ball joints: of a `rod` without `across`");
+    throw pair->refusal("`pair` requires a `rod` with ball joints at its ends, without `across`");
   const auto along = pair->find("along");
-  if (is_crank && along) throw along->refusal("the rods of a pair are side by side along the crank's axis");
+  if (is_crank && along)
+    throw along->refusal("the rods of a crank's pair are always spaced along the crank's axis; remove `along`");
   const auto& about = copy.draft.model.rotation_axes;
   if (limb.end_on == "platform" && std::ranges::any_of(about, [](const auto& axis) { return axis.has_value(); }))
-    throw pair->refusal("a pair of rods stays parallel where the platform does not turn, and this one does");
+    throw pair->refusal(
+        "the rods of a pair stay parallel only if the platform does not rotate, but this platform rotates");
   const Vector3 side =
       is_crank ? *limb.axis : copy.direction(pair->at("along", "the direction from one rod to the other"));
   return side * (copy.draft.scope.positive(pair->at("spacing", "the rods' distance"), "m", copy.name) * 0.5);
@@ -154,13 +159,12 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
                  .has_links = table.has("links")};
   const auto end_on = table.find("end_on");
   if (end_on && !table.has("end"))
-    throw end_on->refusal("a limb that ends at `platform` ends on the platform; `end_on` belongs to `end`");
+    throw end_on->refusal("`end_on` requires `end`; a limb that ends at `platform` is attached to the platform");
   limb.end_on = end_on ? end_on->text("\"platform\" or the name of a body") : table.has("end") ? "" : "platform";
   limb.beside = read_pair(copy, limb);
   if (const auto universal = table.find("universal")) {
     if (!limb.has_rod || limb.revolute || limb.beside)
-      throw universal->refusal(
-          "universal joints are those of a single rod or leg, without `across`, `pair` or `links`");
+      throw universal->refusal("`universal` requires a single rod or leg, without `across`, `pair` or `links`");
     limb.universal = copy.direction(*universal);
   }
   return limb;
@@ -252,7 +256,7 @@ void read_limbs(const ConfigValue& root, MechanismDraft& draft) {
   const auto list = root.find("limb");
   const auto tables = list ? list->elements(expected) : std::vector<ConfigValue>();
   for (const ConfigValue& table : tables) table.expect_table(expected);
-  if (tables.empty()) throw root.refusal("a mechanism needs [[limb]]s: what its joints are");
+  if (tables.empty()) throw root.refusal("a mechanism needs at least one [[limb]], which defines its joints");
   for (const ConfigValue& table : tables) table.explained([&] { read_limb(table, draft); });
 }
 

@@ -17,17 +17,18 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft) {
     const Parameter* const parameter = find_named(model.info.parameters, limit.name);
     if (limit.name == generic::kClearanceLimit)
       throw table.find("name")->refusal(
-          "clearance_min is the limit of the links' clearance, which is there wherever "
-          "links have to keep clear of each other");
+          "clearance_min is predefined: every mechanism whose links are tested for clearance has this limit");
     if (find_named(model.info.limits, limit.name))
       throw table.find("name")->refusal("there is already a limit called '" + limit.name + "'");
     for (const OwnParameter& own : draft.own)
       if (parameter && own.parameter == limit.name)
-        throw ConfigError(own.place, own.name() + ", and " + limit.name + " is a limit of the whole mechanism");
+        throw ConfigError(own.place, own.name() + " cannot differ from limb to limb, because " + limit.name +
+                                         " is a limit of the whole mechanism");
     if (parameter) {
       for (const char* key : {"unit", "inactive", "min", "max", "derived"})
         if (const auto given = table.find(key))
-          throw given->refusal("a limit that is called like a parameter has its unit, default and range");
+          throw given->refusal(
+              "a limit with the name of a parameter takes its unit, default and range from the parameter");
       limit.unit = parameter->unit;
       limit.inactive = parameter->nominal;
       limit.lower = parameter->lower;
@@ -35,9 +36,10 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft) {
       limit.meaning = parameter->meaning;
     } else {
       limit.unit = si_unit(table.at("unit", "the limit's unit: \"m\", \"rad\", \"1\""));
-      limit.lower = table.at("min", "the least threshold").number(limit.unit);
-      limit.upper = table.at("max", "the greatest threshold").number(limit.unit, limit.lower);
-      limit.inactive = table.at("inactive", "the value that cuts nothing").number(limit.unit, limit.lower, limit.upper);
+      limit.lower = table.at("min", "the minimum threshold").number(limit.unit);
+      limit.upper = table.at("max", "the maximum threshold").number(limit.unit, limit.lower);
+      limit.inactive =
+          table.at("inactive", "the value that restricts nothing").number(limit.unit, limit.lower, limit.upper);
       limit.derivation = text_of(table, "derived");
     }
     if (table.has("meaning")) limit.meaning = text_of(table, "meaning");

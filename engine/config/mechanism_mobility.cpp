@@ -13,22 +13,23 @@ std::string mobility_text(const Mechanism& mechanism, std::span<const double> pa
   const MechanismInfo& info = mechanism.info();
   const std::size_t coordinates = info.coordinates.size();
   const std::string loose =
-      rank < coordinates ? ": the platform can move while the drives stand still, or the pose is singular" : "";
+      rank < coordinates ? ": the platform can move while the drives are locked, or the pose is singular" : "";
   const auto determined = [&](std::size_t degrees) {
     return "the drives determine " + std::to_string(rank) + " of " + std::to_string(degrees) +
-           " degrees of freedom there" + loose;
+           " degrees of freedom at this pose" + loose;
   };
   const auto mobility = generic::platform_mobility(mechanism, parameters, pose, info.modes.front());
   if (!mobility) {
     if (coordinates == kBody) return determined(kBody);
     return "the drives determine " +
-           (loose.empty() ? "the coordinates" : std::to_string(rank) + " of the coordinates") + " there" + loose +
-           "; unknown whether joints hold the platform's other degrees of freedom: " + mechanism.why_no_reactions();
+           (loose.empty() ? "the coordinates" : std::to_string(rank) + " of the coordinates") + " at this pose" +
+           loose + "; unknown whether the joints constrain the platform's other degrees of freedom: " +
+           mechanism.why_no_reactions();
   }
   const generic::PlatformMobility& found = *mobility;
   const std::size_t described = found.of_coordinates.value_or(std::min(coordinates, found.of_joints));
   if (described < coordinates)
-    return determined(coordinates) + ", but the joints described allow only " + std::to_string(described) +
+    return determined(coordinates) + ", but the joints of the file allow only " + std::to_string(described) +
            " of the coordinates' motions";
   const std::size_t assumed = found.of_joints - described;
   if (assumed == 0) return determined(coordinates);

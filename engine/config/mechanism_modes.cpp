@@ -18,7 +18,7 @@ void read_names(const ConfigValue& table, SignChoice& choice) {
   choice.is_branch = table.flag_at("branch");
   const auto names = table.find("names");
   if (!names) return;
-  constexpr const char* kNames = "as many different names as signs, of letters, digits, '-' and '_'";
+  constexpr const char* kNames = "a different name for each sign, of letters, digits, '-' and '_'";
   const auto elements = names->elements(kNames);
   if (elements.size() != choice.names.size()) throw names->error(kNames);
   for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -50,7 +50,7 @@ void read_modes(const ConfigValue& root, MechanismDraft& draft) {
     if (is_named) read_names(value, draft.sign_choices.back());
     for (const SignChoice& other : draft.sign_choices)
       if (&other != &draft.sign_choices.back() && other.is_branch && draft.sign_choices.back().is_branch)
-        throw value.refusal("one sign at most is a branch");
+        throw value.refusal("at most one sign may have branch = true");
   }
 }
 
@@ -64,7 +64,8 @@ void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft) {
   for (std::size_t i = 0; i < all->keys().size(); ++i) {
     const std::string& name = all->keys()[i];
     if (!std::ranges::binary_search(used, model.graph.input(model.inputs.sign(i))))
-      throw all->find(name)->refusal("no formula of a joint or a margin has the sign '" + name + "'");
+      throw all->find(name)->refusal("the sign '" + name +
+                                     "' has no effect: no formula of a joint or a margin uses it");
   }
 }
 

@@ -51,8 +51,8 @@ void refuse_idle_parameters(const MechanismDraft& draft) {
       throw ConfigError(own.place, "the unknown limb '" + own.limb + "' of " + own.name(), "one of " + join(limbs),
                         nearest_name(own.limb, limbs));
     if (!std::ranges::binary_search(used, own.node))
-      throw ConfigError(own.place,
-                        own.name() + ", and no joint or limit of " + own.limb + " depends on " + own.parameter);
+      throw ConfigError(
+          own.place, own.name() + " has no effect: no joint or limit of " + own.limb + " depends on " + own.parameter);
   }
 }
 

@@ -43,7 +43,7 @@ class Performance {
       add_rotors();
       add(generic::inertia_quantities(at_, *M_X_));
     } else {
-      lack("effective_mass", "the file names no masses");
+      lack("effective_mass", "the mechanism file has no masses");
     }
     add_stiffness();
     add_acceleration();
@@ -65,7 +65,7 @@ class Performance {
   }
   void add(const NamedTerm& term) {
     if (draft_.scope.knows(term.name) || defines_quantity(root_, study_, term.name))
-      return lack(term.name, "the file gives the name " + term.name + " another meaning");
+      return lack(term.name, "the mechanism file already uses the name " + term.name);
     const auto of_pose = formula_quantity(term.name, term.unit, term.meaning, model_.quantities.size());
     model_.quantities.push_back(term.value.node());
     model_.info.quantities.push_back(
@@ -107,7 +107,7 @@ class Performance {
   void add_velocities() {
     if (mixes_units(model_.info.joints))
       for (const char* const name : {"velocity_transmission", "force_transmission"})
-        lack(name, "the joints mix lengths and angles");
+        lack(name, "the joints include both lengths and angles");
     else
       add(generic::velocity_quantities(model_, at_));
   }
@@ -153,7 +153,7 @@ class Performance {
     };
     if (!given.is_table()) {
       if (mixes_units(model_.info.joints))
-        throw given.refusal("the joints mix lengths and angles: joint_error is a table, { " +
+        throw given.refusal("the joints include both lengths and angles: give joint_error by joint, { " +
                             model_.info.joints.front().name + " = .., .. }");
       for (std::size_t joint = 0; joint < joints_; ++joint) read(given, joint);
       return;
@@ -238,7 +238,7 @@ class Performance {
     if (joints_ > model_.inputs.coordinates && std::ranges::any_of(springs, rigid))
       return lack("stiffness", "there are more drives than coordinates, and not all of their limbs are elastic");
     add(generic::stiffness_quantities(at_, springs, M_X_));
-    if (!M_X_) lack("natural_frequency", "the file names no masses");
+    if (!M_X_) lack("natural_frequency", "the mechanism file has no masses");
   }
   generic::LimbSpring spring_of(std::size_t joint, const std::optional<Term>& drive) {
     const NamedLimb* const limb = limb_of(joint);
@@ -268,7 +268,7 @@ class Performance {
     const auto given = by_joint("peak_force");
     if (std::ranges::any_of(given, [](const auto& each) { return !each; }))
       return lack("acceleration", "it needs [[drive_train]] peak_force for every joint");
-    if (!M_X_) return lack("acceleration", "the file names no masses");
+    if (!M_X_) return lack("acceleration", "the mechanism file has no masses");
     std::vector<Term> peak, G;
     for (std::size_t joint = 0; joint < joints_; ++joint)
       peak.push_back(draft_.scope.positive(*given[joint], force_unit(joint), "peak_force"));

@@ -102,10 +102,10 @@ void refuse_changing_planes(MechanismDraft& draft) {
       if (offsets[i].greatest - offsets[i].least > kConstant * sizes[i].greatest)
         throw draft.in_planes[i].across.refusal(
             "the component of B - A along `across` changes with the pose (" + length_text(offsets[i].least) + " to " +
-            length_text(offsets[i].greatest) + (design == 0 ? "" : " for another design than the default") +
-            "), so crank and rod leave the plane that `across` keeps them in; write the platform's dependent "
-            "coordinates as formulas in `origin` or `end` that keep the limb in its plane, leave `across` out where "
-            "ball joints end the rod, or, where a joint slides along `across`, put `end` into the plane");
+            length_text(offsets[i].greatest) + (design == 0 ? "" : " for a design other than the default") +
+            "), so the limb cannot stay in the plane normal to `across`; give formulas in `origin` or `end` that keep "
+            "it in this plane, omit `across` if the rod ends in ball joints, or put `end` into the plane if a joint "
+            "slides along `across`");
   }
 }
 

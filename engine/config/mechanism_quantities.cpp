@@ -124,7 +124,8 @@ void read_quantities(const ConfigValue& root, const ConfigValue* study, Mechanis
   draft.scope.allow_motion(true);
   for (const ConfigValue& table : tables) {
     const std::string name = new_name(table, "quantity", model.info.quantities, "the quantity's name");
-    if (contains(kTaken, name)) throw table.find("name")->refusal("'" + name + "' is a name that every mechanism has");
+    if (contains(kTaken, name))
+      throw table.find("name")->refusal("'" + name + "' is a predefined name of every mechanism");
     const auto given = table.find("unit");
     const std::string unit = given ? si_unit(*given) : "1";
     const Node node = draft.scope.formula(table.at("formula", "a formula"), unit, name).node();
@@ -173,8 +174,9 @@ void add_quantity_margins(const ConfigValue& study, MechanismDraft& draft) {
       study, model.info, [&](const std::string& name, const std::string& side, const ConfigValue& at) {
         const PoseQuantity* const quantity = at.explained([&] { return &pose_quantity_called(model.info, name); });
         if (quantity->needs_inertia())
-          throw at.refusal(name + " is a quantity of the inertia, which cannot restrict a workspace; use it as a " +
-                           "constraint on a statistic, or limit a [[quantity]] with a formula");
+          throw at.refusal(name +
+                           " depends on the inertia, so it cannot restrict a workspace; constrain a statistic of it, " +
+                           "or limit a [[quantity]] with a formula");
         const auto limit = std::ranges::find(model.info.limits, limit_name(name, side), &LimitInfo::name);
         limit->unit = quantity->unit;
         const auto i = static_cast<std::size_t>(limit - model.info.limits.begin());

@@ -14,9 +14,12 @@ using expression::Node, limbs::Term, limbs::Vector3;
 
 void MechanismScope::add(const ConfigValue& at, const std::string& name, Node node) {
   if (!expression::may_be_name(name))
-    throw at.refusal("'" + name + "' is no name for formulas: letters, digits and '_', none of the functions nor pi");
+    throw at.refusal(
+        "'" + name +
+        "' is not a valid name in formulas; expected letters, digits and '_', not beginning with a digit, and no "
+        "function or pi");
   if (const auto known = names_.find(name))
-    throw at.refusal("'" + name + "' is the name of " + origins_[*known] + " already");
+    throw at.refusal("'" + name + "' is already the name of " + origins_[*known]);
   names_.add(name);
   origins_.push_back(at.place().key + " (" + at.line() + ")");
   nodes_.push_back(node);
@@ -35,7 +38,7 @@ Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, 
     throw value.error_of('"' + text + "\", " + kind, kind_of_unit(unit) + ", or a formula: " + quantity_hint(unit));
   const Node node = value.explained([&] { return expression::read_formula(model_.graph, text, names_, nodes_); });
   if (!motion_allowed_ && (model_.graph[node].groups & (generic::Inputs::kExtras | generic::Inputs::kRates)) != 0)
-    throw value.refusal("a formula of [inputs] or of rates is possible for a [[quantity]] only");
+    throw value.refusal("only the formula of a [[quantity]] may depend on [inputs] or rates");
   register_partial_operations(node, what);
   return model_.term(node);
 }
@@ -46,7 +49,7 @@ Term MechanismScope::of_design(const ConfigValue& value, const std::string& unit
   for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)
     if (model_.graph[term.node()].groups & generic::Inputs::coordinate_group(i))
       moving.push_back("'" + model_.info.coordinates[i].name + "'");
-  if (!moving.empty()) throw value.error("a formula of parameters alone, which this is not for " + join(moving));
+  if (!moving.empty()) throw value.error("a formula of parameters only, which does not depend on " + join(moving));
   return term;
 }
 
@@ -106,8 +109,8 @@ double MechanismScope::at_default(const Term& term) const {
 void MechanismScope::refuse_empty(const ConfigValue& range, const Term& from, const Term& to) const {
   const double least = at_default(from), greatest = at_default(to);
   if (least > greatest)
-    throw range.error("the least value before the greatest; the default parameters make it [" + shortest(least) + ", " +
-                      shortest(greatest) + "]");
+    throw range.error("[minimum, maximum] with minimum <= maximum; for the default parameters it is [" +
+                      shortest(least) + ", " + shortest(greatest) + "]");
 }
 
 std::vector<Node> MechanismScope::unvisited_nodes(Node root) const {

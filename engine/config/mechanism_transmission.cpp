@@ -56,13 +56,13 @@ constexpr const char *kLti = "lti", *kInput = "lti_input", *kOutput = "lti_outpu
 std::string why_no_transmission(const ConfigValue& root, const ConfigValue* study, const MechanismDraft& draft) {
   for (const char* const name : {kLti, kInput, kOutput})
     if (draft.scope.knows(name) || defines_quantity(root, study, name))
-      return std::string("the file gives the name ") + name + " another meaning";
+      return std::string("the mechanism file already uses the name ") + name;
   constexpr std::size_t kMaxCoordinates = 6;
   const std::size_t coordinates = draft.model.inputs.coordinates;
   if (coordinates > kMaxCoordinates) return "there are more than six coordinates";
   for (const NamedLimb& limb : draft.limbs)
     if (limb.drive == "formula" || limb.has_links)
-      return "limb " + limb.name + " acts on the platform by no single force along a rod, telescope or slide";
+      return "limb " + limb.name + " does not act on the platform by a single force along a rod, telescope or slide";
   if (draft.limbs.size() != coordinates)
     return "there are " + std::to_string(draft.limbs.size()) + " limbs for " + std::to_string(coordinates) +
            " coordinates";

@@ -108,8 +108,8 @@ TEST(CliDynamics, RejectsInvalidArguments) {
   EXPECT_EQ(away.exit_code, 1);
   EXPECT_TRUE(away.json()["Mq"].is_null());
   EXPECT_EQ(pkmopt({"dynamics", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=0", "--reactions"}).err,
-            "pkmopt: --reactions: mechanism 4ppa-2par has no model of the forces in its joints: limb sliders is a "
-            "formula, which does not say what its links are\n");
+            "pkmopt: --reactions: mechanism 4ppa-2par has no model of the forces in its joints: limb sliders has drive "
+            "= \"formula\", so its links are unknown\n");
 }
 
 TEST(CliCoupling, GoldenStatisticsAndTheirTable) {

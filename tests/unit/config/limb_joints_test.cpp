@@ -71,7 +71,7 @@ TEST(Across, ARodThatLeavesItsPlaneIsRefused) {
   EXPECT_THAT(
       message,
       HasSubstr("robot.toml:21: limb[1].across: the component of B - A along `across` changes with the pose ("));
-  EXPECT_THAT(message, HasSubstr("write the platform's dependent coordinates as formulas in `origin` or `end`"));
+  EXPECT_THAT(message, HasSubstr("give formulas in `origin` or `end` that keep it in this plane"));
   EXPECT_EQ(refusal_of(rewritten(robot("3-prs-across"), "across = [^\n]*\n", "")), "it is accepted");
 }
 
@@ -97,7 +97,7 @@ TEST(Across, OffsetsThatNoPoseChangesArePlanar) {
 TEST(Across, OtherDesignsThanTheDefaultCount) {
   const std::string tilted = "{ x = \"along x\", z = \"along z\", beta = \"about x\" }";
   const std::string message = refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, \"h\", 0]\n"));
-  EXPECT_THAT(message, HasSubstr("for another design than the default"));
+  EXPECT_THAT(message, HasSubstr("for a design other than the default"));
   EXPECT_EQ(refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, 0, 0]\n")), "it is accepted");
 }
 
@@ -110,39 +110,42 @@ TEST(Across, HasNoEffectOnASlideWithoutRod) {
 
 TEST(Mobility, ThreeLegsDoNotHoldTheRotations) {
   const std::string translations = "{ x = \"along x\", y = \"along y\", z = \"along z\" }";
-  EXPECT_EQ(mobility_of(three_legs(translations)),
-            kDrives +
-                "3 of 6 degrees of freedom there: the joints of the file do not prevent rotation about x, rotation "
-                "about y, rotation about z, which is assumed to be impossible");
+  EXPECT_EQ(
+      mobility_of(three_legs(translations)),
+      kDrives +
+          "3 of 6 degrees of freedom at this pose: the joints of the file do not prevent rotation about x, rotation "
+          "about y, rotation about z, which is assumed to be impossible");
 }
 
 TEST(Mobility, JointsThatHoldThePlatformAreCounted) {
   for (const char* name : {"3-rrr", "rotary-delta", "linear-delta", "orthoglide"})
-    EXPECT_EQ(mobility_of(test::text_of_mechanism(name)), kDrives + "3 of 3 degrees of freedom there") << name;
+    EXPECT_EQ(mobility_of(test::text_of_mechanism(name)), kDrives + "3 of 3 degrees of freedom at this pose") << name;
   for (const char* name : {"3crr-r-cru", "quadrupteron"})
-    EXPECT_EQ(mobility_of(test::text_of_mechanism(name)), kDrives + "4 of 4 degrees of freedom there") << name;
-  EXPECT_EQ(mobility_of(test::text_of_mechanism("gough")), kDrives + "6 of 6 degrees of freedom there");
+    EXPECT_EQ(mobility_of(test::text_of_mechanism(name)), kDrives + "4 of 4 degrees of freedom at this pose") << name;
+  EXPECT_EQ(mobility_of(test::text_of_mechanism("gough")), kDrives + "6 of 6 degrees of freedom at this pose");
 }
 
 TEST(Mobility, SingleRodsDoNotHoldTheRotationsOfADelta) {
-  EXPECT_THAT(mobility_of(rewritten(test::text_of_mechanism("rotary-delta"), "\npair [^\n]*", "")),
-              HasSubstr("3 of 6 degrees of freedom there: the joints of the file do not prevent rotation about x"));
+  EXPECT_THAT(
+      mobility_of(rewritten(test::text_of_mechanism("rotary-delta"), "\npair [^\n]*", "")),
+      HasSubstr("3 of 6 degrees of freedom at this pose: the joints of the file do not prevent rotation about x"));
 }
 
 TEST(Mobility, LegsInAPlaneHoldThePlatformIfTheirJointsAreParallel) {
   const std::string balls = test::text_of_mechanism("3-rpr");
-  EXPECT_THAT(mobility_of(balls), HasSubstr("3 of 6 degrees of freedom there: the joints of the file do not prevent "
-                                            "translation along z, rotation about x, rotation about y"));
+  EXPECT_THAT(mobility_of(balls),
+              HasSubstr("3 of 6 degrees of freedom at this pose: the joints of the file do not prevent "
+                        "translation along z, rotation about x, rotation about y"));
   EXPECT_EQ(mobility_of(rewritten(balls, "\nradius ", "\nacross = [0, 0, 1]\nradius ")),
-            kDrives + "3 of 3 degrees of freedom there");
+            kDrives + "3 of 3 degrees of freedom at this pose");
 }
 
 TEST(Mobility, WhatTheFileDoesNotDescribeIsUnknown) {
   const std::string unknown =
-      "the drives determine the coordinates there; unknown whether joints hold the platform's "
+      "the drives determine the coordinates at this pose; unknown whether the joints constrain the platform's "
       "other degrees of freedom: limb ";
   EXPECT_EQ(mobility_of(test::text_of_mechanism("4ppa-2par")),
-            unknown + "sliders is a formula, which does not say what its links are");
+            unknown + "sliders has drive = \"formula\", so its links are unknown");
   EXPECT_THAT(mobility_of(test::text_of_mechanism("par4")), HasSubstr(unknown + "arm1 ends at `end`"));
   EXPECT_THAT(mobility_of(robot("crank-and-slide")), HasSubstr(unknown + "slide has neither `rod` nor `links`"));
 }

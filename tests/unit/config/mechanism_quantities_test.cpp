@@ -119,10 +119,11 @@ formula = "sin(t)*x"
 TEST(MechanismQuantities, RefuseWhatCannotBe) {
   const std::string input = "[inputs]\nt = { unit = \"rad\" }\n";
   EXPECT_THAT(refusal(slider(input + "[[margin]]\nname = \"m\"\nformula = \"t\"\n")),
-              HasSubstr("a formula of [inputs] or of rates is possible for a [[quantity]] only"));
+              HasSubstr("only the formula of a [[quantity]] may depend on [inputs] or rates"));
   EXPECT_THAT(refusal(slider("[[quantity]]\nname = \"dci\"\nformula = \"x\"\n")),
-              HasSubstr("'dci' is a name that every mechanism has"));
-  EXPECT_THAT(refusal(slider("[[quantity]]\nname = \"l\"\nformula = \"x\"\n")), HasSubstr("'l' is the name of"));
+              HasSubstr("'dci' is a predefined name of every mechanism"));
+  EXPECT_THAT(refusal(slider("[[quantity]]\nname = \"l\"\nformula = \"x\"\n")),
+              HasSubstr("'l' is already the name of"));
   EXPECT_THAT(refusal(slider("[[quantity]]\nname = \"a\"\nformula = \"b\"\n")), HasSubstr("'b'"));
   EXPECT_THAT(refusal(slider("[inputs]\nt = { default = 1 }\n")), HasSubstr("inputs.t.unit"));
 }
@@ -166,7 +167,7 @@ TEST(ModeNames, AreThoseOfTheFile) {
   EXPECT_TRUE(branch->inspect(design, kPose, "+", none).feasible);
   EXPECT_FALSE(branch->inspect(design, kPose, "+/-", none).feasible);
   EXPECT_THAT(refusal(slider("", "e = { signs = [\"+\", \"-\"], names = [\"a\", \"a\"] }")),
-              HasSubstr("as many different names as signs"));
+              HasSubstr("a different name for each sign"));
 }
 
 TEST(MassModels, AreAlternativesOfOneFile) {

@@ -236,11 +236,10 @@ TEST(DescribedClearance, KeepsItsName) {
     }
     return std::string("accepted");
   };
-  EXPECT_NE(
-      message("name     = \"clear_z\"", "name = \"clearance_min\"").find("clearance_min is the limit of the links"),
-      std::string::npos);
+  EXPECT_NE(message("name     = \"clear_z\"", "name = \"clearance_min\"").find("clearance_min is predefined"),
+            std::string::npos);
   EXPECT_NE(message("[platform]", "clearance_min = { default = \"1 m\", min = 0, max = 2 }\n[platform]")
-                .find("call the parameter otherwise"),
+                .find("rename the parameter"),
             std::string::npos);
 }
 

@@ -208,21 +208,21 @@ TEST(DescribedReactions, FilesThatDoNotSayEnoughGetASentence) {
     EXPECT_EQ(mechanism.reactions(), nullptr);
     return mechanism.why_no_reactions();
   };
-  EXPECT_EQ(why(*test::described("4ppa-2par")), "limb sliders is a formula, which does not say what its links are");
-  EXPECT_THAT(why(*test::described("par4")), HasSubstr("limb arm1 ends at `end`; end_on = \"platform\", or the name"));
-  EXPECT_EQ(
-      why(*rewritten("rotary-delta", "\npair [^\n]*", "")),
-      "the joints of the file hold its bodies too little (42 equations have 39 unknowns); rods that come in pairs "
-      "say `pair`, limbs of parallel revolutes `across`");
-  EXPECT_EQ(why(*rewritten("gough", "\n[a-z_]*(mass|centre|inertia) +=[^\n]*", "")), "the file names no masses");
-  EXPECT_EQ(
-      why(*rewritten("3crr-r-cru", "\\[\\[joint\\]\\](.|\n)*$", "")),
-      "the joints of the file hold its bodies too little (60 equations have 59 unknowns); rods that come in pairs "
-      "say `pair`, limbs of parallel revolutes `across`");
+  EXPECT_EQ(why(*test::described("4ppa-2par")), "limb sliders has drive = \"formula\", so its links are unknown");
+  EXPECT_THAT(
+      why(*test::described("par4")),
+      HasSubstr("limb arm1 ends at `end`, but the body there is unknown; give end_on = \"platform\" or the name"));
+  EXPECT_EQ(why(*rewritten("rotary-delta", "\npair [^\n]*", "")),
+            "the joints of the file constrain its bodies too little: 39 unknown joint forces in 42 equations; "
+            "give `pair` for rods in pairs, and `across` for limbs with parallel revolute joints");
+  EXPECT_EQ(why(*rewritten("gough", "\n[a-z_]*(mass|centre|inertia) +=[^\n]*", "")),
+            "the mechanism file has no masses");
+  EXPECT_EQ(why(*rewritten("3crr-r-cru", "\\[\\[joint\\]\\](.|\n)*$", "")),
+            "the joints of the file constrain its bodies too little: 59 unknown joint forces in 60 equations; "
+            "give `pair` for rods in pairs, and `across` for limbs with parallel revolute joints");
   EXPECT_EQ(
       why(*rewritten("quadrupteron", "(mass   = \"m_p\"\n)rotation = \"platform\"", "$1")),
-      "no joint holds the body payload; rotation = \"platform\" makes a body part of the platform, [[joint]] joins "
-      "two");
+      "the body payload has no joint; add a [[joint]], or make it part of the platform with rotation = \"platform\"");
   EXPECT_THAT(why(*rewritten("quadrupteron", "end_on     = \"platform\"", "end_on     = \"platfrom\"")),
               HasSubstr("ends on 'platfrom', which is neither the platform nor a body; did you mean 'platform'?"));
 }
@@ -239,7 +239,7 @@ TEST(DescribedReactions, JointsThatCannotBeAreRefused) {
   EXPECT_THAT(message("\\[\\[design\\]\\]",
                       "[[joint]]\nname = \"j\"\nbodies = [\"platform\", \"platform\"]\nat = [\"x\", \"y\", \"z\"]\n"
                       "about = [0, 0, 1]\n[[design]]"),
-              HasSubstr("joint[1].bodies[2]: found \"platform\"; expected another body than the first"));
+              HasSubstr("joint[1].bodies[2]: found \"platform\"; expected a body other than the first"));
   EXPECT_THAT(message("spacing = \"60 mm\"", "spacing = 0"),
               HasSubstr("limb[1].pair.spacing: found 0; expected a number > 0 m"));
 }

@@ -142,12 +142,13 @@ TEST(Transmission, LeavesItsNamesToTheFile) {
   ASSERT_NE(lti, info.quantities.end());
   EXPECT_EQ(lti->unit, "m");
   EXPECT_EQ(std::ranges::find(info.quantities, "lti_input", &QuantityInfo::name), info.quantities.end());
-  EXPECT_EQ(why_undefined(info, "lti"), "the file gives the name lti another meaning");
+  EXPECT_EQ(why_undefined(info, "lti"), "the mechanism file already uses the name lti");
 }
 
 TEST(Transmission, IsUndefinedForLimbsOfFormulas) {
   const Mechanism& scara = *test::described("4ppa-2par");
-  EXPECT_THAT(why_undefined(scara.info(), "lti"), ::testing::HasSubstr("acts on the platform by no single force"));
+  EXPECT_THAT(why_undefined(scara.info(), "lti"),
+              ::testing::HasSubstr("does not act on the platform by a single force"));
   EXPECT_EQ(std::ranges::find(scara.info().quantities, "lti", &QuantityInfo::name), scara.info().quantities.end());
 }
 

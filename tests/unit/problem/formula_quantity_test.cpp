@@ -208,7 +208,7 @@ TEST(BuiltInQuantity, LimitsCutVoxels) {
   EXPECT_THAT(complaint(kColumns + limit + objectives),
               HasSubstr("has no exact columns under a limit of conditioning, which is not given by a formula"));
   EXPECT_THAT(complaint(kVoxels + "limits = { dci = { max = 0.5 } }\n" + kVolume),
-              HasSubstr("dci is a quantity of the inertia, which cannot restrict a workspace"));
+              HasSubstr("dci depends on the inertia, so it cannot restrict a workspace"));
 }
 
 TEST(FormulaQuantity, MistakesAreNamed) {
