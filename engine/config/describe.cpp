@@ -48,7 +48,7 @@ void write_parameters(std::ostream& out, const Study& study) {
 /// Value of a fixed coordinate.
 std::string fixed_text(const FixedCoordinate& fixed, const std::string& unit) {
   using Kind = FixedCoordinate::Kind;
-  if (fixed.kind == Kind::default_value) return "middle of each design";
+  if (fixed.kind == Kind::default_value) return "default of each design";
   if (fixed.kind == Kind::integrated) return "integrated over its range";
   if (fixed.kind == Kind::value) return with_degrees(fixed.value, unit);
   return join_texts(fixed.values, [&unit](double value) { return with_degrees(value, unit); });
@@ -87,11 +87,12 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
     rows.push_back({"box", box.empty() ? "derived from each design" : join(box), mark(box.empty())});
   if (const ColumnOptions* const columns = plan.columns()) {
     if (columns->nodes[0] > 0)
-      rows.push_back({"nodes", join(nodes) + " per piece"});
+      rows.push_back({"nodes", join(nodes) + " per smooth subinterval"});
     else
       rows.push_back({"tolerance", shortest(columns->tolerance) + " relative",
                       mark(columns->tolerance == usual.columns()->tolerance)});
-    if (columns->certified) rows.push_back({"certified", "within bounds of the gap " + shortest(*columns->certified)});
+    if (columns->certified)
+      rows.push_back({"certified", "by bounds with the relative gap " + shortest(*columns->certified)});
   }
   for (const int i : sweep.fixed) {
     const FixedCoordinate fixed = how_fixed(plan, i);
@@ -107,17 +108,17 @@ std::vector<Row> limit_rows(const Study& study) {
   std::vector<Row> rows;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto& limit = known[i];
-    const char* const cuts_nothing = "(default: cuts nothing)";
-    std::string value = with_degrees(limit.inactive, limit.unit), origin = cuts_nothing;
+    const char* const inactive = "(default: inactive)";
+    std::string value = with_degrees(limit.inactive, limit.unit), origin = inactive;
     if (const Parameter* own = find_named(parts.mechanism->info().parameters, limit.name)) {
       value = "the parameter";
       origin = "(default: " + own->name + " of the design)";
     }
     if (!study.limit_origins[i].empty()) {
       const std::optional<double>& given = parts.plan.limits.given[i];
-      const bool is_default = given && *given == limit.inactive && origin == cuts_nothing;
+      const bool is_default = given && *given == limit.inactive && origin == inactive;
       value = given ? with_degrees(*given, limit.unit) : limit.derivation;
-      origin = "from " + study.limit_origins[i] + (is_default ? std::string(" ") + cuts_nothing : "");
+      origin = "from " + study.limit_origins[i] + (is_default ? std::string(" ") + inactive : "");
     }
     rows.push_back({limit.name, value, origin, limit.meaning});
   }
@@ -191,7 +192,7 @@ std::string describe(const Study& study) {
     for (std::size_t i = 0; i < trains->size(); ++i) {
       const DriveTrain& train = (*trains)[i];
       const AxisInfo& joint = info.joints[i];
-      rows.push_back({joint.name, "motor turns " + with_unit(train.ratio, joint.turns() ? "1" : "rad/m") + " as fast",
+      rows.push_back({joint.name, "transmission ratio " + with_unit(train.ratio, joint.turns() ? "1" : "rad/m"),
                       "reflected inertia " + with_unit(train.reflected(), joint.turns() ? "kg m^2" : "kg"),
                       "efficiency " + shortest(train.efficiency)});
     }
@@ -204,10 +205,10 @@ std::string describe(const Study& study) {
   for (const NamedMotion& named : study.motions)
     motions.push_back(
         {named.name, "takes " + with_unit(named.motion->duration(), "s"),
-         contains(study.unfollowed_motions, named.name) ? "may leave limits of a pose (follow = false)" : ""});
+         contains(study.unfollowed_motions, named.name) ? "may violate limits of a pose (follow = false)" : ""});
   if (!motions.empty()) out << format_titled_table("motions", motions);
   if (const Obstacles& obstacles = parts.plan.limits.obstacles; !obstacles.empty())
-    out << format_titled_table("obstacles, of which all links that move keep clear", obstacle_rows(obstacles));
+    out << format_titled_table("obstacles, from which all moving links keep the clearance", obstacle_rows(obstacles));
   out << format_titled_table("limits of a pose", limit_rows(study));
   write_entries(out, "objectives", study.objectives);
   write_entries(out, "constraints", study.constraints);
@@ -218,11 +219,11 @@ std::string describe(const Study& study) {
     out << "  " << i + 1 << ". " << stage.entry->name << ": " << stage.entry->meaning << '\n';
     write_options(out, stage.specs, stage.options);
   }
-  std::string round = "best design as it is";
+  std::string round = "best design, not rounded";
   if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
   std::vector<Row> run = {{"checkpoint",
                            study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
-                                                  : "adapts: at most 2 % of the run time",
+                                                  : "adaptive: at most 2 % of the run time",
                            mark(!study.checkpoint_every)},
                           {"final", round, mark(!study.round)}};
   if (parts.plan.voxels() && parts.mechanism->columns())

@@ -71,15 +71,16 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   }
   out << "\nnominal pose, of the default parameters in working mode " << info.modes.front() << '\n';
   if (poses.empty()) {
-    out << "  none: [survey] gives no box for all swept coordinates, and no values of the others\n";
+    out << "  none: [survey] has no box of all swept coordinates, or no default values of the fixed ones\n";
     return;
   }
   if (feasible.empty()) {
     std::vector<std::string> never;
     for (const auto& [name, margin] : margins)
       if (!kept.contains(name)) never.push_back(name);
-    out << "  none of " << poses.size() << " poses in the survey's box is feasible; "
-        << (never.empty() ? "each margin is kept somewhere, all of them nowhere" : "never kept: " + names_text(never))
+    out << "  none of " << poses.size() << " sampled poses in the search box is feasible; "
+        << (never.empty() ? "every limit is satisfied at some pose, but no pose satisfies all of them"
+                          : "satisfied at no pose: " + names_text(never))
         << '\n';
     return;
   }
@@ -98,7 +99,7 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
     joints.push_back(info.joints[i].name + " = " + with_degrees((*report.joints)[i], info.joints[i].unit));
   out << "  " << join(at) << "\n  " << join(joints) << '\n';
   if (!report.J) {
-    out << "  singular: the joints do not follow from the pose's rates\n";
+    out << "  singular: the joint speeds are not determined by the rates of the coordinates\n";
     return;
   }
   Eigen::MatrixXd J(report.J->rows(), report.J->cols());
@@ -116,7 +117,7 @@ std::string why_no_masses(const Mechanism& mechanism) {
   try {
     mechanism.dynamics()->equations(std::span<const double>(nominal), mechanism.info().modes.front(), {}, {});
   } catch (const DesignError& reason) {
-    return std::string("not with the default parameters: ") + reason.what();
+    return std::string("invalid for the default parameters: ") + reason.what();
   }
   return "";
 }
@@ -129,19 +130,20 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
   tell(mechanism.columns(), "exact workspace by columns",
        "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
-  tell(mechanism.bounds(), "certified bounds of the workspace", "pkmopt certify, by intervals", "");
+  tell(mechanism.bounds(), "certified bounds of the workspace", "pkmopt certify, by interval arithmetic", "");
   const Unsupported undefined = why_no_conditioning(mechanism.info());
   tell(!undefined, "conditioning", "", undefined.value_or(""));
   for (const UndefinedQuantity& quantity : mechanism.info().undefined_quantities)
     tell(false, quantity.name.c_str(), "", quantity.why);
-  tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
-  tell(mechanism.forward(), "forward kinematics", "Newton's method from many poses: it need not find every assembly",
-       "as many joints as coordinates are needed");
+  tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of first and second order",
+       "");
+  tell(mechanism.forward(), "forward kinematics", "Newton's method from many poses; may miss assembly modes",
+       "needs as many joints as coordinates");
   tell(mechanism.size(), "workspace-ratio", "", "[platform] size is missing");
   tell(mechanism.design_tests(), "tests of the design", "", "there is no [[design]]");
   tell(keeps_links_clear, "clearance of links",
-       "constraint clearance or limit clearance_min: of poses, voxels, task-workspace, motions; not columns or bounds",
-       "there are no two links, of limbs with a radius or by [[link]], that could meet");
+       "constraint clearance or limit clearance_min; not for exact columns and certified bounds",
+       "needs two links that could collide: limbs with `radius`, or [[link]]");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
   const Unsupported no_forces = why_no_joint_forces(mechanism);
   tell(!no_forces, "forces and coupling", no_forces ? "" : why_no_masses(mechanism), no_forces.value_or(""));
@@ -193,7 +195,7 @@ std::string describe_mechanism(const Mechanism& mechanism) {
   std::vector<std::vector<std::string>> links;
   for (const auto& [link, others] : joined)
     links.push_back({link, others.empty() ? "all others" : "all but " + names_text(others)});
-  out << format_titled_table("links, and those that they keep clear of", links);
+  out << format_titled_table("links, and the links that their clearance is tested against", links);
   write_nominal_pose(out, mechanism, nominal);
   write_abilities(out, mechanism, !joined.empty());
   return out.str();

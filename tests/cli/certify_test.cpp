@@ -202,7 +202,7 @@ TEST_F(CertifiedVolumes, AreCheckedByEvaluate) {
   EXPECT_EQ(found.json()["certified"]["holds_volume"], true);
   EXPECT_LE(found.json()["certified"]["gap"], 1e-3);
   EXPECT_LE(run({"evaluate", "s.toml", "--certified", "1e-4", "--json"}).json()["certified"]["gap"], 1e-4);
-  EXPECT_THAT(run({"check", "s.toml"}).out, HasSubstr("within bounds of the gap 0.001"));
+  EXPECT_THAT(run({"check", "s.toml"}).out, HasSubstr("by bounds with the relative gap 0.001"));
   EXPECT_EQ(run({"check", "s.toml", "--json"}).json()["workspace"]["certified"], 1e-3);
 }
 

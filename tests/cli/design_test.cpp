@@ -155,7 +155,7 @@ TEST(CliCheck, PrintsAllDefaults) {
   const auto file = folder.write("s.toml", study_with("[baseline]\na = 0.9"));
   const auto text = pkmopt({"check", file});
   EXPECT_EQ(text.exit_code, 0);
-  EXPECT_THAT(text.out, HasSubstr("adapts: at most 2 % of the run time"));
+  EXPECT_THAT(text.out, HasSubstr("adaptive: at most 2 % of the run time"));
   EXPECT_THAT(text.out, HasSubstr("baseline 0.9 m (outside the bounds)"));
   const json found = pkmopt({"check", file, "--json"}).json();
   EXPECT_EQ(found["seed"], 1);

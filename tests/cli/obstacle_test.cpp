@@ -56,7 +56,7 @@ class Obstacle : public StudyProgram {
 TEST_F(Obstacle, IsListedByCheck) {
   write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
-  EXPECT_THAT(output_, HasSubstr("obstacles, of which all links that move keep clear\n"
+  EXPECT_THAT(output_, HasSubstr("obstacles, from which all moving links keep the clearance\n"
                                  "  table  box     centre (0, 0, -0.7) m      sizes (1, 1, 0.1) m\n"
                                  "  lamp   sphere  centre (0.15, 0, -0.45) m  radius 0.04 m\n"));
   ASSERT_EQ(run({"check", "s.toml", "--json"}), 0) << output_;

@@ -25,13 +25,13 @@ fixed parameters
   mass  2 kg                   (default)  mass
 
 workspace
-  method     columns                (default)
-  tolerance  1e-08 relative         (default)
-  y          middle of each design  (default)
+  method     columns                 (default)
+  tolerance  1e-08 relative          (default)
+  y          default of each design  (default)
 
 limits of a pose
-  gap_min    0 m                    (default: cuts nothing)  least gap
-  angle_max  1.5 rad (85.9437 deg)  (default: cuts nothing)  greatest angle
+  gap_min    0 m                    (default: inactive)  least gap
+  angle_max  1.5 rad (85.9437 deg)  (default: inactive)  greatest angle
 
 objectives
   volume: maximise, in m^2 rad
@@ -48,8 +48,8 @@ stages
     width       3        (default)
 
 run
-  checkpoint  adapts: at most 2 % of the run time  (default)
-  final       best design as it is                 (default)
+  checkpoint  adaptive: at most 2 % of the run time  (default)
+  final       best design, not rounded               (default)
 )");
 }
 
@@ -131,8 +131,7 @@ TEST(Describe, MarksWhatIsGivenAndEqualsTheDefault) {
        {"study", "seed", "output", "b ", "method", "tolerance", "y ", "  population", "  width"})
     EXPECT_TRUE(line_of(given, row).find("(default)") != std::string::npos) << line_of(given, row);
   EXPECT_EQ(line_of(given, "  rate").find("(default)"), std::string::npos) << line_of(given, "  rate");
-  EXPECT_NE(line_of(given, "gap_min").find("from workspace.limits (line 22) (default: cuts nothing)"),
-            std::string::npos)
+  EXPECT_NE(line_of(given, "gap_min").find("from workspace.limits (line 22) (default: inactive)"), std::string::npos)
       << given;
   EXPECT_EQ(line_of(given, "angle_max").find("(default"), std::string::npos) << given;
   const std::string other = describe(

@@ -70,7 +70,7 @@ TEST(MotionConstraint, StudiesHaveItForEveryMotionThatTheirEntriesName) {
 TEST(MotionConstraint, NotWhereTheStudySaysSo) {
   const Study free = study(kForce, "follow = false\n");
   EXPECT_THAT(margins(free), IsEmpty());
-  EXPECT_THAT(describe(free), HasSubstr("may leave limits of a pose (follow = false)"));
+  EXPECT_THAT(describe(free), HasSubstr("may violate limits of a pose (follow = false)"));
   EXPECT_THAT(margins(study(kForce, "follow = true\n")), ElementsAre("motion-cycle"));
   const Study stated =
       study(kForce + entry("constraint", "motion", "name = \"reach\"\nmotion = \"cycle\"\nsamples = 31"));
