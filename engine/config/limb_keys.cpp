@@ -32,10 +32,10 @@ OptionSpec passive_joint_key(const std::string& name, const std::string& end) {
 OptionSpec pair_key() {
   static const TableSpec spec = {
       .meaning = "pair of parallel rods",
-      .keys = {
-          required(formula_key("spacing", "m", "distance of the rods")),
-          direction_key("along",
-                        "sliders, required: direction from one rod to the other; of cranks it is the crank's axis")}};
+      .keys = {required(formula_key("spacing", "m", "distance of the rods")),
+               direction_key(
+                   "along",
+                   "required for sliders: direction from one rod to the other; for cranks it is the crank's axis")}};
   return table_key("pair", spec, "the rod is a pair of parallel rods with ball joints");
 }
 
@@ -69,7 +69,9 @@ Keys geometry_keys() {
       required(point_key("base", "base point A [x, y, z]")),
       point_key("platform", "platform's point B [x, y, z] in the platform's frame"),
       point_key("end", "end point B in the base's frame, instead of `platform`; formulas of the pose are possible"),
-      direction_key("across", "normal of the plane in which the limb's links move: its joints are revolutes about it"),
+      direction_key(
+          "across",
+          "normal of the plane in which the limb's links move; all joints of the limb are revolute about this normal"),
       frame_key("across_in", "across"),
       formula_key("radius", "m", "radius of the links, for pictures and clearance"),
       passive_joint_key("joint_base", "base"),

@@ -34,15 +34,15 @@ const TableSpec& parameter_table() {
 
 /// @param header  "[parameters]"; "" in [masses.NAME]
 TableSpec parameters_table(const std::string& header) {
-  static const TableSpec limb = {.meaning = "parameters of this limb alone",
+  static const TableSpec limb = {.meaning = "parameters of this limb only",
                                  .keys = {},
                                  .named = {table_key("", limb_parameter_keys())},
                                  .noun = "parameter"};
   return {.header = header,
-          .meaning = "dimensions, masses and other numbers that a design may choose",
+          .meaning = "dimensions, masses and other numbers that define a design",
           .keys = {},
           .named = {{.kind = OptionKind::any_of,
-                     .meaning = "a parameter; a table of a limb's name has parameters of this limb alone",
+                     .meaning = "a parameter; or, under the name of a limb, a table of parameters of this limb only",
                      .parts = {table_key("", parameter_table()), table_key("", limb)}}},
           .noun = "parameter"};
 }
@@ -50,7 +50,7 @@ TableSpec parameters_table(const std::string& header) {
 /// @param header  "[let]"; "" in [masses.NAME]
 TableSpec let_table(const std::string& header) {
   return {.header = header,
-          .meaning = "named formulas, in their order",
+          .meaning = "named formulas; each may use the names above it",
           .keys = {},
           .named = {formula_key("", "1", "formula of the names defined above it, in SI")},
           .noun = "name"};
@@ -162,7 +162,8 @@ const TableSpec& limit_table() {
   static const TableSpec spec = {
       .header = "[[limit]]",
       .meaning =
-          "threshold of a constraint of poses that studies may set; with the name of a parameter, it replaces it",
+          "threshold of a constraint of poses that studies may set; a limit with the name of a parameter replaces the "
+          "parameter",
       .keys = {required(text_key("name", "name of the limit")),
                unit_key("unit of the limit: \"m\", \"rad\", \"1\""),
                meaning_key(),
@@ -265,12 +266,12 @@ const TableSpec& accuracy_keys() {
                                    .keys = {},
                                    .named = {formula_key("", kUnitOfEntry, "bound of the joint's error")},
                                    .noun = "joint"};
-  static const TableSpec of_limb = {.meaning = "errors of this limb alone",
+  static const TableSpec of_limb = {.meaning = "errors of this limb only",
                                     .keys = {},
                                     .named = {formula_key("", kUnitOfEntry, "bound of the error")},
                                     .noun = "parameter"};
   static const TableSpec parameters = {
-      .meaning = "errors by parameter; a table of a limb's name has errors of this limb alone",
+      .meaning = "errors by parameter; or, under the name of a limb, a table of errors of this limb only",
       .keys = {},
       .named = {{.kind = OptionKind::any_of,
                  .unit = kUnitOfEntry,

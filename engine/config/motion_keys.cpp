@@ -32,7 +32,7 @@ OptionSpec law_key() {
 
 std::vector<TableVariant> motion_variants() {
   static const TableSpec point = [] {
-    TableSpec table = {.meaning = "a point; a coordinate that is not given stays",
+    TableSpec table = {.meaning = "a point; coordinates that are not given keep their values",
                        .keys = {wait_key("at the point")},
                        .named = {{.unit = kUnitOfEntry, .meaning = "value of the coordinate"}},
                        .noun = "key"};
@@ -75,7 +75,7 @@ std::vector<TableVariant> motion_variants() {
          .kind = OptionKind::word,
          .initial = "half",
          .choices = {"half", "whole"},
-         .meaning = "whole: and back to the start"},
+         .meaning = "half: from start to end; whole: also back to the start"},
         law_key()}},
       {"oscillation",
        "sinusoidal motion of x, y and z about a pose",
@@ -97,8 +97,8 @@ TableSpec motion_table(bool in_study) {
       .variants = motion_variants(),
       .named = {{.kind = OptionKind::formula,
                  .unit = kUnitOfEntry,
-                 .meaning = "value of the coordinate at the start, or its formula of the time t [s]; or that "
-                            "of an input of the mechanism"}}};
+                 .meaning = "value at the start, or formula of the time t [s], of a coordinate or an input of the "
+                            "mechanism"}}};
   if (in_study) {
     table.keys.push_back({.name = "name",
                           .kind = OptionKind::word,
@@ -158,7 +158,7 @@ const TableSpec& drive_train_keys() {
   constexpr double kMinEfficiency = 1e-3;
   static const TableSpec spec = {
       .header = "[[drive_train]]",
-      .meaning = "gear or screw, rotor and losses between a joint and its motor; all joints have one, or none",
+      .meaning = "gear or screw, rotor and losses between a joint and its motor; given for all joints, or for none",
       .keys = {
           {.name = "joint", .kind = OptionKind::word, .required = true, .meaning = "name of a joint, or \"all\""},
           {.name = "gear",
@@ -167,7 +167,7 @@ const TableSpec& drive_train_keys() {
            .positive = true},
           {.name = "lead",
            .unit = "m",
-           .meaning = "sliding joints, required: travel per revolution of the screw",
+           .meaning = "required for prismatic joints: travel per revolution of the screw",
            .positive = true},
           {.name = "rotor_inertia", .unit = "kg m^2", .initial = 0.0, .lower = 0, .meaning = "inertia of the rotor"},
           {.name = "shaft_inertia",
