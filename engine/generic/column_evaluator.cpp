@@ -173,12 +173,12 @@ class GenericColumns final : public WithGradients<GenericColumns> {
 std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Evaluation& evaluation, const WorkspacePlan& plan,
                                                           const ColumnOptions& columns, const FieldRequest& request) {
   refuse_clearance(evaluation.model, plan.limits,
-                   "has no columns under a clearance (clearance_min), because links that meet end columns where "
-                   "no formula says; set workspace.method = \"voxels\"");
+                   "has no exact columns with a clearance limit (clearance_min), because the distance of two links "
+                   "is not given by a formula; set workspace.method = \"voxels\"");
   refuse_report_limits(evaluation.model, plan.limits, "exact columns");
   if (request.characteristic_length)
     throw std::invalid_argument("mechanism " + evaluation.model.info.name +
-                                " has its own characteristic length only; leave out characteristic_length");
+                                " has its own characteristic length; remove characteristic_length");
   return std::make_unique<GenericColumns>(evaluation, plan, columns, request);
 }
 

@@ -156,8 +156,8 @@ SlicePlan ColumnVolume::choose_slices() const {
   }
   if (!best && has_curves)
     throw std::invalid_argument("mechanism " + e_.model.info.name +
-                                " has no exact columns that can be computed in seconds: its constraints are no "
-                                "polynomials of degree four; use voxels");
+                                " has no exact columns that can be computed in seconds, because its constraints are "
+                                "not polynomials of degree four or less; set workspace.method = \"voxels\"");
   return best ? *best : first;
 }
 

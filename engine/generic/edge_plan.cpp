@@ -155,7 +155,7 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
     }
     const auto clauses = converter.clauses(node);
     if (!clauses) {
-      why_not_ = "'" + constraint_name(model, i) + "' is no quadric";
+      why_not_ = "'" + constraint_name(model, i) + "' is not a quadric";
       return;
     }
     for (const auto& clause : *clauses) {

@@ -116,8 +116,7 @@ class GenericMechanism final : public Mechanism,
   Unsupported why_no_derivatives(const LimitSpec& limits) const override {
     const PoseQuantity* const limited = first_report_limit(e_.model, limits);
     if (!limited) return {};
-    return "margins under a limit of " + std::string(limited->name) +
-           " have none, because it is not given by a formula";
+    return "margins have none if " + std::string(limited->name) + " is limited, because it is not given by a formula";
   }
   template <class S>
   void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,

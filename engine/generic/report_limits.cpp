@@ -12,8 +12,8 @@ const PoseQuantity* first_report_limit(const Model& model, const LimitSpec& limi
 
 void refuse_report_limits(const Model& model, const LimitSpec& limits, const std::string& what) {
   if (const PoseQuantity* const found = first_report_limit(model, limits))
-    throw std::invalid_argument("mechanism " + model.info.name + " has no " + what + " under a limit of " +
-                                found->name + ", which is not given by a formula; set workspace.method = \"voxels\", " +
+    throw std::invalid_argument("mechanism " + model.info.name + " has no " + what + " with a limit of " + found->name +
+                                ", which is not given by a formula; set workspace.method = \"voxels\", " +
                                 "or limit a [[quantity]] with a formula");
 }
 

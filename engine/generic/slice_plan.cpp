@@ -206,7 +206,8 @@ class Planner {
     else if (transcendental_)
       add_curve(node);
     else
-      refuse("'" + constraint_name(model_, number) + "' is no polynomial of degree " + (v_ == 0 ? "four" : "two"));
+      refuse("'" + constraint_name(model_, number) + "' is not a polynomial of degree " +
+             (v_ == 0 ? "four or less" : "two or less"));
   }
 
   void add_curve(Node node) {

@@ -35,7 +35,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
         test_(CellPlan::fastest(evaluation, sweep_.swept, voxels.cells, mode_)) {
     if (request.characteristic_length)
       throw std::invalid_argument("mechanism " + evaluation.model.info.name +
-                                  " has its own characteristic length only; leave out characteristic_length");
+                                  " has its own characteristic length; remove characteristic_length");
     if (request.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, request.rotors);
     if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, sweep_.swept, mode_);
     if (const auto limit = clearance_of(evaluation.model, plan.limits))

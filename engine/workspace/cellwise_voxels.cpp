@@ -48,7 +48,7 @@ class CellwiseVoxels final : public GridEvaluator<CellwiseVoxels> {
         mode_(request.mode.empty() ? mechanism.info().modes.front() : request.mode) {
     if (request.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
-                                  " has its own characteristic length only; leave out characteristic_length");
+                                  " has its own characteristic length; remove characteristic_length");
   }
 
  private:

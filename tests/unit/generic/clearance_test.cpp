@@ -216,8 +216,8 @@ TEST(DescribedClearance, ColumnsAndBoundsAreRefused) {
   const auto survey = [&] { prepare_workspace(mechanism, plan, {}); };
   const auto bound = [&] { mechanism.bounds()->volume(design, plan, "", {.gap = 0.5, .max_boxes = 10}); };
   EXPECT_EQ(message(survey),
-            "mechanism linear-delta has no columns under a clearance (clearance_min), because links that meet "
-            "end columns where no formula says; set workspace.method = \"voxels\"");
+            "mechanism linear-delta has no exact columns with a clearance limit (clearance_min), because the distance "
+            "of two links is not given by a formula; set workspace.method = \"voxels\"");
   EXPECT_EQ(
       message(bound),
       "mechanism linear-delta has no certified bounds with a clearance limit (clearance_min), because the distance "

@@ -206,7 +206,7 @@ TEST(BuiltInQuantity, LimitsCutVoxels) {
   parts.mechanism->pose_margins()->append(parts.parameters, "", parts.plan.limits, {&pose, 1}, scratch, margins);
   EXPECT_NEAR(margins.back(), outside.margins.back().second, 1e-15);
   EXPECT_THAT(complaint(kColumns + limit + objectives),
-              HasSubstr("has no exact columns under a limit of conditioning, which is not given by a formula"));
+              HasSubstr("has no exact columns with a limit of conditioning, which is not given by a formula"));
   EXPECT_THAT(complaint(kVoxels + "limits = { dci = { max = 0.5 } }\n" + kVolume),
               HasSubstr("dci depends on the inertia, so it cannot restrict a workspace"));
 }

@@ -139,7 +139,8 @@ TEST(Obstacles, AreRefusedByColumns) {
       prepare_workspace(*mechanism, plan, {});
       ADD_FAILURE() << "accepted";
     } catch (const std::invalid_argument& refused) {
-      EXPECT_NE(std::string(refused.what()).find("has no columns under a clearance (clearance_min)"), std::string::npos)
+      EXPECT_NE(std::string(refused.what()).find("has no exact columns with a clearance limit (clearance_min)"),
+                std::string::npos)
           << refused.what();
     }
   }

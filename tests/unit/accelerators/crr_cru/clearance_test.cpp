@@ -238,8 +238,8 @@ TEST(CrrCruClearance, ColumnsAreRefused) {
   const auto under = [](const auto& method, double least) { return plan(method, 3, 0, limit_spec(0, 0, least)); };
   const ColumnOptions columns{.tolerance = 1e-10};
   EXPECT_EQ(message(under(columns, 0), {}),
-            "mechanism quadrupteron has no columns under a clearance (clearance_min), because links that meet "
-            "end columns where no formula says; set workspace.method = \"voxels\"");
+            "mechanism quadrupteron has no exact columns with a clearance limit (clearance_min), because the distance "
+            "of two links is not given by a formula; set workspace.method = \"voxels\"");
   EXPECT_EQ(message(under(columns, -2), {}), "accepted") << "it cuts nothing";
   EXPECT_EQ(message(under(VoxelOptions{.cells = {4, 4, 4}}, 0), {.fields = {&kCouplingIndex}, .mode = "+,+,+,+"}),
             "accepted");

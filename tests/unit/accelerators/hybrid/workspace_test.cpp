@@ -327,9 +327,10 @@ TEST(HybridWorkspace, ColumnsRefuseAClearance) {
     prepare_workspace(mechanism(), columns, {});
     FAIL() << "the clearance is accepted";
   } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(),
-                 "mechanism 2t1r-p-hybrid has no columns under a clearance (clearance_min), because links that "
-                 "meet end columns where no formula says; set workspace.method = \"voxels\"");
+    EXPECT_STREQ(
+        e.what(),
+        "mechanism 2t1r-p-hybrid has no exact columns with a clearance limit (clearance_min), because the distance "
+        "of two links is not given by a formula; set workspace.method = \"voxels\"");
   }
 }
 
