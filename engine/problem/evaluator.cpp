@@ -167,8 +167,8 @@ void ParallelEvaluator::compare_ranks(const EvaluationTable& table, std::size_t 
     threads_of_ranks_.push_back(others[1]);
   }
   if (own[0] != first_hash)
-    ranks::abort_all_ranks("the first design of the batch has other results here than on rank 0 (" + ranks::host(0) +
-                           "); every host must run the same program with the same libraries");
+    ranks::abort_all_ranks("the results of the first design of the batch differ from those on rank 0 (" +
+                           ranks::host(0) + "); every host must run the same program with the same libraries");
 }
 
 void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first,

@@ -45,8 +45,8 @@ inline std::vector<MotionSample> samples_of(const EntryContext& context) {
   for (const MotionSample& at : samples)
     for (std::size_t i = 0; i < at.pose.size(); ++i)
       if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
-        throw std::invalid_argument("the motion " + named.name +
-                                    " has no finite pose, velocity and acceleration at t = " + with_unit(at.time, "s"));
+        throw std::invalid_argument("the pose, velocity or acceleration of the motion " + named.name +
+                                    " is not finite at t = " + with_unit(at.time, "s"));
   return samples;
 }
 

@@ -8,7 +8,8 @@ namespace pkm {
 void ReplayEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   const std::size_t end = std::max(first, std::min(table.size(), record_.size()));
   if (end > first && !(record_.shape() == table.shape()))
-    throw ReplayMismatch("the recorded evaluations have other variables, objectives or constraints than the problem");
+    throw ReplayMismatch(
+        "the variables, objectives or constraints of the recorded evaluations differ from those of the problem");
   for (std::size_t row = first; row < end; ++row) {
     const auto recorded = record_.design(row);
     if (std::memcmp(recorded.data(), table.design(row).data(), recorded.size_bytes()) != 0)

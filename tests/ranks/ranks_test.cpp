@@ -292,7 +292,7 @@ TEST_F(Ranks, AreNamedIfTheirResultsDiffer) {
   write_toml("[[objective]]\ntype = \"inconsistent\"\n" + std::string(kGa), kHead);
   EXPECT_NE(run_on(3, {"run", "study.toml", "--quiet"}, PKM_RANK_PROGRAM), 0);
   EXPECT_THAT(output_, HasSubstr("rank 1 on "));
-  EXPECT_THAT(output_, HasSubstr("has other results here than on rank 0 ("));
+  EXPECT_THAT(output_, HasSubstr("differ from those on rank 0 ("));
   EXPECT_THAT(output_, Not(HasSubstr("rank 2 on ")));
   // A single design, which each rank evaluates itself.
   write_toml("[[objective]]\ntype = \"inconsistent\"\n[[stage]]\noptimiser = \"sweep\"\n", kHead);
