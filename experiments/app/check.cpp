@@ -169,7 +169,7 @@ void check(const CheckArguments& arguments, Session& session) {
   if (const Study* const study = std::get_if<Study>(&found)) return check_study(*study, arguments, session);
   if (!arguments.changes.empty())
     throw ConfigError({"", 0, join(arguments.changes.arguments(), " ")},
-                      "changes a study, and this is a mechanism file");
+                      "this option changes studies only, and the file describes a mechanism");
   const Mechanism& mechanism = *std::get<std::shared_ptr<const Mechanism>>(found);
   if (arguments.json)
     print_json(mechanism_json(mechanism, session.catalogues));

@@ -141,10 +141,10 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
   if (!poses.empty() && arguments.moves())
     out.add_table("motion of the platform (" + units_of(coordinates, "/s") + ", " + units_of(coordinates, "/s^2") + ")",
                   motions);
-  return modes.empty() ? status.reason
-         : poses.empty()
-             ? "these joint values have only unusual poses; --all lists " + std::to_string(modes.size()) + " of them"
-             : "";
+  return modes.empty()   ? status.reason
+         : poses.empty() ? "only unusual assembly modes exist for these joint values; --all lists all " +
+                               std::to_string(modes.size())
+                         : "";
 }
 
 }  // namespace
@@ -158,9 +158,10 @@ void add_forward(CLI::App& app, Session& session) {
       forward);
   add_list_option(command, "--joints", arguments.joints, "Values of all joints")->required();
   add_list_option(command, "--near", arguments.near, "Find only the assembly mode closest to this pose");
-  add_list_option(command, "--speeds", arguments.speeds, "Joint speeds, to compute the platform's");
+  add_list_option(command, "--speeds", arguments.speeds,
+                  "Joint speeds, from which the speed of the platform is computed");
   add_list_option(command, "--accelerations", arguments.accelerations,
-                  "Joint accelerations, to compute the platform's");
+                  "Joint accelerations, from which the acceleration of the platform is computed");
   command.add_flag("--all", arguments.all, "Also list assembly modes that are unusual in practice")->excludes("--near");
 }
 

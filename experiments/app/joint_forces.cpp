@@ -34,9 +34,9 @@ void add_load(const std::string& key, const LoadSummary& load, const Trajectory&
 }  // namespace
 
 void add_reaction_options(CLI::App& command, ReactionArguments& arguments) {
-  command.add_flag("--reactions", arguments.reactions, "Also compute the forces and couples in all joints");
+  command.add_flag("--reactions", arguments.reactions, "Also compute the forces and moments in all joints");
   add_option(command, "--joint NAME", arguments.joint,
-             "Only the forces in this joint, named as by --reactions (repeatable)")
+             "Show the forces in this joint only, by its name in the output of --reactions (repeatable)")
       ->delimiter(',')
       ->allow_extra_args(false);
 }
@@ -80,7 +80,7 @@ void report_reactions(const Reactions& reactions, Printout& out) {
                            {"unknowns", reactions.unknowns},
                            {"rank", reactions.rank}};
   if (reactions.reason.empty())
-    out.add_table("forces (N) and couples (N m) in the joints: " + std::to_string(reactions.equations) +
+    out.add_table("forces (N) and moments (N m) in the joints: " + std::to_string(reactions.equations) +
                       " equations, " + std::to_string(reactions.unknowns) + " unknowns, rank " +
                       std::to_string(reactions.rank),
                   rows);
@@ -92,18 +92,17 @@ void report_reactions(const Trajectory& trajectory, Printout& out) {
   Json& json = out.json["summary"]["reactions"];
   for (const TrajectoryPoint& point : trajectory.points)
     if (const std::string& reason = point.reactions->reason; !reason.empty()) {
-      out.text +=
-          "\nno forces in the joints: they do not exist" + sample_location(trajectory, point) + ": " + reason + '\n';
+      out.text += "\nforces in the joints are undefined" + sample_location(trajectory, point) + ": " + reason + '\n';
       return;
     }
-  std::vector<Row> rows = {{"", "on", "peak force", "at", "RMS force", "peak couple", "at", "RMS couple"}};
+  std::vector<Row> rows = {{"", "on", "peak force", "at", "RMS force", "peak moment", "at", "RMS moment"}};
   for (const ReactionLoads& joint : reaction_loads(trajectory)) {
     Row& row = rows.emplace_back(Row{joint.name, joint.on});
     Json& loads = json[joint.name] = {{"on", joint.on}};
     add_load("force", joint.force, trajectory, row, loads);
     add_load("couple", joint.couple, trajectory, row, loads);
   }
-  out.add_table("magnitudes of the forces (N) and couples (N m) in the joints", rows);
+  out.add_table("magnitudes of the forces (N) and moments (N m) in the joints", rows);
 }
 
 void report_rods(const Target& target, const std::string& mode, const Pose<double>& pose, const Reactions& reactions,
@@ -111,7 +110,7 @@ void report_rods(const Target& target, const std::string& mode, const Pose<doubl
   const std::vector<generic::RodLoad> rods =
       generic::rod_loads(*target.mechanism, target.parameters, mode, pose, reactions);
   if (rods.empty()) return;
-  std::vector<Row> rows = {{"", "axial force", "stress", "buckles at", "reserve"}};
+  std::vector<Row> rows = {{"", "axial force", "stress", "buckling force", "reserve"}};
   Json& json = out.json["rods"] = Json::object();
   for (const generic::RodLoad& rod : rods) {
     const std::optional<double> axial = rod.ends ? std::optional(rod.axial()) : std::nullopt;
@@ -134,7 +133,7 @@ void report_rods(const Target& target, const std::string& mode, const Trajectory
       generic::peak_rod_loads(*target.mechanism, target.parameters, mode, trajectory);
   if (rods.empty()) return;
   std::vector<Row> rows = {
-      {"", "peak tension", "peak compression", "peak stress", "buckles at", "least reserve", "at"}};
+      {"", "peak tension", "peak compression", "peak stress", "buckling force", "min. reserve", "at"}};
   Json& json = out.json["summary"]["rods"] = Json::object();
   for (const generic::PeakRodLoad& rod : rods) {
     const auto known = [&rod](double value) { return rod.is_determined ? Json(value) : Json(); };

@@ -87,12 +87,12 @@ void print_mechanism_file(const std::string& name, const Session& session) {
   std::vector<std::string> names;
   std::ranges::transform(session.catalogues.mechanisms, std::back_inserter(names), known);
   if (!contains(names, name))
-    throw ConfigError({"", 0, "--file"}, "'" + name + "', which is no mechanism of the catalogue",
+    throw ConfigError({"", 0, "--file"}, "'" + name + "', which is not a mechanism of the catalogue",
                       "one of " + join(names), nearest_name(name, names));
   try {
     std::cout << mechanism_file_text(name);
   } catch (const std::invalid_argument&) {
-    throw ConfigError({"", 0, "--file"}, "mechanism " + name + " is a class of this program and has no file");
+    throw ConfigError({"", 0, "--file"}, "mechanism " + name + " is written in C++ and has no file");
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 std::vector<std::optional<double>> given_inputs(const Mechanism& mechanism, const InputArguments& arguments) {
   const MechanismInfo& info = mechanism.info();
   if (info.inputs.empty() && !arguments.inputs.empty())
-    throw ConfigError({"", 0, "--input"}, "mechanism " + info.name + " has no inputs beside the pose");
+    throw ConfigError({"", 0, "--input"}, "mechanism " + info.name + " has no inputs besides the pose");
   std::vector<Assignable> known;
   for (const InputInfo& input : info.inputs) known.push_back({input.name, input.unit});
   return parse_assignments(arguments.inputs, "--input", known);
@@ -21,7 +21,7 @@ std::vector<std::optional<double>> given_inputs(const Mechanism& mechanism, cons
 
 void add_input_option(CLI::App& command, InputArguments& arguments) {
   add_list_option(command, "--input", arguments.inputs,
-                  "Values of the mechanism's inputs beside the pose, on which its quantities depend");
+                  "Values of the mechanism's inputs besides the pose, on which its quantities depend");
 }
 
 void set_inputs(const Mechanism& mechanism, const InputArguments& arguments, MotionSample& at) {

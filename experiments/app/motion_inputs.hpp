@@ -1,4 +1,4 @@
-// The inputs of a mechanism beside the pose, and the quantities that depend on them and on the motion.
+// The inputs of a mechanism besides the pose, and the quantities that depend on them and on the motion.
 #pragma once
 
 #include <string>

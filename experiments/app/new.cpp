@@ -236,7 +236,7 @@ void add_new(CLI::App& app, Session& session) {
       [&session](const NewArguments& given) { write_new(given, session); });
   add_option(command, "KIND", arguments.kind, "What to create: mechanism or study")->required();
   add_option(command, "NAME", arguments.name,
-             "Of a new mechanism its name; for a study the mechanism, by name or file");
+             "Name of the new mechanism; for a study, the name or file of its mechanism");
   add_option(command, "-o,--output FILE", arguments.output, "Write to this file (default: standard output)");
   command.add_flag("--force", arguments.force, "Overwrite the file if it exists");
 }

@@ -117,7 +117,7 @@ void expect_no_options_of_single_poses(const PoseArguments& arguments) {
                                                   {"--urdf", !arguments.urdf.empty()},
                                                   {"--vtk", !arguments.vtk.empty()}};
   for (const auto& [option, is_given] : options)
-    if (is_given) throw ConfigError({"", 0, option}, "--poses", "--at: the option is for a single pose");
+    if (is_given) throw ConfigError({"", 0, option}, "--poses", "--at, because this option needs a single pose");
 }
 
 /// Joints, conditioning, quantities and margins at all poses of a table.
@@ -276,7 +276,7 @@ void add_pose(CLI::App& app, Session& session) {
   add_threads(command, arguments.threads);
   auto* const joint_error =
       add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
-                 "Errors of the joints, 10um for all or by name: print the first-order error of the tool");
+                 "Print the first-order error of the tool for these errors of the joints, 10um for all or by name");
   joint_error->allow_extra_args(false);
   command
       .add_flag("--exact-error", arguments.exact_error,

@@ -98,7 +98,7 @@ std::string simulate_target(const Target& target, const SimulateArguments& argum
   std::vector<Row> energy = {
       {"kinetic energy, start", number(first.kinetic_energy, "J")},
       {"work of the actuators", number(last.work_of_drives, "J")},
-      {"work of the weight", number(last.work_of_weight, "J")},
+      {"work of gravity", number(last.work_of_weight, "J")},
       {"work of the wrench", number(last.work_of_wrench, "J")},
       {"kinetic energy, end", number(last.kinetic_energy, "J")},
       {"maximum imbalance", number(run.imbalance, "J"), "of " + number(run.turned_over, "J") + " exchanged"}};

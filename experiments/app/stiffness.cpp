@@ -42,7 +42,7 @@ struct Elastic {
 /// Minimum stiffness for pure forces or moments: the reciprocal of the greatest compliance.
 std::string least_stiffness(const MatrixXd& C, const char* unit, const char* key, Json& json) {
   json[key] = nullptr;
-  if (C.rows() == 0) return "none is carried";
+  if (C.rows() == 0) return "no direction is supported";
   const double greatest = eigenvalues(C)[C.rows() - 1];
   if (!(greatest > 1e-300)) return "rigid";
   json[key] = 1 / greatest;

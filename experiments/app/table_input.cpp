@@ -11,7 +11,7 @@ namespace pkm {
 
 void expect_table(const TableJob& job, const std::string& option) {
   if (job.input.empty() && !job.csv.empty())
-    throw ConfigError({"", 0, "-o"}, "'" + job.csv + "'", "a table of " + option + ", whose results the file receives");
+    throw ConfigError({"", 0, "-o"}, "'" + job.csv + "'", option + " with a table; -o writes its results");
 }
 
 CsvColumns read_table(const TableJob& job, const std::vector<Assignable>& known, bool needs_all,

@@ -32,12 +32,13 @@ using Values = std::optional<AxisVector<double>>;
 std::string missing_peaks(const Mechanism& mechanism, const Trajectory& trajectory) {
   const std::string name = "\nmechanism " + mechanism.info().name + " has no ";
   if (!mechanism.dynamics())
-    return name + "dynamics: no forces, no power\n" +
-           (mechanism.velocities() ? "" : name.substr(1) + "influence coefficients: no speeds\n");
-  if (const Unsupported reason = why_no_joint_forces(mechanism)) return '\n' + *reason + ": no forces, no power\n";
+    return name + "dynamics: forces and power are not computed\n" +
+           (mechanism.velocities() ? "" : name.substr(1) + "influence coefficients: speeds are not computed\n");
+  if (const Unsupported reason = why_no_joint_forces(mechanism))
+    return '\n' + *reason + ": forces and power are not computed\n";
   if (trajectory.summary.has_forces) return "";
   const auto first = std::ranges::find_if(trajectory.points, [](const auto& p) { return !p.forces; });
-  return "\npeak forces and energies are unknown: there are no forces" + sample_location(trajectory, *first) + ": " +
+  return "\npeak forces and energies are unknown: forces are undefined" + sample_location(trajectory, *first) + ": " +
          first->reason + '\n';
 }
 

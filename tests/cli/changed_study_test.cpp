@@ -100,7 +100,7 @@ TEST_F(ChangedStudy, RejectsInvalidChanges) {
   EXPECT_EQ(run({"check", "columns.toml", "--cells", "40"}), 2);
   EXPECT_THAT(output_, HasSubstr("--cells: found 40 although the study uses exact columns, which have no cells"));
   EXPECT_EQ(run({"check", kFiles + "/par4.toml", "--cells", "40"}), 2);
-  EXPECT_THAT(output_, HasSubstr("--cells 40: changes a study, and this is a mechanism file"));
+  EXPECT_THAT(output_, HasSubstr("--cells 40: this option changes studies only, and the file describes a mechanism"));
 }
 
 TEST_F(ChangedStudy, OneNumberOfCellsAppliesToAllAxes) {

@@ -272,7 +272,7 @@ TEST(CliHybrid, RejectsInvalidArguments) {
       {{"pose", kName, "--at", at, "--set", "s_min_3=0.2"},
        "--set: the range of joint s3 is empty: from 0.2 m to 0.15 m"},
       {{"pose", "quadrupteron", "--at", "x=0.2,y=0.2,z=0.2,phi=0", "--input", "theta=1"},
-       "--input: mechanism quadrupteron has no inputs beside the pose"},
+       "--input: mechanism quadrupteron has no inputs besides the pose"},
       {{"pose", "quadrupteron", "--at", "x=0.2,y=0.2,z=0.2,phi=0", "--branch", "-"},
        "--branch: mechanism quadrupteron has one branch only"},
   };

@@ -69,7 +69,7 @@ TEST(CliJointForces, SelectedJointsAsTextAndAsATable) {
   const auto printed =
       along(kCycle, {"--joint", "arm1.A", "--joint", "arm3.B 2", "--samples", "5", "-o", "f.csv"}, folder.path());
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
-  EXPECT_THAT(printed.out, HasSubstr("\nmagnitudes of the forces (N) and couples (N m) in the joints\n"));
+  EXPECT_THAT(printed.out, HasSubstr("\nmagnitudes of the forces (N) and moments (N m) in the joints\n"));
   EXPECT_THAT(printed.out, HasSubstr("\n  arm1.A    crank of arm1  "));
   EXPECT_THAT(printed.out, ::testing::Not(HasSubstr("arm2.A")));
   std::ifstream table(folder.path() + "/f.csv");
@@ -105,7 +105,7 @@ TEST(CliJointForces, NoForcesForAMotionBeyondTheReach) {
                                           "--samples",  "11",         "--reactions"};
   const auto printed = along(words, {"-o", "f.csv"}, folder.path());
   EXPECT_EQ(printed.exit_code, 1);
-  EXPECT_THAT(printed.out, HasSubstr("\nno forces in the joints: they do not exist at t = 0."));
+  EXPECT_THAT(printed.out, HasSubstr("\nforces in the joints are undefined at t = 0."));
   const json found = along(words, {"--json", "--allow-infeasible"}, folder.path()).json();
   EXPECT_TRUE(found["summary"]["reactions"].is_null());
   EXPECT_TRUE(found["samples"].front()["reactions"].is_object());

@@ -167,7 +167,7 @@ TEST(CliTrajectory, SingularSamplesHaveNoForces) {
               HasSubstr("1 of 11 samples are infeasible, the first at t = 1 s (sample 11): the Jacobian is "
                         "singular to working precision"));
   EXPECT_THAT(printed.out, HasSubstr("peak force [N]    -"));
-  EXPECT_THAT(printed.out, HasSubstr("are unknown: there are no forces at t = 1 s (sample 11)"));
+  EXPECT_THAT(printed.out, HasSubstr("are unknown: forces are undefined at t = 1 s (sample 11)"));
   EXPECT_THAT(lines_of_file(folder.path() + "/f.csv").back(),
               ::testing::AllOf(HasSubstr(",0,the Jacobian is singular to working precision,,,,,,,,,,"),
                                HasSubstr(",4,")));  // the quantities exist
