@@ -35,7 +35,7 @@ class Rows {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
     if (at_ < text_.size() && text_[at_] == '"') {
       for (++at_;; ++at_) {
-        if (at_ >= text_.size()) throw ConfigError({file_, line_, ""}, "a quotation mark without its end", "\"..\"");
+        if (at_ >= text_.size()) throw ConfigError({file_, line_, ""}, "an unclosed quotation mark", "\"..\"");
         if (text_[at_] == '\n') ++next_line_;
         if (text_[at_] == '"' && (at_ + 1 >= text_.size() || text_[++at_] != '"')) break;
         cell += text_[at_];

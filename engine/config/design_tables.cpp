@@ -101,8 +101,8 @@ void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& war
     const Variable& v = space[i];
     const double last = space.nearest(i, v.upper);
     if (v.step > 0 && v.upper - last > 1e-9 * v.step)
-      warnings.push_back("variable " + v.name + " never takes its max " + with_unit(v.upper, v.unit) +
-                         ": the last value that min + k step reaches is " + with_unit(last, v.unit));
+      warnings.push_back("variable " + v.name + " never reaches its max " + with_unit(v.upper, v.unit) +
+                         ": the largest value min + k step is " + with_unit(last, v.unit));
   }
 }
 

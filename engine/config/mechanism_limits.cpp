@@ -76,7 +76,7 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
     for (const ConfigValue& each : formulas)
       model.margins.push_back({name, unit, draft.scope.formula(each, unit, name).node()});
     const auto shown = table.find("shown"), shown_unit = table.find("shown_unit");
-    if (shown_unit && !shown) throw shown_unit->refusal("`shown_unit` is the unit of `shown`, which is missing");
+    if (shown_unit && !shown) throw shown_unit->refusal("`shown_unit` requires `shown`");
     if (shown) reported.shown = draft.scope.formula(*shown, shown_unit ? si_unit(*shown_unit) : unit, name).node();
     if (shown || reported.count > 1) model.reported_margins.push_back(reported);
   }

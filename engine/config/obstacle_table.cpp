@@ -23,9 +23,9 @@ Point3<double> point(const ConfigValue& table, const std::string& key) {
 Obstacle read_obstacle(const ConfigValue& table, const Obstacles& others) {
   const std::string& shape = table.at("shape").word();
   const auto named = [&] { return new_name(table, "[[obstacle]]", others, "a name, for messages and pictures"); };
-  const auto radius = [&] { return table.at("radius", "its radius").number(); };
+  const auto radius = [&] { return table.at("radius", "the radius").number(); };
   if (shape == "box") {
-    const Point3<double> size = read_triple(table, "size", "its sizes [along x, along y, along z]");
+    const Point3<double> size = read_triple(table, "size", "the sizes [along x, along y, along z]");
     return {named(), SolidBox{point(table, "centre"), {size[0] / 2, size[1] / 2, size[2] / 2}}};
   }
   if (shape == "sphere") {

@@ -122,8 +122,8 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] at least");
   if (describes_mechanism(document))
-    throw ConfigError({file_name, 0, ""}, "the description of a mechanism",
-                      "a study, which names such a file in [mechanism] file = \"..\"");
+    throw ConfigError({file_name, 0, ""}, "a mechanism file",
+                      "a study, which refers to this file by [mechanism] file = \"..\"");
   const ConfigValue root = ConfigValue(document, file_name, "").described_by(study_keys());
 
   StudyDraft draft{
@@ -206,7 +206,8 @@ MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogu
   if (describes_mechanism(document))
     return read_mechanism_toml(source.text, path, limb_parameters(changes), joint_error_addition(changes.joint_error));
   if (!changes.joint_error.empty())
-    throw ConfigError({"", 0, "--joint-error"}, "a study", "a mechanism; a study has [accuracy] joint_error");
+    throw ConfigError({"", 0, "--joint-error"}, "a study",
+                      "a mechanism; in a study, set joint_error in its table [accuracy]");
   return read_document(document, source, catalogues, load_description, changes);
 }
 

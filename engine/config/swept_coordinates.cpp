@@ -100,7 +100,7 @@ void read_fixed_coordinates(const ConfigValue& table, const MechanismInfo& info,
     named.push_back(coordinate);
     if (contains(plan.swept, coordinate))
       throw value->refusal("the coordinate " + axis_of(info, coordinate).name + " is swept (" +
-                           table.find("sweep")->line() + "); it cannot be fixed, too");
+                           table.find("sweep")->line() + "), so it cannot be fixed");
     if (std::ranges::none_of(info.sweeps, [&](const Sweep& sweep) { return fixes(sweep, named); }))
       throw value->refusal("the analysis fixes one coordinate and sweeps the others, but both " +
                            axis_of(info, named.front()).name + " and " + axis_of(info, coordinate).name + " are given");

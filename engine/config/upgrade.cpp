@@ -33,7 +33,7 @@ UpgradedText upgraded_file(const std::string& text, const std::string& file_name
   } catch (const ConfigError&) {
     const ReplacedKey& first = result.replaced.front();
     throw ConfigError({file_name, first.line, first.old_path},
-                      "the table has the key " + first.name + ", the present name, too; remove one of them");
+                      "the table also has the key under its present name " + first.name + "; remove one of them");
   }
   return result;
 }

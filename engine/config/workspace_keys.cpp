@@ -41,7 +41,7 @@ std::vector<OptionSpec> analysis_keys() {
           table_key("nodes", nodes,
                     "columns: fixed numbers of Gauss-Legendre nodes per smooth subinterval, instead of `tolerance`"),
           table_key("cells", cells, "voxels: numbers of cells along the swept coordinates, at most 2^28 in all"),
-          table_key("box", box, "search box of the swept coordinates: the grid of voxels, a restriction of columns"),
+          table_key("box", box, "box that restricts the workspace; with voxels it also defines the grid"),
           {.name = "sweep",
            .kind = OptionKind::list,
            .meaning = "swept coordinates, one to three; default: those that are not fixed, or the mechanism's",
@@ -91,7 +91,7 @@ const TableSpec& workspace_keys() {
                           .kind = OptionKind::any_of,
                           .unit = "s",
                           .meaning =
-                              "voxels: whether columns compute exact values of the best design and the baseline; a "
+                              "voxels: also compute exact values of the best design and the baseline, by columns; a "
                               "time limits the computation (true: 10 s, the default)",
                           .parts = {{.kind = OptionKind::flag}, {.unit = "s", .positive = true}}});
     return table;

@@ -78,7 +78,7 @@ Probe probe(const Study& study) {
 }
 
 std::string words(const Probe& probe) {
-  if (probe.table.size() == 0) return "no sample designs were evaluated, because one takes too long";
+  if (probe.table.size() == 0) return "no sample designs were evaluated, because a single evaluation takes too long";
   return std::to_string(probe.feasible()) + " of " + std::to_string(probe.table.size()) +
          " designs spread over the bounds are feasible" +
          (probe.is_cut_off ? "; more would take longer than 10 s" : "");

@@ -131,7 +131,7 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
 void add_coupling(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<CouplingArguments>(
       app, session, "coupling", "Compute statistics of the dynamic coupling indices over a box of poses.",
-      "A cell counts if its centre is feasible under the study's limits; a mechanism without a study has none. The\n"
+      "A cell is counted if its centre satisfies the limits of the study; without a study there are no limits. The\n"
       "maximum depends on how close the limbs may be to their singularities (limit s_min): state s_min with the "
       "result.\n"
       "Example: pkmopt coupling 3crr-r-cru --box x=60mm:240mm,y=110mm:290mm,z=150mm:270mm --phi 0,30deg",

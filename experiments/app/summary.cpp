@@ -105,7 +105,7 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
     out << printable(text) << '\n';
   for (const std::string& note : contents.notes) out << "note: " << printable(note) << '\n';
   if (!contents.reproducible())
-    out << "note: a time limit ended a start, so another run with this seed may give another result\n";
+    out << "note: a time limit stopped a start, so another run with the same seed may give a different result\n";
   if (!contents.final) {
     if (contents.best.row >= 0 && !contents.problem.objectives.empty()) {
       const StageRecord& stage = contents.best_stage();

@@ -119,7 +119,8 @@ void report_tool_error(const Target& target, const std::string& mode, const Moti
                               {"translation", corner->back()}};
       rows.push_back({"translation, exact", with_micrometres(corner->back())});
     } else {
-      rows.push_back({"translation, exact", "unknown: the pose of a corner of the joint errors was not found"});
+      rows.push_back(
+          {"translation, exact", "unknown: for one combination of the extreme joint errors no pose was found"});
     }
   }
   out.json["tool_error"] = json;

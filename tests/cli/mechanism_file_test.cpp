@@ -233,7 +233,7 @@ TEST_F(MechanismFile, InvalidFilesAreRejected) {
     std::string sentence;
   } cases[] = {
       {{"run", "delta.toml"},
-       "delta.toml: found the description of a mechanism; expected a study, which names such a file in [mechanism] "
+       "delta.toml: found a mechanism file; expected a study, which refers to this file by [mechanism] "
        "file = \"..\""},
       {{"check", "both.toml"},
        "both.toml:2: mechanism.file: the mechanism is also given by mechanism.type (line 3); it is either built in or "

@@ -141,8 +141,8 @@ TEST_F(Obstacle, InvalidDefinitionsAreRefused) {
               HasSubstr("obstacle[1].shape: found \"cube\"; expected one of box, sphere, capsule"));
   EXPECT_THAT(
       wrong(changed(kTable, "[\"1 m\", ", "[")),
-      HasSubstr("obstacle[1].size: found [\"1 m\", \"100 mm\"]; expected its sizes [along x, along y, along z]"));
-  EXPECT_THAT(wrong(changed(kBall, "radius = \"40 mm\"\n", "")), HasSubstr("expected its radius"));
+      HasSubstr("obstacle[1].size: found [\"1 m\", \"100 mm\"]; expected the sizes [along x, along y, along z]"));
+  EXPECT_THAT(wrong(changed(kBall, "radius = \"40 mm\"\n", "")), HasSubstr("expected the radius"));
   EXPECT_THAT(wrong(changed(kBall, "radius", "size")), HasSubstr("obstacle[1].size: found an unknown key"));
   EXPECT_THAT(wrong(kBall + kBall), HasSubstr("there is already a [[obstacle]] called 'lamp'"));
   std::ostringstream bare;

@@ -162,8 +162,9 @@ TEST_F(SolverProgram, ATimeLimitIsRecordedAndReplayed) {
   write_toml("[[stage]]\noptimiser = \"nlopt\"\nmultistart = 2\ntime = \"0 s\"\n" + std::string(kSlsqp), "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "s.h5"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("time limit"));
-  EXPECT_THAT(output_,
-              HasSubstr("note: a time limit ended a start, so another run with this seed may give another result"));
+  EXPECT_THAT(
+      output_,
+      HasSubstr("note: a time limit stopped a start, so another run with the same seed may give a different result"));
   const StudyContents before = read("s.h5");
   EXPECT_FALSE(before.reproducible());
   ASSERT_EQ(run({"resume", "s.h5", "--evaluations", "2000", "--quiet"}), 0) << output_;

@@ -94,7 +94,7 @@ TEST(CliTables, AreCheckedWhereTheyAreRead) {
   EXPECT_THAT(complaint("x,y,z\n0,0,k\n"), HasSubstr("t.csv:2: z: found 'k'; expected a number"));
   EXPECT_THAT(complaint("x,y,z [kg]\n0,0,1\n"), HasSubstr("t.csv:1: z: found the unit 'kg'"));
   EXPECT_THAT(complaint("x,y,z,x\n0,0,1,1\n"), HasSubstr("a second column"));
-  EXPECT_THAT(complaint("x,y,z\n0,0,\"1\n"), HasSubstr("quotation mark without its end"));
+  EXPECT_THAT(complaint("x,y,z\n0,0,\"1\n"), HasSubstr("an unclosed quotation mark"));
   EXPECT_THAT(complaint("x,y,z\n0,0,-0.4\n", {"--stiffness"}), HasSubstr("--stiffness"));
   EXPECT_THAT(complaint("x,y,z\n0,0,-0.4\n", {"--at", "x=0,y=0,z=0"}), HasSubstr("--at"));
   EXPECT_THAT(pkmopt({"pose", kDelta}).err, HasSubstr("--poses"));

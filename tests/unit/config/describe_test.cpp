@@ -111,7 +111,7 @@ run
   final       best design rounded to 0.01, evaluated again
   exact       exact values of final designs, at most 10 s   (default)
 
-warning: variable a never takes its max 0.72 m: the last value that min + k step reaches is 0.65 m
+warning: variable a never reaches its max 0.72 m: the largest value min + k step is 0.65 m
 )");
 }
 

@@ -152,7 +152,7 @@ formula = "x + 2"
   EXPECT_FALSE(outside.feasible);
   EXPECT_THAT(outside.reason, HasSubstr("inside"));
   EXPECT_THAT(refusal(slider("[[margin]]\nname = \"m\"\nformula = \"x\"\nshown_unit = \"m\"\n")),
-              HasSubstr("which is missing"));
+              HasSubstr("`shown_unit` requires `shown`"));
 }
 
 TEST(ModeNames, AreThoseOfTheFile) {

@@ -101,7 +101,7 @@ TEST(RealCatalogue, TheSweptCoordinatesMayBeNamed) {
   EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"y\", \"z\"]\nphi = 0.1"), "accepted");
 
   EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"y\", \"z\"]\nz = 0.2"),
-            "s.toml:11: workspace.z: the coordinate z is swept (line 10); it cannot be fixed, too");
+            "s.toml:11: workspace.z: the coordinate z is swept (line 10), so it cannot be fixed");
   EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"y\", \"x\"]"),
             "s.toml:10: workspace.sweep[3]: this coordinate is swept already");
   EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"phy\"]"),

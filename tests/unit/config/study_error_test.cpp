@@ -128,10 +128,10 @@ TEST(StudyErrors, MechanismAndParameters) {
           {"[mechanism]\nfile = \"m.toml\"",
            "s.toml:2: mechanism.file: the contents of the mechanism file are not available here"},
           {"[mechanism]\nname = \"a\"",
-           "s.toml: found the description of a mechanism; expected a study, which names such a file in [mechanism] "
+           "s.toml: found a mechanism file; expected a study, which refers to this file by [mechanism] "
            "file = \"..\""},
           {"[platform]\ncoordinates = {}",
-           "s.toml: found the description of a mechanism; expected a study, which names such a file in [mechanism] "
+           "s.toml: found a mechanism file; expected a study, which refers to this file by [mechanism] "
            "file = \"..\""},
           {"[mechanism]\ntype = \"slidr\"",
            "s.toml:2: mechanism.type: found \"slidr\"; expected one of slider; did you mean 'slider'?"},

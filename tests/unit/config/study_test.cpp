@@ -66,7 +66,7 @@ TEST(Study, ReadsParametersVariablesAndBaseline) {
   EXPECT_EQ(study.round, 0.01);
   EXPECT_EQ(study.checkpoint_every, 60);
   EXPECT_THAT(study.warnings,
-              ElementsAre("variable a never takes its max 0.72 m: the last value that min + k step reaches is 0.65 m"));
+              ElementsAre("variable a never reaches its max 0.72 m: the largest value min + k step is 0.65 m"));
 }
 
 TEST(Study, BoundsAndTargetsTakeTheUnitOfTheirEntry) {

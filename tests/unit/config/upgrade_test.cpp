@@ -115,8 +115,9 @@ TEST(Upgrade, RefusesTextThatIsNotTomlAndTablesWithBothNames) {
     return "accepted";
   };
   EXPECT_THAT(message("[workspace]\ncertain = "), ::testing::HasSubstr("s.toml:2: found text that is not TOML"));
-  EXPECT_EQ(message("[workspace]\ncertified = 1\ncertain = 1"),
-            "s.toml:3: workspace.certain: the table has the key certified, the present name, too; remove one of them");
+  EXPECT_EQ(
+      message("[workspace]\ncertified = 1\ncertain = 1"),
+      "s.toml:3: workspace.certain: the table also has the key under its present name certified; remove one of them");
 }
 
 }  // namespace
