@@ -21,7 +21,8 @@ Unsupported why_no_conditioning(const MechanismInfo& info) {
     keys.emplace_back("characteristic_radius");
   }
   if (keys.empty()) return what + "it defines no characteristic length";
-  return what + "its " + join(mixed, " and its ") + " mix lengths and angles; [platform] needs " + join(keys, " and ");
+  return what + "its " + join(mixed, " and its ") + " include both lengths and angles; [platform] needs " +
+         join(keys, " and ");
 }
 
 Unsupported why_unavailable(const Mechanism& mechanism, const PoseQuantity& quantity) {

@@ -85,7 +85,7 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
         !std::ranges::all_of(at.inputs, [](const InputSample& input) {
           return is_finite({input.value, input.rate, input.acceleration});
         })) {
-      point.reason = "the motion has no finite pose, velocity and acceleration";
+      point.reason = "the pose, velocity or acceleration of the motion is not finite";
       trajectory.points.push_back(std::move(point));
       continue;
     }

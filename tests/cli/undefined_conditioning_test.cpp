@@ -46,11 +46,11 @@ TEST_F(UndefinedConditioning, IsRefusedByStudiesWithItsLine) {
     const auto slide = run({command, "crank-and-slide-study.toml"});
     EXPECT_EQ(slide.exit_code, 2) << slide.out;
     EXPECT_THAT(slide.err, HasSubstr("crank-and-slide-study.toml:10: objective[1].type: "));
-    EXPECT_THAT(slide.err, HasSubstr("its drives mix lengths and angles; " + kRadius));
+    EXPECT_THAT(slide.err, HasSubstr("its drives include both lengths and angles; " + kRadius));
     const auto scara = run({command, "double-scara-study.toml"});
     EXPECT_EQ(scara.exit_code, 2) << scara.out;
     EXPECT_THAT(scara.err, HasSubstr("double-scara-study.toml:11: objective[1].type: "));
-    EXPECT_THAT(scara.err, HasSubstr("its coordinates and its drives mix lengths and angles; " + kBoth));
+    EXPECT_THAT(scara.err, HasSubstr("its coordinates and its drives include both lengths and angles; " + kBoth));
   }
 }
 
