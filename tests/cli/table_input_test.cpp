@@ -98,7 +98,7 @@ TEST(CliTables, AreCheckedWhereTheyAreRead) {
   EXPECT_THAT(complaint("x,y,z\n0,0,-0.4\n", {"--stiffness"}), HasSubstr("--stiffness"));
   EXPECT_THAT(complaint("x,y,z\n0,0,-0.4\n", {"--at", "x=0,y=0,z=0"}), HasSubstr("--at"));
   EXPECT_THAT(pkmopt({"pose", kDelta}).err, HasSubstr("--poses"));
-  EXPECT_THAT(pkmopt({"evaluate", kPaper, "-o", "x.csv"}).err, HasSubstr("expected a table of --designs"));
+  EXPECT_THAT(pkmopt({"evaluate", kPaper, "-o", "x.csv"}).err, HasSubstr("expected --designs with a table"));
 }
 
 }  // namespace

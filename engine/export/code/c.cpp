@@ -8,6 +8,11 @@ std::string array(const std::string& name, std::size_t size) {
   return "real " + name + "[" + std::to_string(std::max<std::size_t>(1, size)) + "]";
 }
 
+std::string assembly_array(const Module& module) {
+  const std::size_t rows = module.inverse.outputs[1].rows;
+  return rows > 0 ? "  " + array("assembly", rows) + ";\n" : "";
+}
+
 /// Declarations of all functions, without semicolons, by name.
 struct Declarations {
   std::string inverse, jacobian, margins, quantities, equations, forces, forward;
@@ -64,8 +69,8 @@ std::string source(const Module& module, const Declarations& d) {
   const std::string helpers = with_replacements(helpers_of_c(), "@inline", "static inline");
   std::string text =
       "/* " + module.title + " */\n#include \"" + module.name + ".h\"\n\n#include <tgmath.h>\n" + helpers;
-  text += "\n" + d.inverse + " {\n  " + array("assembly", module.inverse.outputs[1].rows) + ";\n" +
-          body_of_c(module, module.inverse) + "  return " + assembly_condition(module) + ";\n}\n";
+  text += "\n" + d.inverse + " {\n" + assembly_array(module) + body_of_c(module, module.inverse) + "  return " +
+          assembly_condition(module) + ";\n}\n";
   text += "\n" + d.jacobian + " {\n" + body_of_c(module, module.jacobian) + "}\n";
   text += "\n" + d.margins + " {\n" + body_of_c(module, module.limits) + "}\n";
   if (module.values) text += "\n" + d.quantities + " {\n" + body_of_c(module, *module.values) + "}\n";

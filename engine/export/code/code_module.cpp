@@ -20,7 +20,7 @@ using expression::Node;
 using generic::Evaluation;
 
 // Poses of the test are not close to singularities, where rounding errors grow: least inverse condition number of J.
-constexpr double kMinConditioning = 2e-2, kMinConditioningOfFloats = 1e-1;
+constexpr double kMinConditioning = 2e-2, kMinConditioningOfFloats = 1e-1, kLeastConditioning = 1e-3;
 constexpr double kStep = 1e-5;  // [m, rad] from the pose to the start of its forward kinematics
 
 /// Element of the Halton sequence in [0, 1): the radical inverse of the index in the base of the dimension's prime.
@@ -202,13 +202,14 @@ double inverse_condition(const AxisMatrix<double>& J) {
   return 1 / (norm(J) * norm(solve(J, AxisMatrix<double>::identity(J.rows()))));
 }
 
-/// Feasible poses spread over the ranges of the coordinates, with the engine's values.
+/// Feasible poses spread over the ranges of the coordinates, with the engine's values, as far as they are found.
+/// @param min_conditioning  inverse condition number of their Jacobians
 std::vector<Sample> samples_of(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
-                               const std::string& mode, const Module& module) {
-  constexpr std::size_t kMaxTrials = 200'000;
+                               const std::string& mode, const Module& module, double min_conditioning) {
+  constexpr std::size_t kMaxTrials = 50'000;
   const MechanismInfo& info = mechanism.info();
   const auto ranges = mechanism.ranges(parameters);
-  if (!ranges) throw DesignError("the ranges of the coordinates are unknown, so that no poses for a test were found");
+  if (!ranges) throw DesignError("no poses for a test were found, because the ranges of the coordinates are unknown");
   const std::size_t n = info.coordinates.size();
   // Coordinates that the default workspace does not sweep stay near their default values: with all of six coordinates
   // far away from them, hardly any pose is feasible.
@@ -234,9 +235,7 @@ std::vector<Sample> samples_of(const Mechanism& mechanism, std::span<const doubl
     const PoseReport report = mechanism.inspect(parameters, pose, mode, limits);
     if (!report.feasible || !report.J) continue;
     if (module.has_forward) {
-      if (inverse_condition(*report.J) <
-          (module.options.single_precision ? kMinConditioningOfFloats : kMinConditioning))
-        continue;
+      if (inverse_condition(*report.J) < min_conditioning) continue;
       for (const double step : {kStep, -kStep}) {
         Pose<double> start = pose;
         for (double& coordinate : start) coordinate += step;
@@ -267,9 +266,6 @@ std::vector<Sample> samples_of(const Mechanism& mechanism, std::span<const doubl
     }
     samples.push_back(std::move(sample));
   }
-  if (samples.size() < module.options.samples)
-    throw DesignError("only " + std::to_string(samples.size()) + " of the " + std::to_string(module.options.samples) +
-                      " feasible poses for a test were found");
   return samples;
 }
 
@@ -300,7 +296,10 @@ Module module_of(const Mechanism& mechanism, std::span<const double> parameters,
     module.left_out.push_back("Limits of quantities that are no formulas are not among the margins.");
   if (mechanism.drive_trains() && module.equations)
     module.left_out.push_back("The forces do not contain the inertia of drive trains.");
-  module.samples = samples_of(mechanism, parameters, limits, mode, module);
+  double min_conditioning = options.single_precision ? kMinConditioningOfFloats : kMinConditioning;
+  for (; module.samples.size() < options.samples && min_conditioning >= kLeastConditioning; min_conditioning /= 5)
+    module.samples = samples_of(mechanism, parameters, limits, mode, module, min_conditioning);
+  if (module.samples.empty()) throw DesignError("no feasible pose for a test was found");
   return module;
 }
 

@@ -39,7 +39,7 @@ struct Sample {
 struct Options {
   bool has_parameters = false;    ///< parameters are arguments of every function; otherwise constants
   bool single_precision = false;  ///< float instead of double
-  std::size_t samples = 20;       ///< poses of the test
+  std::size_t samples = 20;       ///< poses of the test; fewer if fewer feasible ones are found
 };
 
 /// The element of a function's arguments that an input of the graph is.
@@ -72,7 +72,7 @@ struct Module {
 };
 
 /// Collects the functions of a design. Throws std::invalid_argument with one sentence for mechanisms that are not
-/// described by formulas, DesignError if too few feasible poses are found.
+/// described by formulas, DesignError if no feasible pose is found.
 /// @param title  of the written files
 Module module_of(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
                  const std::string& mode, const Options& options, const std::string& title);

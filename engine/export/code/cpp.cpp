@@ -35,8 +35,8 @@ std::vector<File> cpp_files(const Module& module) {
   const auto out = [](const std::string& name, std::size_t size) { return array("& " + name, size); };
   add(module.inverse.meaning + " @return false if the pose does not assemble", "bool", "inverse",
       x + ", " + out("q", m),
-      "  " + array("assembly", module.inverse.outputs[1].rows) + "{};\n" + body_of_c(module, module.inverse) +
-          "  return " + assembly_condition(module) + ";\n");
+      (module.inverse.outputs[1].rows > 0 ? "  " + array("assembly", module.inverse.outputs[1].rows) + "{};\n" : "") +
+          body_of_c(module, module.inverse) + "  return " + assembly_condition(module) + ";\n");
   add(module.jacobian.meaning, "void", "jacobian", x + ", " + out("J", m * n), body_of_c(module, module.jacobian));
   add(module.limits.meaning, "void", "margins", x + ", " + out("margins", module.margins.size()),
       body_of_c(module, module.limits));
