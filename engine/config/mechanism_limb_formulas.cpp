@@ -27,9 +27,9 @@ JointVariable read_joint(const ConfigValue& table, const std::string& limb, cons
   return {name, q};
 }
 
-/// Replaces the closures of the limb's joints by equations in which the joints' names are variables, so that Jq and G
-/// show where they are singular.
-void read_closures(const ConfigValue& list, const std::vector<JointVariable>& joints, MechanismDraft& draft) {
+/// Reads the loop-closure equations of a limb, in which the names of its joints are variables. They replace the default
+/// equations q = f(pose), whose Jacobians Jq (by the joints) and G (by the pose) have no serial singularities.
+void replace_closures(const ConfigValue& list, const std::vector<JointVariable>& joints, MechanismDraft& draft) {
   const std::string expected = "a list of as many formulas as the limb has joints, " + std::to_string(joints.size());
   const auto closures = list.elements(expected);
   if (closures.size() != joints.size()) throw list.error(expected);
@@ -56,7 +56,7 @@ void read_formula_limb(const ConfigValue& table, const std::string& name, Mechan
     for (const std::string& joint : joints->keys())
       variables.push_back(read_joint(table, name, joint, *joints->find(joint), unit, draft));
   }
-  if (const auto closures = table.find("closures")) read_closures(*closures, variables, draft);
+  if (const auto closures = table.find("closures")) replace_closures(*closures, variables, draft);
   draft.limbs.push_back({.name = name, .group = name, .points = {}, .parts = {}});
   draft.reaches.emplace_back();
 }

@@ -46,7 +46,7 @@ struct Generation {
   const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: outcomes of the finished starts
   /// For solvers only: returns the evaluations and outcomes of starts that are not yet merged into the table, for a
   /// checkpoint.
-  std::function<std::vector<UnmergedStart>()> ahead = {};
+  std::function<std::vector<UnmergedRun>()> ahead = {};
   /// Maximum number of evaluations still to be made; nullopt: the stage's limit less the evaluations made.
   std::optional<std::int64_t> left = {};
   bool alone = false;  ///< reported without synchronising the ranks, whose results are compared at the stage's end
@@ -70,7 +70,7 @@ struct StageResult {
   StopReason reason = StopReason::generations;
   std::int64_t best_row = -1;             ///< row of the stage's table
   std::vector<StartOutcome> starts = {};  ///< solvers only
-  std::vector<UnmergedStart> ahead = {};  ///< interrupted solvers: starts not yet merged into the table
+  std::vector<UnmergedRun> ahead = {};    ///< interrupted solvers: starts not yet merged into the table
   std::optional<Front> front = {};        ///< several objectives: the Pareto front
 };
 
@@ -97,7 +97,7 @@ struct StageInput {
   /// evaluations of further starts that were not yet merged into the table. Otherwise null and empty.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};
-  std::vector<UnmergedStart> recorded_unmerged_starts = {};
+  std::vector<UnmergedRun> recorded_unmerged_runs = {};
 
   /// Evaluates rows [first, table.size()) of the stage's table; recorded rows are replayed instead.
   void evaluate(EvaluationTable& table, std::size_t first) const {

@@ -72,7 +72,7 @@ std::size_t unpack_rows(const std::string& bytes, std::size_t& at, EvaluationTab
   return count;
 }
 
-void pack_unmerged_start(const UnmergedStart& start, std::string& bytes) {
+void pack_unmerged_run(const UnmergedRun& start, std::string& bytes) {
   pack_number(start.number, bytes);
   pack_number(std::uint64_t{start.table.size()}, bytes);
   bytes.append(reinterpret_cast<const char*>(start.table.designs.data()), start.table.designs.size() * sizeof(double));
@@ -85,22 +85,22 @@ void pack_unmerged_start(const UnmergedStart& start, std::string& bytes) {
   pack_number(end.optimality, bytes);
 }
 
-UnmergedStart unpack_unmerged_start(const std::string& bytes, std::size_t& at, const EvaluationShape& shape) {
-  UnmergedStart start{0, EvaluationTable(shape), {}};
+UnmergedRun unpack_unmerged_run(const std::string& bytes, std::size_t& offset, const EvaluationShape& shape) {
+  UnmergedRun start{0, EvaluationTable(shape), {}};
   std::uint64_t rows = 0;
-  read_number(bytes, at, start.number);
-  read_number(bytes, at, rows);
-  PKM_EXPECTS(rows <= bytes.size() - at);
+  read_number(bytes, offset, start.number);
+  read_number(bytes, offset, rows);
+  PKM_EXPECTS(rows <= bytes.size() - offset);
   start.table.extend(rows);
-  read_bytes(bytes, at, start.table.designs.data(), start.table.designs.size() * sizeof(double));
-  unpack_rows(bytes, at, start.table);
+  read_bytes(bytes, offset, start.table.designs.data(), start.table.designs.size() * sizeof(double));
+  unpack_rows(bytes, offset, start.table);
   bool ended = false;
-  read_number(bytes, at, ended);
+  read_number(bytes, offset, ended);
   if (!ended) return start;
   StartOutcome& end = start.outcome.emplace();
-  for (std::string* text : {&end.origin, &end.stop, &end.message}) read_text(bytes, at, *text);
-  for (std::int64_t* number : {&end.first_row, &end.rows, &end.end_row}) read_number(bytes, at, *number);
-  read_number(bytes, at, end.optimality);
+  for (std::string* text : {&end.origin, &end.stop, &end.message}) read_text(bytes, offset, *text);
+  for (std::int64_t* number : {&end.first_row, &end.rows, &end.end_row}) read_number(bytes, offset, *number);
+  read_number(bytes, offset, end.optimality);
   return start;
 }
 

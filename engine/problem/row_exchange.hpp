@@ -16,9 +16,9 @@ void pack_rows(const EvaluationTable& table, std::size_t first, std::size_t coun
 std::size_t unpack_rows(const std::string& bytes, std::size_t& at, EvaluationTable& table);
 
 /// Appends a multistart run with its designs to `bytes`.
-void pack_unmerged_start(const UnmergedStart& start, std::string& bytes);
-/// Reads a run written by pack_unmerged_start() from byte `at` on and advances `at` past it.
-UnmergedStart unpack_unmerged_start(const std::string& bytes, std::size_t& at, const EvaluationShape& shape);
+void pack_unmerged_run(const UnmergedRun& start, std::string& bytes);
+/// Reads a run written by pack_unmerged_run() from the byte `offset` on and advances `offset` past it.
+UnmergedRun unpack_unmerged_run(const std::string& bytes, std::size_t& offset, const EvaluationShape& shape);
 
 /// Hash of the designs and results of rows [first, end), without their times.
 std::uint64_t hash_of_rows(const EvaluationTable& table, std::size_t first, std::size_t end);

@@ -39,7 +39,7 @@ struct StartOutcome {
 
 /// A multistart run whose evaluations are buffered: the runs are concurrent, and their evaluations join the stage's
 /// table in the order of the starts, so they wait until every earlier run has ended.
-struct UnmergedStart {
+struct UnmergedRun {
   std::int64_t number = 0;              ///< 0: the first run of the stage
   EvaluationTable table;                ///< its evaluations so far
   std::optional<StartOutcome> outcome;  ///< set once the run has ended; rows are those of `table`

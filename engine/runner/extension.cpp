@@ -22,7 +22,7 @@ double evaluations_done(const StageRecord& stage) {
   auto count = static_cast<std::int64_t>(stage.table.size());
   if (!stage.starts.empty()) count -= stage.starts.back().first_row + stage.starts.back().rows;
   for (const StartOutcome& start : stage.starts) count = std::max(count, start.rows);
-  for (const UnmergedStart& start : stage.ahead) count = std::max(count, static_cast<std::int64_t>(start.table.size()));
+  for (const UnmergedRun& start : stage.ahead) count = std::max(count, static_cast<std::int64_t>(start.table.size()));
   return static_cast<double>(count);
 }
 

@@ -77,7 +77,7 @@ Probe probe(const Study& study) {
   return probe;
 }
 
-std::string words(const Probe& probe) {
+std::string describe_probe(const Probe& probe) {
   if (probe.table.size() == 0) return "no sample designs were evaluated, because a single evaluation takes too long";
   return std::to_string(probe.feasible()) + " of " + std::to_string(probe.table.size()) +
          " designs spread over the bounds are feasible" +

@@ -28,6 +28,6 @@ std::size_t probe_size(const DesignProblem& problem);
 Probe probe(const Study& study);
 
 /// "23 of 64 designs spread over the bounds are feasible"
-std::string words(const Probe& probe);
+std::string describe_probe(const Probe& probe);
 
 }  // namespace pkm

@@ -44,7 +44,7 @@ class Progress {
 class ScreenProgress final : public Progress {
  public:
   explicit ScreenProgress(std::FILE* out);
-  /// Removes the current line, so that subsequent output (such as an error message) starts on a new line.
+  /// Clears the progress line, so that subsequent output (such as an error message) begins on an empty line.
   ~ScreenProgress() override;
   ScreenProgress(const ScreenProgress&) = delete;
   ScreenProgress& operator=(const ScreenProgress&) = delete;

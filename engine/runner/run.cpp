@@ -124,7 +124,7 @@ StageInput Run::stage_input(std::size_t index) {
   if (index < recorded_.size()) {
     input.recorded = &recorded_[index].table;
     input.recorded_starts = recorded_[index].starts;
-    input.recorded_unmerged_starts = recorded_[index].ahead;
+    input.recorded_unmerged_runs = recorded_[index].ahead;
   }
   return input;
 }

@@ -83,11 +83,11 @@ class Run final : public Monitor {
   std::vector<StageRecord> recorded_;  ///< stages as read from the study file, to be replayed
   double earlier_seconds_;             ///< wall time of the previous runs
   double start_ = steady_seconds();
-  std::size_t stage_ = 0;                              ///< index of the current stage
-  std::int64_t limit_ = 0;                             ///< maximum number of evaluations of the current stage
-  std::int64_t made_ = 0;                              ///< new evaluations of this run up to the last generation
-  std::function<std::vector<UnmergedStart>()> ahead_;  ///< current solver stage: returns the runs not yet merged
-  bool replaying_;                                     ///< all results so far are recorded in the study file
+  std::size_t stage_ = 0;                            ///< index of the current stage
+  std::int64_t limit_ = 0;                           ///< maximum number of evaluations of the current stage
+  std::int64_t made_ = 0;                            ///< new evaluations of this run up to the last generation
+  std::function<std::vector<UnmergedRun>()> ahead_;  ///< current solver stage: returns the runs not yet merged
+  bool replaying_;                                   ///< all results so far are recorded in the study file
   std::optional<std::size_t> complete_rows_;  ///< rows of complete generations of the stage; empty while recording one
   std::string stopped_;                       ///< reason for stopping; "": the run continues
   std::exception_ptr failure_;                ///< rank 0: exception that ends the run on all ranks

@@ -116,7 +116,7 @@ struct StageRecord {
   std::string stop;                            ///< reason for the end of the stage, as text; "" while it runs
   std::int64_t best_row = -1;                  ///< -1: none
   std::vector<StartOutcome> starts;            ///< solvers: finished multistart runs whose evaluations are in `table`
-  std::vector<UnmergedStart> ahead;            ///< interrupted solvers: runs whose evaluations are not yet in `table`
+  std::vector<UnmergedRun> ahead;              ///< interrupted solvers: runs whose evaluations are not yet in `table`
   std::optional<OptimalityRecord> optimality;  ///< finished stages with derivatives and a single objective
   std::optional<FrontRecord> front;            ///< several objectives only
 

@@ -72,7 +72,7 @@ void check_indices(const StudyContents& study) {
       next += start.rows;
       require(start.end_row >= start.first_row && start.end_row < next, group, "starts: end_row out of range");
     }
-    for (const UnmergedStart& ahead : stage.ahead) {
+    for (const UnmergedRun& ahead : stage.ahead) {
       const auto count = static_cast<std::int64_t>(ahead.table.size());
       require(ahead.number >= static_cast<std::int64_t>(stage.starts.size()) && count > 0, group,
               "ahead: a start is also in starts, or has no evaluations");

@@ -134,7 +134,7 @@ Json probe_json(const Probe& probe) {
 
 /// Contradictions are omitted: they are printed before.
 std::string probe_text(const Probe& probe) {
-  std::string text = "\nprobe: " + words(probe) + '\n';
+  std::string text = "\nprobe: " + describe_probe(probe) + '\n';
   if (!probe.diagnosis) return text;
   std::vector<Reason> reasons = probe.diagnosis->reasons;
   std::erase_if(reasons, [](const Reason& reason) { return reason.kind == "contradiction"; });

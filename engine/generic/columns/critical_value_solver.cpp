@@ -49,7 +49,8 @@ bool CriticalValueSolver::has_changed(const BoundaryFeature& feature) const {
   return std::ranges::find(changed_, feature.key) != changed_.end();
 }
 
-/// Stores a sample. @return true if there are samples on both sides, from which sizes can be computed
+/// Stores the boundary features of a slice below or above the critical value. @return true if slices on both sides are
+/// stored, so that the distances of features that meet there can be computed
 bool CriticalValueSolver::record(bool is_upper, SliceType type, const BoundaryFeatures& features) {
   Side& side = sides_[is_upper];
   const bool is_other = !side.is_known || side.type != type;

@@ -8,7 +8,8 @@ Matrix<double, 3, 3> matrix_of(QuadricCoefficients f) {
   return {{f[4], 0.5 * f[7], 0.5 * f[8], 0.5 * f[7], f[5], 0.5 * f[9], 0.5 * f[8], 0.5 * f[9], f[6]}};
 }
 Vector3 linear_part(QuadricCoefficients f) { return {{f[1], f[2], f[3]}}; }
-/// The common eigenvalue: A = factor I for a sphere, factor (I - axis axis^T) for a cylinder.
+/// The multiple nonzero eigenvalue of the matrix A of the quadric: A = factor I for a sphere, factor (I - axis axis^T)
+/// for a cylinder.
 double factor_of(QuadricCoefficients f, Body::Kind kind) {
   return (f[4] + f[5] + f[6]) / (kind == Body::Kind::sphere ? 3 : 2);
 }

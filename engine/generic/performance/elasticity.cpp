@@ -6,7 +6,8 @@
 namespace pkm::generic {
 namespace {
 
-/// A compliance in the coordinates, as numerator / denominator; its inverse is then defined at singular poses.
+/// The compliance matrix of the platform, in its coordinates, as numerator / denominator. At singular poses the
+/// denominator is 0, so that the stiffness, denominator * numerator^-1, is 0 there instead of undefined.
 struct Compliance {
   TermMatrix numerator;
   Term denominator;

@@ -56,7 +56,7 @@ bool MultistartMerger::append_and_report(const EvaluationTable& run_table, std::
                                     .population = &population_,
                                     .best_row = best_.row,
                                     .starts = &finished_,
-                                    .ahead = [this] { return unmerged_starts(); },
+                                    .ahead = [this] { return unmerged_runs(); },
                                     .left = evaluations_left(),
                                     .alone = true});
 }
@@ -77,7 +77,7 @@ void MultistartMerger::finish(MultistartRun& run) {
   merged_rows_ = 0;
 }
 
-void MultistartMerger::receive(UnmergedStart&& remote) {
+void MultistartMerger::receive(UnmergedRun&& remote) {
   MultistartRun& run = starts_.at(static_cast<std::size_t>(remote.number));
   if (run.ended) return;
   run.ended = remote.outcome.has_value();
@@ -85,9 +85,9 @@ void MultistartMerger::receive(UnmergedStart&& remote) {
   (run.ended ? run.table : run.recorded) = std::move(remote.table);
 }
 
-UnmergedStart MultistartMerger::snapshot(std::size_t k) const {
+UnmergedRun MultistartMerger::snapshot(std::size_t k) const {
   const MultistartRun& run = starts_[k];
-  UnmergedStart copy{static_cast<std::int64_t>(k), run.checkpoint_table(), {}};
+  UnmergedRun copy{static_cast<std::int64_t>(k), run.checkpoint_table(), {}};
   if (run.ended) copy.outcome = run.outcome;
   return copy;
 }
@@ -101,8 +101,8 @@ std::int64_t MultistartMerger::evaluations_left() {
   return evaluations_left_;
 }
 
-std::vector<UnmergedStart> MultistartMerger::unmerged_starts() const {
-  std::vector<UnmergedStart> unmerged;
+std::vector<UnmergedRun> MultistartMerger::unmerged_runs() const {
+  std::vector<UnmergedRun> unmerged;
   for (std::size_t k = next_; k < starts_.size(); ++k) {
     const MultistartRun& run = starts_[k];
     if (k == next_ && !run.ended && run.checkpoint_table().size() == merged_rows_) continue;
@@ -118,7 +118,7 @@ StopReason MultistartMerger::common_stop_reason() const {
 }
 
 StageResult MultistartMerger::result() const {
-  if (stopped_) return {StopReason::interrupted, best_.row, finished_, unmerged_starts()};
+  if (stopped_) return {StopReason::interrupted, best_.row, finished_, unmerged_runs()};
   StageResult result{common_stop_reason(), best_.row, finished_};
   if (archive_) result.front = archive_->front();
   return result;

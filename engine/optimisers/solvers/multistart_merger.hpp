@@ -30,9 +30,9 @@ class MultistartMerger {
   /// @return false if the stage was stopped, for example by the monitor
   bool merge();
   /// Stores the evaluations and, if it has finished, the outcome of a start that another rank runs.
-  void receive(UnmergedStart&& remote);
+  void receive(UnmergedRun&& remote);
   /// Copy of the evaluations of a start and, if it has finished, of its outcome.
-  UnmergedStart snapshot(std::size_t k) const;
+  UnmergedRun snapshot(std::size_t k) const;
   StageResult result() const;
 
  private:
@@ -44,7 +44,7 @@ class MultistartMerger {
   /// sixteenth of the number of starts have been merged.
   std::int64_t evaluations_left();
   /// Snapshots of the starts with evaluations that are not in the stage table.
-  std::vector<UnmergedStart> unmerged_starts() const;
+  std::vector<UnmergedRun> unmerged_runs() const;
   /// The stop reason of all starts if they agree, otherwise StopReason::starts.
   StopReason common_stop_reason() const;
 

@@ -29,7 +29,7 @@ void read_record(const SolverPlan& plan, const StageInput& input, std::vector<Mu
     next = end;
   }
   restore(input.recorded_starts.size(), record.slice(next, record.size()), nullptr);
-  for (const UnmergedStart& ahead : input.recorded_unmerged_starts)
+  for (const UnmergedRun& ahead : input.recorded_unmerged_runs)
     restore(static_cast<std::size_t>(ahead.number), ahead.table, ahead.outcome ? &*ahead.outcome : nullptr);
 }
 

@@ -87,7 +87,7 @@ class SolverStageRun {
     run.ended = true;
     if (!is_rank_0()) {
       std::string message(reinterpret_cast<const char*>(&input_.seed), sizeof input_.seed);
-      pack_unmerged_start(merger_.snapshot(k), message);
+      pack_unmerged_run(merger_.snapshot(k), message);
       ranks::post(message);
     }
     merge_and_check_stop();
@@ -118,7 +118,7 @@ class SolverStageRun {
   void synchronise_ranks() {
     std::string mine;
     for (std::size_t k = 0; k < merger_.starts().size(); ++k)
-      if (merger_.starts()[k].is_local) pack_unmerged_start(merger_.snapshot(k), mine);
+      if (merger_.starts()[k].is_local) pack_unmerged_run(merger_.snapshot(k), mine);
     for (const std::string& bytes : ranks::all_gather(mine)) receive(bytes, 0);
     if (is_rank_0()) merger_.merge();
     std::string state(1, merger_.stopped() ? kStopped : kDone);
@@ -133,7 +133,7 @@ class SolverStageRun {
   }
 
   void receive(const std::string& bytes, std::size_t at) {
-    while (at < bytes.size()) merger_.receive(unpack_unmerged_start(bytes, at, table_.shape()));
+    while (at < bytes.size()) merger_.receive(unpack_unmerged_run(bytes, at, table_.shape()));
   }
 
   static constexpr char kStopped = 's', kDone = 'd';

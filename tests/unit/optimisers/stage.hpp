@@ -81,7 +81,7 @@ inline Outcome resume(const Optimiser& optimiser, const Problem& problem, std::u
   for (const auto& design : starts) input.starts.push_back({design, "given"});
   input.recorded = &stopped.table;
   input.recorded_starts = stopped.recorder.starts;
-  input.recorded_unmerged_starts = stopped.result.ahead;
+  input.recorded_unmerged_runs = stopped.result.ahead;
   outcome.result = optimiser.minimise(input, outcome.table);
   return outcome;
 }

@@ -38,7 +38,8 @@ TEST(Probe, EvaluatesFewerDesignsIfOneIsExpensive) {
   EXPECT_EQ(size("method = \"voxels\"\n", conditioning), 7u) << "65280 cells with a pose quantity each";
   EXPECT_EQ(size("method = \"voxels\"\ncells = { x = 200, z = 200, theta = 100 }\n", conditioning), 4u);
   const Study huge = study("method = \"voxels\"\ncells = { x = 400, z = 400, theta = 400 }\n", conditioning);
-  EXPECT_EQ(words(probe(huge)), "no sample designs were evaluated, because a single evaluation takes too long");
+  EXPECT_EQ(describe_probe(probe(huge)),
+            "no sample designs were evaluated, because a single evaluation takes too long");
 }
 
 TEST(Probe, DiagnosesWhyNoDesignIsFeasible) {

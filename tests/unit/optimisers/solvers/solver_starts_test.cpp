@@ -135,7 +135,7 @@ TEST(Solvers, AStopKeepsTheEvaluationsOfConcurrentStarts) {
     Outcome stopped;
     with_team(3, [&] { stopped = run(*stage, problem, 4, last, &parallel, {kBeam}); });
     ASSERT_EQ(stopped.result.reason, StopReason::interrupted);
-    for (const UnmergedStart& start : stopped.result.ahead) {
+    for (const UnmergedRun& start : stopped.result.ahead) {
       max_unmerged_rows = std::max(max_unmerged_rows, start.table.size());
       const StartOutcome& end = uninterrupted.result.starts[static_cast<std::size_t>(start.number)];
       ASSERT_LE(static_cast<std::int64_t>(start.table.size()), end.rows);
