@@ -60,6 +60,9 @@ SETTINGS
 
 /usr/bin/python3 docs/cpp.py "$root" docs "$out/xml"
 /usr/bin/python3 docs/reference.py "$program" "$root" docs
+export PYTHONPATH=$root/bindings/python PYTHONDONTWRITEBYTECODE=1
+PKMOPT_LIBRARY=$(dirname -- "$program")/../lib/libpkmopt.so.0  # of the program's build
+export PKMOPT_LIBRARY
 PKM_DOCS_VERSION=${built#pkmopt } PKM_DOCS_XML=$out/xml \
   /usr/bin/sphinx-build -q -W -n --keep-going -b html -d "$out/doctrees" docs "$out/html"
 cp -R -- experiments/mechanisms/pictures "$out/html/reference"  # used by <img> in an included README

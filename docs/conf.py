@@ -14,7 +14,7 @@ version = release.split()[0]
 released = f"## [{version}] - unreleased" not in Path("../CHANGELOG.md").read_text()
 copyright = f"2026, the pkmopt authors. Version {release}"
 
-extensions = ["myst_parser", "breathe", "sphinx.ext.mathjax", "sphinx_copybutton"]
+extensions = ["myst_parser", "breathe", "sphinx.ext.mathjax", "sphinx_copybutton", "sphinx.ext.autodoc"]
 nitpicky = True
 
 myst_enable_extensions = ["deflist", "dollarmath", "substitution"]
@@ -30,10 +30,15 @@ nitpick_ignore_regex = [
     ("cpp:identifier", r"(std|Eigen)(::.*)?"),
     ("cpp:identifier", r"u?int\d+_t|size_t|pkm|S|N|pkm::Abilities"),
     ("cpp:identifier", r"(Dual|Dual4|VoxelGrid|AxisVector|AxisMatrix|Vector|Matrix|MatrixUpTo|MatrixOf|SmallMatrix|"
-                       r"Capsule|Scratch|SourceText|StartOutcome|UnmergedStart|StopReason|Front|kMaxJoints|Obstacles|"
+                       r"Capsule|Scratch|SourceText|StartOutcome|UnmergedRun|StopReason|Front|kMaxJoints|Obstacles|"
                        r"TimeGraph|ConfigValue|TomlValue|expression)"
                        r"(<.*>|::.*)?"),
 ]
+
+# The reference of the Python package is made from its docstrings; annotations would name types without a page.
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+nitpick_ignore_regex.append(("py:.*", r"(numpy|pandas|matplotlib)\..*"))
 
 html_theme = "furo"
 html_title = f"pkmopt {version}" + ("" if released else ", unreleased")

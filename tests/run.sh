@@ -6,7 +6,7 @@ cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source tests/steps.sh
 
 check_format() {
-  find engine objectives constraints experiments tests benchmarks -name '*.[ch]pp' -print0 |
+  find engine objectives constraints experiments bindings tests benchmarks -name '*.[ch]pp' -print0 |
     xargs -0 clang-format-14 --dry-run --Werror
 }
 

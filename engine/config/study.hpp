@@ -68,8 +68,8 @@ struct Study {
   std::shared_ptr<const DesignProblem> problem;
   std::optional<std::vector<double>> baseline;  ///< every parameter of the mechanism
   std::vector<Stage> stages;                    ///< may be empty: then the study can be evaluated, but not run
-  std::optional<double> round;             ///< [final]: step [SI] to which the best design is rounded
-  std::string round_unit = "1";            ///< the unit that all variables share, else "1"
+  std::optional<double> round;                  ///< [final]: step [SI] to which the best design is rounded
+  std::string round_unit = "1";                 ///< the unit that all variables share, else "1"
   double exact_seconds = 10;               ///< [workspace] exact: time limit of the exact values; 0: none are computed
   std::optional<double> checkpoint_every;  ///< [s]; std::nullopt: adaptive
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/export/code/code_module.hpp"
+#include "engine/export/code/languages.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/target.hpp"
 #include "experiments/app/version.hpp"

@@ -27,7 +27,7 @@ struct InvalidCommand {
 TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
   const std::string commands =
       "one of run, resume, check, evaluate, pose, forward, dynamics, coupling, trajectory, simulate, "
-      "workspace, certify, show, report, export, list, new, schema, upgrade, completion, manual";
+      "workspace, certify, show, report, export, generate, list, new, schema, upgrade, completion, manual";
   const std::string mechanism = "4ppa-2par";
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry.name();
@@ -37,10 +37,11 @@ TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
            " (see 'pkmopt --help'); did you mean 'evaluate'?"},
       {{"--hlp"}, "found the unknown option '--hlp'; expected one of --help, --version; did you mean '--help'?"},
       {{"evaluate"}, "found no design; expected a mechanism, a file in TOML or --from F.h5"},
-      {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
+      {{"pose", mechanism}, "--at: found nothing; expected the pose, or --poses with a table of poses"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
        "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certified, "
+       "--designs, --csv, --force, "
        "--sensitivity, --tolerance, --threads, --instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},

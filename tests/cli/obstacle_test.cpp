@@ -155,7 +155,7 @@ TEST_F(Obstacle, InvalidDefinitionsAreRefused) {
               HasSubstr("has none that could collide with them"));
   EXPECT_THAT(refusal(changed(study(kDeltaFile, kBall + kClearance),
                               "method = \"voxels\"\ncells = { x = 12, y = 12, z = 12 }", "method = \"columns\"")),
-              HasSubstr("rotary-delta has no columns"));
+              HasSubstr("rotary-delta has no exact columns"));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(CliTerminal, NoColoursInPipesOrIfDisabled) {
 }
 
 TEST(CliTerminal, ErrorsAreRed) {
-  EXPECT_THAT(on_terminal({"pose"}), HasSubstr("\x1b[31mpkmopt: \x1b[0mpose: --at is required"));
+  EXPECT_THAT(on_terminal({"pose"}), HasSubstr("\x1b[31mpkmopt: \x1b[0mfound no design"));
 }
 
 TEST(CliTerminal, ControlCharactersInNamesAreEscaped) {

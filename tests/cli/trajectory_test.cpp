@@ -32,7 +32,10 @@ TEST(CliTrajectory, RedundantDrivesHaveSpeedsWithoutForces) {
   const auto found = pkmopt({"trajectory", rrr, "--motion", data + "4-rrr-motion.toml"});
   EXPECT_EQ(found.exit_code, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr("peak speed [rad/s]"));
-  EXPECT_THAT(found.out, HasSubstr("mechanism 4-rrr has 4 joints for 3 coordinates, not as many of both: no forces"));
+  EXPECT_THAT(
+      found.out,
+      HasSubstr(
+          "mechanism 4-rrr has 4 joints for 3 coordinates, not as many of both: forces and power are not computed"));
   const json all = pkmopt({"trajectory", rrr, "--motion", data + "4-rrr-motion.toml", "--json"}).json();
   EXPECT_EQ(all["summary"]["no_forces"], "mechanism 4-rrr has 4 joints for 3 coordinates, not as many of both");
   EXPECT_FALSE(all["summary"].contains("peak_force"));

@@ -455,7 +455,7 @@ class Workspace:
 
     @property
     def volume(self) -> float:
-        """In :attr:`unit`."""
+        """The volume, in ``unit``."""
         return (self._volume or self._measure(None, 0))[0]
 
     @property

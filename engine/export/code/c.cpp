@@ -1,5 +1,6 @@
 // Generated code in C99: a header, a source and a test program.
 #include "engine/export/code/c_like.hpp"
+#include "engine/export/code/languages.hpp"
 
 namespace pkm::code {
 namespace in_c {

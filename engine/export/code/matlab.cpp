@@ -1,6 +1,7 @@
 // Generated code for MATLAB and Octave: a package folder with one file per function, and a test script.
 #include <cmath>
 
+#include "engine/export/code/languages.hpp"
 #include "engine/export/code/statements.hpp"
 
 namespace pkm::code {

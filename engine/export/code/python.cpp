@@ -1,6 +1,7 @@
 // Generated code in Python 3 without other packages: a module and a test.
 #include <cmath>
 
+#include "engine/export/code/languages.hpp"
 #include "engine/export/code/statements.hpp"
 
 namespace pkm::code {

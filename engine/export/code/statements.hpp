@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/export/code/code_module.hpp"
+#include "engine/mechanism/code_module.hpp"
 
 namespace pkm::code {
 

@@ -26,7 +26,7 @@ TEST(Probe, EvaluatesTheSameDesignsEveryTime) {
   EXPECT_EQ(one.table.size(), 64u);
   EXPECT_EQ(one.feasible(), 32u) << "half of the Sobol points lie in each half of a range";
   EXPECT_FALSE(one.diagnosis);
-  EXPECT_EQ(words(one), "32 of 64 designs spread over the bounds are feasible");
+  EXPECT_EQ(describe_probe(one), "32 of 64 designs spread over the bounds are feasible");
 }
 
 TEST(Probe, EvaluatesFewerDesignsIfOneIsExpensive) {

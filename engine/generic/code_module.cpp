@@ -1,4 +1,4 @@
-#include "engine/export/code/code_module.hpp"
+#include "engine/mechanism/code_module.hpp"
 
 #include <algorithm>
 #include <array>

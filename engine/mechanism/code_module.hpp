@@ -77,13 +77,4 @@ struct Module {
 Module module_of(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
                  const std::string& mode, const Options& options, const std::string& title);
 
-/// A file that is written, relative to the output folder.
-struct File {
-  std::string name, text;
-};
-std::vector<File> c_files(const Module& module);
-std::vector<File> cpp_files(const Module& module);
-std::vector<File> python_files(const Module& module);
-std::vector<File> matlab_files(const Module& module);
-
 }  // namespace pkm::code
