@@ -17,6 +17,7 @@ pkm_test_packages=(
   libsimbody-dev                              # independent computation of drive forces
   libmpfi-dev                                 # independent interval arithmetic
   python3 python3-numpy python3-h5py          # independent reading of study files
+  mypy                                        # annotations of the Python package
   python3-jsonschema                          # validation of files by `pkmopt schema`
   python3-vtk9                                # reading of exported workspaces as in ParaView
   chromium                                    # tests of the pages of pkmopt report
@@ -27,7 +28,7 @@ pkm_test_packages=(
 )
 # For the documentation website: C++ interface, copy buttons, formulas, and the structure of study files.
 pkm_docs_packages=(
-  python3-sphinx python3-myst-parser furo python3-breathe doxygen python3-sphinx-copybutton libjs-katex python3-h5py
+  python3-sphinx python3-myst-parser furo python3-breathe doxygen python3-sphinx-copybutton libjs-katex python3-h5py python3-numpy
 )
 pkm_test_packages+=("${pkm_docs_packages[@]}")
 # For the page of pkmopt report. Debian's package conflicts with a node from another source, so look for the command.
