@@ -6,6 +6,7 @@
 
 #include "bindings/c/handles.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/runner/stage_starts.hpp"
 
 namespace pkm::c {
 namespace {
@@ -117,7 +118,7 @@ struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
   void run() {
     try {
       const pkm::StageInput input{
-          .problem = problem, .evaluator = *this, .monitor = *this, .seed = seed_, .starts = start()};
+          .problem = problem, .evaluator = *this, .monitor = *this, .seed = seed_, .starts = starts()};
       best_row = stage.optimiser->minimise(input, table).best_row;
     } catch (const pkm::Stopped&) {  // the handle is being freed
     } catch (...) {
@@ -129,12 +130,11 @@ struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
     is_callers_turn_ = true;
     changed_.notify_all();
   }
-  /// For local solvers: the middle of the ranges, where the first stage of a study without baseline starts.
-  std::vector<pkm::StartDesign> start() const {
-    if (!stage.entry->capabilities(stage.options).starts) return {};
+  /// As in the first stage of a study without baseline.
+  std::vector<pkm::StartDesign> starts() const {
     std::vector<double> middle;
     for (std::size_t v = 0; v < problem.space().dimension(); ++v) middle.push_back(problem.space().from_unit(v, 0.5));
-    return {{middle, "the middle of the ranges"}};
+    return first_start_designs(problem.space(), stage, {middle, "the middle of the ranges"});
   }
   void give_turn() {
     const std::lock_guard lock(mutex_);

@@ -93,6 +93,19 @@ std::vector<StartDesign> front_points(const Study& study, const StudyContents& c
   return starts;
 }
 
+/// Adds the designs of the option `designs`; variables that they do not name are those of `base`.
+void add_given_designs(const DesignSpace& space, const Options& options, const std::vector<double>& base,
+                       std::vector<StartDesign>& starts) {
+  if (!options.has("designs")) return;
+  int number = 0;
+  for (const NamedNumbers& given : options.list("designs")) {
+    StartDesign design{base, "given design " + std::to_string(++number)};
+    for (std::size_t v = 0; v < space.dimension(); ++v)
+      if (const auto value = given.find(space[v].name); value != given.end()) design.design[v] = value->second;
+    starts.push_back(std::move(design));
+  }
+}
+
 }  // namespace
 
 PreviousFront previous_front(const Study& study, const StudyContents& contents) {
@@ -116,31 +129,28 @@ PreviousFront previous_front(const Study& study, const StudyContents& contents) 
 }
 
 std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents) {
-  const Capabilities can = stage.entry->capabilities(stage.options);
-  if (!can.starts) {
-    if (contents.best.row < 0 && can.min_objectives > 0) return {};
-    return {best_so_far(study, contents)};
-  }
+  const StartDesign first = best_so_far(study, contents);
+  if (contents.best.row < 0) return first_start_designs(study.problem->space(), stage, first);
+  if (!stage.entry->capabilities(stage.options).starts) return {first};
   const Options& options = stage.options;
   std::vector<StartDesign> starts;
   const std::string& start = options.word("start");
-  if (start == "best-of-basins" && contents.best.row >= 0)
+  if (start == "best-of-basins")
     starts =
         basins(study, contents, static_cast<std::size_t>(options.integer("starts")), options.number("basin_radius"));
   else if (start == "pareto")
     starts = front_points(study, contents, static_cast<std::size_t>(options.integer("starts")));
   else if (start != "none")
-    starts = {best_so_far(study, contents)};
-  if (options.has("designs")) {
-    const DesignSpace& space = study.problem->space();
-    int number = 0;
-    for (const NamedNumbers& given : options.list("designs")) {
-      StartDesign design{baseline_or_centre(study), "given design " + std::to_string(++number)};
-      for (std::size_t v = 0; v < space.dimension(); ++v)
-        if (const auto value = given.find(space[v].name); value != given.end()) design.design[v] = value->second;
-      starts.push_back(std::move(design));
-    }
-  }
+    starts = {first};
+  add_given_designs(study.problem->space(), options, baseline_or_centre(study), starts);
+  return starts;
+}
+
+std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Stage& stage, const StartDesign& first) {
+  const Capabilities can = stage.entry->capabilities(stage.options);
+  std::vector<StartDesign> starts;
+  if (can.starts ? stage.options.word("start") != "none" : can.min_objectives == 0) starts = {first};
+  if (can.starts) add_given_designs(space, stage.options, first.design, starts);
   return starts;
 }
 

@@ -18,6 +18,10 @@ namespace pkm {
 /// sweeps, which get the baseline.
 std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents);
 
+/// The starting points of a stage before which nothing was evaluated, as above.
+/// @param first  the baseline or the centre of the bounds
+std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Stage& stage, const StartDesign& first);
+
 /// @return ranges of the objectives on the front found by earlier stages (or the best design's objectives), and its
 /// reference point; empty for a single objective
 PreviousFront previous_front(const Study& study, const StudyContents& contents);

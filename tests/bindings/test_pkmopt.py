@@ -389,6 +389,11 @@ class OptimiserTest(InFolder):
             optimiser.tell(X, (D**2).sum(axis=1), dF=2 * D)
         np.testing.assert_allclose(optimiser.best, [1, -0.5], atol=1e-6)
 
+    def test_starts_at_given_designs(self):
+        given = {"x1": 0.5, "x2": 1.5}
+        optimiser = pkmopt.Optimiser("nlopt", self.BOUNDS, algorithm="slsqp", start="none", designs=[given])
+        np.testing.assert_array_equal(optimiser.ask(), [[0.5, 1.5]])
+
     def test_failed_designs(self):
         optimiser = pkmopt.Optimiser("ga", self.BOUNDS, generations=10)
         while not optimiser.finished:
