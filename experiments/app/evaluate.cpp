@@ -288,14 +288,15 @@ void add_evaluate(CLI::App& app, Session& session) {
         return evaluate(session, target, given, out);
       });
   add_cells_option(command, arguments.changes.cells, "Voxels along each swept coordinate, instead of the study's");
-  auto* const certified =
-      add_option(command, "--certified GAP", arguments.certified,
-                 "Check the exact volume against guaranteed bounds with this relative gap (see certify)");
-  add_option(command, "--designs FILE", arguments.designs.input,
-             "Evaluate every row of this table (CSV), whose columns are parameters, such as \"l_a [mm]\"")
-      ->excludes(certified);
+  add_option(command, "--certified GAP", arguments.certified,
+             "Check the exact volume against guaranteed bounds with this relative gap (see certify)");
+  auto* const designs =
+      add_option(command, "--designs FILE", arguments.designs.input,
+                 "Evaluate every row of this table (CSV), whose columns are parameters, such as \"l_a [mm]\"");
   add_table_output(command, arguments.designs, "Write the results of --designs to this file");
   add_sensitivity_options(command, arguments);
+  for (const char* const of_single_designs : {"--certified", "--sensitivity", "--tolerance"})
+    designs->excludes(command.get_option(of_single_designs));
   add_threads(command, arguments.threads);
 }
 

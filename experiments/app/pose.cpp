@@ -105,21 +105,6 @@ void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<do
   print("J_twist, where qdot = J_twist [vx vy vz wx wy wz]", J_twist);
 }
 
-/// Throws ConfigError for options that a table of poses does not have.
-void expect_no_options_of_single_poses(const PoseArguments& arguments) {
-  const std::pair<const char*, bool> options[] = {{"--velocity", !arguments.velocity.empty()},
-                                                  {"--acceleration", !arguments.acceleration.empty()},
-                                                  {"--input", !arguments.inputs.empty()},
-                                                  {"--joint-error", !arguments.joint_error.empty()},
-                                                  {"--stiffness", arguments.stiffness},
-                                                  {"--stl", !arguments.stl.empty()},
-                                                  {"--dxf", !arguments.dxf.empty()},
-                                                  {"--urdf", !arguments.urdf.empty()},
-                                                  {"--vtk", !arguments.vtk.empty()}};
-  for (const auto& [option, is_given] : options)
-    if (is_given) throw ConfigError({"", 0, option}, "--poses", "--at, because this option needs a single pose");
-}
-
 /// Joints, conditioning, quantities and margins at all poses of a table.
 void pose_table(const Target& target, const TableJob& job, int threads, const std::string& mode,
                 const std::string& program, Printout& out) {
@@ -193,7 +178,6 @@ std::string pose(const Target& target, const PoseArguments& arguments, const std
   const std::string mode = parse_mode(info, arguments);
   expect_table(arguments.poses, "--poses");
   if (!arguments.poses.input.empty()) {
-    expect_no_options_of_single_poses(arguments);
     TableJob job = arguments.poses;
     job.force = arguments.force;
     pose_table(target, job, arguments.threads, mode, program, out);
@@ -264,7 +248,7 @@ void add_pose(CLI::App& app, Session& session) {
       [&session](const Target& target, const PoseArguments& given, Printout& out) {
         return pose(target, given, session.program, out);
       });
-  auto* const at = add_list_option(command, "--at", arguments.at, "The pose: every coordinate");
+  add_list_option(command, "--at", arguments.at, "The pose: every coordinate");
   add_mode_options(command, arguments);
   add_list_option(command, "--velocity", arguments.velocity, "Rates of the coordinates and of the inputs; default: 0");
   add_list_option(command, "--acceleration", arguments.acceleration,
@@ -272,7 +256,6 @@ void add_pose(CLI::App& app, Session& session) {
   auto* const table = add_option(
       command, "--poses FILE", arguments.poses.input,
       "Compute joints, limits and quantities at every row of this table (CSV), whose columns are the coordinates");
-  table->excludes(at);
   add_threads(command, arguments.threads);
   auto* const joint_error =
       add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
@@ -289,6 +272,9 @@ void add_pose(CLI::App& app, Session& session) {
       ->needs(stiffness);
   add_link_files(command, arguments, {{".csv", &arguments.poses.csv}});
   add_input_option(command, arguments);
+  for (const char* const of_single_poses : {"--at", "--velocity", "--acceleration", "--input", "--joint-error",
+                                            "--stiffness", "--stl", "--dxf", "--urdf", "--vtk"})
+    table->excludes(command.get_option(of_single_poses));
 }
 
 }  // namespace pkm

@@ -97,6 +97,15 @@ TEST(CliTables, AreCheckedWhereTheyAreRead) {
   EXPECT_THAT(complaint("x,y,z\n0,0,\"1\n"), HasSubstr("an unclosed quotation mark"));
   EXPECT_THAT(complaint("x,y,z\n0,0,-0.4\n", {"--stiffness"}), HasSubstr("--stiffness"));
   EXPECT_THAT(complaint("x,y,z\n0,0,-0.4\n", {"--at", "x=0,y=0,z=0"}), HasSubstr("--at"));
+  const std::string designs = folder.write("designs.csv", "a\n0.3\n");
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--sensitivity"}, {"--tolerance", "1mm"}, {"--certified", "0.1"}}) {
+    std::vector<std::string> arguments = {"evaluate", kPaper, "--designs", designs};
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    const ProgramResult done = pkmopt(arguments);
+    EXPECT_EQ(done.exit_code, 2);
+    EXPECT_THAT(done.err, HasSubstr(option.front()));
+  }
   EXPECT_THAT(pkmopt({"pose", kDelta}).err, HasSubstr("--poses"));
   EXPECT_THAT(pkmopt({"evaluate", kPaper, "-o", "x.csv"}).err, HasSubstr("expected --designs with a table"));
 }
