@@ -83,16 +83,11 @@ class Collector {
     const std::size_t n = model_.inputs.coordinates, m = model_.inputs.joints;
     module_.inverse = {"inverse",
                        "Joint coordinates of a pose.",
-                       false,
                        {{"q", m, 1, model_.joints}, {"assembly", model_.domains.size(), 1, nodes_of(model_.domains)}}};
-    module_.jacobian = {"jacobian",
-                        "Jacobian J of the joints: joint rates = J coordinate rates.",
-                        false,
-                        {{"J", m, n, model_.jacobian}}};
-    module_.limits = {"margins",
-                      "Margins of all constraints of a pose, which is feasible if none is negative or NaN.",
-                      false,
-                      {margins()}};
+    module_.jacobian = {
+        "jacobian", "Jacobian J of the joints: joint rates = J coordinate rates.", {{"J", m, n, model_.jacobian}}};
+    module_.limits = {
+        "margins", "Margins of all constraints of a pose, which is feasible if none is negative or NaN.", {margins()}};
     Output quantities{"values", 0, 1, {}};
     for (std::size_t i = 0; i < model_.quantities.size(); ++i) {
       const QuantityInfo& info = model_.info.quantities[i];
@@ -102,11 +97,10 @@ class Collector {
     }
     quantities.rows = quantities.nodes.size();
     if (quantities.rows > 0)
-      module_.values = {"quantities", "Named quantities of a pose; NaN where one is undefined.", false, {quantities}};
+      module_.values = {"quantities", "Named quantities of a pose; NaN where one is undefined.", {quantities}};
     if (const auto& e = model_.equations)
       module_.equations = {"equations",
                            "Equations of motion in the coordinates x with rates v: J^T tau = M a + h + G - Jw^T w.",
-                           true,
                            {{"J", m, n, e->J},
                             {"Jdot_v", m, 1, e->J_rate_X},
                             {"M", n, n, e->M_X},

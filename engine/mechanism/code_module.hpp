@@ -19,11 +19,10 @@ struct Output {
   std::vector<expression::Node> nodes;
 };
 
-/// A function of the pose, and of the rates of the coordinates if it says so.
+/// A function of the pose; `equations` is one of the rates of the coordinates, too.
 struct Function {
   std::string name;     ///< "jacobian"
   std::string meaning;  ///< one sentence
-  bool has_rates = false;
   std::vector<Output> outputs;
 };
 

@@ -104,16 +104,12 @@ std::string helpers_of_c() {
 }
 
 std::string body_of_c(const Module& module, const Function& function) {
-  std::vector<expression::Node> roots;
-  for (const Output& output : function.outputs) roots.insert(roots.end(), output.nodes.begin(), output.nodes.end());
-  const Statements statements = statements_of(module, roots, kSyntaxOfC);
-  std::string text;
-  for (const std::string& definition : statements.definitions) text += "  " + definition + "\n";
-  auto value = statements.values.begin();
-  for (const Output& output : function.outputs)
+  return body_of(module, function, kSyntaxOfC, "  ", [](const Output& output, const std::string* values) {
+    std::string text;
     for (std::size_t i = 0; i < output.nodes.size(); ++i)
-      text += "  " + output.name + "[" + std::to_string(i) + "] = " + *value++ + ";\n";
-  return text;
+      text += "  " + output.name + "[" + std::to_string(i) + "] = " + values[i] + ";\n";
+    return text;
+  });
 }
 
 std::string assembly_condition(const Module& module) {

@@ -77,7 +77,7 @@ std::string helpers_for(const std::string& code) {
   return text;
 }
 
-std::string matrix(std::vector<std::string>::const_iterator values, const Output& output) {
+std::string matrix(const std::string* values, const Output& output) {
   std::string text = "[";
   for (std::size_t i = 0; i < output.rows; ++i) {
     text += i > 0 ? "; " : "";
@@ -87,17 +87,9 @@ std::string matrix(std::vector<std::string>::const_iterator values, const Output
 }
 
 std::string body(const Module& module, const Function& function) {
-  std::vector<expression::Node> roots;
-  for (const Output& output : function.outputs) roots.insert(roots.end(), output.nodes.begin(), output.nodes.end());
-  const Statements statements = statements_of(module, roots, kSyntax);
-  std::string text;
-  for (const std::string& definition : statements.definitions) text += "  " + definition + "\n";
-  auto value = statements.values.begin();
-  for (const Output& output : function.outputs) {
-    text += "  " + output.name + " = " + matrix(value, output) + ";\n";
-    value += static_cast<std::ptrdiff_t>(output.nodes.size());
-  }
-  return text;
+  return body_of(module, function, kSyntax, "  ", [](const Output& output, const std::string* values) {
+    return "  " + output.name + " = " + matrix(values, output) + ";\n";
+  });
 }
 
 std::string row(const std::vector<double>& values) {

@@ -153,7 +153,7 @@ def _solve(A, b):
 )";
 
 /// "[a, b]", or for a matrix "[[a, b], [c, d]]".
-std::string list_of(std::vector<std::string>::const_iterator values, const Output& output) {
+std::string list_of(const std::string* values, const Output& output) {
   std::string text = "[";
   for (std::size_t i = 0; i < output.rows; ++i) {
     text += i > 0 ? ", " : "";
@@ -166,17 +166,9 @@ std::string list_of(std::vector<std::string>::const_iterator values, const Outpu
 
 /// Definitions, and one assignment for each output.
 std::string body(const Module& module, const Function& function) {
-  std::vector<expression::Node> roots;
-  for (const Output& output : function.outputs) roots.insert(roots.end(), output.nodes.begin(), output.nodes.end());
-  const Statements statements = statements_of(module, roots, kSyntax);
-  std::string text;
-  for (const std::string& definition : statements.definitions) text += "    " + definition + "\n";
-  auto value = statements.values.begin();
-  for (const Output& output : function.outputs) {
-    text += "    " + output.name + " = " + list_of(value, output) + "\n";
-    value += static_cast<std::ptrdiff_t>(output.nodes.size());
-  }
-  return text;
+  return body_of(module, function, kSyntax, "    ", [](const Output& output, const std::string* values) {
+    return "    " + output.name + " = " + list_of(values, output) + "\n";
+  });
 }
 
 std::string names(const std::vector<NamedUnit>& all) {

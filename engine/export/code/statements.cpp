@@ -22,33 +22,15 @@ bool is_enclosed(const std::string& text) {
   return true;
 }
 
-}  // namespace
+struct Statements {
+  std::vector<std::string> definitions;
+  std::vector<std::string> values;  ///< of the outputs, one output after the other
+};
 
-std::string shortest_number(double value) {
-  char text[40];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-std::string with_replacements(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-std::string without_parentheses(const std::string& expression) {
-  return is_enclosed(expression) ? expression.substr(1, expression.size() - 2) : expression;
-}
-
-std::string elements_text(const std::vector<NamedUnit>& elements) {
-  std::string text;
-  for (const NamedUnit& each : elements)
-    text +=
-        (text.empty() ? "" : ", ") + each.name + (each.unit.empty() || each.unit == "1" ? "" : " [" + each.unit + "]");
-  return text;
-}
-
-Statements statements_of(const Module& module, const std::vector<Node>& roots, const Syntax& syntax) {
+Statements statements_of(const Module& module, const Function& function, const Syntax& syntax) {
   const expression::Graph& graph = module.graph;
+  std::vector<Node> roots;
+  for (const Output& output : function.outputs) roots.insert(roots.end(), output.nodes.begin(), output.nodes.end());
   const std::vector<Node> nodes = graph.reachable(roots);
   std::unordered_map<Node, int> uses;
   for (const Node node : nodes)
@@ -75,6 +57,44 @@ Statements statements_of(const Module& module, const std::vector<Node>& roots, c
   }
   for (const Node root : roots) result.values.push_back(without_parentheses(texts[root]));
   return result;
+}
+
+}  // namespace
+
+std::string shortest_number(double value) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string with_replacements(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+std::string without_parentheses(const std::string& expression) {
+  return is_enclosed(expression) ? expression.substr(1, expression.size() - 2) : expression;
+}
+
+std::string elements_text(const std::vector<NamedUnit>& elements) {
+  std::string text;
+  for (const NamedUnit& each : elements)
+    text +=
+        (text.empty() ? "" : ", ") + each.name + (each.unit.empty() || each.unit == "1" ? "" : " [" + each.unit + "]");
+  return text;
+}
+
+std::string body_of(const Module& module, const Function& function, const Syntax& syntax, const std::string& indent,
+                    const std::function<std::string(const Output&, const std::string*)>& assign) {
+  const Statements statements = statements_of(module, function, syntax);
+  std::string text;
+  for (const std::string& definition : statements.definitions) text += indent + definition + "\n";
+  const std::string* values = statements.values.data();
+  for (const Output& output : function.outputs) {
+    text += assign(output, values);
+    values += output.nodes.size();
+  }
+  return text;
 }
 
 }  // namespace pkm::code

@@ -24,13 +24,11 @@ struct Syntax {
   std::string (*define)(const std::string& name, const std::string& expression);
 };
 
-struct Statements {
-  std::vector<std::string> definitions;
-  std::vector<std::string> values;  ///< expressions of the roots
-};
-
-/// @param roots  nodes of module.graph
-Statements statements_of(const Module& module, const std::vector<expression::Node>& roots, const Syntax& syntax);
+/// The lines of the definitions, and then those of assign() for each output.
+/// @param indent  before each definition
+/// @param assign  assign(output, values): the lines that assign the values of an output
+std::string body_of(const Module& module, const Function& function, const Syntax& syntax, const std::string& indent,
+                    const std::function<std::string(const Output&, const std::string*)>& assign);
 
 /// A number with the fewest digits that give it back: "0.1", "1e-05".
 std::string shortest_number(double value);
