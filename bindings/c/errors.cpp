@@ -14,8 +14,6 @@ std::string& last_error() {
   return sentence;
 }
 
-}  // namespace
-
 void set_error(const std::string& sentence) noexcept {
   try {
     last_error() = sentence;
@@ -23,6 +21,8 @@ void set_error(const std::string& sentence) noexcept {
     last_error().clear();
   }
 }
+
+}  // namespace
 
 pkmopt_status store_current_error() noexcept {
   try {

@@ -27,9 +27,7 @@ namespace pkm::c {
 
 using Json = nlohmann::ordered_json;
 
-/// Stores the sentence that pkmopt_error() returns on this thread.
-void set_error(const std::string& sentence) noexcept;
-/// Stores the error that is being handled. To be called in a catch block.
+/// Stores the error that is being handled, for pkmopt_error() on this thread. To be called in a catch block.
 pkmopt_status store_current_error() noexcept;
 
 /// Calls body() and converts exceptions to a status and a message.
@@ -90,8 +88,6 @@ void with_options(const pkmopt_options* given, bool is_parallel, const Body& bod
     body();
 }
 
-std::shared_ptr<const Mechanism> mechanism_of_text(const std::string& toml, const std::string& file_name,
-                                                   const char* limb_parameters);
 /// Lines "set NAME=VALUE", "limit NAME=VALUE", "cells NAME=NUMBER".
 StudyChanges changes_of(const char* lines);
 std::unique_ptr<pkmopt_study> study_handle(Study study);

@@ -9,6 +9,7 @@
 #include "experiments/app/catalogue.hpp"
 
 namespace pkm::c {
+namespace {
 
 std::shared_ptr<const Mechanism> mechanism_of_text(const std::string& toml, const std::string& file_name,
                                                    const char* limb_parameters) {
@@ -21,8 +22,6 @@ std::shared_ptr<const Mechanism> mechanism_of_text(const std::string& toml, cons
   }
   return read_mechanism_toml(toml, file_name, own);
 }
-
-namespace {
 
 std::vector<std::string> built_in_names() {
   std::vector<std::string> names;

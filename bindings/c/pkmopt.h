@@ -195,7 +195,8 @@ PKMOPT_API pkmopt_status pkmopt_study_why_failed(const pkmopt_study* study, cons
 /* The workspace volume of a design given by all parameters, with its derivatives.
  * parameters  [parameters]
  * volume      in the unit `volume_unit` of the description
- * error       relative error estimate; NaN for voxels
+ * error       relative error estimate, as far as sampled where parts between sampled slices can be missed; NaN for
+ *             voxels
  * gradient    [parameters]; NULL: none is computed */
 PKMOPT_API pkmopt_status pkmopt_study_volume(const pkmopt_study* study, const double* parameters, double* volume,
                                              double* error, double* gradient, const pkmopt_options* options);

@@ -5,6 +5,7 @@
 #include "bindings/c/handles.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/problem/evaluator.hpp"
+#include "engine/report/json_text.hpp"
 
 namespace pkm::c {
 
@@ -34,19 +35,13 @@ std::unique_ptr<pkmopt_study> study_handle(Study study) {
 
 namespace {
 
-Json named(const auto& list) {
-  Json all = Json::array();
-  for (const auto& each : list) all.push_back({{"name", each.name}, {"unit", each.unit}, {"meaning", each.meaning}});
-  return all;
-}
-
 Json info_of(const Study& study) {
   const DesignProblem& problem = *study.problem;
   const ProblemParts& parts = problem.parts();
   const MechanismInfo& mechanism = parts.mechanism->info();
   Json info = {{"name", study.name}, {"seed", study.seed}, {"file", study.file_name}, {"output", study.output_file()}};
   info["mechanism"] = mechanism.name;
-  info["parameters"] = named(mechanism.parameters);
+  info["parameters"] = infos_json(mechanism.parameters);
   for (std::size_t i = 0; i < parts.parameters.size(); ++i) info["parameters"][i]["value"] = parts.parameters[i];
   info["variables"] = Json::array();
   for (std::size_t i = 0; i < parts.varies.size(); ++i) {
@@ -58,11 +53,11 @@ Json info_of(const Study& study) {
                                  {"step", v.step},
                                  {"parameter", parts.varies[i]}});
   }
-  info["objectives"] = named(problem.objectives());
+  info["objectives"] = infos_json(problem.objectives());
   for (std::size_t i = 0; i < problem.objectives().size(); ++i)
     info["objectives"][i]["maximise"] = problem.objectives()[i].direction == Direction::maximise;
-  info["constraints"] = named(problem.margins());
-  info["outputs"] = named(problem.reports());
+  info["constraints"] = infos_json(problem.margins());
+  info["outputs"] = infos_json(problem.reports());
   info["baseline"] = study.baseline ? Json(*study.baseline) : Json();
   info["method"] = parts.plan.voxels() ? "voxels" : "columns";
   info["volume_unit"] = volume_unit(mechanism, parts.plan);

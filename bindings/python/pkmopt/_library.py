@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import ctypes.util
 import json
 import os
 import signal
@@ -43,7 +42,7 @@ class InternalError(Error, RuntimeError):
     """A bug of pkmopt."""
 
 
-_OK, _STOPPED, _NO_MEMORY = 0, 4, 5
+_OK, _NO_MEMORY = 0, 5
 _ERRORS = {1: InputError, 2: FileError, 3: DesignError, 4: Stopped, 6: InternalError}
 
 

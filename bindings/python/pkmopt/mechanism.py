@@ -206,6 +206,8 @@ class Mechanism:
         own = [name for name in given if "." in name and name not in self.parameters]
         if own:
             mechanism = Mechanism.from_text(self.to_toml(), self._file_name, ",".join(own))
+            if self.info["masses"] != mechanism.info["masses"]:
+                mechanism = mechanism.with_masses(self.info["masses"])
             return Design(mechanism, given, mode, limits or {})
         return Design(self, given, mode, limits or {})
 
@@ -460,7 +462,7 @@ class Workspace:
 
     @property
     def error(self) -> float:
-        """Estimated relative error of the volume; NaN for voxels."""
+        """Estimated relative error of the volume, as far as sampled; NaN for voxels."""
         return (self._volume or self._measure(None, 0))[1]
 
     @property
