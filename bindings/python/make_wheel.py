@@ -9,10 +9,18 @@ in it is compiled for a version of Python, and Linux on x86-64 with glibc 2.36 o
 import base64
 import hashlib
 import pathlib
+import re
+import subprocess
 import sys
 import zipfile
 
 PLATFORM = "manylinux_2_36_x86_64"
+
+
+def loaded_name(library):
+    """The name by which other libraries need this one. A wheel has no links, so its file must have that name."""
+    dynamic = subprocess.run(["readelf", "--dynamic", "--wide", library], check=True, capture_output=True, text=True).stdout
+    return re.search(r"\(SONAME\).*\[(.+)\]", dynamic).group(1)
 
 
 def main():
@@ -20,8 +28,9 @@ def main():
     library = next(tree.glob("**/libpkmopt.so.0"))
     files = {"pkmopt/%s" % path.name: path for path in sorted((tree / "python" / "pkmopt").glob("*")) if path.is_file()}
     files["pkmopt/lib/libpkmopt.so.0"] = library.resolve()
-    for path in sorted((library.parent / "pkmopt").glob("*.so*")):
-        files["pkmopt/lib/pkmopt/%s" % path.name] = path.resolve()
+    for path in (library.parent / "pkmopt").glob("*.so*"):
+        if not path.is_symlink():
+            files["pkmopt/lib/pkmopt/%s" % loaded_name(path)] = path
 
     info = "pkmopt-%s.dist-info" % version
     texts = {
@@ -37,7 +46,7 @@ def main():
     wheel = folder / ("pkmopt-%s-py3-none-%s.whl" % (version, PLATFORM))
     record = []
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
-        contents = [(name, path.read_bytes()) for name, path in files.items()]
+        contents = [(name, path.read_bytes()) for name, path in sorted(files.items())]
         contents += [(name, text.encode()) for name, text in texts.items()]
         for name, data in contents:
             entry = zipfile.ZipInfo(name)  # without the time, so that the same files give the same wheel
