@@ -2,7 +2,7 @@
 """Makes a wheel of the package pkmopt from an installed archive: make_wheel.py TREE VERSION FOLDER
 
 TREE is what `cmake --install` with PKM_BUNDLE=ON has installed: python/pkmopt, the library libpkmopt.so.0 and the
-folder of the libraries that it needs. The wheel holds all of them, serves every Python 3 from 3.9 on, because nothing
+folder of the libraries that it needs. The wheel holds all of them, serves every Python from 3.11 on, because nothing
 in it is compiled for a version of Python, and Linux on x86-64 with glibc 2.36 or later. Prints its path.
 """
 
@@ -36,7 +36,7 @@ def main():
     texts = {
         info + "/METADATA": "Metadata-Version: 2.1\nName: pkmopt\nVersion: %s\n"
         "Summary: Kinematics, workspaces and optimisation of parallel robots\nLicense: BSD-3-Clause\n"
-        "Requires-Python: >=3.9\nRequires-Dist: numpy>=1.20\n" % version,
+        "Requires-Python: >=3.11\nRequires-Dist: numpy>=1.24\n" % version,
         info + "/WHEEL": "Wheel-Version: 1.0\nGenerator: make_wheel.py\nRoot-Is-Purelib: false\nTag: py3-none-%s\n" % PLATFORM,
     }
     for licence in sorted(tree.glob("share/doc/pkmopt/licences/*")) + [tree / "share/doc/pkmopt/LICENSE"]:
