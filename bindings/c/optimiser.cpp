@@ -103,7 +103,10 @@ struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
     best_row = generation.best_row;
     return !is_ending_;
   }
-  void warn(const std::string&) override {}
+  void warn(const std::string& warning) override {
+    // The only warnings are those of resumed stages, and this one begins without recorded evaluations.
+    throw std::logic_error(warning);
+  }
 
   pkm::c::ToldProblem problem;
   pkm::Stage stage;
@@ -190,7 +193,12 @@ pkmopt_status pkmopt_optimiser_tell(pkmopt_optimiser* optimiser, const double* o
                              "those of all objectives and constraints: the optimiser needs them");
     if (shape.margins > 0 && !margins)
       throw pkm::ConfigError({"", 0, "tell"}, "no margins", std::to_string(shape.margins) + " for each design");
-    for (std::size_t k = 0; k < table.size() - o.first_row; ++k) {
+    const std::size_t count = table.size() - o.first_row;
+    for (std::size_t k = 0; status && k < count; ++k)
+      if (status[k] > PKMOPT_FAILED)
+        throw pkm::ConfigError({"", 0, "status[" + std::to_string(k) + "]"}, std::to_string(status[k]),
+                               "PKMOPT_FEASIBLE, PKMOPT_INFEASIBLE or PKMOPT_FAILED");
+    for (std::size_t k = 0; k < count; ++k) {
       const pkm::EvaluationSlot slot = table.slot(o.first_row + k);
       std::copy_n(objectives + k * shape.objectives, shape.objectives, slot.objectives.begin());
       if (margins) std::copy_n(margins + k * shape.margins, shape.margins, slot.margins.begin());
@@ -198,7 +206,7 @@ pkmopt_status pkmopt_optimiser_tell(pkmopt_optimiser* optimiser, const double* o
       const bool is_complete = std::ranges::all_of(slot.objectives, is_finite) &&
                                std::ranges::none_of(slot.margins, [](double x) { return std::isnan(x); });
       const bool is_feasible = std::ranges::all_of(slot.margins, [](double x) { return x >= 0; });
-      slot.status = status         ? static_cast<pkm::Status>(std::min<std::uint8_t>(status[k], PKMOPT_FAILED))
+      slot.status = status         ? static_cast<pkm::Status>(status[k])
                     : !is_complete ? pkm::Status::failed
                     : is_feasible  ? pkm::Status::feasible
                                    : pkm::Status::infeasible;

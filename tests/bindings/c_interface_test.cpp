@@ -480,7 +480,7 @@ TEST(CInterface, AskAndTellGiveTheDesignsOfARun) {
   }
 }
 
-TEST(CInterface, AnOptimiserMayBeFreedBeforeItEnds) {
+TEST(CInterface, OptimisersRefuseWhatWasNotAskedAndMayBeFreedBeforeTheyEnd) {
   for (const bool has_asked : {false, true}) {
     const double lower = 0, upper = 1;
     pkmopt_optimiser* made = nullptr;
@@ -495,7 +495,11 @@ TEST(CInterface, AnOptimiserMayBeFreedBeforeItEnds) {
     const double* X = nullptr;
     int derivatives = 0;
     ASSERT_OK(pkmopt_optimiser_ask(made, &count, &X, &derivatives));
-    EXPECT_GT(count, 0U);
+    ASSERT_GT(count, 0U);
+    const std::vector<double> values(count);
+    std::vector<std::uint8_t> status(count);
+    status.back() = PKMOPT_FAILED + 1;
+    EXPECT_EQ(pkmopt_optimiser_tell(made, values.data(), nullptr, nullptr, status.data()), PKMOPT_INVALID_INPUT);
   }
 }
 
