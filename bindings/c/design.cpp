@@ -63,8 +63,8 @@ PoseReport inspect(const pkmopt_design& design, const Pose<double>& pose) {
   return design.mechanism->inspect(design.parameters, pose, design.mode, design.limits);
 }
 
-/// Names of the margins of a pose that assembles; others may lack some. Found at a pose of a coarse grid, at the first
-/// use.
+/// Names of the margins of a pose that assembles; others have the first of them only. Found at a pose of a coarse grid,
+/// at the first use.
 const std::vector<std::string>& margin_names(const pkmopt_design& design) {
   constexpr std::size_t kCells = 7;
   std::call_once(design.has_margin_names, [&] {
@@ -220,10 +220,10 @@ pkmopt_status pkmopt_design_margins(const pkmopt_design* design, size_t count, c
     for_each_pose(count, options, [&](std::size_t k) {
       double* const row = margins + k * names.size();
       std::fill_n(row, names.size(), kNan);
-      std::size_t next = 0;  // the margins of a pose are in the same order, but some may be absent
+      std::size_t i = 0;
       for (const auto& [name, value] : inspect(*design, pose_at(*design, poses, k)).margins) {
-        while (next < names.size() && names[next] != name) ++next;
-        if (next < names.size()) row[next++] = value;
+        if (i == names.size() || names[i] != name) throw std::logic_error("margin " + name + " was not expected");
+        row[i++] = value;
       }
     });
   });
