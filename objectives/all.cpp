@@ -15,6 +15,7 @@ const std::vector<ObjectiveEntry>& all_objectives() {
     std::ranges::copy(peak_objectives(), std::back_inserter(all));
     std::ranges::copy(size_objectives(), std::back_inserter(all));
     all.push_back(expression_objective());
+    all.push_back(python_objective());
     return all;
   }();
   return list;

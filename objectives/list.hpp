@@ -12,5 +12,6 @@ ObjectiveEntry quantity_objective();            ///< any statistic of any pose q
 std::vector<ObjectiveEntry> peak_objectives();  ///< maximum forces, power, speeds, .. along a motion
 std::vector<ObjectiveEntry> size_objectives();  ///< mass, and box of the links
 ObjectiveEntry expression_objective();
+ObjectiveEntry python_objective();
 
 }  // namespace pkm

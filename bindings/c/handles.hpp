@@ -22,6 +22,7 @@
 #include "engine/core/stop.hpp"
 #include "engine/core/team.hpp"
 #include "engine/generic/pose_arrays.hpp"
+#include "engine/runner/python_workers.hpp"
 
 namespace pkm::c {
 
@@ -91,6 +92,8 @@ void with_options(const pkmopt_options* given, bool is_parallel, const Body& bod
 /// Lines "set NAME=VALUE", "limit NAME=VALUE", "cells NAME=NUMBER".
 StudyChanges changes_of(const char* lines);
 std::unique_ptr<pkmopt_study> study_handle(Study study);
+std::shared_ptr<FunctionCaller> functions_of(const pkmopt_functions& given);
+PythonOptions python_options(const pkmopt_python* given);
 
 }  // namespace pkm::c
 

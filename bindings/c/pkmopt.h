@@ -162,9 +162,43 @@ PKMOPT_API pkmopt_status pkmopt_study_from_file(const char* path, const char* ch
 PKMOPT_API pkmopt_status pkmopt_study_from_text(const char* toml, const char* file_name, const char* mechanism_toml,
                                                 const char* mechanism_file_name, const char* changes,
                                                 pkmopt_study** study);
-/* Description: name, seed, parameters, variables, objectives, constraints, outputs, stages, text, warnings. */
+/* Description: name, seed, parameters, variables, objectives, constraints, outputs, functions, stages, text, warnings.
+ */
 PKMOPT_API pkmopt_status pkmopt_study_info(const pkmopt_study* study, char** json);
 PKMOPT_API void pkmopt_study_free(pkmopt_study* study);
+
+/* Functions that a study calls: objectives, constraints and outputs with type = "python". Their names are `functions`
+ * of its description. */
+typedef struct pkmopt_functions {
+  /* Calls one of them for one design. Thread-safe unless the study is evaluated on one thread and has no solver stages.
+   * parameters  all parameters of the mechanism
+   * reason      why the call failed: a text of at most `capacity` bytes, its NUL included
+   * Returns 0; nonzero if the call failed, so that the design fails. */
+  int (*function)(const char* call, const double* parameters, double* value, char* reason, size_t capacity, void* user);
+  void* user;
+  /* The functions and hashes of what defines them, see pkmopt_hash(); a study file is continued with equal hashes only.
+   * "": unknown. */
+  size_t count;
+  const char* const* calls;
+  const char* const* hashes;
+} pkmopt_functions;
+/* How processes that call Python functions are started. Zeros and NULL: one process per thread, "python3", no folders.
+ */
+typedef struct pkmopt_python {
+  int workers;
+  const char* program;
+  const char* path; /* further folders of modules, separated by ':' */
+} pkmopt_python;
+
+/* Has the functions of a study called by the caller, on the thread that evaluates or runs it, except for solver stages,
+ * whose multistart runs call them from several threads. To be called before the study is evaluated. */
+PKMOPT_API pkmopt_status pkmopt_study_set_functions(pkmopt_study* study, const pkmopt_functions* functions);
+/* Has the functions of a study called by Python processes. To be called before the study is evaluated.
+ * folder  where the files of the functions are; NULL: the current one */
+PKMOPT_API pkmopt_status pkmopt_study_start_workers(pkmopt_study* study, const char* folder,
+                                                    const pkmopt_python* python, const pkmopt_options* options);
+/* The hash of a text, as study files hold it. */
+PKMOPT_API pkmopt_status pkmopt_hash(const char* bytes, size_t size, char** hash);
 
 /* Status of an evaluated design. */
 enum {
@@ -183,8 +217,9 @@ enum {
 PKMOPT_API pkmopt_status pkmopt_study_evaluate(const pkmopt_study* study, size_t count, const double* designs,
                                                int complete, double* objectives, double* margins, double* outputs,
                                                uint8_t* status, const pkmopt_options* options);
-/* Evaluates designs with exact derivatives; each output may be NULL. Non-smooth values have those of a smooth approximation.
- * derivatives  [count][objectives + constraints][1 + variables]: the smooth value, then its derivatives */
+/* Evaluates designs with exact derivatives; each output may be NULL. Non-smooth values have those of a smooth
+ * approximation. derivatives  [count][objectives + constraints][1 + variables]: the smooth value, then its derivatives
+ */
 PKMOPT_API pkmopt_status pkmopt_study_differentiate(const pkmopt_study* study, size_t count, const double* designs,
                                                     double* objectives, double* margins, double* outputs,
                                                     uint8_t* status, double* derivatives,
@@ -208,20 +243,20 @@ PKMOPT_API pkmopt_status pkmopt_study_fields(const pkmopt_study* study, const do
                                              char** json, double** values, const pkmopt_options* options);
 /* The boundary surface of a workspace over three coordinates.
  * vertices   [vertex_count][3], triangles [triangle_count][3]: allocated */
-PKMOPT_API pkmopt_status pkmopt_study_surface(const pkmopt_study* study, const double* parameters,
-                                              size_t* vertex_count, double** vertices, size_t* triangle_count,
-                                              uint32_t** triangles, const pkmopt_options* options);
+PKMOPT_API pkmopt_status pkmopt_study_surface(const pkmopt_study* study, const double* parameters, size_t* vertex_count,
+                                              double** vertices, size_t* triangle_count, uint32_t** triangles,
+                                              const pkmopt_options* options);
 
 /* Progress of a run, after each generation. */
 typedef struct pkmopt_progress {
-  int stage, stages; /* the current stage, from 1; the number of stages */
+  int stage, stages;                                 /* the current stage, from 1; the number of stages */
   int64_t generation, evaluations, evaluation_limit; /* of the stage; evaluation_limit 0: none */
-  double seconds;         /* wall time of this run */
-  double best;            /* the first objective of the best feasible design; NaN: no design is feasible */
-  double violation;       /* while no design is feasible: the smallest sum of violations */
-  size_t front;           /* several objectives: number of points of the Pareto front */
-  double hypervolume;     /* several objectives; NaN: unknown */
-  double feasible_share;  /* of the population */
+  double seconds;                                    /* wall time of this run */
+  double best;           /* the first objective of the best feasible design; NaN: no design is feasible */
+  double violation;      /* while no design is feasible: the smallest sum of violations */
+  size_t front;          /* several objectives: number of points of the Pareto front */
+  double hypervolume;    /* several objectives; NaN: unknown */
+  double feasible_share; /* of the population */
 } pkmopt_progress;
 
 typedef struct pkmopt_run_options {
@@ -232,6 +267,9 @@ typedef struct pkmopt_run_options {
    * checkpoint. NULL: none. */
   int (*progress)(const pkmopt_progress* progress, void* user);
   void* user;
+  /* For a resumed study that calls functions: how they are called. NULL: by Python processes. */
+  const pkmopt_functions* functions;
+  const pkmopt_python* python; /* NULL stands for {0} */
 } pkmopt_run_options;
 
 /* Runs a study and writes its file, with the same bits as `pkmopt run`.
@@ -302,8 +340,7 @@ PKMOPT_API pkmopt_status pkmopt_optimiser_ask(pkmopt_optimiser* optimiser, size_
  * derivatives  [count][objectives + constraints][variables]; NULL unless the optimiser needs them
  * status       [count]: PKMOPT_FEASIBLE, ..; NULL: from the values */
 PKMOPT_API pkmopt_status pkmopt_optimiser_tell(pkmopt_optimiser* optimiser, const double* objectives,
-                                               const double* margins, const double* derivatives,
-                                               const uint8_t* status);
+                                               const double* margins, const double* derivatives, const uint8_t* status);
 /* All evaluations so far; each array may be NULL.
  * rows  their number; best: row of the best one, -1: none */
 PKMOPT_API pkmopt_status pkmopt_optimiser_evaluations(const pkmopt_optimiser* optimiser, size_t* rows, double* designs,

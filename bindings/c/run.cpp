@@ -46,6 +46,8 @@ Json outcome_of(const pkmopt_run_options* given, const Body& body) {
   if (options.time_limit > 0) run.time_limit = options.time_limit;
   run.stop = [&] { return progress.is_stop_requested() || interrupt.is_requested(); };
   run.handles_signals = false;
+  run.python = python_options(options.python);
+  if (options.functions) run.functions = functions_of(*options.functions);
   const RunOutcome outcome = body(run, progress);
   return {{"stopped", outcome.stopped},
           {"seconds", outcome.seconds},

@@ -58,6 +58,7 @@ Json info_of(const Study& study) {
     info["objectives"][i]["maximise"] = problem.objectives()[i].direction == Direction::maximise;
   info["constraints"] = infos_json(problem.margins());
   info["outputs"] = infos_json(problem.reports());
+  info["functions"] = problem.external_calls();
   info["baseline"] = study.baseline ? Json(*study.baseline) : Json();
   info["method"] = parts.plan.voxels() ? "voxels" : "columns";
   info["volume_unit"] = volume_unit(mechanism, parts.plan);

@@ -44,6 +44,7 @@ std::vector<ConfigValue> tables_in(const ConfigValue& root, const std::string& n
 /// kind are two quantities.
 std::string default_name(const ObjectiveEntry& entry, const Options& options) {
   if (options.has("quantity")) return options.word("quantity") + "-" + options.word("statistic");
+  if (options.has("call")) return options.word("call").substr(options.word("call").rfind(':') + 1);
   const bool rms = options.has("statistic") && options.word("statistic") == "rms";
   return entry.name + (rms ? "-rms" : "");
 }
@@ -146,8 +147,10 @@ void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entr
   const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
   made.meaning = "margin of " + role + ": " + made.meaning;
   draft.study.constraints.back().role = role;
-  // Constraints without a workspace analysis come first: the analysis is skipped if they are violated.
-  (made.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
+  // Constraints without a workspace analysis come first: the analysis is skipped if they are violated. External
+  // functions are called last.
+  const bool is_late = made.uses_workspace || made.quantity->external_call();
+  (is_late ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
 /// Reads a constraint with a margin, of the design alone or of its workspace analysis.

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
+#include "engine/core/stop.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
@@ -26,6 +28,9 @@ std::vector<bool> used_analyses(const ProblemParts& parts) {
       if (q.uses_workspace) used[q.analysis] = true;
   return used;
 }
+
+/// Stands for the value of a function that is not called.
+const ExternalValue kNotCalled{.failure = "the function is not called here", .is_computed = true};
 
 /// Throws DesignError if not even the order of magnitude of a volume is known: a search must not choose such a design.
 void refuse_unknown(double volume, double relative_error) {
@@ -55,6 +60,10 @@ DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), use
   for (const auto* list : {&parts_.design_margins, &parts_.workspace_margins})
     for (const auto& q : *list) margins_.push_back({q.name, q.unit, q.meaning});
   for (const auto& q : parts_.reports) reports_.push_back({q.name, q.unit, q.meaning});
+  for (const auto* list : {&parts_.objectives, &parts_.workspace_margins, &parts_.reports})
+    for (const auto& q : *list)
+      if (const std::string* const call = q.quantity->external_call(); call && !contains(calls_, *call))
+        calls_.push_back(*call);
 }
 
 Unsupported DesignProblem::why_no_derivatives() const {
@@ -121,11 +130,14 @@ Status DesignProblem::compute(std::span<const double> parameters, Scratch& scrat
     analyse(parameters, result.detail == Detail::complete, scratch, workspaces);
   }
   const auto value = [&](const NamedQuantity& q) {
+    if (q.quantity->external_call()) return 0.0;  // until complete()
     view.workspace = &workspaces[q.analysis];
     return q.quantity->value(view);
   };
-  for (const auto& q : parts_.workspace_margins)
-    satisfied = put(result.margins[margin++], margin_of(q, value(q))) >= 0 && satisfied;
+  for (const auto& q : parts_.workspace_margins) {
+    const double computed = q.quantity->external_call() ? 0 : margin_of(q, value(q));
+    satisfied = put(result.margins[margin++], computed) >= 0 && satisfied;
+  }
   for (std::size_t i = 0; i < parts_.objectives.size(); ++i) put(result.objectives[i], value(parts_.objectives[i]));
   for (std::size_t i = 0; i < parts_.reports.size(); ++i) result.reports[i] = value(parts_.reports[i]);
   if (!usable) return Status::failed;
@@ -188,6 +200,95 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
   }
 }
 
+std::string DesignProblem::store(std::span<const ExternalValue> values, const EvaluationSlot& result) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const bool has_failed_before = result.status == Status::failed;
+  std::string failure;
+  const auto value_of_call = [&](const std::string& call) {
+    const ExternalValue& found = values[static_cast<std::size_t>(std::ranges::find(calls_, call) - calls_.begin())];
+    if (found.failure.empty() && std::isfinite(found.value)) return found.value;
+    const std::string reason = found.failure.empty() ? "the value is not a finite number" : found.failure;
+    if (!has_failed_before) parts_.functions->note_failure(call, reason);
+    if (failure.empty()) failure = call + ": " + reason;
+    return nan;
+  };
+  bool satisfied = true;
+  std::size_t margin = parts_.design_margins.size();
+  for (const auto& q : parts_.workspace_margins) {
+    if (const std::string* const call = q.quantity->external_call()) {
+      result.margins[margin] = margin_of(q, value_of_call(*call));
+      satisfied = satisfied && result.margins[margin] >= 0;
+    }
+    ++margin;
+  }
+  for (std::size_t i = 0; i < parts_.objectives.size(); ++i)
+    if (const std::string* const call = parts_.objectives[i].quantity->external_call())
+      result.objectives[i] = value_of_call(*call);
+  if (!failure.empty())
+    result.status = Status::failed;
+  else if (!satisfied && result.status == Status::feasible)
+    result.status = Status::infeasible;
+  for (std::size_t i = 0; i < parts_.reports.size(); ++i)  // a failed output does not fail the design
+    if (const std::string* const call = parts_.reports[i].quantity->external_call())
+      result.reports[i] = value_of_call(*call);
+  return result.status == Status::failed ? failure : "";
+}
+
+void DesignProblem::complete(std::span<EvaluatedDesign> rows) const {
+  // Values of a rejected design are computed only if all are requested; those of a failed one never.
+  const auto is_wanted = [](const EvaluatedDesign& row) {
+    return row.slot.status == Status::feasible || row.slot.status == Status::infeasible ||
+           (row.slot.status == Status::rejected && row.slot.detail != Detail::enough);
+  };
+  std::vector<std::size_t> wanted;
+  std::vector<double> parameters;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (!is_wanted(rows[k])) {
+      if (rows[k].slot.status == Status::failed) store(std::vector(calls_.size(), kNotCalled), rows[k].slot);
+      rows[k].is_complete = true;
+      continue;
+    }
+    wanted.push_back(k);
+    const std::vector<double> all = this->parameters(rows[k].design);
+    parameters.insert(parameters.end(), all.begin(), all.end());
+  }
+  const std::size_t count = wanted.size();
+  std::vector<std::vector<ExternalValue>> values(calls_.size(), std::vector<ExternalValue>(count));
+  const auto store_computed = [&] {
+    std::vector<ExternalValue> of_design(calls_.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t c = 0; c < calls_.size(); ++c) of_design[c] = values[c][k];
+      EvaluatedDesign& row = rows[wanted[k]];
+      row.is_complete = std::ranges::all_of(of_design, &ExternalValue::is_computed);
+      for (const ExternalValue& each : of_design) row.seconds += each.seconds;
+      if (row.is_complete) store(of_design, row.slot);
+    }
+  };
+  try {
+    for (std::size_t c = 0; count > 0 && c < calls_.size(); ++c) evaluate_external(calls_[c], parameters, values[c]);
+  } catch (const Stopped&) {
+    store_computed();
+    throw;
+  }
+  store_computed();
+}
+
+std::string DesignProblem::complete(std::span<const double> parameters, const EvaluationSlot& result) const {
+  if (calls_.empty()) return {};
+  std::vector<ExternalValue> values(calls_.size(), kNotCalled);
+  const bool is_wanted = result.status != Status::failed;
+  for (std::size_t c = 0; is_wanted && c < calls_.size(); ++c)
+    evaluate_external(calls_[c], parameters, {&values[c], 1});
+  const std::string failure = store(values, result);
+  return is_wanted ? failure : "";
+}
+
+void DesignProblem::evaluate_external(const std::string& call, std::span<const double> parameters,
+                                      std::span<ExternalValue> values) const {
+  if (FunctionCaller* const caller = parts_.functions->caller.get()) return caller->evaluate(call, parameters, values);
+  std::ranges::fill(values, kNotCalled);
+}
+
 /// Finds the first quantity whose value is not finite and that states a reason for it, and returns the reason. The
 /// order is that of evaluation: margins, then objectives.
 std::string DesignProblem::failure_reason(const DesignReport& report) const {
@@ -221,10 +322,13 @@ std::string DesignProblem::failure_reason(std::span<const double> design, Detail
   std::vector<double> derivatives(shape(detail).derivatives());
   try {
     Scratch scratch;
-    const Status status =
-        compute(report.parameters, scratch,
-                {report.objectives, report.margins, report.reports, report.status, detail, derivatives});
-    if (status != Status::failed) return "the failure cannot be reproduced by this program";
+    const EvaluationSlot slot{report.objectives, report.margins, report.reports, report.status, detail, derivatives};
+    const Status status = compute(report.parameters, scratch, slot);
+    if (status != Status::failed) {
+      report.status = status;
+      const std::string failure = complete(report.parameters, slot);
+      return failure.empty() ? "the failure cannot be reproduced by this program" : failure;
+    }
     if (auto& workspaces = scratch.get<Buffers>().workspaces; !workspaces.empty())
       report.workspace = workspaces.front();
     const auto is_finite = [](double value) { return std::isfinite(value); };
@@ -240,12 +344,13 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
   DesignReport report = empty_report(parameters);
   try {
     Scratch scratch;
-    report.status = compute(parameters, scratch,
-                            {report.objectives, report.margins, report.reports, report.status, Detail::complete});
+    const EvaluationSlot slot{report.objectives, report.margins, report.reports, report.status, Detail::complete};
+    report.status = compute(parameters, scratch, slot);
     if (auto& workspaces = scratch.get<Buffers>().workspaces; !workspaces.empty())
       report.workspace = std::move(workspaces.front());
+    report.reason = complete(parameters, slot);
     if (report.status == Status::failed) {
-      report.reason = failure_reason(report);
+      if (report.reason.empty()) report.reason = failure_reason(report);
       const auto design_margins = std::span(report.margins).first(parts_.design_margins.size());
       if (std::ranges::any_of(design_margins, [](double margin) { return std::isfinite(margin) && margin < 0; }))
         report.status = Status::rejected;

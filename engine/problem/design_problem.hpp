@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/problem/external_functions.hpp"
 #include "engine/problem/quantity.hpp"
 
 namespace pkm {
@@ -42,9 +43,10 @@ struct ProblemParts {
   std::vector<Region> regions;
   std::vector<NamedQuantity> objectives;
   std::vector<NamedQuantity> design_margins;     ///< constraints without workspace analysis: evaluated first
-  std::vector<NamedQuantity> workspace_margins;  ///< the other constraints
+  std::vector<NamedQuantity> workspace_margins;  ///< the other constraints, those of external functions among them
   std::vector<NamedQuantity> reports;
   std::vector<FollowedMotion> followed;
+  std::shared_ptr<ExternalFunctions> functions = std::make_shared<ExternalFunctions>();
 };
 
 /// Complete evaluation of one design, for the command line and the group /final of the study file.
@@ -66,6 +68,10 @@ class DesignProblem final : public Problem {
   const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level ones first
   const std::vector<OutputInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const override;
+  void complete(std::span<EvaluatedDesign> rows) const override;
+  bool needs_completion() const override { return !calls_.empty(); }
+  /// The external functions that quantities call, without repetitions.
+  const std::vector<std::string>& external_calls() const { return calls_; }
   /// Derivatives require that all workspace analyses in use and all quantities have derivatives.
   Unsupported why_no_derivatives() const override;
 
@@ -93,6 +99,13 @@ class DesignProblem final : public Problem {
   struct Buffers;  ///< scratch memory of evaluations
 
   Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const;
+  /// Computes the values of external functions of a design, after compute(). @return why it failed; "": it did not
+  std::string complete(std::span<const double> parameters, const EvaluationSlot& result) const;
+  /// Calls an external function for the designs whose parameters are the rows of `parameters`.
+  void evaluate_external(const std::string& call, std::span<const double> parameters,
+                         std::span<ExternalValue> values) const;
+  /// Stores the values of external functions and updates the status. @return why the design failed
+  std::string store(std::span<const ExternalValue> values, const EvaluationSlot& result) const;
   DesignReport empty_report(std::span<const double> parameters) const;
   std::string failure_reason(const DesignReport& report) const;
   /// Forward-mode automatic differentiation with respect to the parameters `by`, in blocks of four. Writes the
@@ -105,6 +118,7 @@ class DesignProblem final : public Problem {
 
   ProblemParts parts_;
   std::vector<std::unique_ptr<const WorkspaceEvaluator>> workspace_evaluators_;
+  std::vector<std::string> calls_;
   std::vector<bool> used_;  ///< by workspace analysis: whether a quantity uses it
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;

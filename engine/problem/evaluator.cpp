@@ -31,16 +31,58 @@ bool is_inconsistent(const EvaluationSlot& slot) {
 
 constexpr float kNotEvaluated = -1;  // marks the time of a row that is not evaluated yet
 
-// Evaluates rows [first, last) and records the time of each. One clock reading ends a row and starts the next.
+std::span<const double> design_of(const EvaluationTable& table, std::size_t row) { return table.design(row); }
+
+// Evaluates a design, except for the values of Problem::complete().
+void begin_evaluation(const Problem& problem, std::span<const double> design, Scratch& scratch,
+                      const EvaluationSlot& slot) {
+  try {
+    problem.evaluate(design, scratch, slot);
+    if (is_inconsistent(slot)) slot.status = Status::failed;
+  } catch (const DesignError&) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::ranges::fill(part, nan);
+    slot.status = Status::failed;
+  }
+}
+
+// Evaluates rows [first, last) and records the time of each. One clock reading ends a row and starts the next. Rows
+// that need Problem::complete() keep a negative time, kNotEvaluated - time.
 void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t first, std::size_t last,
                    Scratch& scratch) {
+  const bool is_complete = !problem.needs_completion();
   auto begin = Clock::now();
   for (std::size_t row = first; row < last; ++row) {
-    evaluate_design(problem, static_cast<const EvaluationTable&>(table).design(row), scratch, table.slot(row));
+    begin_evaluation(problem, design_of(table, row), scratch, table.slot(row));
     const auto end = Clock::now();
-    table.seconds[row] = std::chrono::duration<float>(end - begin).count();
+    const float seconds = std::chrono::duration<float>(end - begin).count();
+    table.seconds[row] = is_complete ? seconds : kNotEvaluated - seconds;
     begin = end;
   }
+}
+
+// Completes the rows of ranges [first, end), which evaluate_rows() has evaluated.
+void complete_rows(const Problem& problem, EvaluationTable& table,
+                   const std::vector<std::pair<std::size_t, std::size_t>>& ranges) {
+  if (!problem.needs_completion()) return;
+  std::vector<EvaluatedDesign> rows;
+  std::vector<float*> times;
+  for (const auto& [first, end] : ranges)
+    for (std::size_t row = first; row < end; ++row) {
+      rows.push_back({design_of(table, row), table.slot(row)});
+      times.push_back(&table.seconds[row]);
+    }
+  const auto set_times = [&] {
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (rows[k].is_complete) *times[k] = static_cast<float>(rows[k].seconds) + kNotEvaluated - *times[k];
+  };
+  try {
+    problem.complete(rows);
+  } catch (const Stopped&) {
+    set_times();
+    throw;
+  }
+  set_times();
 }
 
 // Mean single-thread time per design over the last 100 evaluations before row `first` [s]; 0: unknown.
@@ -70,14 +112,10 @@ std::vector<std::size_t> chunk_bounds(std::size_t count, std::size_t threads) {
 
 void evaluate_design(const Problem& problem, std::span<const double> design, Scratch& scratch,
                      const EvaluationSlot& slot) {
-  try {
-    problem.evaluate(design, scratch, slot);
-    if (is_inconsistent(slot)) slot.status = Status::failed;
-  } catch (const DesignError&) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::ranges::fill(part, nan);
-    slot.status = Status::failed;
-  }
+  begin_evaluation(problem, design, scratch, slot);
+  if (!problem.needs_completion()) return;
+  EvaluatedDesign row{design, slot};
+  problem.complete({&row, 1});
 }
 
 void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
@@ -93,7 +131,8 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
       evaluate_here(problem, table, {first, table.size()}, mean_seconds(table, first));
     } catch (const Stopped&) {  // keep the rows before the first incomplete one: a resumed run continues there
       const auto begin = table.seconds.begin();
-      const auto left = std::find(begin + static_cast<std::ptrdiff_t>(first), table.seconds.end(), kNotEvaluated);
+      const auto left = std::find_if(begin + static_cast<std::ptrdiff_t>(first), table.seconds.end(),
+                                     [](float seconds) { return seconds < 0; });
       table.truncate(static_cast<std::size_t>(left - begin));
       throw;
     }
@@ -110,8 +149,11 @@ void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& t
   const std::size_t count = end - first;
   if (threads_ == 1 || (design_seconds > 0 && design_seconds * static_cast<double>(count) < kMinBatchTime)) {
     Scratch& own = scratch_[worker()];
-    const SerialScope alone;
-    return evaluate_rows(problem, table, first, end, own);
+    {
+      const SerialScope alone;
+      evaluate_rows(problem, table, first, end, own);
+    }
+    return complete_rows(problem, table, {rows});
   }
   with_team(threads_, [&, first = first, end = end] {
     const std::size_t team = workers(), rounds = (count + team - 1) / team;
@@ -125,6 +167,7 @@ void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& t
                    evaluate_rows(problem, table, first + begin, first + stop, scratch_[worker]);
                  });
   });
+  complete_rows(problem, table, {rows});
 }
 
 // Claims chunks of rows from the counter shared by all ranks and evaluates them, until all rows are claimed. Returns
@@ -151,6 +194,7 @@ std::vector<ParallelEvaluator::Rows> ParallelEvaluator::claim_chunks(const Probl
   });
   std::vector<Rows> all;
   for (const auto& rows_of_worker : by_worker) all.insert(all.end(), rows_of_worker.begin(), rows_of_worker.end());
+  complete_rows(problem, table, all);
   return all;
 }
 

@@ -31,6 +31,14 @@ struct MarginInfo {
 /// An output: a value that is computed and stored, but neither optimised nor constrained.
 using OutputInfo = MarginInfo;
 
+/// A design between Problem::evaluate() and Problem::complete().
+struct EvaluatedDesign {
+  std::span<const double> design;
+  EvaluationSlot slot;
+  double seconds = 0;  ///< additional time of its evaluation [s]
+  bool is_complete = false;
+};
+
 /// A constrained, possibly multi-objective design problem. Immutable after construction; threads may share it.
 class Problem {
  public:
@@ -48,6 +56,12 @@ class Problem {
   /// @param result  receives the values; result.detail selects what is computed. With Detail::enough, the evaluation
   ///                may end as soon as a design-level constraint is violated.
   virtual void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const = 0;
+  /// Completes designs that evaluate() has evaluated, by values that are computed for a batch of designs: those of
+  /// external functions. Thread-safe.
+  /// @param rows  rows whose values are complete on return get `is_complete`; after Stopped, a part of them
+  virtual void complete(std::span<EvaluatedDesign>) const {}
+  /// Whether designs are only complete after complete().
+  virtual bool needs_completion() const { return false; }
   /// Empty if the problem supports Detail::derivatives, else the reason why not.
   virtual Unsupported why_no_derivatives() const { return "the problem gives no derivatives"; }
 

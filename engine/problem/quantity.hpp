@@ -38,6 +38,8 @@ class Quantity {
   virtual Unsupported why_no_derivatives() const { return {}; }
   /// The reason why the value is not finite; "" if no specific reason is known.
   virtual std::string why_undefined(const DesignView<double>&) const { return {}; }
+  /// The function of another program that computes the value; then value() must not be called. Null: there is none.
+  virtual const std::string* external_call() const { return nullptr; }
 };
 
 /// Creates a quantity from generic functions `[](const auto& design) { ... }` of a DesignView.

@@ -7,6 +7,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/runner/machine.hpp"
+#include "engine/runner/python_functions.hpp"
 #include "engine/runner/run_outcome.hpp"
 #include "engine/storage/file_header.hpp"
 
@@ -153,6 +154,8 @@ StudyContents new_contents(const Study& study) {
   c.machine = describe_machine();
   c.created = c.updated = utc_now();
   c.problem = problem_record(study);
+  if (std::vector<FunctionRecord> functions = function_records(study); !functions.empty())
+    c.functions = std::move(functions);
   return c;
 }
 

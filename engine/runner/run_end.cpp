@@ -4,6 +4,7 @@
 #include <new>
 #include <utility>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/runner/final_record.hpp"
 #include "engine/runner/machine.hpp"
@@ -29,6 +30,9 @@ RunOutcome Run::complete() {
     contents_ = read_study(output_->path());  // stopped during replay: the file contains more than this run
   } else {
     if (ranks::size() > 1 && outcome.evaluations > 0) contents_.notes.push_back(ranks_note(outcome));
+    for (const auto& [call, reason] : study_.problem->parts().functions->failures())
+      if (const std::string note = "first failure of " + call + ": " + reason; !contains(contents_.notes, note))
+        contents_.notes.push_back(note);
     if (stopped_.empty()) compute_final_results();
     try {
       write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);

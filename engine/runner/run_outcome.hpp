@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/runner/python_workers.hpp"
 #include "engine/runner/remaining_time.hpp"
 #include "engine/storage/study_contents.hpp"
 
@@ -31,6 +33,9 @@ struct RunOptions {
   std::function<bool()> stop = {};
   /// Whether SIGINT, SIGTERM and SIGHUP request a stop. A library leaves the signals of the process alone.
   bool handles_signals = true;
+  PythonOptions python = {};  ///< for studies that call Python functions
+  /// Calls these functions of a resumed study in the place of Python processes.
+  std::shared_ptr<FunctionCaller> functions = {};
   ProgramVersion program;
   RunCost cost = {};  ///< for the estimate of the remaining time in progress reports
 };

@@ -5,8 +5,10 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/ranks.hpp"
+#include "engine/core/team.hpp"
 #include "engine/problem/replay.hpp"
 #include "engine/runner/machine.hpp"
+#include "engine/runner/python_functions.hpp"
 #include "engine/runner/records.hpp"
 #include "engine/runner/run.hpp"
 #include "engine/runner/worker_ranks.hpp"
@@ -37,6 +39,19 @@ void note_processor(StudyContents& contents) {
 
 }  // namespace
 
+void connect_functions(const Study& study, const StudyContents& contents, const std::string& path,
+                       const RunOptions& options) {
+  if (!contents.functions) return;
+  try {
+    study.problem->parts().functions->caller = options.functions;
+    start_python_workers(study, {folder_of(contents.toml_file), folder_of(path), ""}, *contents.functions,
+                         options.python, team_size(options.threads > 0 ? options.threads : ranks::threads()));
+    expect_recorded_functions(study, *contents.functions);
+  } catch (const StorageError& reason) {
+    throw StorageError(path + ": cannot be continued: " + reason.what());
+  }
+}
+
 RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
                      Progress& progress) {
   const auto stop_request = options.handles_signals ? std::make_unique<StopRequest>() : nullptr;
@@ -56,6 +71,7 @@ RunOutcome resume_study(LockedStudy& locked, const Catalogues& catalogues, const
                        ") with algorithm version " + std::to_string(contents.algorithms) +
                        "; this program has version " + std::to_string(kAlgorithms) + " and would not reproduce it");
   Study study = study_to_continue(contents, path, catalogues);
+  connect_functions(study, contents, path, options);
   contents.problem = problem_record(study);  // adds parameters that are new in this program version
   if (extension.generations || extension.evaluations) {
     request_extension(study, contents, extension);

@@ -37,6 +37,11 @@ struct LockedStudy {
   StudyContents contents;
 };
 
+/// Connects the functions that a study from the file at `path` calls with those of the options, or else with worker
+/// processes. They must be the recorded ones. Throws ConfigError, StorageError, Stopped.
+void connect_functions(const Study& study, const StudyContents& contents, const std::string& path,
+                       const RunOptions& options);
+
 /// Resumes a study, or extends a finished one. Throws StorageError, also if the file was written with another algorithm
 /// version or its recorded evaluations are not reproduced, and ConfigError if its problem cannot be built or the
 /// extension is invalid.

@@ -8,8 +8,10 @@
 #include "engine/core/error.hpp"
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/ranks.hpp"
+#include "engine/core/team.hpp"
 #include "engine/problem/replay.hpp"
 #include "engine/runner/extension.hpp"
+#include "engine/runner/python_functions.hpp"
 #include "engine/runner/records.hpp"
 #include "engine/runner/run.hpp"
 #include "engine/runner/stop_request.hpp"
@@ -61,6 +63,7 @@ void join_run(const std::string& message, const Catalogues& catalogues, const Pr
     ranks::abort_all_ranks("called as 'pkmopt " + program.arguments + "', but as 'pkmopt " + options.program.arguments +
                            "' on rank 0 (" + ranks::host(0) + "); all ranks need the same arguments");
   options.threads = std::stoi(next_line(message, at));
+  options.python.workers = std::stoi(next_line(message, at));
   const auto instructions = static_cast<InstructionSet>(std::stoi(next_line(message, at)));
   use_instruction_set(std::min(instructions, widest_instruction_set()));
   Progress silent;
@@ -68,6 +71,9 @@ void join_run(const std::string& message, const Catalogues& catalogues, const Pr
     StudyContents contents = parse_study(message.substr(at), kStudySchema);
     if (program.arguments.starts_with("run ")) expect_same_files(contents);
     Study study = study_of(contents, catalogues);
+    if (contents.functions)
+      start_python_workers(study, {folder_of(contents.toml_file), ""}, *contents.functions, options.python,
+                           team_size(options.threads > 0 ? options.threads : ranks::threads()));
     apply_extensions(study, contents.extensions);
     Run(study, std::move(contents), nullptr, options, silent)();
   } catch (const ReplayMismatch&) {  // rank 0 reports it
@@ -81,8 +87,8 @@ void join_run(const std::string& message, const Catalogues& catalogues, const Pr
 std::string run_message(const StudyContents& contents, const RunOptions& options) {
   if (ranks::size() == 1) return "";
   return kRun + options.program.version + '\n' + options.program.revision + '\n' + options.program.arguments + '\n' +
-         std::to_string(options.threads) + '\n' + std::to_string(static_cast<int>(instruction_set())) + '\n' +
-         serialise_study(contents);
+         std::to_string(options.threads) + '\n' + std::to_string(options.python.workers) + '\n' +
+         std::to_string(static_cast<int>(instruction_set())) + '\n' + serialise_study(contents);
 }
 
 int run_worker_rank(const Catalogues& catalogues, const ProgramVersion& program) {

@@ -310,6 +310,14 @@ void describe_mechanism_file(Archive& archive, Text& description) {
   if constexpr (Archive::kReads) description.text = text[0];
 }
 
+template <class Archive, class Functions>
+void describe_functions(Archive& archive, Functions& functions) {
+  if (!visit_optional(archive, "/functions", functions)) return;
+  visit_records(archive, "/functions", "Functions of other programs that the study calls; their code is not stored",
+                *functions, Field{"call", &FunctionRecord::call, "1", "The function, as the study names it"},
+                Field{"hash", &FunctionRecord::hash, "1", "XXH64 of the file that defines it"});
+}
+
 /// Visits all items of a study file.
 /// @param archive  ImageWriter or ImageReader
 /// @param study    const StudyContents or StudyContents, respectively
@@ -338,6 +346,7 @@ void describe(Archive& archive, Study& study) {
   archive.array(Leaf{"/toml", "Text of the study"}, text, {});
   if constexpr (Archive::kReads) study.toml = text[0];
   if (visit_optional(archive, "/mechanism", study.description)) describe_mechanism_file(archive, *study.description);
+  describe_functions(archive, study.functions);
   visit_records(archive, "/extensions", "Limits changed by `pkmopt resume`, in chronological order", study.extensions,
                 Field{"stage", &Extension::stage, "1", "Stage (0-based)"},
                 Field{"limit", &Extension::limit, "1", "generations, evaluations or time"},

@@ -44,6 +44,12 @@ struct ProblemRecord {
   }
 };
 
+/// A function of another program that the study calls. Its code is not stored.
+struct FunctionRecord {
+  std::string call;  ///< "cost.py:price"
+  std::string hash;  ///< hash of the file that defines it, when the study was started; "": unknown
+};
+
 /// A stage limit that `pkmopt resume` has raised. It is stored separately because the TOML text is never changed, and a
 /// resumed run has to apply it again.
 struct Extension {
@@ -175,6 +181,7 @@ struct StudyContents {
   std::string toml_file;                  ///< file from which the text was read
   std::optional<SourceText> description;  ///< the mechanism file, if the study names one
   std::string text_digest;  ///< hash of both texts, computed when the study was started; "" before schema 5
+  std::optional<std::vector<FunctionRecord>> functions;  ///< empty: the study calls none
   std::uint64_t seed = 1;
   std::string program_version;
   std::string program_revision;

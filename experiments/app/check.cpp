@@ -12,6 +12,7 @@
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/next_step.hpp"
+#include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/target.hpp"
 
@@ -143,6 +144,7 @@ std::string probe_text(const Probe& probe) {
 }
 
 void check_study(const Study& study, const CheckArguments& arguments, Session& session) {
+  start_python(study, arguments.file, 1, 0);
   const std::vector<Reason> conflicts = contradictions(study.problem->parts());
   const Probe sampled = probe(study);
   if (!conflicts.empty()) session.exit_code = kNothingFeasible;

@@ -6,7 +6,9 @@
 #include "engine/config/assignments.hpp"
 #include "engine/core/team.hpp"
 #include "engine/problem/volume_check.hpp"
+#include "engine/runner/run_study.hpp"
 #include "engine/runner/stop_request.hpp"
+#include "engine/storage/study_file.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
@@ -22,7 +24,7 @@ namespace {
 constexpr std::int64_t kDefaultCells = 40;  // along each axis, for mechanisms without a study
 
 struct EvaluateArguments : DesignArguments, SensitivityArguments {
-  int threads = 0;
+  int threads = 0, workers = 0;
   std::string certified;
   TableJob designs;
 };
@@ -215,11 +217,19 @@ void evaluate_table(const DesignProblem& problem, const Target& target, const Ev
                std::to_string(feasible) + " of " + std::to_string(given.rows) + " designs are feasible", out);
 }
 
+/// Starts the processes for the Python functions of the study. Those of a study file must be the recorded ones.
+void start_python_functions(const Study& study, const EvaluateArguments& arguments) {
+  if (arguments.from.empty()) return start_python(study, arguments.target, arguments.workers, arguments.threads);
+  connect_functions(study, read_study(arguments.from), arguments.from,
+                    {.threads = arguments.threads, .python = {.workers = arguments.workers}});
+}
+
 std::string evaluate(const Session& session, const Target& target, const EvaluateArguments& arguments, Printout& out) {
   const ProblemOfMechanism found = target.study ? ProblemOfMechanism{target.study->problem, ""}
                                                 : default_problem(target, session.catalogues, arguments.changes.cells);
   const auto& problem = found.problem;
   expect_table(arguments.designs, "--designs");
+  if (target.study) start_python_functions(*target.study, arguments);
   if (!arguments.designs.input.empty()) {
     evaluate_table(*problem, target, arguments, session.program, out);
     return "";
@@ -298,6 +308,7 @@ void add_evaluate(CLI::App& app, Session& session) {
   for (const char* const of_single_designs : {"--certified", "--sensitivity", "--tolerance"})
     designs->excludes(command.get_option(of_single_designs));
   add_threads(command, arguments.threads);
+  add_workers(command, arguments.workers);
 }
 
 }  // namespace pkm

@@ -32,15 +32,20 @@ void resume(const ResumeArguments& arguments, Session& session) {
     report_diagnosis(diagnosis, arguments.common, session);
     return;
   }
-  if (!arguments.common.quiet) {
+  if (!arguments.common.quiet || locked.contents.functions) {
     const StopScope stop([] { return StopRequest::signal() != 0; });
-    options.cost = measured_cost(study_to_continue(locked.contents, arguments.file, session.catalogues), session);
+    const Study study = study_to_continue(locked.contents, arguments.file, session.catalogues);
+    connect_functions(study, locked.contents, arguments.file, options);
+    options.functions = study.problem->parts().functions->caller;
+    if (!arguments.common.quiet) options.cost = measured_cost(study, session);
   }
   const auto progress = make_progress(arguments.common);
   const RunEnd end =
       execute_run([&] { return resume_study(locked, session.catalogues, extension, options, *progress); });
   progress->finish();
-  print_run_end(end, study_of(end.outcome.contents, session.catalogues), arguments.file, arguments.common, session);
+  const Study study = study_of(end.outcome.contents, session.catalogues);
+  study.problem->parts().functions->caller = options.functions;
+  print_run_end(end, study, arguments.file, arguments.common, session);
 }
 
 }  // namespace

@@ -65,8 +65,10 @@ void run(const RunArguments& arguments, Session& session) {
   for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
   for (const Reason& reason : contradictions(study.problem->parts()))
     std::cerr << session.program << ": warning: " << reason.sentence << '\n';
+  start_python(study, arguments.study, arguments.common.workers, threads_of(arguments.common));
   warn_if_box_cuts(study, session);
   RunOptions options = run_options(arguments.common, session);
+  options.functions = study.problem->parts().functions->caller;
   if (!arguments.common.quiet) {
     options.cost = measured_cost(study, session);
     print_estimate(study, options.cost, arguments.seeds, threads_of(arguments.common));

@@ -9,6 +9,7 @@
 #include "engine/core/thread_limit.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/results/comparison.hpp"
+#include "engine/runner/python_functions.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/summary.hpp"
@@ -26,6 +27,15 @@ void add_threads(CLI::App& command, int& threads) {
               "Number of threads (default: OMP_NUM_THREADS, else one per core)");
 }
 
+void add_workers(CLI::App& command, int& workers) {
+  add_integer(command, "--workers N", workers, 1, kMaxThreads,
+              "Number of processes that call the study's Python functions (default: one per thread)");
+}
+
+void start_python(const Study& study, const std::string& file, int workers, int threads) {
+  start_python_workers(study, {folder_of(file), ""}, {}, {.workers = workers}, team_size(threads));
+}
+
 namespace {
 
 double time_limit(const std::string& text) {
@@ -38,6 +48,7 @@ double time_limit(const std::string& text) {
 
 void add_running_options(CLI::App& command, RunningArguments& arguments) {
   add_threads(command, arguments.threads);
+  add_workers(command, arguments.workers);
   add_option(command, "--time T", arguments.time, "Stop with a checkpoint after this time, such as 90 or \"10 min\"");
   command.add_flag("--quiet", arguments.quiet, "Print errors and warnings only");
 }
@@ -50,6 +61,7 @@ RunOptions run_options(const RunningArguments& arguments, const Session& session
   if (const auto warning = ranks::oversubscription_warning(threads_of(arguments)))
     std::cerr << session.program << ": warning: " << *warning << '\n';
   RunOptions options{.threads = arguments.threads,
+                     .python = {.workers = arguments.workers},
                      .program = {program_version(), program_revision(), session.arguments}};
   if (!arguments.time.empty()) options.time_limit = time_limit(arguments.time);
   return options;

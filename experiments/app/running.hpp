@@ -13,14 +13,19 @@
 namespace pkm {
 
 struct RunningArguments {
-  int threads = 0;
+  int threads = 0, workers = 0;
   std::string time;
   bool quiet = false;
 };
 
 /// Declares --threads.
 void add_threads(CLI::App& command, int& threads);
-/// Declares --threads, --time and --quiet.
+/// Declares --workers.
+void add_workers(CLI::App& command, int& workers);
+/// Starts the processes for the Python functions of a study, if it calls any.
+/// @param file  TOML file or study file, in whose folder the functions are
+void start_python(const Study& study, const std::string& file, int workers, int threads);
+/// Declares --threads, --workers, --time and --quiet.
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 
 /// Number of threads of this MPI rank.

@@ -346,6 +346,128 @@ class StudyTest(InFolder):
             results.report()
 
 
+FUNCTIONS = '''
+def cost(design):
+    return (design["a"] - 0.3) ** 2 + design["b"]
+
+def partial(design):
+    if design["a"] > 0.35:
+        raise KeyError("too wide")
+    return design["a"]
+'''
+
+
+class FunctionTest(InFolder):
+    """Functions in Python as objectives and constraints."""
+
+    def setUp(self):
+        super().setUp()
+        pathlib.Path("mine.py").write_text(FUNCTIONS, encoding="utf-8")
+        sys.modules.pop("mine", None)
+
+    def study(self, objective, **more):
+        return pkmopt.Study("4ppa-2par", VARIABLES, objective,
+                            stages={"optimiser": "ga", "generations": 8, "population": 12}, **more)
+
+    def test_values_and_tracebacks(self):
+        width = lambda design: 2 * design["a"]
+        problem = pkmopt.Problem("4ppa-2par", VARIABLES, [{"type": "python", "call": width, "direction": "maximise"}],
+                                 constraints=[{"type": "python", "call": lambda d: d["b"], "min": 0.8, "name": "b"}],
+                                 outputs="workspace-volume")
+        found = problem.evaluate([[0.3, 1.0], [0.4, 0.7]])
+        self.assertEqual(found.objectives.tolist(), [[0.6], [0.8]])
+        self.assertEqual(found.status.tolist(), [pkmopt.FEASIBLE, pkmopt.INFEASIBLE])
+        self.assertTrue((found.outputs > 0).all())
+
+        def fails(design):
+            if design["a"] > 0.35:
+                raise KeyError("too wide")
+            return design["a"]
+
+        problem = pkmopt.Problem("4ppa-2par", VARIABLES, fails)
+        self.assertEqual(problem.evaluate([[0.3, 1], [0.4, 1]]).status.tolist(), [pkmopt.FEASIBLE, pkmopt.FAILED])
+        self.assertEqual(problem.evaluate([0.4, 1]).status, pkmopt.FAILED)
+        self.assertRegex(problem.why_failed([0.4, 1]), r"KeyError: 'too wide' \(test_pkmopt.py:\d+ in fails\)")
+        with self.assertRaisesRegex(pkmopt.InputError, "gradients"):
+            problem.differentiate([0.3, 1])
+
+    def test_has_the_bits_of_worker_processes_and_of_the_program(self):
+        study = self.study({"type": "python", "call": "mine.py:cost"})
+        runs = [study.run("here.h5"), study.run("workers.h5", workers=2)]
+        pathlib.Path("study.toml").write_text(study.to_toml(), encoding="utf-8")
+        program = pathlib.Path(os.environ["PKMOPT_LIBRARY"]).parent.parent / "bin" / "pkmopt"
+        subprocess.run([program, "run", "study.toml", "-o", "program.h5", "--quiet"], check=True)
+        runs += [pkmopt.open_study("program.h5"), pkmopt.Study.from_toml("study.toml").run("read.h5")]
+        for each in runs[1:]:
+            self.assertTrue(same(each.evaluations(), runs[0].evaluations()), each.path)
+
+    def test_resuming_needs_the_same_functions(self):
+        def cost(design):
+            return design["a"]
+
+        self.study(cost).run("whole.h5")
+        self.study(cost).run("stopped.h5", callback=lambda p: p.generation == 3)
+        with self.assertRaisesRegex(pkmopt.InputError, "in no file"):
+            pkmopt.resume("stopped.h5")
+        with self.assertRaisesRegex(pkmopt.FileError, "the function cost was changed"):
+            pkmopt.resume("stopped.h5", functions={"cost": lambda design: 0})
+        with pkmopt.open_study("stopped.h5") as results:
+            self.assertEqual(results.study.info["functions"], ["cost"])
+            self.assertEqual(results.study.evaluate([0.3, 1]).status, pkmopt.FAILED)
+            results.study.connect([cost])
+            self.assertEqual(results.study.evaluate([0.3, 1]).objectives[0], 0.3)
+        resumed = pkmopt.resume("stopped.h5", functions=[cost])
+        self.assertTrue(same(resumed.evaluations(), pkmopt.open_study("whole.h5").evaluations()))
+
+    def test_the_program_resumes_a_study_that_python_stopped(self):
+        study = self.study({"type": "python", "call": "mine.py:cost"})
+        whole = study.run("whole.h5")
+        study.run("stopped.h5", callback=lambda p: p.generation == 3)
+        program = pathlib.Path(os.environ["PKMOPT_LIBRARY"]).parent.parent / "bin" / "pkmopt"
+        subprocess.run([program, "resume", "stopped.h5", "--quiet"], check=True)
+        self.assertTrue(same(pkmopt.open_study("stopped.h5").evaluations(), whole.evaluations()))
+
+    def test_ctrl_c_in_a_function_leaves_a_checkpoint(self):
+        calls = []
+
+        def slow(design):
+            calls.append(design)
+            if len(calls) == 20:
+                os.kill(os.getpid(), signal.SIGINT)
+            return design["a"]
+
+        with self.assertRaises(KeyboardInterrupt):
+            self.study(slow).run("interrupted.h5")
+        self.assertEqual(pkmopt.open_study("interrupted.h5").state, "interrupted")
+
+    def test_functions_are_called_on_the_calling_thread(self):
+        threads = set()
+        self.study(lambda design: threads.add(threading.get_ident()) or design["a"]).run("thread.h5", threads=2)
+        self.assertEqual(threads, {threading.get_ident()})
+
+    def test_mistakes(self):
+        entry = {"type": "python", "call": "mine.py:cots"}
+        for call, error, message in (
+            (lambda: self.study(entry), pkmopt.InputError, "did you mean cost"),
+            (lambda: self.study({"type": "python", "call": "missing.py:cost"}), pkmopt.InputError, "no file"),
+            (lambda: self.study(len).run("len.h5", workers=1), pkmopt.InputError, "in no file"),
+            (lambda: self.study("workspace-volume").connect({"cost": len}), ValueError, "no function, not cost"),
+        ):
+            with self.assertRaisesRegex(error, message):
+                call()
+
+    def test_a_file_that_runs_its_own_study_is_refused(self):
+        pathlib.Path("script.py").write_text(
+            "import pkmopt\ndef cost(design):\n    return design['a']\n"
+            "study = pkmopt.Study('4ppa-2par', {'a': (0.2, 0.5)}, cost, stages={'optimiser': 'ga', 'generations': 2})\n"
+            "study.run('script.h5', workers=1)\n", encoding="utf-8")
+        path = os.pathsep.join(sys.path)
+        ended = subprocess.run([sys.executable, "script.py"], capture_output=True, text=True,
+                               env={**os.environ, "PYTHONPATH": path}, timeout=60)
+        self.assertIn('if __name__ == "__main__":', ended.stderr)
+        self.assertFalse(pathlib.Path("script.h5").exists())
+
+
 class OptimiserTest(InFolder):
     BOUNDS = [(-2, 2), (-2, 2)]
 

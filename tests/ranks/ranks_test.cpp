@@ -146,6 +146,12 @@ TEST_F(Ranks, GeneticAlgorithmGivesTheSameFile) {
   expect_same_files({1, 2, 3, 7});
 }
 
+TEST_F(Ranks, PythonFunctionsGiveTheSameFile) {
+  std::ofstream(path("cost.py")) << "def cost(design):\n    return design['a'] ** 2 + design['l_u'] / design['b']\n";
+  write_toml("[[objective]]\ntype = \"python\"\ncall = \"cost.py:cost\"\n" + std::string(kGa));
+  expect_same_files({2});
+}
+
 TEST_F(Ranks, Nsga2GivesTheSameFile) {
   write_toml(std::string(kRatio) + kVolume + "[[stage]]\noptimiser = \"nsga2\"\npopulation = 40\ngenerations = 8\n");
   expect_same_files({1, 2, 3, 7});

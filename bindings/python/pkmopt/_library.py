@@ -126,6 +126,8 @@ class RunOptions(ctypes.Structure):
         ("overwrite", ctypes.c_int),
         ("progress", PROGRESS),
         ("user", ctypes.c_void_p),
+        ("functions", ctypes.c_void_p),
+        ("python", ctypes.c_void_p),
     ]
 
 

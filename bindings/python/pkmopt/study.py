@@ -13,13 +13,16 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Opt
 import numpy as np
 import numpy.typing as npt
 
+from . import _functions
 from . import _library as lib
 from . import _toml
+from ._functions import Function
 from ._library import Array, Progress
 from .mechanism import Mechanism
 
 Path_ = Union[str, Path]
-Entry = Union[str, Mapping[str, Any]]
+Table = Union[str, Mapping[str, Any]]
+Entry = Union[Table, Function]
 
 #: Time of an evaluation [s] below which it need not be interrupted.
 _QUICK = 0.01
@@ -56,10 +59,20 @@ class Variable(NamedTuple):
 
 
 def _entries(entries: Union[Entry, Sequence[Entry]]) -> List[Dict[str, Any]]:
-    """[[objective]]s and the like: names, or dicts with the keys of the table."""
-    if isinstance(entries, (str, Mapping)):
-        entries = [entries]
-    return [{"type": each} if isinstance(each, str) else dict(each) for each in entries]
+    """[[objective]]s and the like: names, functions, or dicts with the keys of the table."""
+    if isinstance(entries, (str, Mapping)) or callable(entries):
+        all_entries: Sequence[Entry] = [entries]
+    else:
+        all_entries = entries
+    tables: List[Dict[str, Any]] = []
+    for each in all_entries:
+        if isinstance(each, str):
+            tables.append({"type": each})
+        elif isinstance(each, Mapping):
+            tables.append(dict(each))
+        else:
+            tables.append({"type": "python", "call": each})
+    return tables
 
 
 def _range(name: str, bounds: Any) -> Dict[str, Any]:
@@ -80,6 +93,10 @@ class Problem:
     unit. Further keywords are further tables of a study, such as ``parameters={"r": "50 mm"}`` or
     ``workspace={"method": "voxels", ..}``.
 
+    A function is an objective, too: it gets a dict of all parameters in SI units and returns a number, which is
+    minimised unless ``{"type": "python", "call": function, "direction": "maximise"}`` says otherwise. An error in it
+    fails the design; :meth:`why_failed` has the traceback. Functions must depend on their argument only.
+
     >>> problem = Problem("4ppa-2par", variables={"a": (0.2, 0.5)}, objectives="workspace-volume")
     >>> problem.evaluate([0.3]).objectives.shape
     (1,)
@@ -92,7 +109,7 @@ class Problem:
         objectives: Union[Entry, Sequence[Entry]],
         constraints: Union[Entry, Sequence[Entry]] = (),
         outputs: Union[Entry, Sequence[Entry]] = (),
-        stages: Union[Entry, Sequence[Entry]] = (),
+        stages: Union[Table, Sequence[Table]] = (),
         *,
         name: str = "study",
         seed: int = 1,
@@ -104,9 +121,9 @@ class Problem:
         document.update(mechanism._study_tables())
         document["variables"] = {key: _range(key, bounds) for key, bounds in variables.items()}
         document.update(tables)
-        document["objective"] = _entries(objectives)
-        document["constraint"] = _entries(constraints)
-        document["output"] = _entries(outputs)
+        functions: Dict[str, Function] = {}
+        for key, entries in (("objective", objectives), ("constraint", constraints), ("output", outputs)):
+            document[key] = _functions.take_functions(_entries(entries), functions)
         document["stage"] = [
             {"optimiser": each} if isinstance(each, str) else dict(each)
             for each in ([stages] if isinstance(stages, (str, Mapping)) else stages)
@@ -117,10 +134,12 @@ class Problem:
             mechanism._study_text(),
             mechanism._file_name,
         )
+        self.connect(functions)
 
     @classmethod
     def from_toml(cls, path: Path_, changes: Sequence[str] = ()) -> Any:
-        """Reads a study file in TOML. ``changes`` are "set NAME=VALUE", "limit NAME=VALUE" or "cells NAME=NUMBER"."""
+        """Reads a study file in TOML, and the Python files of functions that it calls. ``changes`` are "set NAME=VALUE",
+        "limit NAME=VALUE" or "cells NAME=NUMBER"."""
         self = cls.__new__(cls)
         self._set(
             lib.handle(
@@ -130,6 +149,8 @@ class Problem:
                 lib.encoded("\n".join(changes)),
             )
         )
+        self._folder = os.path.dirname(str(path))
+        self.connect()
         return self
 
     @classmethod
@@ -138,7 +159,34 @@ class Problem:
         self = cls.__new__(cls)
         text = mechanism.to_toml() if mechanism else None
         self._read(toml, file_name, text, mechanism._file_name if mechanism else None)
+        self.connect()
         return self
+
+    def connect(self, functions: Union[Mapping[str, Function], Sequence[Function]] = ()) -> None:
+        """Connects the functions that the study calls: those given, by their names in the study, and others from their
+        files. A new problem is connected; the study of a study file is not, because its functions would be run."""
+        given = _functions.by_name(functions)
+        calls: List[str] = self.info["functions"]
+        unknown = [name for name in given if name not in calls]
+        if unknown:
+            raise ValueError("the study calls %s, not %s" % (", ".join(calls) or "no function", ", ".join(unknown)))
+        if calls:
+            found = {call: given[call] if call in given else _functions.load(call, self._folder) for call in calls}
+            self._connected = _functions.Connected(found, [p["name"] for p in self.info["parameters"]])
+            lib.call("pkmopt_study_set_functions", self._handle, ctypes.byref(self._connected.struct))
+
+    def start_workers(self, count: int = 0) -> None:
+        """Has the functions that the study calls called by ``count`` processes, by default one per core. The functions
+        must be in files that can be imported."""
+        _functions.refuse_in_worker()
+        python, options = _functions.python_options(count), lib.options()
+        lib.call(
+            "pkmopt_study_start_workers",
+            self._handle,
+            lib.encoded(self._folder),
+            ctypes.byref(python),
+            ctypes.byref(options),
+        )
 
     def _read(self, toml: str, file_name: str, mechanism: Optional[str], mechanism_file: Optional[str]) -> None:
         texts = [lib.encoded(each) for each in (toml, file_name, mechanism, mechanism_file, None)]
@@ -147,6 +195,7 @@ class Problem:
     def _set(self, handle: lib.Handle) -> None:
         self._handle = handle
         self.info: Dict[str, Any] = lib.parsed("pkmopt_study_info", handle)
+        self._folder = ""  # where files of functions are
         self._is_quick = False  # whether the last evaluation of a single design was
         self._widths = [len(self.info[key]) for key in ("objectives", "constraints", "outputs")]
 
@@ -211,7 +260,7 @@ class Problem:
         )
         if not single:
             return found
-        self._is_quick = time.perf_counter() - start < _QUICK
+        self._is_quick = time.perf_counter() - start < _QUICK and not self.info["functions"]
         return Evaluation(*[each[0] for each in found])
 
     def _evaluate_quickly(self, x: Array, complete: bool) -> Evaluation:
@@ -365,13 +414,17 @@ class Study(Problem):
         time_limit: Optional[float] = None,
         seed: Optional[int] = None,
         overwrite: bool = False,
+        workers: int = 0,
     ) -> "Results":
         """Runs the study and writes its file, with the same bits as `pkmopt run`.
 
         ``callback`` is called after each generation with the :class:`Progress`; if it returns True, the run stops with
         a checkpoint. Ctrl-C stops with a checkpoint, too, and raises KeyboardInterrupt; :func:`resume` continues.
-        Without ``path`` the file is the study's output.
+        Without ``path`` the file is the study's output. Functions in Python are called in this process, or by
+        ``workers`` processes; the results are the same.
         """
+        if workers != 0:
+            self.start_workers(workers)
         file = str(path if path is not None else self.info["output"])
         outcome = _run(
             "pkmopt_study_run",
@@ -392,12 +445,33 @@ def resume(
     callback: Optional[Callable[[Progress], Any]] = None,
     threads: int = 0,
     time_limit: Optional[float] = None,
+    functions: Union[Mapping[str, Function], Sequence[Function]] = (),
+    workers: int = 0,
 ) -> "Results":
     """Continues a stopped study from its file, or extends the last stage of a finished one to ``generations`` or
-    ``evaluations`` in total."""
+    ``evaluations`` in total.
+
+    Functions in Python are those of ``functions``, called in this process, or else called from their files by
+    ``workers`` processes. They must be the same as when the study was started.
+    """
+    with Results(path) as results:
+        study = results.study
+        calls, parameters = study.info["functions"], [p["name"] for p in study.info["parameters"]]
+    given = _functions.by_name(functions)
+    connected = None
+    if given:
+        found = {call: given[call] if call in given else _functions.load(call, "") for call in calls}
+        connected = _functions.Connected(found, parameters)
     limits = [ctypes.c_int64(generations), ctypes.c_int64(evaluations)]
     outcome = _run(
-        "pkmopt_study_resume", [lib.encoded(str(path)), *limits], callback, threads, time_limit, overwrite=True
+        "pkmopt_study_resume",
+        [lib.encoded(str(path)), *limits],
+        callback,
+        threads,
+        time_limit,
+        overwrite=True,
+        connected=connected,
+        workers=workers,
     )
     return Results(path, outcome)
 
@@ -409,7 +483,11 @@ def _run(
     threads: int,
     time_limit: Optional[float],
     overwrite: bool,
+    connected: Optional[_functions.Connected] = None,
+    workers: int = 0,
 ) -> Dict[str, Any]:
+    _functions.refuse_in_worker()
+
     def report(progress: Any, _user: Any) -> int:
         try:
             copy = Progress.from_buffer_copy(progress.contents)
@@ -424,6 +502,9 @@ def _run(
     options.time_limit = 0 if time_limit is None else time_limit
     options.overwrite = 1 if overwrite else 0
     options.progress = lib.PROGRESS(report)
+    python = _functions.python_options(workers)
+    options.python = ctypes.addressof(python)
+    options.functions = ctypes.addressof(connected.struct) if connected else None
     outcome: Dict[str, Any] = lib.parsed(function, *arguments, ctypes.byref(options))
     return outcome
 

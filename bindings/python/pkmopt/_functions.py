@@ -1,0 +1,193 @@
+"""Functions in Python that a study calls: objectives, constraints and outputs of type "python"."""
+
+from __future__ import annotations
+
+import ctypes
+import difflib
+import importlib.util
+import inspect
+import math
+import os
+import sys
+import traceback
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Union
+
+from . import _library as lib
+
+Function = Callable[[Dict[str, float]], Any]
+
+#: Environment variable of the processes that call functions.
+_WORKER = "PKMOPT_WORKER"
+
+
+def name_of(function: Function) -> str:
+    """How a study names a function: "FILE.py:NAME" if a process can import it, otherwise its name."""
+    name = getattr(function, "__qualname__", type(function).__name__)
+    file = _file_of(function)
+    if file is None or "<" in name:
+        return name.split(".")[-1].strip("<>")
+    relative = os.path.relpath(file)
+    return "%s:%s" % (file if relative.startswith("..") else relative, name)
+
+
+def _file_of(function: Any) -> Any:
+    try:
+        file = inspect.getsourcefile(function)
+    except TypeError:
+        return None
+    return file if file and file.endswith(".py") and os.path.isfile(file) else None
+
+
+def _hash_of(call: str, function: Function) -> str:
+    """Hash of what defines the function; "" if its source is unknown."""
+    file = _file_of(function)
+    if ":" in call and file:
+        source = Path(file).read_bytes()
+    else:
+        try:
+            source = inspect.getsource(function).encode("utf-8")
+        except (OSError, TypeError):
+            return ""
+    return lib.text("pkmopt_hash", ctypes.c_char_p(source), lib.size(len(source)))
+
+
+def load(call: str, folder: str) -> Function:
+    """The function "FILE.py:NAME" of a file in a folder."""
+    path, colon, name = call.rpartition(":")
+    if not colon:
+        raise lib.InputError("the study calls %s, which is in no file; pass functions={%r: ..}" % (call, call))
+    file = Path(folder, path).resolve()
+    if not file.is_file():
+        raise lib.InputError('call = "%s": there is no file %s' % (call, file))
+    for module in list(sys.modules.values()):
+        if getattr(module, "__file__", None) == str(file):
+            break
+    else:
+        spec = importlib.util.spec_from_file_location(file.stem, file)
+        assert spec is not None and spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.path.insert(0, str(file.parent))
+        try:
+            sys.modules[file.stem] = module
+            spec.loader.exec_module(module)
+        except BaseException:
+            del sys.modules[file.stem]
+            raise
+        finally:
+            sys.path.remove(str(file.parent))
+    found: Any = module
+    for part in name.split("."):
+        if not hasattr(found, part):
+            near = difflib.get_close_matches(part, dir(found), 1)
+            suggestion = "; did you mean %s?" % near[0] if near else ""
+            raise lib.InputError("%s has no function %s%s" % (file, name, suggestion))
+        found = getattr(found, part)
+    if not callable(found):
+        raise lib.InputError("%s of %s is no function" % (name, file))
+    return found  # type: ignore[no-any-return]
+
+
+def _describe(error: BaseException) -> str:
+    """The error and its traceback in one line."""
+    text = "".join(traceback.format_exception_only(type(error), error)).strip().replace("\n", "; ")
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename[:1] != "<" and f.filename != __file__]
+    places = ["%s:%s in %s" % (os.path.basename(f.filename), f.lineno, f.name) for f in reversed(frames)]
+    return text + (" (%s)" % ", called from ".join(places) if places else "")
+
+
+_FUNCTION = ctypes.CFUNCTYPE(
+    ctypes.c_int,
+    ctypes.c_char_p,
+    ctypes.POINTER(ctypes.c_double),
+    ctypes.POINTER(ctypes.c_double),
+    ctypes.c_void_p,
+    ctypes.c_size_t,
+    ctypes.c_void_p,
+)
+
+
+class _Struct(ctypes.Structure):
+    """pkmopt_functions."""
+
+    _fields_ = [
+        ("function", _FUNCTION),
+        ("user", ctypes.c_void_p),
+        ("count", ctypes.c_size_t),
+        ("calls", ctypes.POINTER(ctypes.c_char_p)),
+        ("hashes", ctypes.POINTER(ctypes.c_char_p)),
+    ]
+
+
+class Connected:
+    """Functions that the library calls. To be kept as long as it may do so."""
+
+    def __init__(self, functions: Mapping[str, Function], parameters: Sequence[str]) -> None:
+        self._functions = dict(functions)
+        self._parameters = list(parameters)
+        calls = [call.encode("utf-8") for call in self._functions]
+        hashes = [_hash_of(call, function).encode("utf-8") for call, function in self._functions.items()]
+        texts = ctypes.c_char_p * max(1, len(calls))
+        self._texts = texts(*calls), texts(*hashes)
+        self.struct = _Struct(_FUNCTION(self._call), None, len(calls), *self._texts)
+
+    def _call(self, call: bytes, parameters: Any, value: Any, reason: int, capacity: int, _user: Any) -> int:
+        try:
+            design = dict(zip(self._parameters, parameters[: len(self._parameters)]))
+            result = self._functions[call.decode("utf-8")](design)
+            if result is None:
+                failure = "the function returned None; expected a number"
+            else:
+                value[0] = float(result)
+                if math.isfinite(value[0]):
+                    return 0
+                failure = "the function returned %r; expected a finite number" % value[0]
+        except (Exception, SystemExit) as error:
+            failure = _describe(error)
+        except BaseException as error:
+            lib.set_exception(error)
+            failure = _describe(error)
+        text = failure.encode("utf-8", "replace")[: capacity - 1] + b"\0"
+        ctypes.memmove(reason, text, len(text))
+        return 1
+
+
+class PythonOptions(ctypes.Structure):
+    """pkmopt_python."""
+
+    _fields_ = [("workers", ctypes.c_int), ("program", ctypes.c_char_p), ("path", ctypes.c_char_p)]
+
+
+def python_options(workers: int) -> PythonOptions:
+    """This interpreter, with this process's folders of modules."""
+    if workers < 0:
+        raise ValueError("workers is %d; expected a number >= 1, or 0" % workers)
+    path = ":".join(os.path.abspath(folder) for folder in sys.path if ":" not in folder)
+    return PythonOptions(workers, os.fsencode(sys.executable), os.fsencode(path))
+
+
+def by_name(functions: Union[Mapping[str, Function], Iterable[Function]]) -> Dict[str, Function]:
+    if isinstance(functions, Mapping):
+        return dict(functions)
+    return {name_of(function): function for function in functions}
+
+
+def take_functions(entries: List[Dict[str, Any]], into: Dict[str, Function]) -> List[Dict[str, Any]]:
+    """Replaces functions in the entries of a study by their names, and adds the functions to `into`."""
+    for entry in entries:
+        function = entry.get("call")
+        if callable(function):
+            name, number = name_of(function), 1
+            while into.setdefault(name, function) is not function:  # two lambdas, for example
+                number += 1
+                name = "%s_%d" % (name_of(function), number)
+            entry["call"] = name
+    return entries
+
+
+def refuse_in_worker() -> None:
+    if os.environ.get(_WORKER):
+        raise RuntimeError(
+            "a file whose functions a study calls runs a study when it is imported; put that part below "
+            'if __name__ == "__main__":'
+        )

@@ -1,0 +1,30 @@
+// Connects the functions that a study calls (objectives of type "python") with the files that define them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/config/study.hpp"
+#include "engine/runner/python_workers.hpp"
+#include "engine/storage/study_contents.hpp"
+
+namespace pkm {
+
+/// Starts worker processes for the functions of a study; does nothing if it calls none or if they are connected
+/// already. The file of a function is looked for relative to `folders`, in this order. Throws ConfigError if there is
+/// no such file or it does not define the function, Stopped.
+/// @param recorded  the functions of the study file that is continued: their files must be the same
+/// @param threads   number of processes if the options specify none
+void start_python_workers(const Study& study, const std::vector<std::string>& folders,
+                          const std::vector<FunctionRecord>& recorded, const PythonOptions& options, int threads);
+
+/// The folder of a file, to look for functions.
+std::string folder_of(const std::string& file);
+
+/// The connected functions of a study, for its file. Throws std::logic_error if they are not connected.
+std::vector<FunctionRecord> function_records(const Study& study);
+
+/// Throws StorageError if a connected function differs from the recorded one.
+void expect_recorded_functions(const Study& study, const std::vector<FunctionRecord>& recorded);
+
+}  // namespace pkm
