@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <atomic>
 #include <type_traits>
 
 namespace pkm::hdf5 {
@@ -72,6 +73,11 @@ Handle access_in_memory(const std::string& what) {
   check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), what);
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110), what);
   return access;
+}
+
+std::string new_name_in_memory() {
+  static std::atomic<std::uint64_t> count = 0;
+  return "study in memory " + std::to_string(count++);
 }
 
 void throw_size_mismatch(const Leaf& leaf, const Extent& present, const Extent& expected) {

@@ -66,6 +66,9 @@ Handle attribute_text_type();
 
 /// Access properties of a file in memory (core driver, never written to disk).
 Handle access_in_memory(const std::string& what);
+/// A new name for a file in memory. HDF5 treats two open files in memory with the same name as one file, so that two
+/// threads would read each other's data.
+std::string new_name_in_memory();
 
 /// Throws ImageError: the extent of a dataset differs from the expected one.
 [[noreturn]] void throw_size_mismatch(const Leaf& leaf, const Extent& present, const Extent& expected);

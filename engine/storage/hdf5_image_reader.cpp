@@ -17,7 +17,7 @@ Handle open_image(const std::string& file) {
   const Handle access = access_in_memory(what);
   // HDF5 copies the bytes.
   check(H5Pset_file_image(access.get(), const_cast<char*>(file.data()), file.size()), what);
-  return {H5Fopen("study in memory", H5F_ACC_RDONLY, access.get()), H5Fclose, what};
+  return {H5Fopen(new_name_in_memory().c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose, what};
 }
 
 std::size_t text_length(hid_t type, const std::string& what) {

@@ -90,7 +90,7 @@ Handle create_file(std::size_t user_block) {
   check(H5Pset_userblock(creation.get(), user_block), what);
   check(H5Pset_istore_k(creation.get(), 4), what);  // small index nodes: most datasets have one chunk
   check(H5Pset_obj_track_times(creation.get(), false), what);
-  return {H5Fcreate("study in memory", H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, what};
+  return {H5Fcreate(new_name_in_memory().c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, what};
 }
 
 }  // namespace
