@@ -162,8 +162,8 @@ PKMOPT_API pkmopt_status pkmopt_study_from_file(const char* path, const char* ch
 PKMOPT_API pkmopt_status pkmopt_study_from_text(const char* toml, const char* file_name, const char* mechanism_toml,
                                                 const char* mechanism_file_name, const char* changes,
                                                 pkmopt_study** study);
-/* Description: name, seed, parameters, variables, objectives, constraints, outputs, functions, stages, text, warnings.
- */
+/* Description: name, seed, parameters, variables, objectives, constraints, outputs, functions, stages, swept
+ * coordinates, text, warnings. */
 PKMOPT_API pkmopt_status pkmopt_study_info(const pkmopt_study* study, char** json);
 PKMOPT_API void pkmopt_study_free(pkmopt_study* study);
 

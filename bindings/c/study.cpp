@@ -61,6 +61,11 @@ Json info_of(const Study& study) {
   info["functions"] = problem.external_calls();
   info["baseline"] = study.baseline ? Json(*study.baseline) : Json();
   info["method"] = parts.plan.voxels() ? "voxels" : "columns";
+  info["swept"] = Json::array();
+  for (const int i : sweep_of(mechanism, parts.plan).swept) {
+    const AxisInfo& axis = mechanism.coordinates[static_cast<std::size_t>(i)];
+    info["swept"].push_back({{"name", axis.name}, {"unit", axis.unit}});
+  }
   info["volume_unit"] = volume_unit(mechanism, parts.plan);
   const Unsupported why = problem.why_no_derivatives();
   info["why_no_derivatives"] = why ? Json(*why) : Json();

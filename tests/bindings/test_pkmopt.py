@@ -4,6 +4,7 @@ import doctest
 import multiprocessing
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -190,6 +191,22 @@ class ProblemTest(unittest.TestCase):
         a, b = self.X[0]
         self.assertAlmostEqual(found.objectives[0, 0], mechanism.design(a=a, b=b).workspace().volume, delta=1e-12)
 
+    def test_arrays_of_all_kinds_are_read(self):
+        expected = self.problem.evaluate(self.X).objectives
+        read_only = self.X.copy()
+        read_only.flags.writeable = False
+        columns = {"a": self.X[:, 0], "b": self.X[:, 1]}
+        for X in (read_only, np.asfortranarray(self.X), np.repeat(self.X, 2, axis=0)[::2], self.X.tolist(), columns):
+            np.testing.assert_array_equal(self.problem.evaluate(X).objectives, expected)
+        for _ in range(2):
+            self.assertEqual(self.problem.evaluate(read_only[3]).objectives[0], expected[3, 0])
+        self.assertEqual(self.problem.evaluate(self.X[:0]).objectives.shape, (0, 1))
+
+    def test_fixed_parameters(self):
+        problem = pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume", parameters={"l_u": "650 mm"})
+        design = pkmopt.Mechanism("4ppa-2par").design(a=0.3, b=0.9, l_u=0.65)
+        self.assertAlmostEqual(problem.evaluate([0.3, 0.9]).objectives[0], design.workspace().volume, delta=1e-12)
+
     def test_derivatives(self):
         found = self.problem.differentiate(self.X)
         for i in range(2):
@@ -269,6 +286,67 @@ class StudyTest(InFolder):
         with self.assertRaises(ValueError):
             resumed.evaluations()
         self.assertEqual(len(pkmopt.resume("whole.h5", generations=14).evaluations()), 300)
+
+    def test_killed_and_resumed_by_the_program(self):
+        """A process that runs a study is killed within a generation; the program continues from the last checkpoint."""
+        study = small_study(checkpoint={"every": 0})
+        whole = study.run("whole.h5").evaluations()
+        pathlib.Path("study.toml").write_text(study.to_toml(), encoding="utf-8")
+        code = ("import pkmopt, time\n"
+                "def wait(p): p.generation == 7 and (print('waits', flush=True), time.sleep(60))\n"
+                "pkmopt.Study.from_toml('study.toml').run('killed.h5', callback=wait)")
+        with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+            self.assertEqual(process.stdout.readline(), "waits\n")
+            process.kill()
+        self.assertEqual(process.returncode, -signal.SIGKILL)
+        with pkmopt.open_study("killed.h5") as killed:
+            self.assertEqual(killed.state, "interrupted")
+            self.assertGreater(len(killed.evaluations()), 100)
+            self.assertLess(len(killed.evaluations()), len(whole))
+        self.program("resume", "killed.h5", "--quiet")
+        self.assertTrue(same(pkmopt.open_study("killed.h5").evaluations(), whole))
+
+    def test_studies_on_two_threads_at_once(self):
+        whole = [small_study().run("whole-%d.h5" % seed, seed=seed).evaluations() for seed in (1, 2)]
+        found, generations = {}, {1: [], 2: []}
+
+        def work(seed):
+            callback = lambda p: generations[seed].append(p.generation) and None
+            found[seed] = small_study().run("thread-%d.h5" % seed, seed=seed, callback=callback).evaluations()
+
+        def fail():
+            with self.assertRaisesRegex(KeyError, "mine"):
+                small_study().run("fails.h5", callback=lambda p: {}["mine"])
+            found["failed"] = True
+
+        workers = [threading.Thread(target=work, args=(1,)), threading.Thread(target=work, args=(2,)),
+                   threading.Thread(target=fail)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        self.assertTrue(found["failed"])
+        for seed in (1, 2):
+            self.assertTrue(same(found[seed], whole[seed - 1]))
+            self.assertEqual(generations[seed], list(range(13)))
+
+    def test_files_are_read_on_two_threads_at_once(self):
+        for generations in (1, 2):
+            small_study(stages={"optimiser": "ga", "generations": generations}).run("%d.h5" % generations)
+        wrong = []
+
+        def read(generations):
+            for _ in range(50):
+                found = len(pkmopt.open_study("%d.h5" % generations).evaluations())
+                if found != 20 * (generations + 1):
+                    wrong.append(found)
+
+        workers = [threading.Thread(target=read, args=(generations,)) for generations in (1, 2)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        self.assertEqual(wrong, [])
 
     def test_callbacks_run_on_the_calling_thread_and_may_raise(self):
         threads = set()
@@ -623,6 +701,23 @@ class ProcessTest(unittest.TestCase):
                                 capture_output=True, text=True)
         self.assertIn("ImportError", failed.stderr)
         self.assertIn("experiments/quickstart.sh", failed.stderr)
+
+    def test_the_command_that_the_quickstart_prints(self):
+        """In a copy of the source tree, with the library where the quickstart builds it."""
+        with tempfile.TemporaryDirectory(prefix="source tree ") as tree:
+            root = pathlib.Path(tree).resolve()
+            shutil.copytree(pathlib.Path(pkmopt.__file__).parent, root / "bindings" / "python" / "pkmopt")
+            (root / "build" / "quickstart" / "lib").mkdir(parents=True)
+            (root / "build" / "quickstart" / "lib" / "libpkmopt.so.0").symlink_to(os.environ["PKMOPT_LIBRARY"])
+            lines = (EXPERIMENTS / "quickstart.sh").read_text(encoding="utf-8").splitlines()
+            (line,) = [line for line in lines if "Use it from Python" in line]
+            printed = subprocess.run(["bash", "-c", line], cwd=root, check=True, capture_output=True, text=True).stdout
+            command = printed.split(":", 1)[1].strip()
+            self.assertRegex(command, r'^PYTHONPATH=.*bindings/python python3 -c "import pkmopt"$')
+            command = command.replace('"import pkmopt"', '"import pkmopt; print(pkmopt.__file__, pkmopt.version)"')
+            path = os.path.dirname(sys.executable) + ":/usr/bin:/bin"
+            done = subprocess.run(["bash", "-c", command], cwd="/", env={"PATH": path}, capture_output=True, text=True)
+            self.assertEqual(done.stdout, "%s/bindings/python/pkmopt/__init__.py %s\n" % (root, pkmopt.version), done.stderr)
 
     def test_memory_stays_flat(self):
         problem = pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume")

@@ -229,9 +229,12 @@ def quick_call(function: Any, *arguments: Any) -> None:
 
 
 def address(array: npt.NDArray[Any]) -> int:
-    """Quicker than array.ctypes.data."""
-    data: int = array.__array_interface__["data"][0]
-    return data
+    """Quicker than array.ctypes.data for an array that is writable and not empty."""
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        data: int = array.ctypes.data
+        return data
 
 
 def handle(create: str, free: str, *arguments: Any) -> "Handle":

@@ -73,6 +73,8 @@ class Fields:
         for axis in info["axes"]:
             step = (axis["upper"] - axis["lower"]) / axis["cells"]
             self.axes[axis["name"]] = axis["lower"] + step * (np.arange(axis["cells"]) + 0.5)
+        #: units of all coordinates, swept and fixed
+        self.axis_units: Dict[str, str] = {axis["name"]: axis["unit"] for axis in [*info["axes"], *info["fixed"]]}
         #: values of the other coordinates
         self.fixed: Dict[str, float] = {fixed["name"]: fixed["value"] for fixed in info["fixed"]}
         #: by name, each with one dimension per axis; NaN where undefined
@@ -96,6 +98,7 @@ class Surface(NamedTuple):
 
     vertices: Array  #: [vertices, 3]
     triangles: Any  #: [triangles, 3], counter-clockwise seen from outside
+    axes: Dict[str, str]  #: units of the three coordinates by their names
 
 
 def mechanism_names() -> List[str]:
@@ -399,7 +402,7 @@ class Design:
 
     def workspace(self, **workspace: Any) -> "Workspace":
         """The workspace of this design. Keywords are the keys of [workspace] of a study, such as ``method="voxels"``,
-        ``cells={"x": 40, ..}``, ``tolerance=1e-6``, ``fixed={"theta": 0}``, ``box={..}``."""
+        ``cells={"x": 40, ..}``, ``tolerance=1e-6``, ``theta=0`` to fix a coordinate, ``box={..}``."""
         return Workspace(self, workspace)
 
     def volume_and_gradient(self, threads: int = 0, **workspace: Any) -> Tuple[float, Dict[str, float]]:
@@ -508,7 +511,8 @@ class Workspace:
             ctypes.byref(options),
         )
         points = lib.taken_array(vertices, (vertex_count.value, 3), np.float64)
-        return Surface(points, lib.taken_array(triangles, (triangle_count.value, 3), np.uint32))
+        indices = lib.taken_array(triangles, (triangle_count.value, 3), np.uint32)
+        return Surface(points, indices, {axis["name"]: axis["unit"] for axis in self.info["swept"]})
 
     def __repr__(self) -> str:
         return "<Workspace of %r: %.6g %s>" % (self.design.mechanism.name, self.volume, self.unit)

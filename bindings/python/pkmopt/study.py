@@ -90,8 +90,8 @@ class Problem:
 
     ``variables`` maps names to (min, max), (min, max, step) or the keys of the table; objectives, constraints, outputs
     and stages are names or dicts with the keys of their tables. All values may be numbers in SI units or texts with a
-    unit. Further keywords are further tables of a study, such as ``parameters={"r": "50 mm"}`` or
-    ``workspace={"method": "voxels", ..}``.
+    unit. ``parameters={"r": "50 mm"}`` are values of parameters that do not vary. Further keywords are further tables of
+    a study, such as ``workspace={"method": "voxels", ..}``.
 
     A function is an objective, too: it gets a dict of all parameters in SI units and returns a number, which is
     minimised unless ``{"type": "python", "call": function, "direction": "maximise"}`` says otherwise. An error in it
@@ -119,6 +119,8 @@ class Problem:
             mechanism = Mechanism(mechanism)
         document: Dict[str, Any] = {"study": {"name": name, "seed": seed}}
         document.update(mechanism._study_tables())
+        if "parameters" in tables:  # fixed values, which are a key of [mechanism]
+            document["mechanism"]["parameters"] = tables.pop("parameters")
         document["variables"] = {key: _range(key, bounds) for key, bounds in variables.items()}
         document.update(tables)
         functions: Dict[str, Function] = {}
