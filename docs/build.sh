@@ -60,6 +60,7 @@ SETTINGS
 
 /usr/bin/python3 docs/cpp.py "$root" docs "$out/xml"
 /usr/bin/python3 docs/reference.py "$program" "$root" docs
+/usr/bin/python3 docs/notebooks.py docs
 export PYTHONPATH=$root/bindings/python PYTHONDONTWRITEBYTECODE=1
 PKMOPT_LIBRARY=$(dirname -- "$program")/../lib/libpkmopt.so.0  # of the program's build
 export PKMOPT_LIBRARY

@@ -18,6 +18,8 @@ pkm_test_packages=(
   libmpfi-dev                                 # independent interval arithmetic
   python3 python3-numpy python3-h5py          # independent reading of study files
   mypy                                        # annotations of the Python package
+  python3-nbclient python3-nbformat python3-ipykernel python3-matplotlib  # notebooks and plots
+  python3-scipy                               # comparison of optimisers
   python3-jsonschema                          # validation of files by `pkmopt schema`
   python3-vtk9                                # reading of exported workspaces as in ParaView
   chromium                                    # tests of the pages of pkmopt report

@@ -250,8 +250,9 @@ class Handle:
         self._as_parameter_ = pointer
         self._free: Callable[..., Any] = getattr(library, free)
 
-    def __del__(self) -> None:
-        if self._as_parameter_ and os.getpid() == _process:
+    # Arguments: at the end of the interpreter the module may have lost its names before its last objects.
+    def __del__(self, getpid: Callable[[], int] = os.getpid, process: int = _process) -> None:
+        if self._as_parameter_ and getpid() == process:
             self._free(self._as_parameter_)
 
     def __reduce__(self) -> Any:

@@ -140,9 +140,9 @@ def _label_space(axes: Any, units: Dict[str, str]) -> None:
     for name, (coordinate, unit) in zip("xyz", units.items()):
         getattr(axes, "set_%slabel" % name)(_label(coordinate, unit))
     if len(set(units.values())) > 1:
-        axes.set_box_aspect(None, zoom=0.85)
+        axes.set_box_aspect(None, zoom=0.8)
         return
     lengths = np.ptp([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()], axis=1)
-    axes.set_box_aspect(lengths, zoom=0.85)
+    axes.set_box_aspect(lengths, zoom=0.8)
     for name, length in zip("xyz", lengths):  # ticks at about the same distance on all axes
         axes.locator_params(axis=name, nbins=max(2, round(7 * length / max(lengths))))
