@@ -20,6 +20,7 @@ pkm_test_packages=(
   mypy                                        # annotations of the Python package
   python3-nbclient python3-nbformat python3-ipykernel python3-matplotlib  # notebooks and plots
   python3-scipy                               # comparison of optimisers
+  octave octave-dev                           # generated code and the functions for MATLAB and Octave
   python3-jsonschema                          # validation of files by `pkmopt schema`
   python3-vtk9                                # reading of exported workspaces as in ParaView
   chromium                                    # tests of the pages of pkmopt report

@@ -197,6 +197,9 @@ pkmopt_status pkmopt_study_why_failed(const pkmopt_study* study, const double* d
     const pkm::DesignProblem& problem = *study->study.problem;
     std::string reason;
     with_options(options, false, [&] {
+      std::uint8_t status = PKMOPT_FAILED;
+      evaluate_one(*study, design, pkm::Detail::complete, {.status = &status});
+      if (status != PKMOPT_FAILED) return;
       reason = problem.failure_reason({design, problem.space().dimension()}, pkm::Detail::complete);
     });
     *sentence = allocated(reason);

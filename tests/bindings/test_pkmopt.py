@@ -223,6 +223,7 @@ class ProblemTest(unittest.TestCase):
         self.assertEqual(found.status.tolist(), [pkmopt.FEASIBLE, pkmopt.FAILED])
         self.assertTrue(np.isnan(found.objectives[1, 0]))
         self.assertIn("root", problem.why_failed([0.4]))
+        self.assertEqual(problem.why_failed([0.25]), "")
 
     def test_scipy_interface(self):
         scipy = self.problem.as_scipy()

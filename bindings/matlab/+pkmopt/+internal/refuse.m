@@ -1,0 +1,23 @@
+function refuse(what, name, known)
+% Ends with the error for an unknown name, which suggests the most similar known one.
+suggestion = '';
+distances = cellfun(@(other) edit_distance(lower(name), lower(other)), known);
+[smallest, at] = min(distances);
+if ~isempty(at) && smallest <= max(1, floor(numel(name) / 3))
+  suggestion = sprintf('; did you mean ''%s''?', known{at});
+end
+error('pkmopt:invalidInput', 'unknown %s ''%s''; expected one of %s%s', what, name, strjoin(known, ', '), suggestion);
+end
+
+function distance = edit_distance(a, b)
+% Levenshtein distance.
+row = 0:numel(b);
+for i = 1:numel(a)
+  previous = row;
+  row(1) = i;
+  for j = 1:numel(b)
+    row(j + 1) = min([previous(j + 1) + 1, row(j) + 1, previous(j) + (a(i) ~= b(j))]);
+  end
+end
+distance = row(end);
+end
