@@ -81,13 +81,21 @@ static const mxArray* argument(const Call* call, int index) {
   return call->arguments[index];
 }
 
+/* A copy that the interpreter frees after the call; what mxArrayToString() returns, it does not always free. */
+static char* copied_text(const mxArray* text) {
+  const size_t size = 4 * mxGetNumberOfElements(text) + 1; /* UTF-8 */
+  char* const copy = mxCalloc(size, 1);
+  if (size > 1) mxGetString(text, copy, size);
+  return copy;
+}
+
 /* A text; NULL if it is [] or missing. */
 static const char* text_of(const Call* call, int index, const char* what) {
   const bool is_text = index < call->argument_count && mxIsChar(call->arguments[index]);
   const mxArray* const value = is_text ? call->arguments[index] : argument(call, index);
   if (!value) return NULL;
   if (!mxIsChar(value) || mxGetM(value) > 1) refuse("%s is of class %s; expected a text", what, mxGetClassName(value));
-  return mxArrayToString(value);
+  return copied_text(value);
 }
 
 static const char* required_text(const Call* call, int index, const char* what) {
@@ -462,9 +470,8 @@ static Columns columns_of(const mxArray* info, const char* list) {
   Columns columns = {count, calloc(1, 64 * count + 1)};
   for (size_t i = 0; columns.names && i < count; ++i) {
     const mxArray* const name = mxIsStruct(entries) ? mxGetField(entries, i, "name") : mxGetCell(entries, i);
-    char* const text = mxArrayToString(name);
-    snprintf(columns.names + strlen(columns.names), 64, "%s%s", i > 0 ? ", " : "", text ? text : "");
-    mxFree(text);
+    if (name && mxIsChar(name))
+      snprintf(columns.names + strlen(columns.names), 64, "%s%s", i > 0 ? ", " : "", copied_text(name));
   }
   if (!columns.names) raise_error("pkmopt:noMemory", "out of memory");
   return columns;
