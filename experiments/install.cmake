@@ -25,11 +25,14 @@ set(HEADERS \${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/pkmopt)")
           DESTINATION ${package_folder})
 endif()
 
-# The C interface, and the Python package that uses it: for Debian's Python, in the archive in a folder of its own.
+# The C interface; the Python package that uses it, for Debian's Python or in a folder of the archive; the functions for
+# MATLAB and Octave, whose MEX file users compile by pkmopt.build.
 if(TARGET pkmopt_c)
   set(python_folder $<IF:$<BOOL:${PKM_BUNDLE}>,python,lib/python3/dist-packages>)
   install(DIRECTORY bindings/python/pkmopt DESTINATION ${python_folder} FILES_MATCHING PATTERN *.py PATTERN py.typed
           PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY bindings/matlab DESTINATION $<IF:$<BOOL:${PKM_BUNDLE}>,.,${CMAKE_INSTALL_DATADIR}/pkmopt>
+          FILES_MATCHING PATTERN *.m PATTERN *.[ch])
   install(FILES bindings/c/pkmopt.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(FILES bindings/c/example.c DESTINATION ${CMAKE_INSTALL_DOCDIR})
   file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
@@ -89,7 +92,7 @@ else()
   foreach(target IN LISTS programs ITEMS pkmopt_c)  # RPATH instead of RUNPATH: also used for dependencies of the libraries
     target_link_options(${target} PRIVATE LINKER:--disable-new-dtags)
   endforeach()
-  install(TARGETS ${programs} pkmopt_c RUNTIME_DEPENDENCY_SET pkmopt_libraries RUNTIME LIBRARY NAMELINK_SKIP)
+  install(TARGETS ${programs} pkmopt_c RUNTIME_DEPENDENCY_SET pkmopt_libraries RUNTIME LIBRARY)
   install(RUNTIME_DEPENDENCY_SET pkmopt_libraries DESTINATION ${beside}
     PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|ld-linux.*)\\.so")  # provided by the system
   # Copyright files of the Debian packages from which these libraries are copied.
@@ -120,5 +123,5 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy")  # for `import pkmopt`
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, man-db, g++, cmake, pkg-config, libeigen3-dev, libhdf5-dev, libnlopt-dev, \
-coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev, zlib1g-dev")
+coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev, zlib1g-dev, octave-dev")
 include(CPack)

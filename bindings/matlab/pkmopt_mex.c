@@ -289,7 +289,12 @@ static mxArray* json_object(const char** at) {
   }
   ++*at;
   mxArray* const object = mxCreateStructMatrix(1, 1, (int)count, (const char**)names);
-  for (size_t i = 0; i < count; ++i) mxSetFieldByNumber(object, 0, (int)i, values[i]);
+  for (size_t i = 0; i < count; ++i) {
+    mxSetFieldByNumber(object, 0, (int)i, values[i]);
+    mxFree(names[i]);
+  }
+  mxFree(names);
+  mxFree(values);
   return object;
 }
 
@@ -321,19 +326,21 @@ static mxArray* json_array(const char** at) {
     objects += mxIsStruct(value) && mxGetNumberOfElements(value) == 1;
   }
   ++*at;
-  if (count == 0) return mxCreateCellMatrix(1, 0);
-  if (objects == count) return struct_array(values, count);
-  if (numbers > 0 && numbers + nulls == count) {
-    mxArray* const row = mxCreateDoubleMatrix(1, count, mxREAL);
+  mxArray* array;
+  if (count > 0 && objects == count) {
+    array = struct_array(values, count);
+  } else if (numbers > 0 && numbers + nulls == count) {
+    array = mxCreateDoubleMatrix(1, count, mxREAL);
     for (size_t i = 0; i < count; ++i) {
-      mxGetPr(row)[i] = mxGetNumberOfElements(values[i]) == 1 ? mxGetScalar(values[i]) : NAN;
+      mxGetPr(array)[i] = mxGetNumberOfElements(values[i]) == 1 ? mxGetScalar(values[i]) : NAN;
       mxDestroyArray(values[i]);
     }
-    return row;
+  } else {
+    array = mxCreateCellMatrix(1, count);
+    for (size_t i = 0; i < count; ++i) mxSetCell(array, i, values[i]);
   }
-  mxArray* const cells = mxCreateCellMatrix(1, count);
-  for (size_t i = 0; i < count; ++i) mxSetCell(cells, i, values[i]);
-  return cells;
+  mxFree(values);
+  return array;
 }
 
 /* The value at a position of a JSON text without spaces between its tokens. */

@@ -12,6 +12,7 @@ commands=$("$prefix/bin/pkmopt" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z
 for command in $commands; do installed "share/man/man1/pkmopt-$command\.1\.gz"; done
 for file in bin/pkmopt bin/pkmopt-check-proof 'lib[^/]*(/.*)?/libpkmopt_'{core,mechanisms,optimisers,io,program}'\.a' \
   'lib[^/]*(/.*)?/cmake/pkmopt/pkmopt-config\.cmake' 'lib[^/]*(/.*)?/libpkmopt\.so'{,.0} include/pkmopt.h \
+  share/pkmopt/matlab/{pkmopt_mex.c,'\+pkmopt/'{build,Design}.m,'\+pkmopt/\+internal/toml.m',loadlibrary/{pkmopt_prototypes.h,example.m}} \
   lib/python3/dist-packages/pkmopt/{__init__,mechanism,study}.py 'lib[^/]*(/.*)?/pkgconfig/pkmopt\.pc' include/pkmopt/engine/mechanism/mechanism.hpp \
   include/pkmopt/experiments/app/program.hpp share/man/man1/pkmopt{,-check-proof}\\.1\\.gz share/bash-completion/completions/pkmopt \
   share/zsh/vendor-completions/_pkmopt share/fish/vendor_completions.d/pkmopt.fish \
