@@ -121,7 +121,7 @@ function test_delta()
   [values, names] = d.margins(poses);
   check(isequal(size(values), [3, numel(names)]) && any(strcmp(names, 'arm1 reaches')), 'margins');
   s = d.links(rows);
-  check_near(sqrt(sum((s.end(:, 2, :) - s.start(:, 2, :)) .^ 2, 3)), repmat(0.5, 50, 1), 1e-14, 'links');
+  check_near(sqrt(sum((s.end2(:, 2, :) - s.end1(:, 2, :)) .^ 2, 3)), repmat(0.5, 50, 1), 1e-14, 'links');
   check(numel(s.names) == size(s.radius, 2) && numel(s.parts) == numel(s.names), 'names of links');
 
   single = m.design({'arm2.l_b', '501 mm'});
@@ -237,7 +237,9 @@ function test_study()
   check(~exist(file('mine.html'), 'file'), 'no report yet');
 
   % A Pareto front.
-  text = [strrep(text, '[[constraint]]', sprintf('[[objective]]\ntype = "expression"\nname = "size"\nexpression = "a + b"\nunit = "m"\ndirection = "minimise"\n[[constraint]]')) ...
+  size_of_robot = sprintf(['[[objective]]\ntype = "expression"\nname = "size"\nexpression = "a + b"\nunit = "m"\n' ...
+                           'direction = "minimise"\n[[constraint]]']);
+  text = [strrep(text, '[[constraint]]', size_of_robot) ...
           sprintf('optimiser = "nsga2"\npopulation = 20\ngenerations = 8\n')];
   r = pkmopt.Study.fromText(text).run(file('front.h5'));
   front = r.front();
@@ -286,7 +288,8 @@ function test_mistakes()
   check_fails(@() d.dynamics(zeros(3, 3), zeros(2, 3)), invalid, 'velocities has 2 rows');
   check_fails(@() d.volume('metod', 'voxels'), invalid, 'did you mean ''method''?');
   check_fails(@() d.volume('tolerance'), invalid, 'names and values');
-  check_fails(@() pkmopt.Study(experiment('4ppa-2par/paper-problem.toml'), {'set aa=1'}), invalid, 'did you mean ''a''?');
+  check_fails(@() pkmopt.Study(experiment('4ppa-2par/paper-problem.toml'), {'set aa=1'}), invalid, ...
+              'did you mean ''a''?');
   check_fails(@() pkmopt.Study.fromText('[studi]'), invalid, 'did you mean ''study''?');
   check_fails(@() s.evaluate(zeros(1, 3)), invalid, 'designs is 1 x 3; expected 4 columns: a, b, l_u, l_d');
   check_fails(@() s.run('x.h5', 'sed', 1), invalid, 'did you mean ''seed''?');

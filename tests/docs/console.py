@@ -6,10 +6,10 @@ into the pages instead.
 
 A block ```console contains commands after `$ ` and their output, from stdout and stderr. The commands of a page run one
 after the other in one temporary folder. In it, `pkmopt` is PROGRAM, `pkmopt-check-proof` is the program beside it,
-`python3` finds the repository's package pkmopt and the library of the same build, and `experiments`, `benchmarks` and
-`tests` are links to those of the repository. A block ```{code-block} with
-`:caption: NAME`, or any block below a line `<!-- NAME -->`, is written to the file NAME before the commands that follow
-it. A command has to succeed unless `$ echo $?` follows. It runs on two threads.
+`python3` and `octave-cli` find the repository's packages pkmopt and the library of the same build, and `experiments`,
+`benchmarks` and `tests` are links to those of the repository. A block ```{code-block} with `:caption: NAME`, or any
+block below a line `<!-- NAME -->`, is written to the file NAME before the commands that follow it. A command has to
+succeed unless `$ echo $?` follows. It runs on two threads.
 
 The output has to match the page. Whitespace and values that differ from run to run are not compared: times (a number
 before ns, us, ms, s, min or h), numbers of threads, shares of time ("59 % on", "0.0 % of the time"), file sizes (kB,
@@ -104,6 +104,8 @@ class Folder:
         self.environment = {**os.environ, "PATH": f"{tools}:/usr/bin:{os.environ['PATH']}", "OMP_NUM_THREADS": "2",
                             "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(REPOSITORY / "bindings" / "python"),
                             "PKMOPT_LIBRARY": str(program.resolve().parents[1] / "lib" / "libpkmopt.so.0"),
+                            "OCTAVE_PATH": f"{REPOSITORY}/bindings/matlab:{program.resolve().parents[1]}/lib/octave",
+                            "OCTAVE_HISTFILE": "/dev/null",
                             **dict.fromkeys(["OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
                                              "OMPI_MCA_rmaps_base_oversubscribe"], "1")}
 

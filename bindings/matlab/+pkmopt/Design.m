@@ -107,7 +107,8 @@ classdef Design < handle
 
     function found = links(self, poses, varargin)
     % LINKS  The links as capsules, for drawings.
-    %   s = d.links(poses)                   s.names, s.parts: cell rows; s.start, s.end: poses x links x 3;
+    %   s = d.links(poses)                   s.names, s.parts: cell rows; s.end1, s.end2: ends of the
+    %                                        axes, poses x links x 3;
     %                                        s.radius: poses x links; NaN: the pose does not assemble
       [capsules, described] = pkmopt_mex('design_links', self.id, poses, varargin{:});
       count = size(capsules, 1);
@@ -116,8 +117,8 @@ classdef Design < handle
       if ~isempty(described)
         found.parts = {described.part};
       end
-      found.start = capsules(:, :, 1:3);
-      found.end = capsules(:, :, 4:6);
+      found.end1 = capsules(:, :, 1:3);
+      found.end2 = capsules(:, :, 4:6);
       found.radius = reshape(capsules(:, :, 7), count, []);
     end
 

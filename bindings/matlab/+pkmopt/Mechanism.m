@@ -32,7 +32,7 @@ classdef Mechanism < handle
   methods
     function self = Mechanism(name, id, info)
       if nargin == 3  % of an object of the library
-        self.set(id, info, name);
+        self.fill(id, info, name);
         return
       end
       if nargin ~= 1
@@ -48,7 +48,7 @@ classdef Mechanism < handle
         command = 'mechanism_from_file';
       end
       [id, info] = pkmopt_mex(command, name);
-      self.set(id, info, {self.isBuiltIn, name});
+      self.fill(id, info, {self.isBuiltIn, name});
     end
 
     function d = design(self, varargin)
@@ -125,7 +125,7 @@ classdef Mechanism < handle
   end
 
   methods (Access = private)
-    function set(self, id, info, origin)
+    function fill(self, id, info, origin)
       self.id = id;
       self.isBuiltIn = origin{1};
       self.fileName = origin{2};

@@ -10,8 +10,13 @@ if nargin < 1
   folder = here;
 end
 folder = pkmopt.internal.text(folder, 'folder');
-[~, attributes] = fileattrib(folder);
-if ~isfolder(folder)
+if strncmp(folder, '~/', 2)
+  folder = fullfile(getenv('HOME'), folder(3:end));
+elseif folder(1) ~= '/'
+  folder = fullfile(pwd(), folder);
+end
+[exists, attributes] = fileattrib(folder);
+if ~exists
   [created, reason] = mkdir(folder);
   if ~created
     error('pkmopt:fileError', 'cannot create the folder %s: %s', folder, reason);
