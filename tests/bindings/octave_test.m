@@ -191,8 +191,8 @@ function test_study()
   check(F(3) == printed(json, s.objectives{1}), 'the bits of an objective');
 
   % Forty designs of an expression with a known derivative.
-  text = sprintf(['[mechanism]\ntype = "4ppa-2par"\n[variables]\na = { min = "200 mm", max = 0.5 }\nb = { min = 0.5, ' ...
-                  'max = 1.2 }\n[[objective]]\ntype = "workspace-volume"\n[[constraint]]\ntype = "expression"\n' ...
+  text = sprintf(['[mechanism]\ntype = "4ppa-2par"\n[variables]\na = { min = "200 mm", max = 0.5 }\n' ...
+                  'b = { min = 0.5, max = 1.2 }\n[[objective]]\ntype = "workspace-volume"\n[[constraint]]\ntype = "expression"\n' ...
                   'name = "root"\nexpression = "sqrt(0.45 - a) - 0.1*b"\nunit = "m"\n[[stage]]\n']);
   s = pkmopt.Study.fromText([text sprintf('optimiser = "ga"\npopulation = 20\ngenerations = 8\n')]);
   X = s.lower + rand(40, 2) .* (s.upper - s.lower);
@@ -222,7 +222,8 @@ function test_study()
   mine = rmfield(r.evaluations(), 'seconds');
   theirs = rmfield(pkmopt.Results(file('theirs.h5')).evaluations(), 'seconds');
   check(isequaln(mine, theirs), 'evaluations of a run');
-  check(size(mine.designs, 1) == r.stages.rows && strcmp(r.state, 'finished') && isempty(r.outcome.stopped), 'rows of a run');
+  check(size(mine.designs, 1) == r.stages.rows, 'rows of a run');
+  check(strcmp(r.state, 'finished') && isempty(r.outcome.stopped), 'the end of a run');
   row = r.stages.best_row;
   check(isequal([r.best.design.a, r.best.design.b], mine.designs(row, :)), 'the best design');
   check(r.best.objectives.workspace_volume == max(mine.objectives(mine.status == 0)), 'the best volume');

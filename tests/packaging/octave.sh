@@ -12,5 +12,6 @@ run "$functions try, pkmopt.version(); catch e, assert(e.identifier, 'pkmopt:not
 run "$functions try, pkmopt.build('/proc'); catch e, disp(e.message), end"
 run "$functions pkmopt.build('$folder/mex')"
 run "addpath('$folder/mex'); $functions  % the order does not matter
-  [volume, ~, ~, unit] = pkmopt.Mechanism('$prefix/share/pkmopt/experiments/mechanisms/rotary-delta.toml').design().volume();
+  delta = pkmopt.Mechanism('$prefix/share/pkmopt/experiments/mechanisms/rotary-delta.toml');
+  [volume, ~, ~, unit] = delta.design().volume();
   printf('Octave %s %.6g %s\n', pkmopt.version(), volume, unit)"

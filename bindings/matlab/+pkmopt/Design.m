@@ -188,8 +188,8 @@ classdef Design < handle
   methods (Access = private)
     function [study, threads] = workspaceStudy(self, options)
       if ~strcmp(self.mode, self.mechanism.modes{1})
-        error('pkmopt:invalidInput', ['the design has the working mode ''%s'', but workspaces are those of the first ' ...
-              'one, ''%s'''], self.mode, self.mechanism.modes{1});
+        error('pkmopt:invalidInput', ['the design has the working mode ''%s'', but workspaces are those of the ' ...
+              'first one, ''%s'''], self.mode, self.mechanism.modes{1});
       end
       pairs = pkmopt.internal.pairs(options);
       threads = 0;

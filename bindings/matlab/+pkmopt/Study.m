@@ -45,8 +45,8 @@ classdef Study < handle
           changes = {};
         end
         pkmopt.internal.require_mex();
-        [self.id, info] = pkmopt_mex('study_from_file', pkmopt.internal.text(file, 'file'), strjoin(cellstr(changes), ...
-                                     sprintf('\n')));
+        lines = strjoin(cellstr(changes), sprintf('\n'));
+        [self.id, info] = pkmopt_mex('study_from_file', pkmopt.internal.text(file, 'file'), lines);
       end
       self.info = info;
       self.name = info.name;

@@ -66,8 +66,8 @@ end
 [status, text] = system('pkg-config --variable=includedir pkmopt && pkg-config --variable=libdir pkmopt');
 folders = strsplit(strtrim(text), sprintf('\n'));
 if status ~= 0 || numel(folders) ~= 2
-  error('pkmopt:fileError', ['the library libpkmopt.so was not found: build pkmopt with experiments/quickstart.sh or ' ...
-        'install its package; pkg-config says: %s'], strtrim(text));
+  error('pkmopt:fileError', ['the library libpkmopt.so was not found: build pkmopt with experiments/quickstart.sh ' ...
+        'or install its package; pkg-config says: %s'], strtrim(text));
 end
 [includeFolder, libraryFolder] = folders{:};
 end

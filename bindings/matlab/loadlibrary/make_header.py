@@ -7,8 +7,8 @@ Therefore objects and options are void*, enumerations are int, and there are onl
 import re
 import sys
 
-PREAMBLE = """/* The functions of pkmopt.h for loadlibrary() of MATLAB, made by make_header.py. Objects and options are void*, and a
- * status is an int: 0 is success; see pkmopt.h for everything else. Options have to be NULL. */
+PREAMBLE = """/* The functions of pkmopt.h for loadlibrary() of MATLAB, made by make_header.py. Objects and options are void*, and
+ * a status is an int: 0 is success; see pkmopt.h for everything else. Options have to be NULL. */
 #include <stddef.h>
 #include <stdint.h>
 """
@@ -20,7 +20,8 @@ def main():
     print(PREAMBLE)
     for prototype in re.findall(r"^PKMOPT_API ([^;]*);", text, flags=re.MULTILINE):
         prototype = re.sub(r"\s+", " ", prototype).replace("pkmopt_status", "int")
-        prototype = re.sub(r"\bpkmopt_(mechanism|design|study|results|optimiser|options|run_options)\*", "void*", prototype)
+        types = "mechanism|design|study|results|optimiser|options|run_options"
+        prototype = re.sub(r"\bpkmopt_(%s)\*" % types, "void*", prototype)
         print(prototype + ";")
 
 

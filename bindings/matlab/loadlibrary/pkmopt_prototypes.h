@@ -1,5 +1,5 @@
-/* The functions of pkmopt.h for loadlibrary() of MATLAB, made by make_header.py. Objects and options are void*, and a
- * status is an int: 0 is success; see pkmopt.h for everything else. Options have to be NULL. */
+/* The functions of pkmopt.h for loadlibrary() of MATLAB, made by make_header.py. Objects and options are void*, and
+ * a status is an int: 0 is success; see pkmopt.h for everything else. Options have to be NULL. */
 #include <stddef.h>
 #include <stdint.h>
 

@@ -20,6 +20,7 @@ elseif islogical(value)
 elseif isnumeric(value) && isreal(value)
   text = lower(sprintf('%.17g', value));
 else
-  error('pkmopt:invalidInput', 'found a value of class %s; expected a number, a text, a cell or a struct', class(value));
+  error('pkmopt:invalidInput', 'found a value of class %s; expected a number, a text, a cell or a struct', ...
+        class(value));
 end
 end
