@@ -340,4 +340,5 @@ for name = {'description', 'kinematics', 'delta', 'workspace', 'study', 'mistake
   feval(['test_' name{1}]);
   fprintf('%-12s %6.2f s\n', name{1}, toc(start));
 end
+alive_at_the_end = pkmopt.Mechanism('4ppa-2par').design();
 disp('all tests have passed');
