@@ -20,7 +20,7 @@ def main():
     print(PREAMBLE)
     for prototype in re.findall(r"^PKMOPT_API ([^;]*);", text, flags=re.MULTILINE):
         prototype = re.sub(r"\s+", " ", prototype).replace("pkmopt_status", "int")
-        types = "mechanism|design|study|results|optimiser|options|run_options"
+        types = "mechanism|design|study|results|optimiser|options|run_options|functions|python"
         prototype = re.sub(r"\bpkmopt_(%s)\*" % types, "void*", prototype)
         print(prototype + ";")
 
