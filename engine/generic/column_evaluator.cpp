@@ -88,8 +88,8 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     if (request_.needs_samples()) add_all_samples(0, S(1.0), parameters, samples, design, result);
   }
 
-  /// Adds the samples of the slices, at each node of the outermost coordinates. @param weight  product of the weights
-  /// of the nodes
+  /// Samples the slice at every quadrature node of the outermost coordinates, and appends the samples to the result.
+  /// @param weight  product of the quadrature weights of the outermost coordinates before `level`
   template <class S>
   void add_all_samples(std::size_t level, const S& weight, std::span<const S> parameters, SampleScratch<S>& samples,
                        DesignScratch& design, WorkspaceResult<S>& result) const {
@@ -126,7 +126,7 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     return last.volume;
   }
 
-  /// Adds the samples of the slices that design.volume holds. @param share  factor of their weights
+  /// Appends the samples of the slices that design.volume holds to the result. @param share  factor of their weights
   template <class S>
   void add_samples(const S& share, std::span<const S> parameters, SampleScratch<S>& samples, DesignScratch& design,
                    WorkspaceResult<S>& result) const {

@@ -23,7 +23,7 @@ class ColumnVolume {
     IntegralScratch integral;
     corner_curves::Volume::Scratch corner_curves;
     edges::EdgePlan::Scratch edges;
-    bool is_sampled = false;  ///< the last volume is one of slices, which can miss a component
+    bool is_sampled = false;  ///< the last volume was computed from slices, which can miss a connected component
   };
 
   /// Throws std::invalid_argument with a message if the workspace has no exact columns.

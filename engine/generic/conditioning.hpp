@@ -47,7 +47,7 @@ class SampleConditioning {
     scratch.lengths = characteristic_lengths(e_, parameters);
     batch_.start<S>(inputs, scratch.registers);
   }
-  /// Value for the field kConditioning; that of a singular pose if J is not finite.
+  /// Value of the field kConditioning. If J is not finite, the value of a singular pose.
   template <class S>
   S at(const Pose<S>& pose, ConditioningScratch<S>& scratch) const;
 

@@ -59,7 +59,7 @@ class Problem {
   /// Completes designs that evaluate() has evaluated, by values that are computed for a batch of designs: those of
   /// external functions. Thread-safe.
   /// @param rows  rows whose values are complete on return get `is_complete`; after Stopped, a part of them
-  virtual void complete(std::span<EvaluatedDesign>) const {}
+  virtual void complete([[maybe_unused]] std::span<EvaluatedDesign> rows) const {}
   /// Whether designs are only complete after complete().
   virtual bool needs_completion() const { return false; }
   /// Empty if the problem supports Detail::derivatives, else the reason why not.

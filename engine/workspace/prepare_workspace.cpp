@@ -63,7 +63,8 @@ class AverageEvaluator final : public WithGradients<AverageEvaluator> {
   bool serial_members_;
 };
 
-/// @return true if the mechanism's own voxels support the plan; otherwise cellwise voxels are used
+/// @return true if the mechanism has a voxel evaluator of its own that supports the plan; otherwise the generic one is
+/// used, which tests one cell after the other
 bool has_voxels(const Mechanism& mechanism, const WorkspacePlan& plan) {
   const bool needs_obstacles = !plan.limits.obstacles.empty() && requires_clearance(mechanism.info(), plan);
   return mechanism.voxels() && (!needs_obstacles || mechanism.voxels()->supports_obstacles());

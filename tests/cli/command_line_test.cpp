@@ -42,7 +42,7 @@ TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
        "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certified, "
        "--designs, --csv, --force, "
-       "--sensitivity, --tolerance, --threads, --instruction-set; did you mean '--json'?"},
+       "--sensitivity, --tolerance, --threads, --workers, --instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},

@@ -26,7 +26,7 @@ struct ColumnsAtThetas {
 /// Numbers of feasible cells, by theta.
 struct CellTally {
   double cells[kLanes], in_first[kLanes], in_last[kLanes];  ///< in all columns, in the first one, in the last one
-  bool lowest, highest;                                     ///< a column contains the lowest, the highest cell of z
+  bool lowest, highest;  ///< whether a column contains the lowest or the highest cell
 };
 /// Counts the cells with x indices [from, to).
 template <InstructionSet set>

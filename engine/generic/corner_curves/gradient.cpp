@@ -132,8 +132,8 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
   }
 }
 
-/// Adds the adjoint of a root v of a limit, by the implicit function theorem. To be called after
-/// evaluate_limits_at_t().
+/// Propagates the adjoint of v, a root of the margin of a limit, to the parameters by the implicit function theorem. To
+/// be called after evaluate_limits_at_t().
 void Volume::add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const {
   LimitScratch& s = scratch.segments.limits;
   evaluate_limits_at_v(plan_, v, s);

@@ -38,7 +38,7 @@ struct ColumnGrid {
   Interval between(std::int64_t from, std::int64_t to) const { return {at(from), at(to)}; }
   /// Enclosure of the length of a segment.
   Interval length(std::int64_t from, std::int64_t to) const { return Interval(at(to)) - Interval(at(from)); }
-  /// The last step in [from, to] with at(step) <= z, or one slightly before it due to rounding; `from` if there is
+  /// The last step in [from, to] with at(step) <= z, or, due to rounding, an earlier one next to it; `from` if there is
   /// none.
   std::int64_t step_below(double z, std::int64_t from, std::int64_t to) const;
   /// The first step in [from, to] with at(step) >= z, or one slightly after it due to rounding; `to` if there is none.
