@@ -10,12 +10,6 @@
 namespace pkm::benchmarks {
 namespace {
 
-std::vector<double> nominal(const Mechanism& m) {
-  std::vector<double> parameters;
-  for (const Parameter& p : m.info().parameters) parameters.push_back(p.nominal);
-  return parameters;
-}
-
 WorkspacePlan plan_of(const std::variant<ColumnOptions, VoxelOptions>& method) {
   WorkspacePlan plan{.method = method, .fixed = {fixed_at(3, 0.3)}};
   plan.limits = no_limits(mechanism_named("quadrupteron").info());
@@ -70,7 +64,7 @@ void task_box(benchmark::State& state) {
 
 /// Inverse dynamics by the principle of virtual work, at 1024 motion states of one design. The counter per_state is the
 /// time per state.
-void inverse_dynamics(benchmark::State& state, const char* name) {
+void drive_forces(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
   std::vector<MotionSample> samples(1024);
@@ -98,8 +92,8 @@ void jointed_voxels(benchmark::State& state) { voxels(state, "3crr-r-cru", {.cel
 void rigid_voxels(benchmark::State& state) { voxels(state, "quadrupteron", {.cells = kCells}); }
 void jointed_box(benchmark::State& state) { voxels(state, "3crr-r-cru", {.cells = kCells, .box = kInside}); }
 void rigid_box(benchmark::State& state) { voxels(state, "quadrupteron", {.cells = kCells, .box = kInside}); }
-void jointed_forces(benchmark::State& state) { inverse_dynamics(state, "3crr-r-cru"); }
-void rigid_forces(benchmark::State& state) { inverse_dynamics(state, "quadrupteron"); }
+void jointed_forces(benchmark::State& state) { drive_forces(state, "3crr-r-cru"); }
+void rigid_forces(benchmark::State& state) { drive_forces(state, "quadrupteron"); }
 
 BENCHMARK(jointed_voxels)->Name("coupling/voxels_40/3crr-r-cru")->Unit(benchmark::kMillisecond);
 BENCHMARK(rigid_voxels)->Name("coupling/voxels_40/quadrupteron")->Unit(benchmark::kMillisecond);

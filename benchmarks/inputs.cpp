@@ -49,6 +49,12 @@ std::vector<double> design(double a, double b, double l_u, double l_d) {
   return all;
 }
 
+std::vector<double> nominal(const Mechanism& mechanism) {
+  std::vector<double> design;
+  for (const Parameter& p : mechanism.info().parameters) design.push_back(p.nominal);
+  return design;
+}
+
 std::vector<double> original_design() { return design(0.2, 0.8, 0.6, 0.55); }
 std::vector<double> optimal_design() { return design(0.3, 1.0, 0.7, 0.7); }
 

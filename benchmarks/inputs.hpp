@@ -16,6 +16,8 @@ namespace pkm::benchmarks {
 
 const Mechanism& mechanism_named(std::string_view name);
 const Mechanism& four_ppa();
+/// The default values of the parameters.
+std::vector<double> nominal(const Mechanism& mechanism);
 
 /// All parameters of 4PPa-2PaR for the four lengths that the paper varies [m]; d = 0.15, L0 = 2.5, nominal elsewhere.
 std::vector<double> design(double a, double b, double l_u, double l_d);

@@ -37,12 +37,6 @@ const Mechanism& mechanism_file(const std::string& name) {
   if (!mechanism) mechanism = read_mechanism_toml(read_text(name), name + ".toml");
   return *mechanism;
 }
-std::vector<double> nominal(const Mechanism& mechanism) {
-  std::vector<double> design;
-  for (const Parameter& p : mechanism.info().parameters) design.push_back(p.nominal);
-  return design;
-}
-
 void read(benchmark::State& state, const std::string& name) {
   const std::string text = read_text(name);
   for (auto _ : state) benchmark::DoNotOptimize(read_mechanism_toml(text, name + ".toml"));

@@ -114,7 +114,7 @@ void columns(benchmark::State& state) {
 
 // The other mechanisms: nominal designs.
 
-Case nominal(const std::string& name, const std::vector<FixedCoordinate>& fixed_coordinates,
+Case nominal_case(const std::string& name, const std::vector<FixedCoordinate>& fixed_coordinates,
              const FieldRequest& request = {}) {
   const Mechanism& m = mechanism_named(name);
   Case benchmark_case{m, {}, {}, request};
@@ -128,7 +128,7 @@ Case nominal(const std::string& name, const std::vector<FixedCoordinate>& fixed_
 // square root if a column has a hole.
 void hybrid_voxels(benchmark::State& state) {
   constexpr Operations kColumn{21, 14, 0, 2};
-  compare_with_bound(state, nominal("2t1r-p-hybrid", {}),
+  compare_with_bound(state, nominal_case("2t1r-p-hybrid", {}),
                      [&](const WorkspaceResult<double>&) { return 34 * 60 * kColumn; });
 }
 
@@ -143,7 +143,7 @@ void hybrid_conditioning(benchmark::State& state) {
                           }) +
                           Operations{11, 17, 0, 3};  // by hand: k, N1, N2, and the three n with their square roots
   constexpr Operations kColumn{21, 14, 0, 2};
-  compare_with_bound(state, nominal("2t1r-p-hybrid", {}, conditioning_too()), [&](const WorkspaceResult<double>& s) {
+  compare_with_bound(state, nominal_case("2t1r-p-hybrid", {}, conditioning_too()), [&](const WorkspaceResult<double>& s) {
     return 34 * 60 * kColumn + static_cast<std::int64_t>(s.weight.size()) * pose;
   });
 }
@@ -154,8 +154,8 @@ constexpr Operations kLine{56, 24, 0, 2};
 
 // phi fixed: one table for each pair of x, y, z, with one ring for x, y (32 lines) and for y, z (34 lines, rounded up
 // to whole SIMD vectors), and two rings for x, z (32 lines).
-void jointed_voxels(benchmark::State& state) {
-  Case benchmark_case = nominal("3crr-r-cru", {fixed_at(3, 0.3)});
+void translating_voxels(benchmark::State& state) {
+  Case benchmark_case = nominal_case("3crr-r-cru", {fixed_at(3, 0.3)});
   benchmark_case.plan.limits.given[0] = 0.2;
   benchmark_case.plan.limits.given[1] = 0.1;
   compare_with_bound(state, benchmark_case, [&](const WorkspaceResult<double>&) { return (32 + 2 * 32 + 40) * kLine; });
@@ -163,8 +163,8 @@ void jointed_voxels(benchmark::State& state) {
 
 // x fixed: at each of 60 phi, 32 lines along z for limb 1, and one line, rounded up to a SIMD vector, for the other
 // limbs.
-void jointed_voxels_over_phi(benchmark::State& state) {
-  Case benchmark_case = nominal("3crr-r-cru", {fixed_at(0, 0.21)});
+void translating_voxels_over_phi(benchmark::State& state) {
+  Case benchmark_case = nominal_case("3crr-r-cru", {fixed_at(0, 0.21)});
   benchmark_case.plan.limits.given[0] = 0.2;
   benchmark_case.plan.limits.given[1] = 0.1;
   compare_with_bound(state, benchmark_case, [&](const WorkspaceResult<double>&) { return 60 * (32 + 3 * 8) * kLine; });
@@ -172,7 +172,7 @@ void jointed_voxels_over_phi(benchmark::State& state) {
 
 void coupling_of_voxels(benchmark::State& state) {
   using namespace crr_cru;
-  Case benchmark_case = nominal("3crr-r-cru", {fixed_at(3, 0.3)});
+  Case benchmark_case = nominal_case("3crr-r-cru", {fixed_at(3, 0.3)});
   benchmark_case.request.add(kCouplingIndex);
   benchmark_case.plan.method = VoxelOptions{.cells = {40, 40, 40}};
   const Operations pose =
@@ -191,14 +191,14 @@ void add(const char* name, void (*benchmark_case)(benchmark::State&)) {
       ->Unit(benchmark::kMicrosecond)
       ->UseManualTime();
 }
-const bool kRegistered = [] {
+const bool kOperationsRegistered = [] {
   add("voxels", voxels);
   add("conditioning_of_voxels", conditioning_of_voxels);
   add("columns", columns);
   add("hybrid_voxels", hybrid_voxels);
   add("hybrid_conditioning_of_voxels", hybrid_conditioning);
-  add("3crr-r-cru_voxels", jointed_voxels);
-  add("3crr-r-cru_voxels_over_phi", jointed_voxels_over_phi);
+  add("3crr-r-cru_voxels", translating_voxels);
+  add("3crr-r-cru_voxels_over_phi", translating_voxels_over_phi);
   add("3crr-r-cru_coupling_of_voxels", coupling_of_voxels);
   return true;
 }();

@@ -34,12 +34,6 @@ Study rotary_delta(const std::string& limits) {
 }
 Study gough() { return study_of("gough", "R = { min = 0.8, max = 1.2 }\n", "10 um", ""); }
 
-std::vector<double> nominal(const Mechanism& mechanism) {
-  std::vector<double> design;
-  for (const Parameter& p : mechanism.info().parameters) design.push_back(p.nominal);
-  return design;
-}
-
 /// Times voxel analyses of the rotary Delta with two sets of limits alternately; `ratio` compares them.
 void compare_limits(benchmark::State& state, const std::string& more, const std::string& less) {
   const SerialScope alone;
@@ -88,7 +82,7 @@ void time_of_quantity(benchmark::State& state, Study (*study_of_mechanism)(), co
 }
 Study delta() { return rotary_delta(""); }
 
-const int kRegistered = [] {
+const int kQuantitiesRegistered = [] {
   for (const bool of_gough : {false, true})
     for (const char* const name :
          {"conditioning", "lti", "velocity_transmission", "force_transmission", "accuracy", "accuracy_rms", "stiffness",
