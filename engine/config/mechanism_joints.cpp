@@ -47,6 +47,7 @@ class JointReader {
     }
     for (const NamedLimb& limb : draft_.limbs) add_limb(limb);
     for (const ConfigValue& table : tables) add_joint(table);
+    hold_pin();
     return {solids_, joints_};
   }
   /// Adds the masses, for the forces in the joints.
@@ -108,19 +109,39 @@ class JointReader {
             .is_rod = is_rod};
   }
   /// Makes the joint added last a universal one, if the limb has such joints: it rotates about the axis a of the body
-  /// that carries the rod, and about a x rod, and transmits a couple normal to both.
-  void make_universal(const NamedLimb& limb, const Vector3& rod, bool on_platform) {
+  /// that carries the rod, and about a x rod, and transmits a couple normal to both. @param solid  index of the rod
+  void make_universal(const NamedLimb& limb, const Vector3& rod, std::size_t solid, bool on_platform) {
     if (!limb.universal) return;
     const Vector3 a = on_platform && limb.end_on == "platform" ? draft_.turn * *limb.universal : *limb.universal;
     joints_.back().couples = JointNodes::Couples::along;
     joints_.back().axes = {nodes(cross(a, cross(a, rod)))};
+    joints_.back().universal = JointNodes::Universal{nodes(a), solid};
   }
 
   std::size_t add_part(const NamedLimb& limb, const LimbPart& part) {
     const std::string name = part.name + " of " + limb.name;
     Vector3 line = *part.line;
     if (limb.revolute) line = line - *limb.revolute * dot(line, *limb.revolute);
-    return add_solid(name, {.name = name, .point = nodes(part.from), .line = nodes(line)});
+    const Vector3& point = part.name == "piston" ? part.to : part.from;
+    return add_solid(name, {.name = name, .point = nodes(point), .line = nodes(line)});
+  }
+
+  /// Makes a platform that does not rotate and is a point mass, at which parallel revolute joints meet, part of the
+  /// first rod.
+  void hold_pin() {
+    constexpr std::size_t kPlatform = 0;
+    const auto rotates = [](const auto& axis) { return axis.has_value(); };
+    if (std::ranges::any_of(model_.rotation_axes, rotates)) return;
+    for (const BodyNodes& body : model_.bodies)
+      if (body.part_of == "platform" || (body.name == "platform" && body.inertia)) return;
+    JointNodes* first = nullptr;
+    for (JointNodes& joint : joints_) {
+      if (joint.on != kPlatform && joint.from != kPlatform) continue;
+      if (joint.couples != JointNodes::Couples::all_but_about || joint.axes.size() != 1) return;
+      if (!first) first = &joint;
+      if (joint.point != first->point || !parallel(vector(joint.axes[0]), vector(first->axes[0]))) return;
+    }
+    if (first) first->holds_pin = true;
   }
 
   void add_limb(const NamedLimb& limb) {
@@ -159,12 +180,12 @@ class JointReader {
     if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
     if (telescope) {
       joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, {}, first.line));
-      make_universal(limb, B - A, false);
+      make_universal(limb, B - A, *inner, false);
       const std::size_t piston = add_part(limb, last);
       joints_.push_back(rigid_joint(limb.name + ".slide", (A + B) * Term(model_.graph, 0.5), piston, inner));
       joints_.back().drive = drive;
       joints_.push_back(limb_joint(limb, limb.name + ".B", B, piston, carrier, {}, turns));
-      make_universal(limb, B - A, true);
+      make_universal(limb, B - A, piston, true);
       return;
     }
     if (limb.drive == "crank") {
@@ -193,10 +214,10 @@ class JointReader {
         joints_.back().drive = drive;
         drive.slide = {};  // the slide counts once for both rods
       }
-      make_universal(limb, far - near, false);
+      make_universal(limb, far - near, outer, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = beam_of(*section, near, far, true);
       joints_.push_back(limb_joint(limb, limb.name + ".B" + number, far, outer, carrier, {}, turns));
-      make_universal(limb, far - near, true);
+      make_universal(limb, far - near, outer, true);
     }
   }
 
@@ -244,7 +265,7 @@ class JointReader {
     for (const JointNodes& joint : joints_) {
       has_joint[joint.on] = true;
       if (joint.from) has_joint[*joint.from] = true;
-      unknowns += 3 + couples_of(joint);
+      unknowns += 3 + (joint.holds_pin ? 3 : couples_of(joint));
     }
     for (std::size_t i = 0; i < solids_.size(); ++i)
       if (!has_joint[i])

@@ -266,12 +266,17 @@ class Performance {
 
   void add_acceleration() {
     const auto given = by_joint("peak_force");
+    std::vector<std::optional<Term>> known;
+    for (std::size_t joint = 0; joint < joints_; ++joint) {
+      known.push_back(given[joint] ? std::optional(draft_.scope.positive(*given[joint], force_unit(joint), "peak_force"))
+                                   : std::nullopt);
+      model_.peak_forces.push_back(known.back() ? std::optional(known.back()->node()) : std::nullopt);
+    }
     if (std::ranges::any_of(given, [](const auto& each) { return !each; }))
       return lack("acceleration", "it needs [[drive_train]] peak_force for every joint");
     if (!M_X_) return lack("acceleration", "the mechanism file has no masses");
     std::vector<Term> peak, G;
-    for (std::size_t joint = 0; joint < joints_; ++joint)
-      peak.push_back(draft_.scope.positive(*given[joint], force_unit(joint), "peak_force"));
+    for (const auto& each : known) peak.push_back(*each);
     for (const expression::Node node : model_.equations->G_X) G.push_back(model_.term(node));
     if (const auto found = generic::acceleration_quantity(at_, *M_X_, G, peak)) add(*found);
   }

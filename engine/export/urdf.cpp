@@ -1,12 +1,11 @@
 #include "engine/export/urdf.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "engine/core/formatted.hpp"
-#include "engine/export/xml_text.hpp"
+#include "engine/export/multibody_xml.hpp"
 
 namespace pkm {
 namespace {
@@ -41,13 +40,6 @@ struct ParentJoint {
   std::size_t parent;
   Position point;
 };
-
-/// Replaces characters that are not letters, digits or underscores: not all programs accept them in names.
-std::string plain_name(std::string name) {
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  return name;
-}
 
 /// The links of the tree: first the frame, then the others; all links of the platform are one.
 std::vector<TreeLink> tree_links(const std::vector<PlacedLink>& links) {
@@ -169,12 +161,6 @@ std::string visual(const Capsule<double>& capsule, const Position& origin_of_lin
   const std::string shape = length > 0 ? "<cylinder " + radius + " length=\"" + formatted("%.12g", length) + "\"/>"
                                        : "<sphere " + radius + "/>";
   return "    <visual>" + origin(centre, angles) + "<geometry>" + shape + "</geometry></visual>\n";
-}
-
-/// An XML comment; spaces separate consecutive hyphens, which would end it.
-std::string xml_comment(std::string text) {
-  for (auto at = text.find("--"); at != std::string::npos; at = text.find("--", at)) text.insert(at + 1, " ");
-  return "  <!-- " + xml_text(text) + " -->\n";
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "engine/generic/mechanism.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/geometry/singular.hpp"
+#include "engine/math/halton.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
 
 namespace pkm::code {
@@ -22,18 +23,6 @@ using generic::Evaluation;
 // Poses of the test are not close to singularities, where rounding errors grow: least inverse condition number of J.
 constexpr double kMinConditioning = 2e-2, kMinConditioningOfFloats = 1e-1, kLeastConditioning = 1e-3;
 constexpr double kStep = 1e-5;  // [m, rad] from the pose to the start of its forward kinematics
-
-/// Element of the Halton sequence in [0, 1): the radical inverse of the index in the base of the dimension's prime.
-double halton(std::size_t index, std::size_t dimension) {
-  constexpr std::array<std::size_t, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
-  const std::size_t base = kPrimes[dimension % kPrimes.size()];
-  double value = 0, weight = 1;
-  for (; index > 0; index /= base) {
-    weight /= static_cast<double>(base);
-    value += weight * static_cast<double>(index % base);
-  }
-  return value;
-}
 
 /// The name as an identifier of all languages.
 std::string identifier(const std::string& name) {

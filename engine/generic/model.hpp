@@ -188,6 +188,15 @@ struct JointNodes {
   Couples couples;
   std::vector<std::array<Node, 3>> axes;
   std::optional<Drive> drive{};
+  /// Of a universal joint: its axis on the body that carries the rod, and the index of the rod's solid.
+  struct Universal {
+    std::array<Node, 3> axis;
+    std::size_t rod;
+  };
+  std::optional<Universal> universal{};
+  /// The platform is a pin, a point that several rods rotate about, and this joint makes it part of its rod: its own
+  /// rotation, without effect, would be undetermined.
+  bool holds_pin = false;
 };
 
 /// All bodies and joints, for reactions in the joints and for the mobility of the platform.
@@ -268,6 +277,7 @@ struct Model {
   std::optional<EquationNodes> equations;           ///< present if there are bodies
   std::vector<Node> jacobian;                       ///< EquationNodes::J, present without bodies, too
   std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
+  std::vector<std::optional<Node>> peak_forces;     ///< of the drives, by joint [N, N m]; or empty
   std::string why_no_reactions, why_no_elasticity;
   std::vector<std::string> mass_models;  ///< the first is the default
   std::string mass_model;                ///< the selected one

@@ -158,6 +158,7 @@ class System {
     Joint joint{nodes.name, at(nodes.point).x, nodes.on, nodes.from, {}, {}};
     std::vector<Vec> axes;
     for (const VectorNodes& axis : nodes.axes) axes.push_back(unit(at(axis).x));
+    if (nodes.holds_pin) axes.clear();
     joint.couples = nodes.couples == JointNodes::Couples::along ? axes : normal_to(axes);
     if (const auto& drive = nodes.drive) {
       joint.actuator = Actuator{.joint = drive->joint, .axis = unit(at(drive->axis).x), .turns = drive->turns};

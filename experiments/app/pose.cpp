@@ -273,7 +273,7 @@ void add_pose(CLI::App& app, Session& session) {
   add_link_files(command, arguments, {{".csv", &arguments.poses.csv}});
   add_input_option(command, arguments);
   for (const char* const of_single_poses : {"--at", "--velocity", "--acceleration", "--input", "--joint-error",
-                                            "--stiffness", "--stl", "--dxf", "--urdf", "--vtk"})
+                                            "--stiffness", "--stl", "--dxf", "--vtk", "--urdf", "--sdf", "--mjcf"})
     table->excludes(command.get_option(of_single_poses));
 }
 

@@ -1,0 +1,32 @@
+// The options --urdf, --sdf and --mjcf: files of a design's multibody model for simulation programs.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+
+/// Names of the requested files; "": not requested.
+struct ModelFiles {
+  std::string urdf, sdf, mjcf;
+
+  bool any() const { return !urdf.empty() || !sdf.empty() || !mjcf.empty(); }
+};
+/// Declares --urdf, --sdf and --mjcf.
+void add_model_options(CLI::App& command, ModelFiles& files);
+/// Extensions and values of these options, for -o.
+std::vector<std::pair<std::string, std::string*>> extensions_of(ModelFiles& files);
+
+/// Names and contents of the requested files, and of the YAML file beside the URDF file. Throws ConfigError if the
+/// mechanism has no multibody model.
+/// @param title  what the files contain
+std::vector<std::pair<std::string, std::string>> model_texts(const ModelFiles& files, const Target& target,
+                                                             const std::string& mode, const Pose<double>& pose,
+                                                             const std::string& title);
+/// The names of these files.
+std::vector<std::string> model_file_names(const ModelFiles& files);
+
+}  // namespace pkm
