@@ -15,6 +15,7 @@ pkm_test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libfcl-dev                                  # independent computation of capsule distances
   libsimbody-dev                              # independent computation of drive forces
+  libmujoco-dev                               # independent simulation of exported models
   libmpfi-dev                                 # independent interval arithmetic
   python3 python3-numpy python3-h5py          # independent reading of study files
   mypy                                        # annotations of the Python package
