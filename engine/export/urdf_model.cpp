@@ -128,23 +128,27 @@ std::string loop_closures_yaml(const MultibodyModel& of_mechanism, const std::st
                                const std::string& title) {
   const MultibodyModel model = urdf_model(of_mechanism);
   const auto list = [](const Vector3d& v) {
-    return '[' + xml_number(v[0]) + ", " + xml_number(v[1]) + ", " + xml_number(v[2]) + ']';
+    std::string numbers = xml_numbers(v);
+    for (auto at = numbers.find(' '); at != std::string::npos; at = numbers.find(' ', at + 2)) numbers.insert(at, ",");
+    return '[' + numbers + ']';
   };
+  const auto quoted = [](const std::string& name) { return '"' + name + '"'; };  // a plain y or no may be a truth value
   std::string text =
       "# Loop closures of " + urdf_file + ": " + title +
       ". Units are m and rad.\n# Points and axes are in the frame of the link. A drive's position in the "
       "mechanism is position_at_zero + its position in the URDF file.\nrobot: " +
-      model.name + "\nreference_pose:\n";
-  for (const auto& [coordinate, value] : model.pose) text += "  " + coordinate + ": " + xml_number(value) + '\n';
+      quoted(model.name) + "\nreference_pose:\n";
+  for (const auto& [coordinate, value] : model.pose)
+    text += "  " + quoted(coordinate) + ": " + xml_number(value) + '\n';
   text += "drives:\n";
   for (const MultibodyModel::Joint& joint : model.tree)
     if (joint.drive)
-      text += "  - {joint: " + joint.name + ", position_at_zero: " + xml_number(joint.drive->position) + "}\n";
+      text += "  - {joint: " + quoted(joint.name) + ", position_at_zero: " + xml_number(joint.drive->position) + "}\n";
   text += model.closures.empty() ? "loop_closures: []\n" : "loop_closures:\n";
   for (const MultibodyModel::Joint& joint : model.closures) {
-    text += "  - name: " + joint.name + "\n    type: " + closure_type(joint.type) + '\n';
+    text += "  - name: " + quoted(joint.name) + "\n    type: " + closure_type(joint.type) + '\n';
     const auto end = [&](const std::string& side, std::size_t body) {
-      text += "    " + side + ": " + model.bodies[body].name + "\n    " + side +
+      text += "    " + side + ": " + quoted(model.bodies[body].name) + "\n    " + side +
               "_point: " + list(joint.point - frame_origin(model, body)) + '\n';
       if (!joint.axes.empty())
         text += "    " + side + "_axis: " + list(side == "parent" ? joint.axes.front() : joint.axes.back()) + '\n';
