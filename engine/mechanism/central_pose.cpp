@@ -10,7 +10,7 @@ namespace pkm {
 
 std::optional<Pose<double>> central_pose(const Mechanism& mechanism, std::span<const double> parameters,
                                          const LimitSpec& limits, const std::string& mode) {
-  constexpr std::size_t kTrials = 20'000, kEnough = 500;
+  constexpr std::size_t kTrials = 10'000, kEnough = 200;
   auto ranges = mechanism.ranges(parameters);
   if (!ranges) return {};
   for (const int fixed : mechanism.info().sweeps.front().fixed)
