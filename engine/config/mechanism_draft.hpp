@@ -45,7 +45,8 @@ struct NamedLimb {
   std::vector<LimbPart> parts;
 
   std::string drive = "formula";
-  std::size_t joint = 0;                        ///< index among the joints of the mechanism
+  std::size_t joint = 0;                        ///< index among the joints of the mechanism; the first of a formula
+  std::size_t joint_count = 1;                  ///< more than one only if the limb is a formula
   std::optional<limbs::Vector3> axis = {};      ///< axis of the crank's pivot, or direction of the slide
   std::optional<limbs::Vector3> revolute = {};  ///< the axis of its joints, if they are parallel revolutes
   bool has_rod = false;                         ///< a rod or telescope; false: a slide that carries the platform

@@ -12,7 +12,7 @@
 //                         axes, the joint at the platform turns about these, too
 //   a leg's slide         all forces and couples, the drive's along it among them, taken in the middle of the leg
 //   a slide on its rail   a point: the drive moves it and its mass
-//   [[joint]]             a revolute of two bodies
+//   [[joint]]             a revolute of two bodies, or a slide or revolute that is driven
 
 #include <algorithm>
 #include <map>
@@ -47,6 +47,7 @@ class JointReader {
     }
     for (const NamedLimb& limb : draft_.limbs) add_limb(limb);
     for (const ConfigValue& table : tables) add_joint(table);
+    refuse_unknown_links();
     hold_pin();
     return {solids_, joints_};
   }
@@ -145,8 +146,7 @@ class JointReader {
   }
 
   void add_limb(const NamedLimb& limb) {
-    if (limb.drive == "formula")
-      throw IncompleteDescription{"limb " + limb.name + " has drive = \"formula\", so its links are unknown"};
+    if (limb.drive == "formula") return;  // [[joint]] describes it
     if (limb.parts.size() == 1)
       throw IncompleteDescription{"limb " + limb.name +
                                   " has neither `rod` nor `links` that connect it to the platform"};
@@ -221,8 +221,14 @@ class JointReader {
     }
   }
 
-  std::size_t solid_called(const ConfigValue& value) const {
-    const std::string& name = value.word(names_of(solids_));
+  static constexpr const char* kBase = "base";
+
+  /// std::nullopt: the base
+  std::optional<std::size_t> solid_called(const ConfigValue& value) const {
+    std::vector<std::string> names = names_of(solids_);
+    names.emplace_back(kBase);
+    const std::string& name = value.word(names);
+    if (name == kBase) return {};
     return static_cast<std::size_t>(std::ranges::find(solids_, name, &SolidNodes::name) - solids_.begin());
   }
 
@@ -231,11 +237,52 @@ class JointReader {
     const ConfigValue both = table.at("bodies", "the two bodies that it joins");
     const auto bodies = both.elements("two bodies");
     if (bodies.size() != 2) throw both.error("two bodies");
-    const std::size_t first = solid_called(bodies[0]), second = solid_called(bodies[1]);
+    const auto first = solid_called(bodies[0]), second = solid_called(bodies[1]);
+    if (!first) throw bodies[0].error("a body; the base may be the second one");
     if (first == second) throw bodies[1].error("a body other than the first");
-    joints_.push_back(joint(
-        name, read_point(table.at("at", "a point"), name, draft_), first, second, JointNodes::Couples::all_but_about,
-        {draft_.scope.direction(table.at("about", "the axis [x, y, z] in the base's frame"), name)}));
+    const auto about = table.find("about"), along = table.find("along"), drive = table.find("drive");
+    if (about && along) throw along->refusal("give either `about` or `along`, not both");
+    if (along && !drive) throw along->refusal("a joint with `along`, a slide, needs `drive`");
+    const ConfigValue given = along ? *along : table.at("about", "the axis [x, y, z] in the base's frame");
+    const Vector3 axis = draft_.scope.direction(given, name), at = read_point(table.at("at", "a point"), name, draft_);
+    if (!drive) {
+      joints_.push_back(joint(name, at, *first, second, JointNodes::Couples::all_but_about, {axis}));
+      return;
+    }
+    joints_.push_back(rigid_joint(name, at, *first, second));
+    joints_.back().drive = JointNodes::Drive{driven_by(*drive, along.has_value()), nodes(axis), !along};
+  }
+  /// The joint of a formula that a [[joint]] is. @param slides  it is prismatic
+  std::size_t driven_by(const ConfigValue& value, bool slides) const {
+    std::vector<std::string> names;
+    for (const NamedLimb& limb : draft_.limbs)
+      for (std::size_t k = 0; limb.drive == "formula" && k < limb.joint_count; ++k)
+        names.push_back(model_.info.joints[limb.joint + k].name);
+    const std::string& name = value.word(names);
+    const auto found = std::ranges::find(model_.info.joints, name, &AxisInfo::name);
+    if (found->turns() == slides)
+      throw value.refusal("the joint " + name + " has the unit " + found->unit + ", so give `" +
+                          (slides ? "about" : "along") + "` instead of `" + (slides ? "along" : "about") + "`");
+    const auto index = static_cast<std::size_t>(found - model_.info.joints.begin());
+    if (is_driven(index)) throw value.refusal("another joint has the drive " + name + " already");
+    return index;
+  }
+  bool is_driven(std::size_t joint) const {
+    return std::ranges::any_of(joints_,
+                               [&](const JointNodes& each) { return each.drive && each.drive->joint == joint; });
+  }
+  /// Refuses limbs given by formulas whose joints are not all drives of a [[joint]].
+  void refuse_unknown_links() const {
+    for (const NamedLimb& limb : draft_.limbs) {
+      if (limb.drive != "formula") continue;
+      std::vector<std::string> missing;
+      for (std::size_t k = limb.joint; k < limb.joint + limb.joint_count; ++k)
+        if (!is_driven(k)) missing.push_back(model_.info.joints[k].name);
+      if (missing.empty()) continue;
+      throw IncompleteDescription{
+          "limb " + limb.name + " has drive = \"formula\", so its links are unknown" +
+          (missing.size() < limb.joint_count ? ": no [[joint]] has drive = \"" + missing.front() + "\"" : "")};
+    }
   }
 
   /// Gives each mass to the body that it belongs to.

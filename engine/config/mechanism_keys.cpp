@@ -245,17 +245,22 @@ const TableSpec& body_table() {
 }
 
 const TableSpec& joint_table() {
-  static const TableSpec spec = {.header = "[[joint]]",
-                                 .meaning = "revolute joint of two bodies, for the forces in joints",
-                                 .keys = {required(text_key("name", "name of the joint")),
-                                          {.name = "bodies",
-                                           .kind = OptionKind::list,
-                                           .required = true,
-                                           .meaning = "the two bodies that it joins",
-                                           .count = 2,
-                                           .parts = {{.kind = OptionKind::word}}},
-                                          place_key("at", "a point of its axis"),
-                                          required(direction_key("about", "its axis [x, y, z] in the base's frame"))}};
+  static const TableSpec spec = {
+      .header = "[[joint]]",
+      .meaning = "joint of two bodies, for the forces in joints and models for simulation",
+      .keys = {required(text_key("name", "name of the joint")),
+               {.name = "bodies",
+                .kind = OptionKind::list,
+                .required = true,
+                .meaning = "the two bodies that it joins; the second may be \"base\"",
+                .count = 2,
+                .parts = {{.kind = OptionKind::word}}},
+               place_key("at", "a point of its axis"),
+               direction_key("about", "axis [x, y, z] of a revolute joint, in the base's frame"),
+               direction_key("along", "direction of a slide, which needs `drive`"),
+               text_key("drive",
+                        "joint of a limb with drive = \"formula\" that it is: motion "
+                        "of the first body relative to the second")}};
   return spec;
 }
 

@@ -57,7 +57,12 @@ void read_formula_limb(const ConfigValue& table, const std::string& name, Mechan
       variables.push_back(read_joint(table, name, joint, *joints->find(joint), unit, draft));
   }
   if (const auto closures = table.find("closures")) replace_closures(*closures, variables, draft);
-  draft.limbs.push_back({.name = name, .group = name, .points = {}, .parts = {}});
+  draft.limbs.push_back({.name = name,
+                         .group = name,
+                         .points = {},
+                         .parts = {},
+                         .joint = draft.model.joints.size() - variables.size(),
+                         .joint_count = variables.size()});
   draft.reaches.emplace_back();
 }
 

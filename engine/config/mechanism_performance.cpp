@@ -268,8 +268,9 @@ class Performance {
     const auto given = by_joint("peak_force");
     std::vector<std::optional<Term>> known;
     for (std::size_t joint = 0; joint < joints_; ++joint) {
-      known.push_back(given[joint] ? std::optional(draft_.scope.positive(*given[joint], force_unit(joint), "peak_force"))
-                                   : std::nullopt);
+      known.push_back(given[joint]
+                          ? std::optional(draft_.scope.positive(*given[joint], force_unit(joint), "peak_force"))
+                          : std::nullopt);
       model_.peak_forces.push_back(known.back() ? std::optional(known.back()->node()) : std::nullopt);
     }
     if (std::ranges::any_of(given, [](const auto& each) { return !each; }))

@@ -43,9 +43,15 @@ class System {
     NewtonEuler system;
     for (const SolidNodes& solid : model_.jointed->solids) system.bodies.push_back(body_of(solid));
     for (const JointNodes& joint : model_.jointed->joints) system.joints.push_back(joint_of(joint));
-    const auto platform = std::ranges::find(model_.jointed->solids, true, &SolidNodes::with_platform);
-    apply(system.bodies[static_cast<std::size_t>(platform - model_.jointed->solids.begin())],
-          at(*model_.wrench_point).x, Vec{{wrench[0], wrench[1], wrench[2]}}, Vec{{wrench[3], wrench[4], wrench[5]}});
+    const auto found = std::ranges::find(model_.jointed->solids, true, &SolidNodes::with_platform);
+    RigidBody& platform = system.bodies[static_cast<std::size_t>(found - model_.jointed->solids.begin())];
+    apply(platform, at(*model_.wrench_point).x, Vec{{wrench[0], wrench[1], wrench[2]}},
+          Vec{{wrench[3], wrench[4], wrench[5]}});
+    for (const JointNodes& joint : model_.jointed->joints)
+      if (joint.holds_pin) {  // a moment about the pin's axis does no work in the coordinates
+        const Vec axis = unit(at(joint.axes[0]).x);
+        platform.moment = platform.moment - axis * dot(axis, platform.moment);
+      }
     return system;
   }
 

@@ -102,5 +102,27 @@ TEST_F(CliCad, NoFileForAPoseThatDoesNotAssemble) {
   EXPECT_FALSE(std::ifstream(folder_.path() + "/links.stl").good());
 }
 
+TEST_F(CliCad, WithoutAModelForSimulationOnlyUrdfWithFixedJointsIsWritten) {
+  const std::string hybrid = "x=0.02,y=0,z=0.2,beta=0.1";
+  const auto urdf = pkmopt({"pose", "2t1r-p-hybrid", "--at", hybrid, "--urdf", "links.urdf"}, folder_.path());
+  EXPECT_EQ(urdf.exit_code, 0);
+  EXPECT_THAT(urdf.out, HasSubstr("wrote links.urdf\nIts joints are fixed, because the mechanism has no model for "
+                                  "simulation: limb limbA has drive = \"formula\", so its links are unknown\n"));
+  EXPECT_FALSE(std::ifstream(folder_.path() + "/links.yaml").good());
+  const auto sdf = pkmopt({"pose", "2t1r-p-hybrid", "--at", hybrid, "--sdf", "links.sdf"}, folder_.path());
+  EXPECT_EQ(sdf.exit_code, 2);
+  EXPECT_THAT(sdf.err, HasSubstr("--sdf: mechanism 2t1r-p-hybrid has no model for simulation: limb limbA has drive"));
+}
+
+TEST_F(CliCad, FilesOfAModelAreNotOverwritten) {
+  const std::vector<std::string> command = {"pose",   "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3",
+                                            "--urdf", "links.urdf"};
+  folder_.write("links.yaml", "mine");
+  const auto refused = pkmopt(command, folder_.path());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("links.yaml exists already"));
+  EXPECT_FALSE(std::ifstream(folder_.path() + "/links.urdf").good());
+}
+
 }  // namespace
 }  // namespace pkm::testing

@@ -107,9 +107,10 @@ TEST(CliDynamics, RejectsInvalidArguments) {
   const auto away = pkmopt({"dynamics", "3crr-r-cru", "--at", "x=2,y=0.17,z=0.22,phi=0", "--json"});
   EXPECT_EQ(away.exit_code, 1);
   EXPECT_TRUE(away.json()["Mq"].is_null());
-  EXPECT_EQ(pkmopt({"dynamics", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=0", "--reactions"}).err,
-            "pkmopt: --reactions: mechanism 4ppa-2par has no model of the forces in its joints: limb sliders has drive "
-            "= \"formula\", so its links are unknown\n");
+  EXPECT_EQ(
+      pkmopt({"dynamics", PKM_EXPERIMENTS "/mechanisms/par4.toml", "--at", "x=0,y=0,z=-0.7,phi=0", "--reactions"}).err,
+      "pkmopt: --reactions: mechanism par4 has no model of the forces in its joints: limb arm1 ends at `end`, but "
+      "the body there is unknown; give end_on = \"platform\" or the name of a [[body]]\n");
 }
 
 TEST(CliCoupling, GoldenStatisticsAndTheirTable) {

@@ -242,9 +242,63 @@ TEST_F(ExportProgram, AnyDesignOfAStudyCanBeSelected) {
   EXPECT_EQ(run({"export", "study.h5", "--generation", "9", "--individual", "1", "--stl", "."}), 2);
   EXPECT_THAT(output_, HasSubstr("--generation: found 9; expected a generation of stage 1, 0 to 3"));
   EXPECT_EQ(run({"export", "study.h5", "--baseline", "--csv", "t"}), 2);
-  EXPECT_THAT(output_, HasSubstr("--baseline: selects a design for --vtk or --stl"));
+  EXPECT_THAT(output_, HasSubstr("--baseline: selects a design for --vtk, --stl, --urdf, --sdf or --mjcf"));
   EXPECT_EQ(run({"export", "study.h5"}), 2);
-  EXPECT_THAT(output_, HasSubstr("export: found no output; expected at least one of --vtk, --csv, --stl"));
+  EXPECT_THAT(output_,
+              HasSubstr("export: found no output; expected at least one of --vtk, --csv, --stl, --urdf, --sdf, "
+                        "--mjcf"));
+}
+
+TEST_F(ExportProgram, ModelsForSimulationAreThoseOfTheDesign) {
+  spill("delta.toml", "[mechanism]\nfile = \"" PKM_EXPERIMENTS
+                      "/mechanisms/rotary-delta.toml\"\n"
+                      R"([variables]
+l_b = { min = "450 mm", max = "600 mm" }
+[workspace]
+method = "voxels"
+cells = { x = 6, y = 6, z = 6 }
+[baseline]
+l_b = "512 mm"
+[[drive_train]]
+joint = "all"
+gear = 10
+rotor_inertia = "1e-4 kg m^2"
+viscous = "0.25 N m s/rad"
+peak_force = "70 N m"
+[[objective]]
+type = "workspace-volume"
+[[stage]]
+optimiser = "ga"
+population = 4
+generations = 1
+)");
+  ASSERT_EQ(run({"run", "delta.toml", "--output", "study.h5", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"export", "study.h5", "--baseline", "-o", "m.urdf", "-o", "m.sdf", "-o", "m.xml"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("model of the baseline\nwrote m.urdf\nwrote m.yaml\nwrote m.sdf\nwrote m.xml\n"));
+  EXPECT_THAT(slurp("m.xml"), HasSubstr("<!-- rotary-delta, the baseline of study delta. Units are"));
+  EXPECT_THAT(slurp("m.xml"), HasSubstr("armature=\"0.01\" damping=\"0.25\""));
+  EXPECT_THAT(slurp("m.xml"), HasSubstr("ctrlrange=\"-70 70\""));
+  EXPECT_THAT(slurp("m.urdf"), HasSubstr("effort=\"70\""));
+  // pose writes the same model for the same pose and parameters
+  ASSERT_EQ(run({"export", "study.h5", "--baseline", "--at", "x=0,y=0.1,z=-0.45", "--mjcf", "a.xml"}), 0) << output_;
+  ASSERT_EQ(run({"pose", "--from", "study.h5", "--baseline", "--at", "x=0,y=0.1,z=-0.45", "--mjcf", "b.xml"}), 0)
+      << output_;
+  const auto body = [&](const std::string& name) {
+    const std::string text = slurp(name);
+    return text.substr(text.find("<compiler"));
+  };
+  EXPECT_EQ(body("a.xml"), body("b.xml"));
+  EXPECT_NE(body("a.xml"), body("m.xml"));  // another reference pose
+
+  EXPECT_EQ(run({"export", "study.h5", "--baseline", "--mjcf", "a.xml"}), 1);
+  EXPECT_THAT(output_, HasSubstr("a.xml exists already"));
+  EXPECT_EQ(run({"export", "study.h5", "--csv", "t", "--at", "x=0,y=0,z=-0.45"}), 2);
+  EXPECT_THAT(output_, HasSubstr("--at: is the reference pose of --urdf, --sdf or --mjcf, none of which is given"));
+  EXPECT_EQ(run({"export", "study.h5", "--sdf", "c.sdf", "--at", "x=0,y=0,z=-4"}), 2);
+  EXPECT_THAT(output_,
+              HasSubstr("--sdf: mechanism rotary-delta has no model for simulation: its reference pose does not "
+                        "assemble: "));
+  EXPECT_FALSE(fs::exists(path("c.sdf")));
 }
 
 TEST_F(ExportProgram, OverwritesOnlyWithForce) {

@@ -171,13 +171,13 @@ TEST(CliJointForces, RejectsUnknownJointsAndMechanismsWithoutAModel) {
   EXPECT_THAT(unknown.err, ::testing::StartsWith("pkmopt: --joint: found the unknown name 'arm1.D'; expected one of "
                                                  "arm1.A, arm1.C 1, arm1.B 1, arm1.C 2, arm1.B 2, arm2.A, "));
   EXPECT_THAT(unknown.err, HasSubstr("; did you mean 'arm1.A'?"));
-  folder.write("m.toml",
-               "type = \"oscillation\"\nx = 0.25\ny = 0.85\nz = -0.8\ntheta = 0\namplitude = 0.01\nperiod = 1\n");
-  const auto trajectory = pkmopt({"trajectory", "4ppa-2par", "--motion", "m.toml", "--reactions"}, folder.path());
-  const auto single = pkmopt({"dynamics", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=0", "--reactions"});
+  folder.write("m.toml", "type = \"oscillation\"\nx = 0\ny = 0\nz = -0.7\nphi = 0\namplitude = 0.01\nperiod = 1\n");
+  const std::string par4 = PKM_EXPERIMENTS "/mechanisms/par4.toml";
+  const auto trajectory = pkmopt({"trajectory", par4, "--motion", "m.toml", "--reactions"}, folder.path());
+  const auto single = pkmopt({"dynamics", par4, "--at", "x=0,y=0,z=-0.7,phi=0", "--reactions"});
   EXPECT_EQ(trajectory.exit_code, 2);
   EXPECT_EQ(trajectory.err, single.err);
-  EXPECT_THAT(single.err, HasSubstr("mechanism 4ppa-2par has no model of the forces in its joints: limb sliders"));
+  EXPECT_THAT(single.err, HasSubstr("mechanism par4 has no model of the forces in its joints: limb arm1"));
 }
 
 }  // namespace

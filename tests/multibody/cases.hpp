@@ -23,9 +23,9 @@ struct MultibodyCase {
 inline void PrintTo(const MultibodyCase& tested, std::ostream* out) { *out << tested.name; }
 
 inline const std::vector<MultibodyCase>& multibody_cases() {
-  static const std::vector<MultibodyCase> list = {{"rotary-delta"}, {"linear-delta"}, {"orthoglide"},
-                                                  {"gough"},        {"3-rpr"},        {"3-rrr"},
-                                                  {"3crr-r-cru"},   {"quadrupteron"}, {"five-bar", false}};
+  static const std::vector<MultibodyCase> list = {
+      {"rotary-delta"}, {"linear-delta"}, {"orthoglide"},   {"gough"},     {"3-rpr"},
+      {"3-rrr"},        {"3crr-r-cru"},   {"quadrupteron"}, {"4ppa-2par"}, {"five-bar", false}};
   return list;
 }
 

@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 using Vec = std::array<double, 3>;
 
 std::vector<std::string> with_reactions() {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {"4ppa-2par"};
   for (const std::string& name : test::mechanism_files())
     if (test::described(name)->reactions()) names.push_back(name);
   return names;
@@ -208,7 +208,7 @@ TEST(DescribedReactions, FilesThatDoNotSayEnoughGetASentence) {
     EXPECT_EQ(mechanism.reactions(), nullptr);
     return mechanism.why_no_reactions();
   };
-  EXPECT_EQ(why(*test::described("4ppa-2par")), "limb sliders has drive = \"formula\", so its links are unknown");
+  EXPECT_EQ(why(*test::described("2t1r-p-hybrid")), "limb limbA has drive = \"formula\", so its links are unknown");
   EXPECT_THAT(
       why(*test::described("par4")),
       HasSubstr("limb arm1 ends at `end`, but the body there is unknown; give end_on = \"platform\" or the name"));
@@ -240,8 +240,35 @@ TEST(DescribedReactions, JointsThatCannotBeAreRefused) {
                       "[[joint]]\nname = \"j\"\nbodies = [\"platform\", \"platform\"]\nat = [\"x\", \"y\", \"z\"]\n"
                       "about = [0, 0, 1]\n[[design]]"),
               HasSubstr("joint[1].bodies[2]: found \"platform\"; expected a body other than the first"));
+  EXPECT_THAT(message("\\[\\[design\\]\\]",
+                      "[[joint]]\nname = \"j\"\nbodies = [\"base\", \"platform\"]\nat = [\"x\", \"y\", \"z\"]\n"
+                      "about = [0, 0, 1]\n[[design]]"),
+              HasSubstr("joint[1].bodies[1]: found \"base\"; expected a body; the base may be the second one"));
   EXPECT_THAT(message("spacing = \"60 mm\"", "spacing = 0"),
               HasSubstr("limb[1].pair.spacing: found 0; expected a number > 0 m"));
+}
+
+TEST(DescribedReactions, JointsOfFormulasAreDrives) {
+  const auto message = [](const std::string& from, const std::string& to) {
+    try {
+      return rewritten("4ppa-2par", from, to)->why_no_reactions();
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(test::described("4ppa-2par")->why_no_reactions(), "");
+  EXPECT_THAT(message("drive  = \"q2\"\n", "drive  = \"q1\"\n"),
+              HasSubstr("joint[6].drive: another joint has the drive q1 already"));
+  EXPECT_THAT(message("drive  = \"q2\"\n", "drive  = \"q5\"\n"),
+              HasSubstr("found \"q5\"; expected one of q1, q2, q3, q4"));
+  EXPECT_THAT(message("drive  = \"q2\"\n", ""),
+              HasSubstr("joint[6].along: a joint with `along`, a slide, needs `drive`"));
+  EXPECT_THAT(message("along  = ([^\n]*\ndrive  = \"q2\"\n)", "about  = $1"),
+              HasSubstr("joint[6].drive: the joint q2 has the unit m, so give `along` instead of `about`"));
+  EXPECT_THAT(message("(along  = [^\n]*\ndrive  = \"q2\"\n)", "about = [1, 0, 0]\n$1"),
+              HasSubstr("joint[6].along: give either `about` or `along`, not both"));
+  EXPECT_EQ(message("\\[\\[joint\\]\\]\nname   = \"s2\"[^\\[]*\\[[^\\[]*\\[[^\\[]*\\[[^\\[]*drive  = \"q2\"\n", ""),
+            "limb sliders has drive = \"formula\", so its links are unknown: no [[joint]] has drive = \"q2\"");
 }
 
 }  // namespace
