@@ -61,6 +61,7 @@ PAGES = {
     "experiments/README.md": "reference/studies",
     "experiments/README.md#certified-bounds": "theory/certain",
     "experiments/README.md#clearance": "theory/clearance#clearance-of-links",
+    "experiments/README.md#models-for-simulation-programs": "reference/exports#models-for-simulation-programs",
     "experiments/README.md#motions": "reference/motions",
     "experiments/README.md#the-hybrid-robot": "theory/2t1r-p-hybrid#the-paper-and-this-program",
     "experiments/README.md#workspaces-and-tables-for-other-programs": "reference/exports",

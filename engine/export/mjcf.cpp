@@ -1,4 +1,6 @@
 // A multibody model as MJCF.
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 #include "engine/export/multibody_files.hpp"
@@ -11,7 +13,6 @@ using Eigen::Vector3d;
 using Type = MultibodyModel::JointType;
 
 std::string mjcf_joint(const MultibodyModel::Joint& joint) {
-  const std::string space(2, ' ');
   if (joint.type == Type::fixed) return "";
   if (joint.type == Type::ball) return "<joint" + xml_attribute("name", joint.name) + " type=\"ball\"/>";
   std::string text;

@@ -5,16 +5,14 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "engine/mechanism/multibody_model.hpp"
 
 namespace pkm {
 
-/// @param title  of all files: a phrase that a comment begins with
-
 /// URDF: the spanning tree as links and joints. Each closure is an element <constraint>, as proposed for URDF
 /// (https://github.com/ros/urdfdom/pull/264), which other programs ignore.
+/// @param title  a phrase with which the comments begin, here and below
 std::string urdf_text(const MultibodyModel& model, const std::string& title);
 /// The loop closures and the reference pose of the URDF file as YAML, for programs that ignore <constraint>.
 std::string loop_closures_yaml(const MultibodyModel& model, const std::string& urdf_file, const std::string& title);

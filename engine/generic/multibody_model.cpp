@@ -80,6 +80,7 @@ class MultibodyBuilder {
     for (std::size_t i = 0; i < of_.solids.size(); ++i) add_solid(i, system.bodies[i], built);
     for (const JointNodes& joint : of_.joints) add_joint(joint, built);
     check_motions();
+    check_drives();
     check_mobility(built);
     built.platform = 1 + static_cast<std::size_t>(std::ranges::find(of_.solids, true, &SolidNodes::with_platform) -
                                                   of_.solids.begin());
@@ -313,6 +314,25 @@ class MultibodyBuilder {
             !is_carried(joint.point, motions_[body]))
           throw std::invalid_argument("by the formulas of the file, the joint " + joint.name + " does not move with " +
                                       (body ? of_.solids[body - 1].name : "the base"));
+    }
+  }
+
+  /// Refuses drives that do not move as their joint, such as one with the opposite direction.
+  void check_drives() const {
+    for (const Connection& joint : connections_) {
+      if (!joint.drive) continue;
+      const BodyMotion &on = motions_[joint.on], &from = motions_[joint.from];
+      for (std::size_t j = 0; j < rates_.size(); ++j) {
+        const auto v = [&](const BodyMotion& body) -> Vector3d {
+          return body.v[j] + body.omega[j].cross(joint.point - body.point);
+        };
+        const Vector3d relative = joint.type == Type::prismatic ? v(on) - v(from) : on.omega[j] - from.omega[j];
+        const double expected = rates_[j].at(model_.joints[joint.drive->joint]).d;
+        if (std::abs(joint.axes[0].dot(relative) - expected) > kSameMotion * std::max(1.0, std::abs(expected)))
+          throw std::invalid_argument("by the formulas of the file, the drive " + joint.name +
+                                      " does not move as its joint; the positive direction is that of the first body " +
+                                      "relative to the second");
+      }
     }
   }
 

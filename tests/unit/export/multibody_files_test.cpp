@@ -12,7 +12,7 @@ namespace pkm {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
-using testing::HasSubstr, testing::Not;
+using ::testing::HasSubstr, ::testing::Not;
 using Type = MultibodyModel::JointType;
 
 /// A crank with a thin rod on a universal joint, whose end is closed to the base by a joint of some type.

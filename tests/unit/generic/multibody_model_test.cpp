@@ -8,7 +8,7 @@
 namespace pkm::generic {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using Type = MultibodyModel::JointType;
 
 std::size_t count(const std::vector<MultibodyModel::Joint>& joints, Type type) {
@@ -76,6 +76,13 @@ TEST(MultibodyModel, RefusesWhatIsNotDescribed) {
   EXPECT_EQ(refusal(delta, "mass = \"0.25 kg\"", "mass = \"0.25 kg\"", {0, 0, -0.45}), "");
   EXPECT_THAT(refusal(delta, "pair  ", "#pair", {0, 0, -0.45}), HasSubstr("give `pair` for rods in pairs"));
   EXPECT_THAT(refusal(delta, "R  ", "R  ", {0, 0, -4.5}), HasSubstr("reference pose does not assemble: "));
+  const std::string sliders = test::text_of_mechanism("4ppa-2par");
+  EXPECT_THAT(refusal(sliders, "along  = [0, 1, 0]\ndrive  = \"q2\"", "along  = [0, -1, 0]\ndrive  = \"q2\"",
+                      {0.25, 0.85, -0.8, 0.5}),
+              HasSubstr("the drive q2 does not move as its joint"));
+  EXPECT_THAT(refusal(sliders, "at     = [0, \"y_1\", \"c_1 - d_d\"]", "at     = [0, \"y_1\", \"z - d_d\"]",
+                      {0.25, 0.85, -0.8, 0.5}),
+              HasSubstr("the joint c12 does not move with "));
   EXPECT_EQ(
       why_no_multibody_model(*test::described("par4")),
       "limb arm1 ends at `end`, but the body there is unknown; give end_on = \"platform\" or the name of a [[body]]");

@@ -63,7 +63,7 @@ TEST(ReactionsAlong, DrivesDoTheWorkThatTheMotionTakes) {
   std::vector<const Mechanism*> with_reactions;
   for (const auto& mechanism : all_mechanisms())
     if (mechanism->reactions()) with_reactions.push_back(mechanism.get().get());
-  ASSERT_EQ(with_reactions.size(), 2u) << "(3CRR/R)&CRU and Quadrupteron";
+  ASSERT_EQ(with_reactions.size(), 3u) << "4PPa-2PaR, (3CRR/R)&CRU and Quadrupteron";
   with_reactions.push_back(test::described("rotary-delta").get());
   for (const Mechanism* const mechanism : with_reactions) {
     SCOPED_TRACE(mechanism->info().name);
