@@ -8,7 +8,7 @@ namespace {
 
 TEST_F(GaProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
   write_toml(50);
-  kill_at_random(8, 20);
+  kill_at_random(4, 20);
 }
 
 TEST_F(GaProgram, AChainOfKillsEndsTheSame) {
