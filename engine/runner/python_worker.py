@@ -22,6 +22,7 @@ import json
 import math
 import struct
 import sys
+import threading
 import time
 import traceback
 
@@ -31,7 +32,10 @@ CONNECTION = 3
 def receive_bytes(size):
     data = bytearray()
     while len(data) < size:
-        part = os.read(CONNECTION, size - len(data))
+        try:
+            part = os.read(CONNECTION, size - len(data))
+        except ConnectionError:
+            part = b""
         if not part:
             os._exit(0)  # pkmopt has ended
         data += part
@@ -44,8 +48,18 @@ def receive():
 
 def send(data):
     data = memoryview(struct.pack("=Q", len(data)) + data)
-    while data:
-        data = data[os.write(CONNECTION, data) :]
+    try:
+        while data:
+            data = data[os.write(CONNECTION, data) :]
+    except ConnectionError:
+        os._exit(0)
+
+
+def end_with(parent):
+    """Ends this process after pkmopt, even during a call."""
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(0)
 
 
 def describe(error):
@@ -88,6 +102,7 @@ def call(function, parameters):
 
 
 def main():
+    threading.Thread(target=end_with, args=(os.getppid(),), daemon=True).start()
     os.dup2(2, 1)  # what functions print does not mix with the output of pkmopt
     setup = json.loads(receive())
     sys.path.extend(setup["path"])

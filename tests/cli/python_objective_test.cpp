@@ -194,18 +194,39 @@ TEST_F(PythonObjective, SolversWithoutGradientsCallFunctionsFromConcurrentStarts
   EXPECT_EQ(first_difference(read("one.h5"), read("two.h5")), "");
 }
 
-TEST_F(PythonObjective, CtrlCEndsACallThatTakesLong) {
-  write("functions.py", std::string(kFunctions) + R"(
+constexpr const char* kEndless = R"(
 def endless(design):
     if design["a"] > 0.4:
+        with open("pid", "w") as file:
+            print(os.getpid(), file=file)
         while True:
             pass
     return design["a"]
-)");
+)";
+
+TEST_F(PythonObjective, WorkersEndWithTheProgramThatIsKilled) {
+  write("functions.py", std::string(kFunctions) + kEndless);
+  write("study.toml", study_of("functions.py:endless", "optimiser = \"sweep\"\npoints = 9\n"));
+  pid_t worker = 0;
+  {
+    ChildProcess child(command({"run", "study.toml", "-o", "endless.h5", "--quiet", "--workers", "1"}), folder_);
+    while (!(std::ifstream(path("pid")) >> worker)) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    child.signal(SIGKILL);
+    child.wait();
+  }
+  const auto is_running = [&] {  // a process that has ended, but has not been waited for, has no command line
+    std::ifstream file("/proc/" + std::to_string(worker) + "/cmdline");
+    return file.peek() != std::ifstream::traits_type::eof();
+  };
+  for (int i = 0; i < 500 && is_running(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(is_running()) << worker;
+}
+
+TEST_F(PythonObjective, CtrlCEndsACallThatTakesLong) {
+  write("functions.py", std::string(kFunctions) + kEndless);
   write("study.toml", study_of("functions.py:endless", "optimiser = \"sweep\"\npoints = 9\n"));
   ChildProcess child(command({"run", "study.toml", "-o", "endless.h5", "--quiet", "--workers", "1"}), folder_);
-  while (!fs::exists(path("endless.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  while (!fs::exists(path("pid"))) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   child.signal(SIGINT);
   EXPECT_EQ(child.wait(), 3) << child.output();
   const StudyContents contents = read("endless.h5");

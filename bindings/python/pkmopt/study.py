@@ -456,14 +456,13 @@ def resume(
     Functions in Python are those of ``functions``, called in this process, or else called from their files by
     ``workers`` processes. They must be the same as when the study was started.
     """
-    with Results(path) as results:
-        study = results.study
-        calls, parameters = study.info["functions"], [p["name"] for p in study.info["parameters"]]
     given = _functions.by_name(functions)
     connected = None
     if given:
-        found = {call: given[call] if call in given else _functions.load(call, "") for call in calls}
-        connected = _functions.Connected(found, parameters)
+        with Results(path) as results:
+            info = results.study.info
+        found = {call: given[call] if call in given else _functions.load(call, "") for call in info["functions"]}
+        connected = _functions.Connected(found, [p["name"] for p in info["parameters"]])
     limits = [ctypes.c_int64(generations), ctypes.c_int64(evaluations)]
     outcome = _run(
         "pkmopt_study_resume",
