@@ -115,7 +115,7 @@ void columns(benchmark::State& state) {
 // The other mechanisms: nominal designs.
 
 Case nominal_case(const std::string& name, const std::vector<FixedCoordinate>& fixed_coordinates,
-             const FieldRequest& request = {}) {
+                  const FieldRequest& request = {}) {
   const Mechanism& m = mechanism_named(name);
   Case benchmark_case{m, {}, {}, request};
   for (const Parameter& p : m.info().parameters) benchmark_case.parameters.push_back(p.nominal);
@@ -143,9 +143,10 @@ void hybrid_conditioning(benchmark::State& state) {
                           }) +
                           Operations{11, 17, 0, 3};  // by hand: k, N1, N2, and the three n with their square roots
   constexpr Operations kColumn{21, 14, 0, 2};
-  compare_with_bound(state, nominal_case("2t1r-p-hybrid", {}, conditioning_too()), [&](const WorkspaceResult<double>& s) {
-    return 34 * 60 * kColumn + static_cast<std::int64_t>(s.weight.size()) * pose;
-  });
+  compare_with_bound(state, nominal_case("2t1r-p-hybrid", {}, conditioning_too()),
+                     [&](const WorkspaceResult<double>& s) {
+                       return 34 * 60 * kColumn + static_cast<std::int64_t>(s.weight.size()) * pose;
+                     });
 }
 
 // Counted by hand from crr_cru_rings_kernel.cpp: 82 operations for each line of voxels and ring, of which 2 are square
