@@ -1,4 +1,4 @@
-classdef Design < handle
+classdef Design < pkmopt.internal.LibraryObject
 % DESIGN  A mechanism with parameters, a working mode and limits, made by m.design(...).
 %
 % Poses are matrices with one row per pose and one column per coordinate, joint values one column per joint. Lengths
@@ -17,9 +17,6 @@ classdef Design < handle
     parameters
     mode
     limits
-  end
-  properties (SetAccess = private, Hidden, Transient)
-    id
   end
 
   methods
@@ -170,12 +167,6 @@ classdef Design < handle
     % Triangles are counter-clockwise seen from outside.
       [study, threads] = self.workspaceStudy(varargin);
       [vertices, triangles] = pkmopt_mex('study_surface', study.id, self.workspaceParameters(study), threads);
-    end
-
-    function delete(self)
-      if ~isempty(self.id)
-        pkmopt_mex('free', self.id);
-      end
     end
 
     function disp(self)

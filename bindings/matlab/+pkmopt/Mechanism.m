@@ -1,4 +1,4 @@
-classdef Mechanism < handle
+classdef Mechanism < pkmopt.internal.LibraryObject
 % MECHANISM  A mechanism: built in, or from a mechanism file.
 %   m = pkmopt.Mechanism('4ppa-2par')          built in; see pkmopt.mechanismNames
 %   m = pkmopt.Mechanism('rotary-delta.toml')  from a file, whose name ends with .toml
@@ -24,7 +24,6 @@ classdef Mechanism < handle
     limits
   end
   properties (SetAccess = private, Hidden, Transient)
-    id
     isBuiltIn
     fileName
   end
@@ -110,12 +109,6 @@ classdef Mechanism < handle
     function toml = text(self)
     % TEXT  The text of the mechanism file.
       toml = pkmopt_mex('mechanism_text', self.id);
-    end
-
-    function delete(self)
-      if ~isempty(self.id)
-        pkmopt_mex('free', self.id);
-      end
     end
 
     function disp(self)

@@ -1,4 +1,4 @@
-classdef Results < handle
+classdef Results < pkmopt.internal.LibraryObject
 % RESULTS  The contents of a study file (HDF5).
 %   r = pkmopt.Results('study.h5')
 %
@@ -25,9 +25,6 @@ classdef Results < handle
     constraints
     outputs
     outcome
-  end
-  properties (SetAccess = private, Hidden, Transient)
-    id
   end
 
   methods
@@ -112,12 +109,6 @@ classdef Results < handle
         overwrite = false;
       end
       pkmopt_mex('report', self.file, pkmopt.internal.text(page, 'page'), overwrite);
-    end
-
-    function delete(self)
-      if ~isempty(self.id)
-        pkmopt_mex('free', self.id);
-      end
     end
 
     function disp(self)

@@ -1,4 +1,4 @@
-classdef Study < handle
+classdef Study < pkmopt.internal.LibraryObject
 % STUDY  A design problem and its optimisers, from a study file in TOML.
 %   s = pkmopt.Study('study.toml')
 %   s = pkmopt.Study('study.toml', {'set r=50 mm', 'limit beta_max=50 deg', 'cells x=40'})   as --set, --limit, --cells
@@ -28,9 +28,6 @@ classdef Study < handle
     maximise
     baseline
     warnings
-  end
-  properties (SetAccess = private, Hidden, Transient)
-    id
   end
 
   methods
@@ -122,12 +119,6 @@ classdef Study < handle
     function toml = text(self)
     % TEXT  The text of the study file.
       toml = self.info.text;
-    end
-
-    function delete(self)
-      if ~isempty(self.id)
-        pkmopt_mex('free', self.id);
-      end
     end
 
     function disp(self)
