@@ -18,7 +18,7 @@ namespace pkm {
 void start_python_workers(const Study& study, const std::vector<std::string>& folders,
                           const std::vector<FunctionRecord>& recorded, const PythonOptions& options, int threads);
 
-/// The folder of a file, to look for functions.
+/// The parent folder of a file; "": the current folder.
 std::string folder_of(const std::string& file);
 
 /// The connected functions of a study, for its file. Throws std::logic_error if they are not connected.

@@ -219,6 +219,7 @@ void evaluate_table(const DesignProblem& problem, const Target& target, const Ev
 
 /// Starts the processes for the Python functions of the study. Those of a study file must be the recorded ones.
 void start_python_functions(const Study& study, const EvaluateArguments& arguments) {
+  if (study.problem->external_calls().empty()) return;
   if (arguments.from.empty()) return start_python(study, arguments.target, arguments.workers, arguments.threads);
   connect_functions(study, read_study(arguments.from), arguments.from,
                     {.threads = arguments.threads, .python = {.workers = arguments.workers}});
