@@ -34,6 +34,7 @@ Json study_data(const PageStudy& page) {
   add_panel(study, "problem", problem_data(page));
   add_panel(study, "summary", summary_data(page));
   add_panel(study, "convergence", convergence_data(contents));
+  add_panel(study, "sweeps", sweeps_data(contents));
   add_panel(study, "populations", populations_data(contents));
   add_panel(study, "front", front_data(page));
   if (page.study)

@@ -20,6 +20,8 @@ Json summary_data(const PageStudy& page);
 Json convergence_data(const StudyContents& contents);
 /// The designs of each generation, or of each multistart run, subsampled.
 Json populations_data(const StudyContents& contents);
+/// All designs of the stages that are parameter sweeps.
+Json sweeps_data(const StudyContents& contents);
 /// The Pareto fronts with knees and compromise, and the data of the panels below for some of their designs.
 Json front_data(const PageStudy& page);
 

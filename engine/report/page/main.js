@@ -9,6 +9,7 @@ const panels = [
   { id: "motions", title: "Motions", show: showMotions },
   { id: "coupling", title: "Coupling", show: showCoupling },
   { id: "convergence", title: "Convergence", show: showConvergence },
+  { id: "sweeps", title: "Sweeps", show: showSweeps },
   { id: "populations", title: "Populations", show: showPopulations },
 ];
 

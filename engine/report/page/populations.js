@@ -1,8 +1,7 @@
 // Panel "Populations": the designs of each generation or solver run in a scatter plot and in parallel coordinates.
 
-/** Columns of the table of designs in displayed units: variables, objectives, margins, outputs. */
-function populationColumns(study) {
-  const { variables, objectives, margins, outputs } = study.problem;
+/** Packed columns of a table of designs in displayed units, with their names: variables, objectives, margins, outputs. */
+function designColumns({ variables, objectives, margins, outputs }, packed) {
   const named = [
     ...variables.map((v) => ({ ...v, kind: "variable" })),
     ...objectives.map((o) => ({ ...o, kind: "objective" })),
@@ -18,9 +17,10 @@ function populationColumns(study) {
     return {
       ...column,
       unit,
+      scale,
       lower: toDisplayed(column.lower),
       upper: toDisplayed(column.upper),
-      values: Array.from(unpack(study.populations.columns[i]), (value) => value * scale),
+      values: Array.from(unpack(packed[i]), (value) => value * scale),
     };
   });
 }
@@ -76,7 +76,7 @@ function widened([low, high]) {
 }
 
 function showPopulations(study, panel) {
-  const columns = populationColumns(study),
+  const columns = designColumns(study.problem, study.populations.columns),
     steps = populationSteps(study);
   const status = unpack(study.populations.status),
     evaluation = unpack(study.populations.evaluation);
