@@ -139,6 +139,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   read_drive_trains(root, draft);
   read_variables(root, draft);
   read_baseline(root, draft);
+  override_starts(draft);
   read_workspace(root, draft);
   read_pose_constraints(root, draft);
   read_obstacles(root, draft);
@@ -156,6 +157,14 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   warn_of_targets(draft.study);
   warn_of_empty_workspace(draft.study);
   return std::move(draft.study);
+}
+
+/// The mechanism file of a study that was read before.
+FindDescription known_description(const std::optional<SourceText>& description) {
+  return [&description](const ConfigValue& file) {
+    if (!description) throw file.refusal("the contents of the mechanism file are not available here");
+    return *description;
+  };
 }
 
 /// Reads the mechanism file that a study names, relative to the folder of the study.
@@ -186,11 +195,13 @@ std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
                       const std::optional<SourceText>& description, const StudyChanges& changes,
                       ImpliedConstraints implied) {
-  const auto known = [&](const ConfigValue& file) {
-    if (!description) throw file.refusal("the contents of the mechanism file are not available here");
-    return *description;
-  };
-  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, known, changes, implied);
+  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, known_description(description),
+                       changes, implied);
+}
+
+Study read_study_document(const TomlValue& document, const std::string& file_name, const Catalogues& catalogues,
+                          const std::optional<SourceText>& description, const StudyChanges& changes) {
+  return read_document(document, {"", file_name}, catalogues, known_description(description), changes);
 }
 
 Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes) {

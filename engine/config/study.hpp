@@ -67,6 +67,7 @@ struct Study {
   /// Mechanism, parameters, variables and survey plan are in problem->parts().
   std::shared_ptr<const DesignProblem> problem;
   std::optional<std::vector<double>> baseline;  ///< every parameter of the mechanism
+  std::vector<StartDesign> starts;              ///< designs of another study for the first stage, best first
   std::vector<Stage> stages;                    ///< may be empty: then the study can be evaluated, but not run
   std::optional<double> round;                  ///< [final]: step [SI] to which the best design is rounded
   std::string round_unit = "1";                 ///< the unit that all variables share, else "1"
@@ -94,6 +95,10 @@ enum class ImpliedConstraints { added, left_out };
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
                       const std::optional<SourceText>& description = {}, const StudyChanges& changes = {},
                       ImpliedConstraints implied = ImpliedConstraints::added);
+
+/// Builds a study from a document that was composed from others. `file_name` is named in messages. Throws ConfigError.
+Study read_study_document(const TomlValue& document, const std::string& file_name, const Catalogues& catalogues,
+                          const std::optional<SourceText>& description, const StudyChanges& changes);
 
 /// Reads the file at `path`, and the mechanism file that it may name, and builds the study. Throws ConfigError, also
 /// when a file cannot be read.

@@ -6,6 +6,8 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/config/study_draft.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/core/printable.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
@@ -15,16 +17,30 @@ struct Change {
   const char* key;
   std::vector<std::string> StudyChanges::*lists;
 };
-constexpr std::array<Change, 3> kChanges = {
-    {{"set", &StudyChanges::set}, {"limit", &StudyChanges::limit}, {"cells", &StudyChanges::cells}}};
+constexpr std::array<Change, 5> kChanges = {{{"set", &StudyChanges::set},
+                                             {"limit", &StudyChanges::limit},
+                                             {"cells", &StudyChanges::cells},
+                                             {"start_from", &StudyChanges::start_from},
+                                             {"start", &StudyChanges::start}}};
+/// A TOML string. Control characters, which are not allowed in it, become visible.
+std::string toml_text(const std::string& word) {
+  std::string text = "\"";
+  for (const char c : printable(word)) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + '"';
+}
+
 constexpr const char* kHeading = "\n# from the command line\n[[override]]\n";
 
 }  // namespace
 
 std::vector<std::string> StudyChanges::arguments() const {
   std::vector<std::string> words;
-  for (const auto& [key, lists] : kChanges)
-    for (const std::string& list : this->*lists) words.insert(words.end(), {std::string("--") + key, list});
+  for (const auto& [option, lists] :
+       {std::pair("--set", &set), {"--limit", &limit}, {"--cells", &cells}, {"--start-from", &start_from}})
+    for (const std::string& list : *lists) words.insert(words.end(), {option, list});
   return words;
 }
 
@@ -32,7 +48,7 @@ std::string with_changes(const std::string& text, const StudyChanges& changes) {
   std::string all = text + kHeading;
   for (const auto& [key, lists] : kChanges)
     if (const auto& words = changes.*lists; !words.empty())
-      all += std::string(key) + " = [\"" + join(words, "\", \"") + "\"]\n";
+      all += std::string(key) + " = [" + join_texts(words, toml_text) + "]\n";
   return all;
 }
 
@@ -91,6 +107,19 @@ void override_limits(StudyDraft& draft) {
         limits.derived[i] = false;
         draft.study.limit_origins[i] = "--limit";
       }
+  }
+}
+
+void override_starts(StudyDraft& draft) {
+  std::vector<Assignable> variables;
+  for (const Variable& v : draft.parts.space.variables()) variables.push_back({v.name, v.unit, v.lower, v.upper});
+  std::vector<StartDesign>& starts = draft.study.starts;
+  for (const StudyChanges& changes : draft.changes) {
+    if (changes.start.empty()) continue;
+    starts.clear();
+    for (const std::string& design : changes.start)
+      starts.push_back({parse_all_assignments({design}, "start of [[override]]", variables),
+                        "design " + std::to_string(starts.size() + 1) + " of " + join(changes.start_from)});
   }
 }
 

@@ -13,9 +13,11 @@ namespace pkm {
 
 /// Values of the command line's options: `name=value`, several separated by commas.
 struct StudyChanges {
-  std::vector<std::string> set;    ///< fixed parameters
-  std::vector<std::string> limit;  ///< thresholds of poses
-  std::vector<std::string> cells;  ///< numbers of voxels; or one number for all coordinates
+  std::vector<std::string> set;         ///< fixed parameters
+  std::vector<std::string> limit;       ///< thresholds of poses
+  std::vector<std::string> cells;       ///< numbers of voxels; or one number for all coordinates
+  std::vector<std::string> start_from;  ///< name of the study file whose designs the first stage starts from
+  std::vector<std::string> start;       ///< these designs, one list each, see engine/runner/start_from.hpp
 
   /// Parameters of single limbs, "arm2.l_b", that the mechanism has to have besides those that the study names. They do
   /// not change the study.
@@ -27,7 +29,7 @@ struct StudyChanges {
   std::vector<std::pair<std::string, double>> recorded_parameters;
   std::vector<Variable> recorded_variables;
 
-  bool empty() const { return set.empty() && limit.empty() && cells.empty(); }
+  bool empty() const { return set.empty() && limit.empty() && cells.empty() && start.empty(); }
   /// The changes as command-line arguments: "--set", "L0=2", "--cells", "40".
   std::vector<std::string> arguments() const;
 };

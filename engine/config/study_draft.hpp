@@ -32,6 +32,8 @@ void read_overrides(const ConfigValue& root, StudyDraft& draft);
 void override_parameters(const ConfigValue& root, StudyDraft& draft);
 /// Applies the overrides of limits.
 void override_limits(StudyDraft& draft);
+/// Reads the designs of another study at which the first stage starts.
+void override_starts(StudyDraft& draft);
 /// Reads [mechanism]: type or file, masses, fixed parameters.
 void read_mechanism(const ConfigValue& root, StudyDraft& draft);
 /// Reads the tables [[drive_train]]: gears, screws, rotors and losses between motors and joints, which become part of

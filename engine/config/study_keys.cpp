@@ -245,7 +245,9 @@ const TableSpec& override_table() {
       .header = "[[override]]",
       .meaning = "changes by the command line, appended to the text in the study file",
       .keys = {texts("set", "values of the option --set"), texts("limit", "values of the option --limit"),
-               texts("cells", "values of the option --cells")}};
+               texts("cells", "values of the option --cells"),
+               texts("start_from", "study file of the option --start-from"),
+               texts("start", "designs of this file, at which the first stage starts")}};
   return spec;
 }
 
@@ -266,6 +268,39 @@ const TableSpec& study_keys() {
                table_key("checkpoint", checkpoint_table()), table_key("final", final_table()),
                tables_key("override", override_table())},
       .noun = "table"};
+  return spec;
+}
+
+const TableSpec& task_keys() {
+  static const TableSpec task = {.header = "[task]",
+                                 .meaning = "name of the task",
+                                 .keys = {{.name = "name",
+                                           .kind = OptionKind::word,
+                                           .meaning = "name that is displayed; default: the stem of the file name"}}};
+  static const TableSpec position = {
+      .meaning = "position of the robot's base in the frame of the task",
+      .keys = {},
+      .named = {{.unit = kUnitOfEntry, .meaning = "value of the coordinate at the robot's origin"}},
+      .noun = "coordinate"};
+  static const TableSpec origins = {
+      .header = "[origin]",
+      .meaning = "positions of the robots' bases in the frame of the task; default: 0",
+      .keys = {},
+      .named = {{.kind = OptionKind::table, .meaning = "position of the robot of this name", .table = &position}},
+      .noun = "robot"};
+  static const TableSpec limits = [] {
+    TableSpec table = {
+        .header = "[workspace]", .meaning = "limits of poses that every robot has to satisfy", .keys = {}};
+    for (const OptionSpec& key : workspace_keys().keys)
+      if (key.name == "limits") table.keys.push_back(key);
+    return table;
+  }();
+  static const TableSpec spec = {.header = "",
+                                 .meaning = "task of several robots",
+                                 .keys = {table_key("task", task), table_key("origin", origins),
+                                          table_key("workspace", limits), tables_key("region", region_keys()),
+                                          tables_key("motion", motion_keys()), tables_key("output", output_table())},
+                                 .noun = "table"};
   return spec;
 }
 

@@ -14,16 +14,6 @@ namespace {
 /// Number of best evaluations among which basins are searched.
 constexpr std::size_t kMaxCandidates = 4000;
 
-/// The allowed design nearest to the baseline; without a baseline the centre of the bounds.
-std::vector<double> baseline_or_centre(const Study& study) {
-  const ProblemParts& parts = study.problem->parts();
-  std::vector<double> design;
-  for (std::size_t v = 0; v < parts.space.dimension(); ++v)
-    design.push_back(study.baseline ? parts.space.nearest(v, (*study.baseline)[parts.varies[v]])
-                                    : parts.space.from_unit(v, 0.5));
-  return design;
-}
-
 StartDesign best_so_far(const Study& study, const StudyContents& contents) {
   if (contents.best.row < 0)
     return {baseline_or_centre(study), study.baseline ? "the baseline" : "the middle of the ranges"};
@@ -34,18 +24,19 @@ StartDesign best_so_far(const Study& study, const StudyContents& contents) {
 /// Estimates basins of attraction: the evaluations that have no better evaluation in their neighbourhood, from best to
 /// worst. The neighbourhood is a box that extends by `radius` in each variable, relative to the variable's range.
 /// @param limit  maximum number of designs
-std::vector<StartDesign> basins(const Study& study, const StudyContents& contents, std::size_t limit, double radius) {
+std::vector<StartDesign> basins(const StudyContents& contents, std::size_t limit, double radius) {
   struct Candidate {
     RankKey rank;
     std::size_t stage;
     std::vector<double> unit;
   };
-  const Problem& problem = *study.problem;
+  const DesignSpace space(contents.problem.variables);
   std::vector<Candidate> candidates;
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const EvaluationTable& table = contents.stages[s].table;
     for (std::size_t row = 0; row < table.size(); ++row)
-      if (table.status[row] != Status::failed) candidates.push_back({ranked(problem.objectives(), table, row), s, {}});
+      if (table.status[row] != Status::failed)
+        candidates.push_back({ranked(contents.problem.objectives, table, row), s, {}});
   }
   const auto by_rank = [](const Candidate& a, const Candidate& b) {
     if (better(a.rank, b.rank) || better(b.rank, a.rank)) return better(a.rank, b.rank);
@@ -57,7 +48,7 @@ std::vector<StartDesign> basins(const Study& study, const StudyContents& content
   for (std::size_t i = 0; i < candidates.size() && found.size() < limit; ++i) {
     const auto design =
         contents.stages[candidates[i].stage].table.design(static_cast<std::size_t>(candidates[i].rank.row));
-    for (std::size_t v = 0; v < design.size(); ++v) candidates[i].unit.push_back(problem.space().to_unit(v, design[v]));
+    for (std::size_t v = 0; v < design.size(); ++v) candidates[i].unit.push_back(space.to_unit(v, design[v]));
     const auto is_near = [&](const Candidate& other) {
       for (std::size_t v = 0; v < design.size(); ++v)
         if (std::fabs(other.unit[v] - candidates[i].unit[v]) > radius) return false;
@@ -78,14 +69,14 @@ const StageRecord* stage_with_front(const StudyContents& contents) {
   return found == contents.stages.rend() ? nullptr : &*found;
 }
 
-/// @return at most `limit` points spread over the last front; the best design so far if there is no front
-std::vector<StartDesign> front_points(const Study& study, const StudyContents& contents, std::size_t limit) {
+/// @return at most `limit` points spread over the last front; none if there is no front
+std::vector<StartDesign> front_points(const StudyContents& contents, std::size_t limit) {
   const StageRecord* const stage = stage_with_front(contents);
-  if (!stage) return {best_so_far(study, contents)};
+  if (!stage) return {};
   const std::string number = std::to_string(stage - contents.stages.data() + 1);
   std::vector<StartDesign> starts;
   for (const std::size_t point :
-       select_representatives(scores_of(study.problem->objectives(), stage->table, stage->front->rows), limit)) {
+       select_representatives(scores_of(contents.problem.objectives, stage->table, stage->front->rows), limit)) {
     const auto design = stage->table.design(static_cast<std::size_t>(stage->front->rows[point]));
     starts.push_back(
         {{design.begin(), design.end()}, "point " + std::to_string(point + 1) + " of the front of stage " + number});
@@ -130,28 +121,50 @@ PreviousFront previous_front(const Study& study, const StudyContents& contents) 
 
 std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents) {
   const StartDesign first = best_so_far(study, contents);
-  if (contents.best.row < 0) return first_start_designs(study.problem->space(), stage, first);
+  if (contents.best.row < 0) return first_start_designs(study.problem->space(), stage, first, study.starts);
   if (!stage.entry->capabilities(stage.options).starts) return {first};
   const Options& options = stage.options;
   std::vector<StartDesign> starts;
   const std::string& start = options.word("start");
   if (start == "best-of-basins")
-    starts =
-        basins(study, contents, static_cast<std::size_t>(options.integer("starts")), options.number("basin_radius"));
+    starts = basins(contents, static_cast<std::size_t>(options.integer("starts")), options.number("basin_radius"));
   else if (start == "pareto")
-    starts = front_points(study, contents, static_cast<std::size_t>(options.integer("starts")));
-  else if (start != "none")
-    starts = {first};
+    starts = front_points(contents, static_cast<std::size_t>(options.integer("starts")));
+  if (starts.empty() && (start == "best" || start == "pareto")) starts = {first};
   add_given_designs(study.problem->space(), options, baseline_or_centre(study), starts);
   return starts;
 }
 
-std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Stage& stage, const StartDesign& first) {
+std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Stage& stage, const StartDesign& base,
+                                             const std::vector<StartDesign>& given) {
   const Capabilities can = stage.entry->capabilities(stage.options);
-  std::vector<StartDesign> starts;
-  if (can.starts ? stage.options.word("start") != "none" : can.min_objectives == 0) starts = {first};
-  if (can.starts) add_given_designs(space, stage.options, first.design, starts);
+  const Options& options = stage.options;
+  std::vector<StartDesign> starts = given;
+  if (can.starts && options.word("start") == "none")
+    starts.clear();
+  else if (starts.empty() && (can.starts || can.min_objectives == 0))
+    starts = {base};
+  if (can.starts) {
+    const bool several = options.word("start") == "best-of-basins";
+    starts.resize(std::min(starts.size(), several ? static_cast<std::size_t>(options.integer("starts")) : 1));
+    add_given_designs(space, options, base.design, starts);
+  }
   return starts;
+}
+
+std::vector<double> baseline_or_centre(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  std::vector<double> design;
+  for (std::size_t v = 0; v < parts.space.dimension(); ++v)
+    design.push_back(study.baseline ? parts.space.nearest(v, (*study.baseline)[parts.varies[v]])
+                                    : parts.space.from_unit(v, 0.5));
+  return design;
+}
+
+std::vector<StartDesign> distinct_best_designs(const StudyContents& contents, std::size_t limit) {
+  constexpr double kRadius = 0.02;
+  std::vector<StartDesign> designs = front_points(contents, limit);
+  return designs.empty() ? basins(contents, limit, kRadius) : designs;
 }
 
 }  // namespace pkm

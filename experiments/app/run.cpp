@@ -8,6 +8,7 @@
 #include "engine/core/stop.hpp"
 #include "engine/results/comparison.hpp"
 #include "engine/runner/records.hpp"
+#include "engine/runner/start_from.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/summary.hpp"
@@ -54,11 +55,32 @@ Unsupported refuse_different_study(const StudyContents& contents, const Study& s
   return {};
 }
 
+/// The study with designs of the study file `file` as starting points of its first stage.
+Study with_starts(const Study& study, const std::string& file, const RunArguments& arguments, const Session& session) {
+  expect_study_file(file, "run", session);
+  const StudyContents other = read_study(file);
+  const StartFrom found = start_from(study, other, file);
+  const std::string& mechanism = study.problem->parts().mechanism->info().name;
+  if (other.problem.mechanism != mechanism)
+    std::cerr << session.program << ": warning: " << file << " is a study of " << other.problem.mechanism << ", "
+              << study.file_name << " one of " << mechanism << '\n';
+  const std::size_t count = found.start.size();
+  std::cerr << study.name << ": starts from " << count << (count == 1 ? " design of " : " designs of ") << file;
+  if (found.moved > 0) std::cerr << ", of which " << found.moved << " moved to the nearest design within the bounds";
+  if (!found.missing.empty()) std::cerr << "; " << join(found.missing) << " not in it: as in the baseline";
+  std::cerr << '\n';
+  StudyChanges changes = arguments.changes;
+  changes.start_from = {file};
+  changes.start = found.start;
+  return load_study_toml(arguments.study, session.catalogues, changes);
+}
+
 void run(const RunArguments& arguments, Session& session) {
   expect_toml(arguments.study, "resume", session);
   expect_file(arguments.study, "a study in TOML", "new study", session);
   Study study = load_study_toml(arguments.study, session.catalogues, arguments.changes);
   require_stages(study, session.catalogues);
+  if (!arguments.start_from.empty()) study = with_starts(study, arguments.start_from, arguments, session);
   if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;
   check_outputs({output}, input_files(study), Existing::replaced);
@@ -119,6 +141,8 @@ void add_run(CLI::App& app, Session& session) {
              "Study file to write (default: output of [study], else the study's stem + .h5)");
   command.add_flag("--resume", arguments.resume, "Resume the study file if it exists");
   command.add_flag("--force", arguments.force, "Overwrite the study file if it exists")->excludes("--resume");
+  add_option(command, "--start-from OLD.h5", arguments.start_from,
+             "Start the first stage from the best designs of another study, whose objectives may differ");
   add_integer(command, "--seed N", arguments.seed, 0, std::numeric_limits<std::int64_t>::max(),
               "Seed to use instead of the study's");
   add_integer(command, "--seeds N", arguments.seeds, 1, 100'000,

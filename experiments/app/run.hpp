@@ -11,7 +11,7 @@
 namespace pkm {
 
 struct RunArguments {
-  std::string study, output;
+  std::string study, output, start_from;
   bool resume = false, force = false;
   std::optional<std::int64_t> seed;
   int seeds = 1;
