@@ -167,13 +167,14 @@ std::string text_of(const std::string& title, const TableSpec& root) {
   return schema.dump(1) + "\n";
 }
 
-/// The study's tables with the entries of the catalogues as variants.
+/// The tables of studies or tasks with the entries of the catalogues as variants.
 class StudyTables {
  public:
-  explicit StudyTables(const Catalogues& catalogues) : catalogues_(catalogues), root_(study_keys()) {
+  StudyTables(const Catalogues& catalogues, const TableSpec& root) : catalogues_(catalogues), root_(root) {
+    replace("output", "type", objective_variants());
+    if (!find_named(root.keys, "stage")) return;
     name_mechanisms();
     replace("objective", "type", objective_variants());
-    replace("output", "type", objective_variants());
     replace("constraint", "type", constraint_variants());
     std::vector<TableVariant> optimisers;
     for (const OptimiserEntry& entry : catalogues.optimisers)
@@ -261,7 +262,11 @@ class StudyTables {
 }  // namespace
 
 std::string study_schema(const Catalogues& catalogues) {
-  return text_of("Study of pkmopt", StudyTables(catalogues).root());
+  return text_of("Study of pkmopt", StudyTables(catalogues, study_keys()).root());
+}
+
+std::string task_schema(const Catalogues& catalogues) {
+  return text_of("Task file of pkmopt", StudyTables(catalogues, task_keys()).root());
 }
 
 std::string mechanism_schema() { return text_of("Mechanism file of pkmopt", mechanism_keys()); }

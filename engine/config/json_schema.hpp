@@ -11,6 +11,7 @@ namespace pkm {
 /// Schema of studies, with the names and options of all entries of the catalogues. Names that a mechanism file defines
 /// (coordinates, parameters, limits, constraints of the design) are not checked.
 std::string study_schema(const Catalogues& catalogues);
+std::string task_schema(const Catalogues& catalogues);
 std::string mechanism_schema();
 std::string motion_schema();
 std::string motor_schema();

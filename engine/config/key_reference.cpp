@@ -135,6 +135,10 @@ std::string keys_markdown() {
   text +=
       "## Motion files\n\nJSON Schema: `pkmopt schema motion`. The keys are those of `[[motion]]` in a study, without "
       "`name` and `follow`.\n\n";
+  text +=
+      "## Task files\n\nJSON Schema: `pkmopt schema task`. `[[region]]`, `[[motion]]`, `[[output]]` and the limits of "
+      "`[workspace]` have the keys that they have in a study.\n\n";
+  for (const char* const name : {"task", "origin"}) add_table(*inline_table(*find_named(task_keys().keys, name)), text);
   add_file("Motor files", "motors", motor_file_keys(), text);
   text.pop_back();  // remove the last blank line
   return text;

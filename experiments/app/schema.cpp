@@ -1,4 +1,4 @@
-// `pkmopt schema`: prints the JSON Schema of studies, mechanism files, motion files or motor files.
+// `pkmopt schema`: prints the JSON Schema of studies, mechanism files, motion files, task files or motor files.
 
 #include <iostream>
 
@@ -23,6 +23,7 @@ struct SchemaKind {
 constexpr SchemaKind kSchemaKinds[] = {{"study", study_schema},
                                        {"mechanism", [](const Catalogues&) { return mechanism_schema(); }},
                                        {"motion", [](const Catalogues&) { return motion_schema(); }},
+                                       {"task", task_schema},
                                        {"motors", [](const Catalogues&) { return motor_schema(); }}};
 
 void print_schema(const SchemaArguments& arguments, const Session& session) {
@@ -46,7 +47,7 @@ void add_schema(CLI::App& app, Session& session) {
       "#:schema ./pkmopt.schema.json\n"
       "Example: pkmopt schema > pkmopt.schema.json && pkmopt schema mechanism > pkmopt-mechanism.schema.json",
       [&session](const SchemaArguments& given) { print_schema(given, session); });
-  add_option(command, "FORMAT", arguments.kind, "Kind of file: study (default), mechanism, motion or motors");
+  add_option(command, "FORMAT", arguments.kind, "Kind of file: study (default), mechanism, motion, task or motors");
   command.add_flag("--markdown", arguments.markdown,
                    "Print all keys of all kinds of files in Markdown, as in experiments/keys.md");
 }

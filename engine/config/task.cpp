@@ -1,0 +1,348 @@
+#include "engine/config/task.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "engine/config/config_value.hpp"
+#include "engine/config/study_keys.hpp"
+#include "engine/config/text_file.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+using Kind = TomlValue::Kind;
+using Names = std::vector<std::string>;
+
+constexpr std::int64_t kCells = 16;  // of a region along each axis, if the task does not set them
+
+/// Sets the value of a key of a table.
+void set(TomlValue& table, const std::string& key, TomlValue value) {
+  if (const auto found = std::ranges::find(table.keys, key); found != table.keys.end()) {
+    table.items[static_cast<std::size_t>(found - table.keys.begin())] = std::move(value);
+    return;
+  }
+  table.keys.push_back(key);
+  table.items.push_back(std::move(value));
+  table.order.resize(table.keys.size());
+  std::iota(table.order.begin(), table.order.end(), std::size_t{0});
+  std::ranges::sort(table.order, {}, [&table](std::size_t i) { return table.keys[i]; });
+}
+
+/// A table with those entries for which keep(key) holds.
+template <class Keep>
+TomlValue filtered(const TomlValue& table, const Keep& keep) {
+  TomlValue result = table;
+  result.keys.clear();
+  result.items.clear();
+  result.order.clear();
+  for (std::size_t i = 0; i < table.keys.size(); ++i)
+    if (keep(table.keys[i])) set(result, table.keys[i], table.items[i]);
+  return result;
+}
+
+TomlValue text_value(const std::string& text) { return {.kind = Kind::text, .text = text, .written = text}; }
+TomlValue number_value(double number) { return {.kind = Kind::number, .number = number, .written = shortest(number)}; }
+TomlValue list_value() { return {.kind = Kind::array}; }
+
+/// The element of a table, an empty table or list if there is none.
+TomlValue value_or(const TomlValue& table, const std::string& key, TomlValue otherwise) {
+  const TomlValue* const found = table.find(key);
+  return found ? *found : std::move(otherwise);
+}
+
+/// Writes a task for one robot, in its coordinates.
+class TaskOfRobot {
+ public:
+  TaskOfRobot(const Task& task, const TaskRobot& robot, const Names& coordinates)
+      : task_(task), robot_(robot), coordinates_(coordinates) {
+    const TomlValue* const origins = task.document.find("origin");
+    if (const TomlValue* const own = origins ? origins->find(robot.name) : nullptr)
+      for (const AxisInfo& axis : robot.mechanism->info().coordinates)
+        if (own->find(axis.name))
+          origin_.emplace_back(
+              axis.name, ConfigValue(*own->find(axis.name), task.file_name, "origin." + axis.name).number(axis.unit));
+  }
+
+  /// The document of a study of the robot with the regions, motions and limits of the task.
+  TomlValue document() const {
+    static const Names kept = {"mechanism", "drive_train", "obstacle", "quantity", "accuracy", "override"};
+    TomlValue study = filtered(robot_.study, [](const std::string& key) { return contains(kept, key); });
+    if (const TomlValue* const overrides = study.find("override")) {
+      TomlValue lists = *overrides;
+      for (TomlValue& table : lists.items)
+        table = filtered(table, [](const std::string& key) { return key == "set" || key == "limit"; });
+      set(study, "override", lists);
+    }
+    set(study, "workspace", workspace());
+    set(study, "constraint", pose_constraints());
+    for (const char* const key : {"region", "motion"}) {
+      TomlValue tables = list_value();
+      if (const TomlValue* const all = task_.document.find(key))
+        for (const TomlValue& table : all->items)
+          tables.items.push_back(key == std::string("region") ? region(table) : motion(table));
+      set(study, key, tables);
+    }
+    set(study, "output", list_value());
+    return study;
+  }
+
+ private:
+  const MechanismInfo& info() const { return robot_.mechanism->info(); }
+  bool has(const std::string& coordinate) const { return find_named(info().coordinates, coordinate) != nullptr; }
+  bool is_other_robots(const std::string& key) const { return contains(coordinates_, key) && !has(key); }
+
+  /// A value of a coordinate in the robot's frame.
+  TomlValue moved(const std::string& coordinate, const TomlValue& value) const {
+    const auto origin = std::ranges::find(origin_, coordinate, &std::pair<std::string, double>::first);
+    if (origin == origin_.end()) return value;
+    TomlValue result = value;
+    const std::string& unit = find_named(info().coordinates, coordinate)->unit;
+    switch (value.kind) {
+      case Kind::array:
+        for (TomlValue& element : result.items) element = moved(coordinate, element);
+        return result;
+      case Kind::integer:
+        return number_value(static_cast<double>(value.integer) - origin->second);
+      case Kind::number:
+        return number_value(value.number - origin->second);
+      case Kind::text: {
+        if (value.text == "middle" || value.text == "integrated") return value;
+        if (const auto number = parse_quantity(value.text, unit)) return number_value(*number - origin->second);
+        return text_value("(" + value.text + ") - (" + shortest(origin->second) + ")");
+      }
+      default:
+        return value;
+    }
+  }
+
+  /// The table without the coordinates of other robots, and with the values of the robot's in its frame.
+  TomlValue in_robot_frame(const TomlValue& table) const {
+    TomlValue own = filtered(table, [this](const std::string& key) { return !is_other_robots(key); });
+    for (std::size_t i = 0; i < own.keys.size(); ++i)
+      if (has(own.keys[i])) own.items[i] = moved(own.keys[i], own.items[i]);
+    return own;
+  }
+
+  /// Gives the coordinates that neither `table` nor `given` names their default values.
+  void add_default_values(const TomlValue& given, TomlValue& table) const {
+    for (std::size_t i = 0; i < info().coordinates.size(); ++i) {
+      const std::string& name = info().coordinates[i].name;
+      if (given.find(name) || table.find(name)) continue;
+      if (const auto value = robot_.mechanism->default_value(robot_.parameters, static_cast<int>(i)))
+        set(table, name, number_value(*value));
+    }
+  }
+
+  TomlValue region(const TomlValue& table) const {
+    TomlValue own = in_robot_frame(table);
+    TomlValue axes = list_value(), cells;
+    for (const char* const key : {"box", "cells"})
+      if (const TomlValue* const given = own.find(key))
+        set(own, key,
+            key == std::string("box") ? in_robot_frame(*given) : filtered(*given, [this](const std::string& name) {
+              return !is_other_robots(name);
+            }));
+    if (const TomlValue* const box = own.find("box"))
+      for (const std::string& name : box->keys) {
+        axes.items.push_back(text_value(name));
+        set(cells, name, {.kind = Kind::integer, .integer = kCells});
+      }
+    if (!own.find("sweep") && !axes.items.empty()) {
+      set(own, "sweep", axes);
+      const TomlValue box = *own.find("box");
+      add_default_values(box, own);
+    }
+    if (!own.find("method") && !axes.items.empty()) {
+      set(own, "method", text_value("voxels"));
+      if (!own.find("cells")) set(own, "cells", cells);
+    }
+    return own;
+  }
+
+  TomlValue motion(const TomlValue& table) const {
+    TomlValue own = in_robot_frame(table);
+    TomlValue* first = &own;
+    if (const TomlValue* const points = own.find("points"); points && !points->items.empty()) {
+      TomlValue moved_points = *points;
+      for (TomlValue& point : moved_points.items) point = in_robot_frame(point);
+      set(own, "points", moved_points);
+      first = &own.items[static_cast<std::size_t>(std::ranges::find(own.keys, "points") - own.keys.begin())].items[0];
+    }
+    add_default_values(*first, *first);
+    return own;
+  }
+
+  /// [workspace] with the limits of the robot's study and of the task, which replace those of the same name.
+  TomlValue workspace() const {
+    TomlValue limits;
+    for (const TomlValue* const document : {&robot_.study, &task_.document})
+      if (const TomlValue* const table = document->find("workspace"))
+        if (const TomlValue* const own = table->find("limits"))
+          for (std::size_t i = 0; i < own->keys.size(); ++i) set(limits, own->keys[i], own->items[i]);
+    TomlValue table;
+    if (!robot_.mechanism->columns()) set(table, "method", text_value("voxels"));
+    if (!limits.keys.empty()) set(table, "limits", limits);
+    return table;
+  }
+
+  /// The constraints of the robot's study that limit poses.
+  TomlValue pose_constraints() const {
+    static const Names types = {"interference", "singularity-margin", "clearance"};
+    TomlValue list = list_value();
+    if (const TomlValue* const all = robot_.study.find("constraint"))
+      for (const TomlValue& each : all->items)
+        if (const TomlValue* const type = each.find("type"); type && contains(types, type->text))
+          list.items.push_back(each);
+    return list;
+  }
+
+  const Task& task_;
+  const TaskRobot& robot_;
+  const Names& coordinates_;
+  std::vector<std::pair<std::string, double>> origin_;
+};
+
+/// A line of the comparison before it is evaluated: an entry of [[output]] or [[constraint]].
+struct Line {
+  std::string name;
+  bool is_margin = false;
+  TomlValue entry;
+  bool is_users = false;  ///< an [[output]] of the task
+};
+
+Names names_of_tables(const TomlValue& document, const std::string& key) {
+  Names names;
+  if (const TomlValue* const tables = document.find(key))
+    for (const TomlValue& table : tables->items) names.push_back(value_or(table, "name", {}).text);
+  return names;
+}
+
+std::vector<Line> lines_of(const Task& task) {
+  std::vector<Line> lines;
+  const auto add = [&lines](const std::string& name, bool is_margin,
+                            const std::vector<std::array<const char*, 2>>& keys, const char* where = "",
+                            const std::string& what = "") {
+    Line line{name, is_margin, {}};
+    for (const auto& [key, value] : keys) set(line.entry, key, text_value(value));
+    if (*where) set(line.entry, where, text_value(what));
+    lines.push_back(line);
+  };
+  for (const std::string& region : names_of_tables(task.document, "region")) {
+    add(region + ": margin", true, {{"type", "task-workspace"}}, "region", region);
+    add(region + ": conditioning, min", false, {{"type", "conditioning"}, {"statistic", "min"}}, "region", region);
+    add(region + ": conditioning, mean", false, {{"type", "conditioning"}}, "region", region);
+    add(region + ": lti, min", false, {{"type", "quantity"}, {"quantity", "lti"}, {"statistic", "min"}}, "region",
+        region);
+    add(region + ": installation space", false, {{"type", "installation-space"}}, "region", region);
+    add(region + ": footprint", false, {{"type", "footprint"}}, "region", region);
+    add(region + ": height", false, {{"type", "height"}}, "region", region);
+  }
+  for (const std::string& motion : names_of_tables(task.document, "motion")) {
+    add(motion + ": margin", true, {{"type", "motion"}}, "motion", motion);
+    add(motion + ": peak power", false, {{"type", "peak-power"}}, "motion", motion);
+  }
+  add("moving mass", false, {{"type", "mass"}});
+  if (const TomlValue* const outputs = task.document.find("output"))
+    for (const TomlValue& each : outputs->items) {
+      const TomlValue* const name = each.find("name");
+      lines.push_back({name ? name->text : value_or(each, "type", {}).text, false, each, true});
+    }
+  return lines;
+}
+
+/// The message of an error without its place.
+std::string sentence_of(const ConfigError& error) {
+  const std::string all = error.what(), place = error.place().key + ": ";
+  const std::size_t at = error.place().key.empty() ? std::string::npos : all.find(place);
+  return at == std::string::npos ? all : all.substr(at + place.size());
+}
+
+/// Evaluates the lines that the robot supports together.
+void evaluate(const TaskRobot& robot, const Study& study, const Names& names, std::vector<TaskValue>& values) {
+  const DesignProblem& problem = *study.problem;
+  const DesignReport report = problem.report(robot.parameters);
+  const auto store = [&](const auto& infos, const std::vector<double>& found) {
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const auto at = std::ranges::find(names, infos[i].name);
+      if (at == names.end()) continue;
+      TaskValue& value = values[static_cast<std::size_t>(at - names.begin())];
+      value.unit = infos[i].unit;
+      value.value = found[i];
+      if (std::isnan(found[i])) value.reason = report.reason.empty() ? "it is not defined there" : report.reason;
+    }
+  };
+  store(problem.margins(), report.margins);
+  store(problem.reports(), report.reports);
+}
+
+}  // namespace
+
+Task load_task_toml(const std::string& path) {
+  Task task{"", path, parse_toml(read_text_file(path, "a task in TOML"), path, "a task in TOML")};
+  const ConfigValue root = ConfigValue(task.document, path, "").described_by(task_keys());
+  const auto table = root.find_table("task");
+  task.name =
+      table && table->has("name") ? table->find("name")->text("text") : std::filesystem::path(path).stem().string();
+  bool is_empty = true;
+  for (const char* const key : {"region", "motion", "output"})
+    if (const auto list = root.find(key))
+      for (const ConfigValue& each : list->elements(std::string("a list of tables, each written [[") + key + "]]")) {
+        is_empty = false;
+        if (key != std::string("output")) each.expect_table().at("name", "a name");
+      }
+  if (is_empty) throw ConfigError({path, 0, ""}, "no [[region]], [[motion]] or [[output]]", "at least one of them");
+  return task;
+}
+
+std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot, const Names& coordinates,
+                                     const Catalogues& catalogues) {
+  const TomlValue base = TaskOfRobot(task, robot, coordinates).document();
+  StudyChanges changes;
+  for (std::size_t i = 0; i < robot.parameters.size(); ++i) {
+    const std::string& name = robot.mechanism->info().parameters[i].name;
+    changes.recorded_parameters.emplace_back(name, robot.parameters[i]);
+    if (name.find('.') != std::string::npos) changes.limb_parameters.push_back(name);
+  }
+  const auto read = [&](const TomlValue& document) {
+    return read_study_document(document, task.file_name, catalogues, robot.description, changes);
+  };
+  read(base);  // throws for a mistake in the task
+
+  TomlValue all = base;
+  const auto append = [](TomlValue& document, const Line& line, const std::string& name) {
+    const char* const key = line.is_margin ? "constraint" : "output";
+    TomlValue entry = line.entry, entries = *document.find(key);
+    set(entry, "name", text_value(name));
+    entries.items.push_back(entry);
+    set(document, key, entries);
+  };
+  std::vector<TaskValue> values;
+  Names names;
+  for (const Line& line : lines_of(task)) {
+    names.push_back("line-" + std::to_string(names.size() + 1));
+    TaskValue& value = values.emplace_back();
+    value.name = line.name;
+    value.is_margin = line.is_margin;
+    value.value = std::numeric_limits<double>::quiet_NaN();
+    TomlValue single = base;
+    append(single, line, names.back());
+    try {
+      read(single);
+      append(all, line, names.back());
+    } catch (const ConfigError& error) {
+      value.reason = sentence_of(error);
+      value.is_mistake = line.is_users;
+    }
+  }
+  evaluate(robot, read(all), names, values);
+  return values;
+}
+
+}  // namespace pkm
