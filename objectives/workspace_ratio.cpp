@@ -15,7 +15,7 @@ std::string quotient(const std::string& volume, const std::string& size) {
 ObjectiveEntry workspace_ratio() {
   return {
       .name = "workspace-ratio",
-      .meaning = "workspace volume divided by the mechanism's size",
+      .meaning = "workspace volume divided by the size that the mechanism defines",
       .direction = Direction::maximise,
       .unit =
           [](const EntryContext& context) {

@@ -106,8 +106,8 @@ class ConfigValue {
                                     double upper = kUnbounded) const;
   /// Refuses anything but a table.
   const ConfigValue& expect_table(std::string_view expected = "a table") const;
-  /// The word under `key`, which has to be one of `choices`. It decides which other keys are allowed and is therefore
-  /// read before they are checked; the message for a missing key names a key that is similar to it.
+  /// The value of `key`, which must be one of `choices`. It decides which other keys are allowed, and is therefore read
+  /// before these are checked. If it is missing, the message suggests the most similar key that is present.
   const std::string& choice(const std::string& key, const std::vector<std::string>& choices) const;
 
   /// Throws std::logic_error if the description of this value is not a formula of this unit.

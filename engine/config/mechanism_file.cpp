@@ -196,7 +196,8 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   read_platform_body(platform, draft);
 }
 
-/// Removes the characteristic length if the conditioning is undefined for other reasons.
+/// Removes the characteristic length if there is no conditioning that it could scale: joints of different kinds need a
+/// radius, and fewer joints than coordinates have no square Jacobian.
 void remove_undefined_conditioning(generic::Model& model) {
   const bool needs_radius = mixes_units(model.info.joints) && !model.radius;
   if (needs_radius || model.info.joints.size() < model.info.coordinates.size())

@@ -21,7 +21,7 @@ MotionNames motion_names(const Mechanism& mechanism);
 std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const std::string& file_name,
                                                const MotionNames& names);
 
-/// Reads the file at `path`, which is one motion. Throws ConfigError, also when the file cannot be read.
+/// Reads one motion from the file at `path`. Throws ConfigError, also when the file cannot be read.
 std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const MotionNames& names);
 
 }  // namespace pkm

@@ -55,7 +55,8 @@ class NonNegativeIntervals {
   }
 
  private:
-  // Relative to the whole interval: width of undecided subintervals, tolerances of minima and of roots.
+  // Relative to the length of the whole interval: the width below which an undecided subinterval is not divided any
+  // more, and the tolerances of minima and of roots.
   static constexpr double kMaxWidth = 1.0 / 16, kMinimumTolerance = 1e-6, kRootTolerance = 1e-13;
 
   /// A sample of the function.

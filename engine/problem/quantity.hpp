@@ -140,8 +140,9 @@ struct ConstraintEntry {
   LimitSpec (*limits)(const MechanismInfo&, const Options&) = nullptr;
   /// nullptr for pose-level constraints. Throws std::invalid_argument with a sentence if an option has an unknown name.
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
-  /// Whether the constraint with given options uses the workspace analysis (nullptr: no), and the fields it adds to it.
+  /// Whether the constraint, with the given options, needs the workspace analysis; nullptr: never.
   bool (*needs_workspace)(const EntryContext&) = nullptr;
+  /// Requests the fields of the workspace analysis that the constraint uses.
   void (*request)(const EntryContext&, FieldRequest&) = no_request;
   /// Description of the constraint with given options; nullptr: `meaning`.
   std::string (*detail)(const EntryContext&) = nullptr;

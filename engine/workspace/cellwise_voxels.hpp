@@ -8,8 +8,9 @@
 
 namespace pkm {
 
-/// Evaluator over one to three swept coordinates; the others are fixed or integrated over by cells within the
-/// mechanism's ranges. Throws std::invalid_argument with one sentence if the plan is not supported.
+/// Prepares an evaluator of voxels over one to three swept coordinates. Every other coordinate is either fixed, or its
+/// range in the mechanism is divided into cells over which the volume is integrated. Throws std::invalid_argument, with
+/// the reason in one sentence, if the plan is not supported.
 std::unique_ptr<const VoxelEvaluator> prepare_cellwise_voxels(const Mechanism& mechanism, const WorkspacePlan& plan,
                                                               const VoxelOptions& voxels, const FieldRequest& request);
 
