@@ -9,14 +9,15 @@
 namespace pkm {
 
 /// @return the starting points of a stage. Solvers select them by their options (start, starts, basin_radius, designs):
-/// - by default the best design of the earlier stages. In a first stage it is the best of the designs taken from another
-///   study (Study::starts); if there are none, the allowed design nearest to the baseline; without a baseline the centre
-///   of the bounds;
+/// - by default the best design of the earlier stages. In a first stage it is the best of the designs taken from
+/// another
+///   study (Study::starts); if there are none, the allowed design nearest to the baseline; without a baseline the
+///   centre of the bounds;
 /// - "best-of-basins": see basins() in stage_starts.cpp;
 /// - "pareto": points spread over the front of the last stage that has found one;
 /// - designs given in the study.
-/// Other optimisers get the best design of the earlier stages or, in a first stage, the designs taken from another study.
-/// If there are none, only sweeps get a starting point: the baseline.
+/// Other optimisers get the best design of the earlier stages or, in a first stage, the designs taken from another
+/// study. If there are none, only sweeps get a starting point: the baseline.
 std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents);
 
 /// The starting points of a stage before which nothing was evaluated, as above.
