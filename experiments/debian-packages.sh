@@ -55,6 +55,9 @@ pkm_update_lists() {
   done
 }
 
+# Further options of apt-get, for scripts that source this file.
+pkm_apt_options=()
+
 # pkm_install_missing PACKAGE...: installs the packages that are missing. Needs root rights only if there are any.
 pkm_install_missing() {
   if ! command -v apt-get >/dev/null; then
@@ -77,5 +80,5 @@ pkm_install_missing() {
   echo "Installing ${missing[*]}"
   pkm_update_lists "${as_root[@]}" || return 1
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q --yes --no-install-recommends \
-    -o DPkg::Lock::Timeout="$pkm_lock_timeout" "${missing[@]}"
+    -o DPkg::Lock::Timeout="$pkm_lock_timeout" "${pkm_apt_options[@]}" "${missing[@]}"
 }

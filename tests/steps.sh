@@ -1,5 +1,7 @@
 # What tests/run.sh and tests/sanitizers.sh share: steps with their times. To be sourced at the root of the repository.
 source experiments/debian-packages.sh
+# The tests need some 400 packages. Without a synchronisation of the disk after each file, they are unpacked sooner.
+pkm_apt_options=(-o Dpkg::Options::=--force-unsafe-io)
 
 summary=()
 step() {  # step NAME COMMAND...: runs the command and records its time
