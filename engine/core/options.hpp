@@ -22,7 +22,7 @@ using NamedSettings = std::map<std::string, Setting>;
 using OptionValue =
     std::variant<double, std::int64_t, bool, std::string, NamedNumbers, std::vector<NamedNumbers>, NamedSettings>;
 
-/// Options of catalogue entries are of the kinds up to named_settings; the keys of tables also of the others.
+/// Kinds of options. Catalogue entries use only the kinds up to named_settings; keys of tables may be of any kind.
 enum class OptionKind {
   number,
   integer,
@@ -60,7 +60,7 @@ struct OptionSpec {
   std::vector<std::string> choices;                         ///< valid words (words only); empty: any text
   std::string meaning;                                      ///< one-line description for `pkmopt list`
   std::vector<std::pair<std::string, std::string>> fields =
-      {};  ///< valid names and their units: of lists of numbers, and of named numbers if not empty
+      {};  ///< list_of_numbers, named_numbers: valid names and their units; named_numbers: any name if empty
   FieldNames field_names = FieldNames::listed;  ///< FieldNames::objectives: a value is required for every objective
 
   bool positive = false;               ///< numbers have to be > 0
@@ -76,7 +76,8 @@ struct TableVariant {
   std::vector<OptionSpec> named = {};  ///< see TableSpec::named
 };
 
-/// A TOML table: its keys, and those that it has for one value of its key `choice` only ("drive", "shape", "type").
+/// A TOML table: the keys that it may always have, and those that it may have only for one value of its key `choice`
+/// (for example "drive", "shape" or "type").
 struct TableSpec {
   std::string header;  ///< "[[region]]"; "" for inline tables
   std::string meaning;
@@ -86,7 +87,7 @@ struct TableSpec {
   std::vector<OptionSpec> named = {};  ///< at most one: describes the keys whose names the user chooses
   std::string noun = "key";            ///< what a key is, for messages: "coordinate", "parameter", "table"
 
-  /// The key called `name`, also of a variant; null if there is none.
+  /// The key called `name`, of the table or of one of its variants; null if there is none.
   const OptionSpec* find(const std::string& name) const;
 };
 

@@ -19,8 +19,9 @@ namespace pkm::ranks {
 /// launcher. Collective. At most one instance at a time, constructed before any other function of this file is called.
 class Group {
  public:
-  /// Throws std::runtime_error, whose message says what to do, if a launcher has started several processes that cannot
-  /// communicate (for example, those of another MPI library): otherwise each of them would do all the work.
+  /// Throws std::runtime_error if a launcher has started several processes that cannot communicate (for example,
+  /// because it belongs to another MPI library); otherwise each process would do all the work. The message suggests a
+  /// remedy.
   Group();
   ~Group();
   Group(const Group&) = delete;

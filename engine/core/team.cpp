@@ -36,7 +36,7 @@ thread_local ThreadPool* pool = nullptr;
 // threads for which no iteration of parallel_for_nested() is left.
 thread_local bool in_long_iteration = false;
 
-/// Validates OMP_NUM_THREADS, which OpenMP itself accepts unchecked. Of a list, the first number applies to the
+/// Validates OMP_NUM_THREADS, which OpenMP itself accepts unchecked. If it is a list, its first number applies to the
 /// parallel regions of this program.
 void check_environment() {
   const char* const given = std::getenv("OMP_NUM_THREADS");
@@ -129,7 +129,7 @@ class SharedLoop {
 /// Pool of threads without work of their own, which execute iterations of the loops that other threads start.
 class ThreadPool {
  public:
-  /// @param tasks  number of tasks after whose completion the waiting threads are released
+  /// @param tasks  number of tasks; the waiting threads are released when all of them have ended
   ThreadPool(std::size_t tasks, std::size_t threads) : unfinished_(tasks), loops_(threads) {}
 
   bool has_waiting_threads() const { return waiting_.load(std::memory_order_relaxed) > 0; }
@@ -175,10 +175,10 @@ class ThreadPool {
 };
 
 /// Throws std::runtime_error if `size` threads cannot be started. OpenMP would terminate the program in this case,
-/// without an exception. Therefore starting the threads is tried first, with idle threads that end before OpenMP starts
-/// its own. Resource limits cannot replace the trial: how much of RLIMIT_NPROC or of the task limit of a container is
-/// left depends on other processes, and how much of RLIMIT_AS a thread needs depends on its stack, its malloc arena and
-/// the existing mappings.
+/// without an exception. Therefore the same number of idle threads is started first, as a trial; they end before OpenMP
+/// starts its own threads. Reading the resource limits cannot replace the trial: how much of RLIMIT_NPROC or of the
+/// task limit of a container is left depends on other processes, and how much of RLIMIT_AS a thread needs depends on
+/// its stack, its malloc arena and the existing mappings.
 void require_threads(int size) {
   static std::atomic<int> tested = 1;  // size of the largest team that could be started
   if (size <= tested.load(std::memory_order_relaxed)) return;

@@ -69,8 +69,8 @@ std::size_t worker();
 /// worker) with worker < workers(), in any order and on any thread, and returns when all are complete. Guided
 /// self-scheduling: idle threads claim chunks in proportion to the iterations that remain. The result of an iteration
 /// must not depend on the thread. Iterations have no team of their own (loops in them are serial) and are subject to
-/// the caller's StopScope. An exception thrown by `work` is rethrown here; of several, one. Without a team: a single
-/// call work(0, iterations, 0) on this thread.
+/// the caller's StopScope. An exception thrown by `work` is rethrown here; if several calls throw, only one exception
+/// is. Without a team: a single call work(0, iterations, 0) on this thread.
 void parallel_for(std::size_t iterations, WorkRef work);
 
 /// Parallel loop for a few long iterations that contain parallel_for() loops (nested parallelism). Executes work(i, i +

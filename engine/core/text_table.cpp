@@ -19,7 +19,7 @@ std::size_t width_of(const std::string& text) {
 
 /// Aligns the decimal points of a numeric column by indenting its cells; leaves other columns unchanged.
 void align_decimal_points(Rows& rows, std::size_t column) {
-  const bool has_heading = rows[0].size() != 2 || rows[0][0].empty();  // otherwise a list of names and values
+  const bool has_heading = rows[0].size() != 2 || rows[0][0].empty();  // false: a list of names and values
   std::size_t max_position = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (column >= rows[r].size()) continue;

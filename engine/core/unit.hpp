@@ -24,8 +24,9 @@ std::string kind_of_quantity(std::string_view text);
 /// Describes the dimension of a unit in the form of kind_of_quantity(): "an angle".
 std::string kind_of_unit(std::string_view unit);
 
-/// Maximum magnitude of an angle in the input [rad]. Of larger angles, a double represents the remainder modulo 2 pi
-/// with fewer than 11 digits, and the argument reduction of sin and cos is not exact (engine/math/portable.hpp).
+/// Maximum magnitude of an angle in the input [rad]. For larger angles, the remainder modulo 2 pi has fewer than 11
+/// correct digits in double precision, and the argument reduction of sin and cos is not exact
+/// (engine/math/portable.hpp).
 inline constexpr double kMaxAngle = 1e5;
 
 /// For error messages: the allowed range, if `value` is an angle whose magnitude exceeds kMaxAngle; otherwise "".
