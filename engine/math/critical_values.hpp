@@ -23,7 +23,7 @@ template <class S>
 struct CriticalValue {
   S at;
   bool root_below = false;  ///< the measure has a square-root singularity when `at` is approached from below
-  bool root_above = false;  ///< the singularity exists when `at` is approached from above
+  bool root_above = false;  ///< the measure has one when `at` is approached from above
 };
 
 /// A root t(p) of f(p, t) = 0 with its derivatives with respect to the design p by the implicit function theorem:
@@ -80,8 +80,8 @@ void find_subintervals(const std::vector<CriticalValue<S>>& values, double merge
 /// Finds the subintervals between critical values on which slices are not empty. Changes of the signature are located
 /// by sampling and bisection.
 /// @param values     both bounds of the outer coordinate and the known critical values, in any order; sorted here
-/// @param signature  signature(x): of the slice at x, 0 if it is empty
-/// @param lift       lift(x): the critical value x, found by bisection, as a number with derivatives
+/// @param signature  signature(x): signature of the slice at x; 0 if the slice is empty
+/// @param lift       lift(x): converts a critical value x, found by bisection, to a number with derivatives
 /// @param samples    number of samples of the signature over the whole range
 template <class S, class Signature, class Lift>
 void find_subintervals(std::vector<CriticalValue<S>>& values, const Signature& signature, const Lift& lift, int samples,
@@ -96,7 +96,7 @@ void find_subintervals(std::vector<CriticalValue<S>>& values, const Signature& s
     const double length = high - low;
     const int steps = std::max(1, static_cast<int>(std::ceil(samples * length / whole)));
     const double inset = std::min(
-        0.25 * length, 1e-7 * whole);  // away from the critical values, where the signature depends on rounding
+        0.25 * length, 1e-7 * whole);  // very close to a critical value, the signature depends on rounding errors
     double at = low + inset;
     std::uint64_t now = signature(at);
     for (int k = 1; k <= steps; ++k) {

@@ -9,7 +9,7 @@
 // Therefore a formula that is a template over the scalar type gives derivatives exact to rounding. Values are computed
 // by the same operations in the same order as with double, and are bit-identical. At -1 and 1, where the derivatives of
 // asin and acos are infinite, they are set to 0, like those of sqrt_or_zero at 0: no usable derivative exists there,
-// and with 0 the other terms of a sum keep theirs.
+// and 0 preserves the derivatives of the other terms of a sum.
 //
 // Why not ceres::Jet or Eigen's AutoDiffScalar: they use the functions of libm (see portable.hpp), and their division
 // rounds differently from that of double. Workspace analysis by columns with 4 variables takes 2.15 times as long as

@@ -3,18 +3,18 @@
 #include "engine/math/portable.hpp"
 
 // Error bounds of the elementary functions of portable.hpp, with the unit roundoff u = 2^-53. Rounding a result r to
-// nearest makes an error of at most u |r|; more precisely, u/2 for |r| < 1 and u/4 for |r| < 1/2. Every bound used
-// below is at least twice as large as the one derived here.
+// nearest makes an error of at most u |r|; more precisely, u/2 for |r| < 1 and u/4 for |r| < 1/2. "r rounds by e" means
+// that the rounding error of r is at most e. Every bound used below is at least twice as large as the one derived here.
 //
 // sin, cos. The argument reduction r = x - k pi/2 uses pi/2 in three parts: two of 33 bits, and the rest. For |k| <
 // 2^17 the first two products are exact, and so is the first difference (Sterbenz's lemma). The other two differences
-// round to |r| < 0.79, by u/2 each, and the three parts together differ from pi/2 by less than 2^-100. So the error of
-// r is below 1.1 u; r is exact for k = 0. The series are truncated before r^17/17! < 0.45 u (sin) and r^18/18! (cos).
-// sin is evaluated as r + r q S with |r q S| < 0.09, where every factor has an error of a few u: below 0.7 u in total,
-// plus u/2 for the sum. Together 2.8 u. cos: 1 - q/2 is compensated for its rounding error; the error of q/2 < 0.31 is
-// 0.31 u, that of the tail (below 0.02) a few u of it, that of the sum u/2, and the error of r enters with the factor
-// 0.71: together 1.8 u. Bound used for both: 4 u = 2^-51. For k = 0, r is exact, and sin r = r (1 + e) with the
-// relative error |e| < (0.11 * 6 + 1 + 0.45 * 0.11) u < 2 u.
+// are below 0.79 in magnitude and round by u/2 each, and the sum of the three parts differs from pi/2 by less than
+// 2^-100. Therefore the error of r is below 1.1 u; r is exact for k = 0. The series are truncated before r^17/17! <
+// 0.45 u (sin) and r^18/18! (cos). sin is evaluated as r + r q S with |r q S| < 0.09, where every factor has an error
+// of a few u: below 0.7 u in total, plus u/2 for the sum. Together 2.8 u. cos: the rounding error of 1 - q/2 is
+// compensated; the error of q/2 < 0.31 is 0.31 u, that of the tail (below 0.02) is a few u times the tail, that of the
+// sum is u/2, and the error of r enters with the factor 0.71: together 1.8 u. Bound used for both: 4 u = 2^-51. For
+// k = 0, r is exact, and sin r = r (1 + e) with the relative error |e| < (0.11 * 6 + 1 + 0.45 * 0.11) u < 2 u.
 //
 // atan. t rounds by u/2. The tabulated tangents have an error of u/2, and t - tangent rounds by u/4. 1 + t tangent has
 // a relative error of 1.5 u and the quotient rounds by u relative, with |r| < 0.132: 0.4 u. The series is truncated

@@ -55,8 +55,8 @@ class NonNegativeIntervals {
   }
 
  private:
-  // Relative to the length of the whole interval: the width below which an undecided subinterval is not divided any
-  // more, and the tolerances of minima and of roots.
+  // All relative to the length of the whole interval. An undecided subinterval is bisected until its width is at most
+  // kMaxWidth. Minima of |f| and roots of f are located to the two tolerances.
   static constexpr double kMaxWidth = 1.0 / 16, kMinimumTolerance = 1e-6, kRootTolerance = 1e-13;
 
   /// A sample of the function.
@@ -90,7 +90,8 @@ class NonNegativeIntervals {
     sample(f, lipschitz, end, max_width);
   }
 
-  /// Searches at local minima of |f| between nodes of one sign, and adds a node of the opposite sign if there is one.
+  /// Minimises |f| near each local minimum among nodes of the same sign. If this finds a point of the opposite sign,
+  /// the point becomes a node.
   template <class F, class LipschitzBound>
   void search_minima(const F& f, const LipschitzBound& lipschitz, double tolerance) {
     const std::size_t last = nodes_.size() - 1;

@@ -73,18 +73,18 @@ struct NestedRule {
   /// One rule of the sequence, which uses the first `nodes` nodes.
   struct Level {
     std::size_t nodes;
-    std::array<double, kNodes> weight, fewer;  ///< of the rule, and of the embedded rule with fewer nodes
+    std::array<double, kNodes> weight, fewer;  ///< weights of the rule, and of the embedded rule with fewer nodes
   };
   std::array<double, kNodes> node;  ///< nodes of all rules, in the order in which the rules add them
   std::vector<Level> level;
 };
 
-/// The Gauss-Kronrod rule with 15 nodes and the embedded Gauss rule with 7 nodes, exact for polynomials of degree 23
+/// The Gauss-Kronrod rule with 15 nodes and the embedded Gauss rule with 7 nodes, exact for polynomials up to degree 23
 /// and 13.
 const NestedRule& kronrod_rule();
 
-/// The Gauss-Patterson rules with 7 and 15 nodes, which extend the Gauss rule with 3 nodes; exact for polynomials of
-/// degree 11 and 23, and 5 for the Gauss rule.
+/// The Gauss-Patterson rules with 7 and 15 nodes, which extend the Gauss rule with 3 nodes. They are exact for
+/// polynomials up to degree 11 and 23, the Gauss rule up to degree 5.
 ///
 /// Source: T. N. L. Patterson, "The optimum addition of points to quadrature formulae", Mathematics of Computation 22
 /// (1968), 847.

@@ -13,7 +13,7 @@
 
 namespace pkm {
 
-/// One block of Philox4x32-10: four 32-bit words. Declared here for a test with published values.
+/// One block of Philox4x32-10: four 32-bit words. Declared here so that it can be tested with published values.
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
 /// A reproducible stream of random numbers.

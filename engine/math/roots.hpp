@@ -25,11 +25,11 @@ namespace pkm {
 /// @return the midpoint of the final bracket
 template <class F>
 double refine_root(const F& f, double a, double f_a, double b, double f_b, double width) {
-  constexpr double kRounding = 2.3e-16;  // slightly more than the relative distance of adjacent doubles
-  constexpr int kMaxSteps = 5000;        // more than twice the bisections from the largest double to the smallest
-  double t = f_a / (f_a - f_b);          // position of the next point between a and b
+  constexpr double kRounding = 2.3e-16;  // slightly more than the relative distance between adjacent doubles
+  constexpr int kMaxSteps = 5000;  // more than twice the bisections needed from the largest to the smallest double
+  double t = f_a / (f_a - f_b);    // position of the next point between a and b
   for (int step = 0; step < kMaxSteps && std::fabs(b - a) > width; ++step) {
-    // A point that is too close to an end is moved away from it, so that the bracket is closed from both sides.
+    // A point too close to an end of the bracket is moved away from it, so that both ends of the bracket move.
     const double tolerance = std::fmax(0.5 * width, kRounding * std::fmax(std::fabs(a), std::fabs(b)));
     const double inset = std::fmin(0.5, tolerance / std::fabs(b - a));
     t = t >= 0 && t <= 1 ? std::fmin(std::fmax(t, inset), 1 - inset) : 0.5;
@@ -67,7 +67,7 @@ struct ValueAndDerivative {
 /// @param x                first point; replaced by the midpoint if it is not inside the bracket
 /// @param converged        converged(f(x), x, next): whether `next`, the result of Newton's step from x, is accurate
 ///                         enough
-/// @return the root; a point at which f is exactly 0 is one
+/// @return the root; iteration stops at once at a point where f is exactly 0
 template <class F, class Converged>
 double refine_root_newton(const F& f, double low, double high, bool positive_at_low, double x,
                           const Converged& converged) {
@@ -80,7 +80,7 @@ double refine_root_newton(const F& f, double low, double high, bool positive_at_
     (is_satisfied(here.value) == positive_at_low ? low : high) = x;
     const double step = -here.value / here.derivative;
     double next = x + step;
-    // If the derivative is infinite, the step is short although the root can be far.
+    // If the derivative is infinite, the step is short although the root may be far away.
     if (converged(here, x, next) && std::isfinite(here.derivative)) return std::fmin(std::fmax(next, low), high);
     if (!(next > low && next < high) || 2 * std::fabs(step) > before_last) next = 0.5 * (low + high);
     before_last = last;
@@ -98,9 +98,9 @@ struct NewtonResult {
 
 /// Newton's method from a point near the root, without a bracket. It ends without convergence if it leaves the open
 /// interval (low, high), or after `max_steps` steps.
-/// @param step       step(x): Newton's step from x. In several unknowns, it is the step of the first one, and the
-///                   callable itself applies the steps of the others. NaN if there is none
-/// @param converged  converged(x, step): whether x, which this step has reached, is accurate enough
+/// @param step       step(x): Newton's step from x; NaN if it is undefined. For a system of equations, x is the first
+///                   unknown, and the callable itself updates the others
+/// @param converged  converged(x, step): whether x, the point after this step, is accurate enough
 template <class Step, class Converged>
 NewtonResult iterate_newton(const Step& step, double x, double low, double high, int max_steps,
                             const Converged& converged) {
