@@ -4,8 +4,8 @@
 namespace pkm::expression {
 namespace {
 
-/// Calls visit(x), where x(k) loads the kLanes values of the operand from index k on: those of a row, or a number in
-/// all lanes. The branch is thus taken once per step, not once per value.
+/// Calls visit(x), where x(k) loads the kLanes values of the operand from index k on: either consecutive values of a
+/// row, or a single number in all lanes. The distinction is thus made once per step, not once per value.
 template <class L, class Visit>
 [[gnu::always_inline]] inline void with_operand(const Operand& operand, const double* registers, const double* rows,
                                                 const Visit& visit) {

@@ -2,7 +2,7 @@
 //
 // The innermost loop of a workspace analysis evaluates the same steps for many values of one coordinate. Here, every
 // step is carried out for the whole batch before the next step follows (structure of arrays): a register of the stage
-// becomes a row of kRow numbers, one per input value. Registers of the earlier stages stay single numbers.
+// becomes a row of kRow numbers, one per input value. Registers of earlier stages remain single numbers.
 #pragma once
 
 #include <new>
@@ -62,8 +62,8 @@ class BatchStage {
   BatchStage(const Program& program, std::size_t stage, std::span<const std::uint32_t> retained);
 
   std::size_t slots() const { return slots_; }
-  /// Where the value of a register is found: in a row with one value per pose if it is an input or a retained register
-  /// of this stage; as a single number if an earlier stage has computed it.
+  /// Location of the value of a register: a row with one value per pose if it is an input or a retained register of
+  /// this stage, a single number if an earlier stage has computed it.
   Operand operand(std::uint32_t program_register) const { return operands_[program_register]; }
   /// Slots of the stage's inputs, which the caller fills before run().
   const std::vector<std::uint32_t>& inputs() const { return inputs_; }

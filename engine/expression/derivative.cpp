@@ -72,7 +72,8 @@ Term Rates::differentiate(Node node) {
   if (name == "log10") return dx / (x * call(operation("log"), Term(graph_, 10.0)));
   if (name == "^") {
     const Term y = argument(1);
-    // Fold y - 1 here if that is exact: then it is a constant even in graphs without constants (without_numbers).
+    // Fold y - 1 here if the result is exact. It is then a constant even in graphs whose other constants have been
+    // replaced by inputs (without_numbers).
     const double reduced = graph_[y.node()].number - 1;
     const bool exact = graph_[y.node()].is_number() && reduced + 1 == graph_[y.node()].number;
     const Term by_base = dx.is(0) ? zero : y * call(operation("^"), x, exact ? Term(graph_, reduced) : y - one) * dx;

@@ -32,9 +32,9 @@ class Rates {
   std::unordered_map<Node, Node> rates_;  ///< by node
 };
 
-/// The partial derivative of f by one input. Evaluated with intervals over a box that contains a kink of f, it encloses
-/// the derivatives on both sides. At a discontinuity it is meaningless; there, the interval of f is marked as not
-/// continuous.
+/// The partial derivative of f with respect to one input. Evaluated with intervals over a box that contains a kink of
+/// f, it encloses the derivatives on both sides. At a discontinuity it is meaningless; there, the interval of f is
+/// marked as not continuous.
 inline Node derivative(Graph& graph, Node f, Node input) {
   Rates rates(graph);
   rates.set_rate(input, graph.number(1));

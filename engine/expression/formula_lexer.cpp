@@ -40,7 +40,7 @@ class Lexer {
 
  private:
   struct Parenthesis {
-    std::size_t token;  ///< its index
+    std::size_t token;  ///< index of the token
     bool calls;         ///< true: begins the arguments of a function; false: groups a term
     std::size_t commas = 0;
   };

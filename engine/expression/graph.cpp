@@ -41,7 +41,8 @@ Node Graph::input(std::size_t position, Groups group) {
   return intern({.input = static_cast<std::int32_t>(position), .groups = group});
 }
 
-/// base^exponent as products by repeated squaring, in the order of operation ^, which gives the same bits.
+/// base^exponent as products by repeated squaring, in the same order as in operation ^, so that the result has the same
+/// bits.
 Node Graph::power(Node base, int exponent) {
   const Operation& times = operation("*");
   const auto product = [&](Node x, Node y) { return apply(times, std::array{x, y}); };
@@ -157,7 +158,7 @@ Graph substitute_nodes(const Graph& graph, std::span<const std::optional<Node>> 
   std::vector<Node> wanted;
   for (const auto& node : nodes)
     if (node) wanted.push_back(*node);
-  std::vector<Node> order = graph.reachable(wanted);  // before the nodes that use the replacements
+  std::vector<Node> order = graph.reachable(wanted);  // the replacements precede the nodes that use them
   const std::vector<Node> others = graph.reachable(roots);
   order.insert(order.end(), others.begin(), others.end());
   return rebuild(graph, order, roots, [&](Graph& made, const Entry& entry, const std::vector<Node>& copies) {

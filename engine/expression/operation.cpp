@@ -55,8 +55,8 @@ S power(const S& x, const S& y) {
   const double base = value_of(x), exponent = value_of(y);
   if (exponent == std::nearbyint(exponent) && std::fabs(exponent) <= 1024) {
     S result = integer_power(x, static_cast<int>(exponent));
-    // If the exponent is a variable, multiply by exp((y - y_0) log(x)) = 1: it adds the derivative by the exponent and
-    // leaves the value unchanged.
+    // If the exponent is a variable, multiply by exp((y - y_0) log(x)) = 1: this adds the derivative with respect to
+    // the exponent and leaves the value unchanged.
     if (!is_constant(y) && base > 0) result = result * exp(S((y - exponent) * log(x)));
     return result;
   }

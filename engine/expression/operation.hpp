@@ -1,8 +1,9 @@
 // Catalogue of the elementary operations of formulas: functions, operators, negation and the conditional operator.
 //
-// Each operation is implemented for four scalars: double, Dual4 (forward-mode automatic differentiation by four
-// variables), Taylor (first and second derivative by one variable) and Interval (interval arithmetic with outward
-// rounding). One generic implementation serves the first three, so that values have the same bits in all of them.
+// Each operation is implemented for four scalars: double, Dual4 (forward-mode automatic differentiation with respect to
+// four variables), Taylor (first and second derivative with respect to one variable) and Interval (interval arithmetic
+// with outward rounding). One generic implementation serves the first three, so that values have the same bits in all
+// of them.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +31,7 @@ struct Operation {
   std::string name;           ///< as written in formulas
   std::size_t arguments = 1;  ///< 0: two or more (min, max), which a graph folds from the left
   std::tuple<Rule<double>, Rule<Dual4>, Rule<Taylor>, Rule<Interval>> rules;
-  int rank = 0;  ///< precedence of an operator, the higher binds the tighter; 0: function
+  int rank = 0;  ///< precedence of an operator, a higher one binds more tightly; 0: function
   Code code = Code::other;
 
   bool operator==(const Operation& other) const { return this == &other; }

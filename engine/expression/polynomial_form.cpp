@@ -51,7 +51,7 @@ class NormalForm {
       : graph_(graph), z_(z), degree_(degree), squares_(squares) {}
 
   /// The radical form of a node; std::nullopt if it has none. Depth-first with an explicit stack and a cache, because a
-  /// node may depend on 10^5 others and reach them along several paths.
+  /// node may depend on 10^5 others, along several paths each.
   std::optional<RadicalForm> form(Node root) {
     std::vector<Node> stack = {root};
     while (!stack.empty()) {
@@ -159,8 +159,8 @@ class NormalForm {
     return clauses_of_multiple(node);
   }
 
-  /// Converts c f >= 0 and f / c >= 0, where c does not depend on z but f contains minima, maxima or absolute values: f
-  /// >= 0 or -c >= 0, and -f >= 0 or c >= 0. Sums c x + c y and c x - c y are converted in the same way.
+  /// Converts c f >= 0 and f / c >= 0, where c does not depend on z but f contains minima, maxima or absolute values,
+  /// to (f >= 0 or -c >= 0) and (-f >= 0 or c >= 0). Sums c x + c y and c x - c y are converted in the same way.
   Clauses clauses_of_multiple(Node node) {
     const Entry entry = graph_[node];
     if (!entry.operation) return {};
@@ -186,7 +186,7 @@ class NormalForm {
         }
     return {};
   }
-  /// -f >= 0 for a difference, minimum or maximum f.
+  /// Converts -f >= 0 for a difference, minimum or maximum f.
   Clauses clauses_of_negative(const Term& f) {
     const Entry entry = graph_[f.node()];
     const Code code = entry.operation ? entry.operation->code : Code::other;
@@ -214,7 +214,7 @@ class NormalForm {
     return true;
   }
 
-  /// A + B sqrt(Q) >= 0, where B does not depend on z.
+  /// Converts A + B sqrt(Q) >= 0, where B does not depend on z.
   Clauses clauses_of_form(Node node) {
     const auto f = form(node);
     if (!f) return {};
@@ -279,7 +279,7 @@ class NormalForm {
                  : std::nullopt;
   }
 
-  /// |u| <= sqrt(Y), as two constraints linear in u.
+  /// Converts |u| <= sqrt(Y) as two constraints linear in u.
   Clauses abs_at_most(const Term& u, const Term& Y) {
     const Entry entry = graph_[Y.node()];
     const bool is_square =
@@ -287,13 +287,14 @@ class NormalForm {
     const Term root = is_square ? abs(Term(graph_, entry.arguments[0])) : sqrt(Y);
     return conjunction(clauses((root - u).node()), clauses((root + u).node()));
   }
-  /// |u| >= sqrt(Y), or Y <= 0.
+  /// Converts "|u| >= sqrt(Y), or Y <= 0".
   Clauses abs_at_least(const Term& u, const Term& Y) {
     const Term root = sqrt(Y);
     return disjunction(clauses((-Y).node()), disjunction(clauses((u - root).node()), clauses((-u - root).node())));
   }
-  /// Bounds of a quotient or an angle by a c that does not depend on z: N / w - c >= 0 and c - N / w >= 0, where w is a
-  /// root, acos(q) - c >= 0 and c - acos(q) >= 0. Where acos(q) is defined, acos(q) >= 0.
+  /// Converts lower and upper bounds c of a quotient or of an angle, where c does not depend on z: N / w - c >= 0 and
+  /// c - N / w >= 0 with a square root w, acos(q) - c >= 0 and c - acos(q) >= 0. acos(q) >= 0 itself holds wherever
+  /// acos(q) is defined.
   Clauses clauses_of_quotient(Node node) {
     const Entry entry = graph_[node];
     if (entry.operation == &operation("acos")) return std::vector<Clause>{};
@@ -316,7 +317,8 @@ class NormalForm {
     return clauses((is_lower ? N - c * w : c * w - N).node());
   }
 
-  /// Y - u^2 >= 0 and constraints that contain sqrt(Y - u^2). They are factored: expanding u^2 would double the degree.
+  /// Converts Y - u^2 >= 0 and constraints that contain sqrt(Y - u^2), by factoring Y - u^2: expanding u^2 would double
+  /// the degree.
   Clauses clauses_of_squares(Node node) {
     if (const auto found = square_bound(node)) return abs_at_most(found->u, found->Y);
     if (auto found = clauses_of_quotient(node)) return found;

@@ -8,7 +8,7 @@
 //   min(f, g) >= 0        f >= 0 and g >= 0
 //   max(f, g) >= 0        f >= 0 or g >= 0
 //   x - |u| >= 0          x - u >= 0 and x + u >= 0
-//   c f >= 0              f >= 0 or -c >= 0, and -f >= 0 or c >= 0 (c does not depend on z)
+//   c f >= 0              (f >= 0 or -c >= 0) and (-f >= 0 or c >= 0), where c does not depend on z
 //   A + B sqrt(Q) >= 0    B < 0: A >= 0 and A^2 - B^2 Q >= 0;   B > 0: A >= 0 or B^2 Q - A^2 >= 0
 //
 // Sums, differences, products, quotients and roots are first reduced to the radical form A + B sqrt(Q), where A, B and

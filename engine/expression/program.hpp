@@ -2,8 +2,8 @@
 //
 // The nodes that the outputs depend on become steps in topological order, each of which writes one register. The steps
 // are split into stages, one per nested loop (parameters, outer coordinate, ..., innermost coordinate): a step belongs
-// to the outermost stage that provides all inputs it depends on. What depends on the parameters alone is therefore
-// computed once, what depends on the outer coordinate once per value of that coordinate, and so on.
+// to the outermost stage that provides all inputs it depends on. Steps that depend on the parameters alone are
+// therefore executed once, steps that depend on the outer coordinate once per value of that coordinate, and so on.
 //
 // One program serves all scalars: double, dual numbers, Taylor coefficients, intervals; batch_stage.hpp evaluates a
 // stage with SIMD instructions.

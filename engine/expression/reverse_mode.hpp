@@ -1,7 +1,8 @@
-// Reverse-mode automatic differentiation of programs: derivatives of an output by all inputs, in one backward sweep.
+// Reverse-mode automatic differentiation of programs: derivatives of an output with respect to all inputs, in one
+// backward sweep.
 //
-// The adjoint of a register is the derivative of the output by that register. Starting from the adjoint 1 of the
-// output, the steps are visited in reverse order, and each adds its adjoint times its partial derivatives to the
+// The adjoint of a register is the derivative of the output with respect to that register. Starting from the adjoint 1
+// of the output, the steps are visited in reverse order, and each adds its adjoint times its partial derivatives to the
 // adjoints of its arguments.
 //
 // Reference: Griewank, Walther, "Evaluating Derivatives", 2nd ed., SIAM 2008, section 3.2.
@@ -11,16 +12,18 @@
 
 namespace pkm::expression {
 
-/// Backward sweep through one stage: propagates the adjoints of the registers that it computes to those of its inputs
-/// and of the earlier stages, and sets them to 0. Contributions that are not finite are dropped.
+/// Backward sweep through one stage: propagates the adjoints of the registers that the stage computes to the adjoints
+/// of its inputs and of the registers of earlier stages. The propagated adjoints are then set to 0. Contributions that
+/// are not finite are dropped.
 /// @param registers  values after the stage was run
 /// @param adjoints   adjoint of each register; contributions are added
 void backward_sweep(const Program& program, std::size_t stage, std::span<const double> registers,
                     std::span<double> adjoints);
 
-/// The derivative of register number `of`, which a stage computes, by the input of this stage; for several inputs, the
-/// sum of the partial derivatives.
-/// @param by  receives the derivatives of `of` by the registers of the earlier stages, by register; overwritten
+/// The derivative of the register `of`, which a stage computes, with respect to the input of this stage; for several
+/// inputs, the sum of the partial derivatives.
+/// @param by  receives the derivatives of `of` with respect to the registers of the earlier stages, indexed by
+///            register; overwritten
 double stage_derivative(const Program& program, std::size_t stage, std::uint32_t of, std::span<const double> registers,
                         std::vector<double>& by);
 

@@ -18,12 +18,12 @@ class Minors {
     known_.emplace(0U, Term(A.graph(), 1.0));
   }
 
-  /// Determinant of a submatrix. @param columns  set of its columns, one bit each; their number is that of its rows
+  /// Determinant of a submatrix. @param columns  set of its columns, one bit each; it has as many rows as columns
   Term of(unsigned columns) {
     if (const auto found = known_.find(columns); found != known_.end()) return found->second;
     const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
     Term sum(A_.graph(), 0.0);
-    bool is_negative = false;  // cofactor sign; the last column of the submatrix has a plus
+    bool is_negative = false;  // sign of the cofactor; positive for the last column of the submatrix, then alternating
     for (std::size_t j = A_.columns(); j-- > 0;) {
       if ((columns >> j & 1U) == 0) continue;
       const Term product = A_(row, j) * of(columns & ~(1U << j));
@@ -89,7 +89,7 @@ std::array<Term, 2> eigenvalue_range_3(const TermMatrix& A) {
 std::array<Term, 2> eigenvalue_range_2(const TermMatrix& A) {
   const Term mean = (A(0, 0) + A(1, 1)) * 0.5, half = (A(0, 0) - A(1, 1)) * 0.5;
   const Term radius = regular_root(sum_of_squares({half, A(0, 1)}), mean);
-  // the product of the eigenvalues, rather than a difference: accurate for a small one, too
+  // The smaller eigenvalue is computed from the product of both, not as a difference, to be accurate even near 0.
   const Term greatest = mean + radius;
   return {(A(0, 0) * A(1, 1) - A(0, 1) * A(0, 1)) / greatest, greatest};
 }
