@@ -1,17 +1,17 @@
-// Distance of two segments and of two capsules (sphere-swept segments); capsules model the links of a mechanism in
-// clearance checks.
+// Distance between two segments and between two capsules (sphere-swept segments); capsules model the links of a
+// mechanism in clearance checks.
 //
 // The closest points of two segments p + s u and q + t v with r = q - p minimise a convex quadratic function of (s, t)
-// over the unit square. Its unconstrained minimum is, with n = u x v,
+// over the unit square. With n = u x v, its unconstrained minimum is at
 //
 //   s = (r x v) . n / |n|^2
 //
 // If it lies outside the square, three steps give the constrained minimum: clamp s, compute the best t for that s, and
 // if t has to be clamped, compute the best s for the clamped t and clamp it.
 //
-// Accuracy: the cross products give s with an error of the rounding divided by the sine of the angle between the
-// segments, whereas the usual determinant |u|^2 |v|^2 - (u . v)^2 divides by the square of the sine. If the angle is
-// small, the distance hardly depends on s. The distance is therefore accurate to a few rounding errors of the
+// Accuracy: with the cross products, the error of s is the rounding error divided by the sine of the angle between the
+// segments, whereas with the usual determinant |u|^2 |v|^2 - (u . v)^2 it is divided by the square of the sine. If the
+// angle is small, the distance hardly depends on s. The distance is therefore accurate to a few rounding errors of the
 // coordinates for every pair: crossing, parallel, collinear segments, and points.
 //
 // Reference: Ericson, "Real-Time Collision Detection", 2005, section 5.1.9.
@@ -53,7 +53,7 @@ Point3<S> cross(const Point3<S>& a, const Point3<S>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Minimum distance of two segments; either may be a point (from == to).
+/// Minimum distance between two segments; either may be a point (from == to).
 template <class S>
 S segment_distance(const Segment<S>& a, const Segment<S>& b) {
   const S zero(0.0), one(1.0);
@@ -69,7 +69,7 @@ S segment_distance(const Segment<S>& a, const Segment<S>& b) {
   } else {
     const Point3<S> n = cross(u, v);
     const S nn = dot(n, n);
-    if (value_of(nn) > 0) s = ratio(dot(cross(r, v), n), nn);  // parallel: any s can be the start
+    if (value_of(nn) > 0) s = ratio(dot(cross(r, v), n), nn);  // otherwise parallel: any s is a valid start
     t = (uv * s - vr) / vv;
     if (!(value_of(t) >= 0)) {
       t = zero;
@@ -84,8 +84,8 @@ S segment_distance(const Segment<S>& a, const Segment<S>& b) {
   return sqrt_or_zero(dot(between, between));
 }
 
-/// Distance of two capsules. If they overlap: minus the penetration depth, the smallest translation of one of them
-/// after which they only touch.
+/// Distance between two capsules. If they overlap, the result is minus the penetration depth, i.e. the length of the
+/// smallest translation of one of them after which they only touch.
 template <class S>
 S capsule_distance(const Capsule<S>& a, const Capsule<S>& b) {
   return segment_distance(a.axis, b.axis) - (a.radius + b.radius);
@@ -125,7 +125,7 @@ Bounds<S> bounds_of(const Segment<S>& segment) {
   }
   return box;
 }
-/// The bounding box of a box and a segment.
+/// The smallest box that contains a box and a segment.
 template <class S>
 Bounds<S> joined(const Bounds<S>& box, const Segment<S>& segment) {
   Bounds<S> both = bounds_of(segment);
@@ -136,7 +136,7 @@ Bounds<S> joined(const Bounds<S>& box, const Segment<S>& segment) {
   return both;
 }
 
-/// Distance of two boxes: a lower bound of the distance of their contents.
+/// Distance between two boxes: a lower bound of the distance between their contents.
 template <class S>
 S distance_of_bounds(const Bounds<S>& a, const Bounds<S>& b) {
   S sum(0.0);
@@ -154,7 +154,8 @@ struct LinkPair {
   bool operator==(const LinkPair&) const = default;
 };
 
-/// True if the distance of every pair is at least `minimum` [m]. Stops at the first pair that is closer.
+/// True if the distance between the links of every pair is at least `minimum` [m]. Stops at the first pair that is
+/// closer.
 /// @param box  scratch memory: one bounding box per capsule
 template <class Capsules, class Pairs, class Boxes>
 bool respects_clearance(const Capsules& all, const Pairs& pairs, double minimum, Boxes& box) {

@@ -1,10 +1,11 @@
 // Singular values of small matrices, and their inverse condition number sigma_min / sigma_max.
 //
-// Two implementations. The one-sided Jacobi method (Hestenes) works for every size. Workspace analyses, which need the
-// number at every sample, use a closed form for 3 x 3 matrices that is two to three times faster: sigma_1^2 is the
-// largest eigenvalue of M M^T, (sigma_1 sigma_2)^2 is that of C C^T, where C is the cofactor matrix of M, and
-// sigma_3 = |det M| / (sigma_1 sigma_2). Unlike the smallest eigenvalue of M M^T, this quotient keeps the leading
-// digits of a small sigma_3. The derivatives follow from the singular vectors u_i, v_i of M: d sigma_i = u_i^T dM v_i.
+// Two implementations. The one-sided Jacobi method (Hestenes) works for every size. Workspace analyses need the
+// condition number at every sample. They use a closed form for 3 x 3 matrices, which is two to three times faster:
+// sigma_1^2 is the largest eigenvalue of M M^T, (sigma_1 sigma_2)^2 is that of C C^T, where C is the cofactor matrix of
+// M, and sigma_3 = |det M| / (sigma_1 sigma_2). Unlike the smallest eigenvalue of M M^T, this quotient keeps the
+// leading digits of a small sigma_3. With the singular vectors u_i, v_i of M, the derivatives are
+// d sigma_i = u_i^T dM v_i.
 //
 // References: Golub, Van Loan, "Matrix Computations", 4th ed., section 8.6 (one-sided Jacobi); Smith, "Eigenvalues of
 // a symmetric 3 x 3 matrix", Comm. ACM 4 (1961), 168 (trigonometric solution).

@@ -3,9 +3,9 @@
 //
 //   qdot = G Xdot,   qddot_i = G_i Xddot + Xdot^T H_i Xdot
 //
-// G (joints x coordinates) and H (one matrix per joint) are the first and second derivatives of the joint positions by
-// the pose. Solving for the platform with F = G^-1 gives Xdot = F qdot and Xddot = F (qddot - Xdot^T H Xdot), so the
-// coefficients of the inverse map are F and -sum_k F_ik F^T H_k F.
+// G (joints x coordinates) and H (one matrix per joint) are the first and second derivatives of the joint positions
+// with respect to the pose. Solving for the platform with F = G^-1 gives Xdot = F qdot and
+// Xddot = F (qddot - Xdot^T H Xdot), so the coefficients of the inverse map are F and -sum_k F_ik F^T H_k F.
 //
 // Reference: Thomas, Tesar, "Dynamic modeling of serial manipulator arms", J. Dyn. Syst. Meas. Control 104 (1982).
 #pragma once

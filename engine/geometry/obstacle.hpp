@@ -42,7 +42,7 @@ using Obstacles = std::vector<Obstacle>;
 
 /// The parameter t in [0, 1] at which the point from + t way of a segment is closest to a box centred at the origin.
 inline double closest_to_box(const Point3<double>& from, const Point3<double>& way, const Point3<double>& half) {
-  const auto derivative = [&](double t) {  // of |e|^2 / 2
+  const auto derivative = [&](double t) {  // derivative of |e|^2 / 2
     double sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double x = from[i] + t * way[i];
@@ -105,8 +105,8 @@ S box_distance(const Segment<S>& segment, const SolidBox& box) {
     start[i] = value_of(from[i]);
     way[i] = value_of(to[i]) - start[i];
   }
-  // t is treated as a constant in derivatives, because the derivative of the distance by t vanishes at the closest
-  // point
+  // t is treated as a constant in derivatives, because the derivative of the distance with respect to t vanishes at the
+  // closest point
   const double t = closest_to_box(start, way, box.half);
   S square(0.0);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -128,7 +128,7 @@ S obstacle_distance(const Capsule<S>& link, const Obstacle& obstacle) {
   return capsule_distance(link, Capsule<S>{{lifted(axis.from), lifted(axis.to)}, S(radius)});
 }
 
-/// The closest pair of a link (`first`) and an obstacle (`second`).
+/// The closest pair that consists of a moving link (`first`) and an obstacle (`second`).
 /// @param moves  indices of the moving links; the others may touch obstacles
 template <class S, class Capsules, class Numbers>
 ClosestPair<S> nearest_obstacle(const Capsules& all, const Numbers& moves, const Obstacles& obstacles) {

@@ -60,9 +60,9 @@ struct PoseReport {
 /// One solution of the forward kinematics.
 struct AssemblyMode {
   Pose<double> pose;
-  std::string mode;                            ///< the mechanism's name of this assembly mode
-  bool usual = true;                           ///< listed by default; otherwise on request only
-  std::string working_mode = {};               ///< inverse kinematics in this mode reproduces the joints; "": in all
+  std::string mode;               ///< the mechanism's name of this assembly mode
+  bool usual = true;              ///< listed by default; otherwise on request only
+  std::string working_mode = {};  ///< inverse kinematics in this mode reproduces the joints; "": in every mode
   std::vector<std::string> double_roots = {};  ///< coordinates that are double roots: two assembly modes coincide
 };
 

@@ -5,9 +5,9 @@
 // much larger. At rcond = kSingularRcond, a result of dividing by J has at most four correct digits.
 //
 // J is used in m and rad, without scaling. Normalising its rows or columns would hide a column that consists of
-// rounding errors only (1e-17, a rotation that no drive resists). A characteristic length of the mechanism as scale
-// would change rcond by at most that length or its inverse; for mechanisms between 1 mm and 1 km, regular poses stay
-// nine orders of magnitude away from the threshold.
+// rounding errors only (1e-17, a rotation that no drive resists). Scaling with a characteristic length L of the
+// mechanism would change rcond at most by the factor L or 1/L (in m); for mechanisms between 1 mm and 1 km, regular
+// poses stay nine orders of magnitude away from the threshold.
 //
 // Reference: Higham, "Accuracy and Stability of Numerical Algorithms", 2nd ed., theorem 6.5 (distance to
 // singularity).
@@ -84,8 +84,8 @@ inline AxisMatrix<double> qr_factor(AxisMatrix<double> J) {
   return R;
 }
 
-/// Singularity of a redundantly actuated mechanism: true if the rank of J is less than its number of columns. The
-/// platform can then move while all joints are locked. @param J  joints x coordinates
+/// Singularity criterion of a redundantly actuated mechanism: true if the rank of J is less than its number of columns.
+/// The platform can then move while all joints are locked. @param J  joints x coordinates
 inline bool is_rank_deficient(const AxisMatrix<double>& J) {
   if (J.rows() < J.cols()) return true;
   return is_singular(J.rows() == J.cols() ? J : qr_factor(J));
