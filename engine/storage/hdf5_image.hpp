@@ -29,7 +29,7 @@ struct Leaf {
 
 /// Sizes of the dimensions of a dataset, slowest first; {}: a scalar.
 using Extent = std::vector<std::size_t>;
-/// First size of an Extent: as many rows as there are values.
+/// First size of an Extent that stands for any number of rows: the number of values determines it.
 inline constexpr std::size_t kAnyRows = static_cast<std::size_t>(-1);
 
 /// Builds a file image. All functions throw ImageError.

@@ -171,7 +171,8 @@ void describe_front(Archive& archive, const std::string& group, const Problem& p
   }
 }
 
-/// Multistart runs of an interrupted solver that are ahead of an unfinished earlier run (see UnmergedRun).
+/// Multistart runs of an interrupted solver stage whose evaluations wait for an unfinished earlier run (see
+/// UnmergedRun).
 template <class Archive, class Problem, class Starts>
 void describe_runs_ahead(Archive& archive, const std::string& group, const Problem& problem, Starts& ahead) {
   bool exists = !ahead.empty();

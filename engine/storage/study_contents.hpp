@@ -136,7 +136,7 @@ struct DesignRecord {
   std::vector<double> margins;
   std::vector<double> reports;
   Status status = Status::failed;
-  std::string reason;  ///< why the evaluation failed, or a remark (rounded values outside their bounds); else ""
+  std::string reason;  ///< why the evaluation failed, or a remark (rounded values outside their bounds); "": neither
   double volume = 0;   ///< in FinalRecord::volume_unit
   std::int64_t cells = 0;
   std::int64_t feasible_cells = 0;
