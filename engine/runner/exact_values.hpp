@@ -27,7 +27,7 @@ class ExactValues {
                                        std::vector<std::string>& notes) const;
 
  private:
-  /// Checks whether the box of the study contains all reachable poses, because columns are not cut by it.
+  /// Checks whether the box of the study contains all reachable poses, because the columns may extend beyond the box.
   /// @return the ranges of the reachable poses if it does not; empty if it does, or if columns are cut by the box
   Unsupported poses_beyond_box(std::span<const double> parameters) const;
   /// Sets values that depend on a region evaluated on voxels to NaN, because they are not exact.

@@ -20,9 +20,9 @@ double objective_scale(const StageRecord& stage, std::int64_t row) {
   return 0;
 }
 
-/// Sensitivities of the objective f by every parameter p. The re-optimised sensitivity is the derivative of the optimal
-/// value. By the envelope theorem it equals that of the Lagrangian: d f / d p + sum over the active constraints of
-/// +- lambda_i d g_i / d p, with + if f is maximised.
+/// Sensitivities of the objective f with respect to every parameter p. The re-optimised sensitivity is the derivative
+/// of the optimal value. By the envelope theorem it equals that of the Lagrangian: d f / d p + sum over the active
+/// constraints of +- lambda_i d g_i / d p, with + if f is maximised.
 std::vector<SensitivityRecord> sensitivities(const DesignProblem& problem, std::span<const double> design,
                                              const Optimality& found) {
   const ProblemParts& parts = problem.parts();
@@ -34,7 +34,8 @@ std::vector<SensitivityRecord> sensitivities(const DesignProblem& problem, std::
   const auto& parameters = parts.mechanism->info().parameters;
   std::vector<SensitivityRecord> records;
   for (std::size_t p = 0; p < count; ++p) {
-    double total = derivatives[1 + p], scale = 0;  // scale: largest derivative by a parameter of the same unit
+    // scale: largest derivative with respect to a parameter of the same unit
+    double total = derivatives[1 + p], scale = 0;
     for (std::size_t other = 0; other < count; ++other)
       if (parameters[other].unit == parameters[p].unit) scale = std::fmax(scale, std::fabs(derivatives[1 + other]));
     double max_term = scale;

@@ -8,8 +8,8 @@
 
 namespace pkm {
 
-/// @return KKT residual, active bounds and constraints, and sensitivities by all parameters; empty if the study has
-/// several objectives, the stage has no best design, or its evaluation failed
+/// @return KKT residual, active bounds and constraints, and sensitivities with respect to all parameters; empty if the
+/// study has several objectives, the stage has no best design, or its evaluation failed
 std::optional<OptimalityRecord> optimality_record(const Study& study, const StageRecord& stage);
 
 }  // namespace pkm

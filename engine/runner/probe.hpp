@@ -20,8 +20,8 @@ struct Probe {
 };
 
 /// @return number of designs to evaluate: 4 to 64, depending on the estimated cost of an evaluation (number of cells
-/// and samples of the workspace analyses); 0 if one evaluation is too expensive. The estimate does not measure time, so
-/// that the result is the same on all machines.
+/// and samples of the workspace analyses); 0 if one evaluation is too expensive. The cost is estimated without
+/// measuring time, so that the result is the same on all machines.
 std::size_t probe_size(const DesignProblem& problem);
 
 /// Evaluates probe_size() scrambled Sobol points of the design space, chosen by the study's seed, until the time limit.

@@ -28,7 +28,8 @@ std::string changed_text(const std::string& what) {
   return what + " was changed after the study was started; restore it, or start a new study";
 }
 
-/// Finds the file of a function: the first one, or the first one with the recorded contents.
+/// Finds the file that defines a function: the first existing one in `folders`, or, given the recorded hash, the first
+/// one whose contents have this hash.
 PythonFunction find_function(const Study& study, const std::string& call, const std::vector<std::string>& folders,
                              const std::string& hash) {
   const std::size_t colon = call.rfind(':');

@@ -1,4 +1,4 @@
-// Connects the functions that a study calls (objectives of type "python") with the files that define them.
+// Connects the functions that a study calls (objectives of type "python") to the files that define them.
 #pragma once
 
 #include <string>
@@ -11,9 +11,11 @@
 namespace pkm {
 
 /// Starts worker processes for the functions of a study; does nothing if it calls none or if they are connected
-/// already. The file of a function is looked for relative to `folders`, in this order. Throws ConfigError if there is
-/// no such file or it does not define the function, Stopped.
-/// @param recorded  the functions of the study file that is continued: their files must be the same
+/// already. The file of a function is searched for relative to each of the `folders`, in this order. Throws ConfigError
+/// if there is no such file or it does not define the function, StorageError if the file has changed, and Stopped after
+/// a stop request.
+/// @param recorded  the functions recorded in the study file to be resumed: the contents of their files must not have
+///                  changed
 /// @param threads   number of processes if the options specify none
 void start_python_workers(const Study& study, const std::vector<std::string>& folders,
                           const std::vector<FunctionRecord>& recorded, const PythonOptions& options, int threads);
@@ -21,7 +23,8 @@ void start_python_workers(const Study& study, const std::vector<std::string>& fo
 /// The parent folder of a file; "": the current folder.
 std::string folder_of(const std::string& file);
 
-/// The connected functions of a study, for its file. Throws std::logic_error if they are not connected.
+/// The records of a study's functions, to be stored in the study file. Throws std::logic_error if they are not
+/// connected.
 std::vector<FunctionRecord> function_records(const Study& study);
 
 /// Throws StorageError if a connected function differs from the recorded one.

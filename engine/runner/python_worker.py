@@ -9,7 +9,7 @@ Every message begins with its length: 8 bytes, native byte order.
 
 import os
 
-# Libraries with threads of their own would compete with each other, and add numbers in another order.
+# Threads of numerical libraries would compete with the other workers, and would change the order of summation.
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 

@@ -32,9 +32,10 @@ namespace {
 
 constexpr int kConnection = 3;               // file descriptor of the connection in a worker
 constexpr int kPollTime = 50;                // [ms]
-constexpr std::size_t kChunksPerWorker = 4;  // of a batch, so that all finish at about the same time
+constexpr std::size_t kChunksPerWorker = 4;  // several, so that all workers finish a batch at about the same time
 
-/// The environment of a worker. Without a fixed seed of hashes, the order of sets of texts differs from run to run.
+/// The environment of a worker. It has a fixed hash seed, because the order of the elements of a set of strings would
+/// otherwise differ from run to run.
 std::vector<std::string> worker_environment() {
   std::vector<std::string> all;
   for (char** entry = environ; *entry; ++entry) all.emplace_back(*entry);
@@ -56,7 +57,7 @@ std::string how_it_ended(int status) {
 
 }  // namespace
 
-/// What a process receives when it starts.
+/// What is needed to start a worker process: the interpreter, and the first message, which names the functions.
 struct PythonWorkers::Setup {
   std::string program;
   std::string message;  ///< JSON
@@ -75,11 +76,11 @@ class PythonWorkers::Process {
     posix_spawnattr_t attributes;
     posix_spawn_file_actions_init(&actions);
     posix_spawnattr_init(&attributes);
-    // dup2 of a descriptor onto itself would leave it to be closed.
+    // dup2 of a descriptor onto itself would not clear its close-on-exec flag.
     const int end = sockets[1] == kConnection ? ::fcntl(sockets[1], F_DUPFD_CLOEXEC, kConnection + 1) : sockets[1];
     posix_spawn_file_actions_adddup2(&actions, end, kConnection);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    // A process group of its own: Ctrl-C stops pkmopt, which ends its workers.
+    // A separate process group, so that Ctrl-C interrupts pkmopt only, which then ends its workers.
     posix_spawnattr_setpgroup(&attributes, 0);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     std::vector<std::string> words = {setup.program, "-c", kPythonWorkerText}, environment = worker_environment();
@@ -100,7 +101,7 @@ class PythonWorkers::Process {
   Process& operator=(const Process&) = delete;
   ~Process() {
     ::close(connection_);
-    constexpr int kPatience = 100;  // times 10 ms, until a process that does not end is killed
+    constexpr int kPatience = 100;  // in units of 10 ms; a process that has not ended by then is killed
     for (int i = 0; pid_ > 0 && i < kPatience && !is_busy; ++i) {
       if (is_ended()) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -111,7 +112,7 @@ class PythonWorkers::Process {
   }
 
   int connection() const { return connection_; }
-  /// Sends a message. A process that has ended is noticed when its answer is received.
+  /// Sends a message. If the process has ended, this is detected when its answer is received.
   void send(const std::string& bytes) {
     const std::uint64_t size = bytes.size();
     std::string all(reinterpret_cast<const char*>(&size), sizeof size);
@@ -123,7 +124,7 @@ class PythonWorkers::Process {
       done += static_cast<std::size_t>(n);
     }
   }
-  /// Receives a message; none if the process has ended.
+  /// Receives a message. @return std::nullopt if the process has ended
   std::optional<std::string> receive() {
     std::uint64_t size = 0;
     if (!receive_bytes(reinterpret_cast<char*>(&size), sizeof size)) return {};
@@ -131,7 +132,7 @@ class PythonWorkers::Process {
     if (!receive_bytes(bytes.data(), bytes.size())) return {};
     return bytes;
   }
-  /// Waits until the functions are loaded. Throws Stopped; ConfigError if a function cannot be loaded.
+  /// Waits until the functions are loaded. Throws Stopped, and ConfigError if a function cannot be loaded.
   void await_start() {
     if (is_started_) return;
     pollfd waiting{connection_, POLLIN, 0};
@@ -141,7 +142,7 @@ class PythonWorkers::Process {
     if (!answer->empty()) throw ConfigError({"", 0, "call"}, "a function cannot be loaded: " + *answer);
     is_started_ = true;
   }
-  /// How the process has ended. To be called after receive() has returned nothing.
+  /// Describes how the process ended. Precondition: receive() has returned std::nullopt.
   std::string end_text() {
     if (pid_ > 0 && ::waitpid(pid_, &status_, 0) == pid_) pid_ = 0;
     return how_it_ended(status_);
@@ -176,7 +177,7 @@ class PythonWorkers::Batch {
   Batch(std::size_t function, std::span<const double> parameters, std::span<ExternalValue> values, const Setup& setup)
       : function_(function), parameters_(parameters), values_(values), setup_(setup) {}
 
-  /// Throws Stopped; then busy processes have been replaced.
+  /// After a stop request, replaces the busy processes and throws Stopped.
   void evaluate(std::vector<std::unique_ptr<Process>>& processes) {
     const std::size_t count = values_.size();
     const std::size_t size = std::max<std::size_t>(1, count / (kChunksPerWorker * processes.size()));
@@ -218,7 +219,7 @@ class PythonWorkers::Batch {
     process.send({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)});
   }
 
-  /// Receives the values of a chunk. @return the number of values
+  /// Receives the values of a chunk. @return number of designs of the batch that are thereby done
   std::size_t finish(std::unique_ptr<Process>& process, const Rows& rows) {
     const auto answer = process->receive();
     process->is_busy = false;
@@ -238,7 +239,8 @@ class PythonWorkers::Batch {
     return rows.count();
   }
 
-  /// Which design of several has ended the process is found out by calling the function for each again.
+  /// Handles a chunk during which the process ended. The call of a single design has failed. Otherwise each design of
+  /// the chunk is called again separately, to find the one that ends the process. @return as for finish()
   std::size_t fail(const Rows& rows, const std::string& reason) {
     if (rows.count() == 1) {
       constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-// Processes that call the Python functions of a study.
+// Worker processes that call the Python functions of a study.
 #pragma once
 
 #include <condition_variable>
@@ -15,18 +15,18 @@ namespace pkm {
 struct PythonOptions {
   int workers = 0;                     ///< number of processes; 0: one per thread
   std::string program = "python3";     ///< the interpreter
-  std::vector<std::string> path = {};  ///< further folders of modules
+  std::vector<std::string> path = {};  ///< additional folders to search for modules
 };
 
 /// A function and the file that defines it.
 struct PythonFunction {
   std::string call;  ///< as the study names it
   std::string file, function;
-  std::string hash;  ///< of the file's contents
+  std::string hash;  ///< hash of the file's contents
 };
 
-/// Calls Python functions in processes of its own. A process that ends is replaced, and the call that ended it has
-/// failed. Results do not depend on the number of processes.
+/// Calls Python functions in separate processes. If a process ends during a call, the process is replaced and the call
+/// counts as failed. Results do not depend on the number of processes.
 class PythonWorkers final : public FunctionCaller {
  public:
   /// Starts the processes and loads the functions. Throws ConfigError, Stopped.
@@ -44,7 +44,8 @@ class PythonWorkers final : public FunctionCaller {
   struct Setup;
   class Batch;
 
-  /// Waits until at least one process is idle, and takes up to `count`.
+  /// Waits until at least one process is idle, then returns up to `count` idle processes, which are reserved for the
+  /// caller until give_back().
   std::vector<std::unique_ptr<Process>> take_idle(std::size_t count);
   void give_back(std::vector<std::unique_ptr<Process>> processes);
 

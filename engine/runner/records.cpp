@@ -41,7 +41,8 @@ std::vector<std::string> labels(const List& list) {
   return all;
 }
 
-/// @return a sentence on the first element of `recorded` that the text does not define; empty if it defines all of them
+/// @return a sentence that names the first element of `recorded` that the study text does not define; empty if it
+/// defines all of them
 template <class List>
 Unsupported undefined_in_text(const std::string& kind, const List& of_text, const List& recorded) {
   const std::vector<std::string> known = labels(of_text);
@@ -54,7 +55,8 @@ std::string conflict(const std::string& in_text, const std::string& recorded) {
   return "the text has " + in_text + ", the record has " + recorded;
 }
 
-/// @return a sentence on why the recorded problem is not the one that the text describes; empty if it is
+/// @return a sentence that states why the recorded problem is not the one that the text describes; empty if it is the
+/// same
 Unsupported conflict_with_text(const Study& study, const StudyContents& contents) {
   const ProblemRecord of_text = problem_record(study);
   const ProblemRecord& recorded = contents.problem;

@@ -28,7 +28,8 @@ EvaluationTable sample_designs(const Study& study, Detail detail) {
   return table;
 }
 
-/// Time of one evaluation [s]. The slowest of the sample designs counts, because a design that fails takes no time.
+/// Time of one evaluation [s]: the maximum over the sample designs, because the evaluation of a design that fails takes
+/// almost no time.
 double evaluation_seconds(const Study& study, Detail detail) {
   const DesignProblem& problem = *study.problem;
   EvaluationTable table = sample_designs(study, detail);
@@ -52,7 +53,7 @@ double evaluation_seconds(const Study& study, Detail detail) {
   return longest;
 }
 
-/// Time of the exact values of all final designs [s]; empty if they take too long to be measured.
+/// Time to compute the exact values of all final designs [s]; empty if this takes too long to be measured.
 std::optional<double> exact_seconds(const Study& study) {
   constexpr double kMaxSeconds = 0.3;  // per measurement
   const double designs = study.baseline ? 2 : 1;
@@ -94,7 +95,7 @@ RunCost measure_run_cost(const Study& study) {
 
 namespace {
 
-/// Maximum time of a stage, by its evaluation limit [s].
+/// Maximum time of a stage, which follows from its evaluation limit [s].
 double stage_seconds(const Stage& stage, const Study& study, const RunCost& cost, int threads) {
   const double each = stage.optimiser->detail() == Detail::derivatives ? cost.with_derivatives : cost.plain;
   const auto at_once = std::min<std::int64_t>(threads, stage.optimiser->at_once());

@@ -21,11 +21,11 @@ struct RunCost {
   static constexpr double kTimeLimit = 2;  ///< an evaluation is measured for at most this time [s]
 };
 
-/// Measures the costs of a study: evaluates the centre of the design space and the baseline, of which the slower one
-/// counts. The exact values of the final designs are measured only if they take less than some tenths of a second.
+/// Measures the costs of a study: evaluates the centre of the design space and the baseline, and uses the longer of the
+/// two times. The exact values of the final designs are measured only if they take less than some tenths of a second.
 RunCost measure_run_cost(const Study& study);
 
-/// @return maximum time of all stages, by their evaluation limits [s]
+/// @return maximum time of all stages, which follows from their evaluation limits [s]
 double max_stage_seconds(const Study& study, const RunCost& cost, int threads);
 
 class RemainingTime {

@@ -141,7 +141,8 @@ bool Run::generation(const Generation& g) {
                     timed ? before->generations.seconds[index] : earlier_seconds_ + seconds(), contents_.stages.back());
   ahead_ = g.ahead;
   complete_rows_ = g.table->size();
-  // With several objectives a solver's results are points of a front, whose best is known only at the end of the stage.
+  // With several objectives, a solver's results are points of a front, whose best point is known only at the end of the
+  // stage.
   if (g.front || study_.problem->objectives().size() < 2) update_best(*g.table, g.best_row);
   if (ranks::rank() == 0) {
     try {

@@ -31,10 +31,11 @@ struct RunOptions {
   std::optional<double> time_limit;  ///< wall time of this run [s], after which it stops with a checkpoint
   /// Returns true to stop with a checkpoint; called often, by any thread of the team. Empty: never.
   std::function<bool()> stop = {};
-  /// Whether SIGINT, SIGTERM and SIGHUP request a stop. A library leaves the signals of the process alone.
+  /// Whether SIGINT, SIGTERM and SIGHUP request a stop. False if pkmopt is used as a library, which must not change the
+  /// signal handling of the process.
   bool handles_signals = true;
   PythonOptions python = {};  ///< for studies that call Python functions
-  /// Calls these functions of a resumed study in the place of Python processes.
+  /// If set, calls the external functions of a resumed study instead of Python worker processes.
   std::shared_ptr<FunctionCaller> functions = {};
   ProgramVersion program;
   RunCost cost = {};  ///< for the estimate of the remaining time in progress reports

@@ -37,8 +37,9 @@ struct LockedStudy {
   StudyContents contents;
 };
 
-/// Connects the functions that a study from the file at `path` calls with those of the options, or else with worker
-/// processes. They must be the recorded ones. Throws ConfigError, StorageError, Stopped.
+/// Makes the external functions of a study, which was read from the file at `path`, callable: by options.functions if
+/// it is set, otherwise by Python worker processes. The functions must be the recorded ones. Throws ConfigError,
+/// StorageError and Stopped.
 void connect_functions(const Study& study, const StudyContents& contents, const std::string& path,
                        const RunOptions& options);
 

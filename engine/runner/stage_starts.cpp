@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-/// Number of best evaluations among which basins are searched.
+/// basins() considers only this number of best evaluations.
 constexpr std::size_t kMaxCandidates = 4000;
 
 StartDesign best_so_far(const Study& study, const StudyContents& contents) {
@@ -84,7 +84,7 @@ std::vector<StartDesign> front_points(const StudyContents& contents, std::size_t
   return starts;
 }
 
-/// Adds the designs of the option `designs`; variables that they do not name are those of `base`.
+/// Adds the designs of the option `designs`; variables that a design does not name have their values in `base`.
 void add_given_designs(const DesignSpace& space, const Options& options, const std::vector<double>& base,
                        std::vector<StartDesign>& starts) {
   if (!options.has("designs")) return;

@@ -8,19 +8,19 @@
 
 namespace pkm {
 
-/// @return the starting points of a stage. Solvers select them by their options (start, starts, basin_radius, designs):
-/// - by default the best design of the earlier stages. In a first stage it is the best of the designs taken from
-/// another
-///   study (Study::starts); if there are none, the allowed design nearest to the baseline; without a baseline the
-///   centre of the bounds;
-/// - "best-of-basins": see basins() in stage_starts.cpp;
-/// - "pareto": points spread over the front of the last stage that has found one;
-/// - designs given in the study.
-/// Other optimisers get the best design of the earlier stages or, in a first stage, the designs taken from another
-/// study. If there are none, only sweeps get a starting point: the baseline.
+/// @return the starting points of a stage. A solver selects them by its option `start`:
+/// - "best" (default): the best design of the earlier stages;
+/// - "best-of-basins": the best designs that have no better design nearby, see basins() in stage_starts.cpp;
+/// - "pareto": points spread over the front of the last stage that has found one; if there is none, as "best";
+/// - "none": none of these.
+/// The designs given by the option `designs` are added to them. Other optimisers get the best design of the earlier
+/// stages. If nothing was evaluated before the stage, see first_start_designs().
 std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents);
 
-/// The starting points of a stage before which nothing was evaluated, as above.
+/// The starting points of a stage before which nothing was evaluated: the best of the designs taken from another study
+/// (a solver with start = "best-of-basins" and other optimisers get several of them). If there are none, solvers and
+/// sweeps start from `base`. A solver with start = "none" gets neither. For solvers, the designs given by the option
+/// `designs` are added.
 /// @param base   the baseline or the centre of the bounds
 /// @param given  designs of another study, best first
 std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Stage& stage, const StartDesign& base,
@@ -29,9 +29,9 @@ std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Sta
 /// The allowed design nearest to the baseline; without a baseline the centre of the bounds.
 std::vector<double> baseline_or_centre(const Study& study);
 
-/// The best designs of a study, best first: if a stage has found a front, points spread over the last front, else the
-/// best designs of basins, no two of which are nearer than a given share of all ranges. The designs have the values of
-/// the study's variables.
+/// The best designs of a study. If a stage has found a front: points spread over the last front, in its order.
+/// Otherwise the best designs that have no better design nearby, best first (see basins() in stage_starts.cpp). A
+/// design consists of the values of that study's variables.
 std::vector<StartDesign> distinct_best_designs(const StudyContents& contents, std::size_t limit);
 
 /// @return ranges of the objectives on the front found by earlier stages (or the best design's objectives), and its

@@ -8,20 +8,20 @@
 
 namespace pkm {
 
-/// Changes of a study that let its first stage start from the best designs of another study.
+/// Changes that make the first stage of a study start from the best designs of another study.
 struct StartFrom {
   std::vector<std::string> start;  ///< for StudyChanges::start: the designs, best first, as "a=0.3,b=1"
   /// Number of designs that lie outside the study's bounds, or between the steps of a variable; they are moved to the
   /// nearest allowed design.
   std::size_t moved = 0;
-  std::vector<std::string> missing;  ///< variables that the other study does not have; they have the baseline's values
+  std::vector<std::string> missing;  ///< variables that are not parameters of the other study; see start_from()
 };
 
 /// Chooses designs of `other` for the first stage of `study`: for a genetic algorithm at most half of the population,
-/// for a solver as many as it starts from, else one. They are points of the other study's last front or the best
-/// designs, without near duplicates. A variable has the value of the other study's parameter of the same name, else the
-/// baseline's or the middle of its range. Throws ConfigError if the other study has no variable in common with `study`,
-/// if units differ, or if it has no design.
+/// for a solver as many as it has starts, and one for any other optimiser. They are chosen by distinct_best_designs().
+/// A variable gets the value of the other study's parameter of the same name. If there is no such parameter, it gets
+/// the value of the baseline or, without a baseline, the centre of its range. Throws ConfigError if the other study has
+/// no variable in common with `study`, if units differ, or if it has no design.
 /// @param file  name of the other study's file, for messages
 /// Precondition: the study has a stage.
 StartFrom start_from(const Study& study, const StudyContents& other, const std::string& file);
