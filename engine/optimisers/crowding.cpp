@@ -57,7 +57,7 @@ double exclusive_area(const LinkedFront& front, std::size_t node) {
   return (front.score(a)[0] - p[0]) * (front.score(b)[1] - p[1]);
 }
 
-/// Cached nearest neighbours of every node, by Euclidean distance of normalised scores.
+/// Cached nearest neighbours of every node, by Euclidean distance between normalised scores.
 class NearestNeighbours {
  public:
   /// @param capacity  number of neighbours that one search finds and caches

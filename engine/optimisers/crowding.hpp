@@ -1,5 +1,5 @@
-// Crowding-distance ranking of a Pareto front (Kukkonen and Deb 2006), which selects the designs to keep where a front
-// has too many, and the spacing indicator of a front.
+// Crowding-distance ranking of a Pareto front (Kukkonen and Deb 2006), which selects the designs to keep if a front has
+// too many, and the spacing indicator of a front.
 #pragma once
 
 #include <cstdint>

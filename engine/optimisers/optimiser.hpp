@@ -49,7 +49,7 @@ struct Generation {
   std::function<std::vector<UnmergedRun>()> ahead = {};
   /// Maximum number of evaluations still to be made; nullopt: the stage's limit less the evaluations made.
   std::optional<std::int64_t> left = {};
-  bool alone = false;  ///< reported without synchronising the ranks, whose results are compared at the stage's end
+  bool alone = false;  ///< reported without synchronising the ranks; they are compared only at the end of the stage
   const Front* front = nullptr;  ///< several objectives: the Pareto front so far
 };
 
@@ -82,7 +82,7 @@ struct StartDesign {
 
 /// Scaling data from the Pareto front of the earlier stages.
 struct PreviousFront {
-  std::vector<double> extents = {};    ///< range of each objective, > 0; its absolute value if the range is 0
+  std::vector<double> extents = {};  ///< range of each objective, > 0; the objective's absolute value if the range is 0
   std::vector<double> reference = {};  ///< reference point of its hypervolume; empty: none
 };
 
@@ -117,7 +117,7 @@ class Optimiser {
   virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
   /// Maximum number of concurrent evaluations.
   virtual std::int64_t at_once() const { return std::numeric_limits<std::int64_t>::max(); }
-  /// Which results of an evaluation the stage needs.
+  /// The level of detail at which the stage needs designs to be evaluated.
   virtual Detail detail() const { return Detail::enough; }
 };
 

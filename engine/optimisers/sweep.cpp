@@ -1,4 +1,5 @@
-// Parameter sweep: evaluates the designs of a grid to show how the objectives depend on the variables. It is no search.
+// Parameter sweep: evaluates the designs of a grid to show how the objectives depend on the variables. It does not
+// search for an optimum.
 //
 // one-at-a-time: generation 0 is the centre point (the first start design, otherwise the centre of the design space);
 // generation i + 1 varies variable i over its range and keeps the others at the centre point. full-factorial: all

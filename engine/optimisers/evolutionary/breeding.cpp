@@ -44,7 +44,7 @@ void Breeder::create_children(std::uint32_t generation, std::span<const std::int
       make_child(pool, parent_indices_[2 * k], parent_indices_[2 * k + 1], stream, child(k));
     }
   };
-  constexpr std::size_t kMinSharedChildren = 1000;  // fewer are not worth several threads: 0.2 us per child
+  constexpr std::size_t kMinSharedChildren = 1000;  // fewer do not justify several threads: a child takes 0.2 us
   if (count < kMinSharedChildren)
     make_children(0, count);
   else

@@ -3,8 +3,8 @@
 //
 // Each generation selects parents by rank, creates children (breeding.hpp) and evaluates them as one batch. The next
 // population consists of the best of parents and children together (`best`, a (mu + lambda) selection), or of the
-// children and the `elite` best parents (`generational`). Nothing depends on the number of generations, so that a
-// finished run can be extended.
+// children and the `elite` best parents (`generational`). No parameter depends on the total number of generations, so
+// that a finished run can be extended.
 #include <algorithm>
 #include <limits>
 #include <memory>

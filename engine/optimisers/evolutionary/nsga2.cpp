@@ -67,8 +67,8 @@ class Nsga2Selection final : public SurvivorSelection {
  private:
   std::size_t population_size() const { return plan_.evolution.breeding.population; }
 
-  /// Adds the children to the population. A child may be represented by the row of an equal design: duplicates are
-  /// removed.
+  /// Adds the children to the population. A child that equals an evaluated design is represented by the row of that
+  /// design; therefore duplicate rows are removed.
   void merge_children(const std::vector<std::int64_t>& children) {
     rows_.insert(rows_.end(), children.begin(), children.end());
     parallel_sort(rows_);

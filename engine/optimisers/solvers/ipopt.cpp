@@ -2,7 +2,7 @@
 //
 // Debian's MUMPS is not thread-safe and Ipopt 3.11 does not protect it. Therefore a mutex is locked from the
 // construction of an Ipopt application to its destruction. A file ipopt.opt in the working folder is not read. An
-// exception in a callback ends the solver with a separate status, which is also how a run is stopped.
+// exception thrown by a callback ends the solver with a separate status; this is also used to stop a run.
 #include <algorithm>
 #include <map>
 #include <mutex>

@@ -25,8 +25,8 @@ class MultistartMerger {
   /// To be locked for access to starts() and calls of merge().
   std::mutex& mutex() { return mutex_; }
 
-  /// Appends all rows that are next in start order to the stage table, and reports each to the monitor. Rank 0 merges
-  /// during the stage, the other ranks at its end.
+  /// Appends to the stage table all rows that can be appended in start order, and reports each to the monitor. Rank 0
+  /// merges during the stage, the other ranks at its end.
   /// @return false if the stage was stopped, for example by the monitor
   bool merge();
   /// Stores the evaluations and, if it has finished, the outcome of a start that another rank runs.

@@ -1,8 +1,9 @@
 // Solver stage with NLopt.
 //
-// NLopt is a C library, through which no exception may pass: the callbacks return a number and force a stop. The
-// returned status is not reliable: SLSQP can succeed with x = NaN or at an infeasible point, and report a round-off
-// failure at the true optimum. COBYLA is not offered, because its inner loop can hang and ignore all limits.
+// NLopt is a C library, through which no exception may propagate: instead of throwing, the callbacks force a stop and
+// return some number. The returned status is not reliable: SLSQP can succeed with x = NaN or at an infeasible point,
+// and report a round-off failure at the true optimum. COBYLA is not offered, because its inner loop can hang and ignore
+// all limits.
 #include <algorithm>
 #include <memory>
 #include <new>

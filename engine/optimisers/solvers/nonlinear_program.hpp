@@ -1,9 +1,9 @@
 // Nonlinear program as a solver sees it: minimise an objective over the unit cube subject to constraints g(u) >= 0.
 //
-// Solvers request objective, constraints and gradients separately and repeatedly. Each point is evaluated once, with
-// derivatives if the solver uses them. All evaluations are recorded in the table of the start, so that a resumed run
-// can replay them. The objective is divided by its magnitude at the start design, so that solver tolerances are
-// relative. Several objectives are scalarised (scalarised_problem.hpp).
+// Solvers request objective, constraints and gradients in separate calls, often repeatedly. Each point is nevertheless
+// evaluated only once, with derivatives if the solver uses them. All evaluations are recorded in the table of the
+// start, so that a resumed run can replay them. The objective is divided by its magnitude at the start design, so that
+// solver tolerances are relative. Several objectives are scalarised (scalarised_problem.hpp).
 #pragma once
 
 #include <chrono>

@@ -118,7 +118,7 @@ std::optional<std::vector<double>> project_onto_active_constraints(const std::ve
                                                                    std::span<const double> margins,
                                                                    std::span<const double> margin_jacobian,
                                                                    double activity_tolerance) {
-  constexpr double kRoundingAllowance = 1e-14;  // target constraint value, which allows for rounding in the constraint
+  constexpr double kRoundingAllowance = 1e-14;  // target value of active constraints, to allow for rounding errors
   const std::size_t n = point.size();
   std::vector<std::size_t> free, active;
   for (std::size_t i = 0; i < n; ++i)

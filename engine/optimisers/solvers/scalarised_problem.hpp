@@ -32,7 +32,7 @@ struct Scalarisation {
 /// Objective and constraints of the nonlinear program at a point of the unit cube.
 struct NlpPoint {
   double objective = 0;                 ///< minimised, scaled
-  std::vector<double> gradient;         ///< gradient of the objective by unit coordinates; empty without derivatives
+  std::vector<double> gradient;         ///< gradient with respect to the unit coordinates; empty without derivatives
   std::vector<double> margins;          ///< constraint values, satisfied if >= 0
   std::vector<double> margin_jacobian;  ///< constraints x variables
   bool usable = false;                  ///< false: the evaluation failed, the other members are meaningless

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kSnapDistance = 1e-6;         // unit coordinates: a closer bound or constraint is assumed active
+constexpr double kSnapDistance = 1e-6;  // unit coordinates; bounds and constraints closer than this count as active
 constexpr double kOptimalityTolerance = 1e-6;  // KKT residual of a converged design
 constexpr int kMaxSolverRuns = 4;              // per start
 
@@ -33,9 +33,9 @@ std::size_t most_stationary(const NonlinearProgram& program, const EvaluationTab
   return chosen;
 }
 
-/// Evaluates the returned point, then the best point moved onto nearby bounds, then the same moved onto its active
-/// constraints. The returned point need not be the best one, nor one that the solver has evaluated (SLSQP may leave the
-/// optimum again), and solvers end slightly inside bounds and constraints.
+/// Evaluates the returned point, then the best point moved onto nearby bounds, and finally this point moved onto its
+/// active constraints. The returned point need not be the best one, nor one that the solver has evaluated (SLSQP may
+/// leave the optimum again), and solvers end slightly inside bounds and constraints.
 /// @return false if the returned point is worse than the best one
 bool polish(NonlinearProgram& program, const EvaluationTable& table, const std::vector<double>& returned) {
   bool ended_at_best = true;
@@ -106,7 +106,8 @@ bool has_wrong_zero_gradient(NonlinearProgram& program) {
   return std::fabs(*high - *low) > std::max(second_difference, noise);
 }
 
-/// A solver may report a failure due to rounding at the optimum: a small KKT residual counts as convergence.
+/// A solver may report a failure at the optimum, due to rounding errors. Therefore a small KKT residual counts as
+/// convergence.
 StopReason stop_reason(NonlinearProgram::Stop stop, const SolverResult& result, double optimality) {
   if (stop == NonlinearProgram::Stop::evaluations) return StopReason::evaluations;
   if (stop == NonlinearProgram::Stop::time) return StopReason::time;

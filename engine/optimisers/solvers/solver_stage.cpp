@@ -105,7 +105,7 @@ class SolverStageRun {
         return !merger_.stopped();
       }
       while (const auto message = ranks::poll()) {
-        std::uint64_t stage = 0;  // messages may arrive after the end of the stage in which they were sent
+        std::uint64_t stage = 0;  // identifies the sender's stage: messages may arrive after the end of a stage
         std::memcpy(&stage, message->data(), sizeof stage);
         if (stage == input_.seed) receive(*message, sizeof stage);
       }
