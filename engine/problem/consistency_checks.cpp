@@ -66,7 +66,7 @@ std::string upper_name(std::string name) {
   return name.replace(at, 4, "_max");
 }
 
-/// Finds pairs of thresholds of one quantity whose lower one is not below the upper one.
+/// Finds pairs of thresholds of one quantity in which the lower threshold is not below the upper one.
 void compare_limits(const ProblemParts& parts, const std::vector<std::vector<double>>& designs, Findings& found) {
   const auto& limits = parts.mechanism->info().limits;
   std::vector<double> values(limits.size());
@@ -109,8 +109,8 @@ void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double
   }
 }
 
-/// Extends the hull by the ranges of the swept coordinates of the designs: each is the box that a workspace analysis
-/// uses if the plan has no box.
+/// Extends the hull by the ranges of the swept coordinates of the designs: the ranges of a design are the box that a
+/// workspace analysis uses if the plan has no box.
 void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<double>>& designs, WorkspacePlan plan,
                     Box& hull) {
   std::visit([](auto& method) { method.box.reset(); }, plan.method);
@@ -127,7 +127,7 @@ void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<do
   }
 }
 
-/// Finds coordinates in which the box of a plan lies outside the reach of all vertex designs.
+/// Finds coordinates in which the box of a plan lies entirely outside the ranges that the vertex designs reach.
 void check_box(const ProblemParts& parts, const std::vector<std::vector<double>>& designs, const WorkspacePlan& plan,
                const std::string& table, bool is_contradiction, Findings& found) {
   if (!plan.box()) return;

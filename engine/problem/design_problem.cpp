@@ -20,7 +20,8 @@ S margin_of(const NamedQuantity& named, const S& value) {
   return value;
 }
 
-/// For each workspace analysis, whether a quantity uses it: the workspace's first, then those of the regions.
+/// For each workspace analysis, whether a quantity uses it: first the analysis of the workspace, then those of the
+/// regions.
 std::vector<bool> used_analyses(const ProblemParts& parts) {
   std::vector<bool> used(1 + parts.regions.size());
   for (const auto* list : {&parts.objectives, &parts.workspace_margins, &parts.reports})
@@ -29,7 +30,7 @@ std::vector<bool> used_analyses(const ProblemParts& parts) {
   return used;
 }
 
-/// Stands for the value of a function that is not called.
+/// Placeholder for the value of an external function that is not called.
 const ExternalValue kNotCalled{.failure = "the function is not called here", .is_computed = true};
 
 /// Throws DesignError if not even the order of magnitude of a volume is known: a search must not choose such a design.
@@ -130,7 +131,7 @@ Status DesignProblem::compute(std::span<const double> parameters, Scratch& scrat
     analyse(parameters, result.detail == Detail::complete, scratch, workspaces);
   }
   const auto value = [&](const NamedQuantity& q) {
-    if (q.quantity->external_call()) return 0.0;  // until complete()
+    if (q.quantity->external_call()) return 0.0;  // placeholder until complete() computes the value
     view.workspace = &workspaces[q.analysis];
     return q.quantity->value(view);
   };
@@ -228,14 +229,16 @@ std::string DesignProblem::store(std::span<const ExternalValue> values, const Ev
     result.status = Status::failed;
   else if (!satisfied && result.status == Status::feasible)
     result.status = Status::infeasible;
-  for (std::size_t i = 0; i < parts_.reports.size(); ++i)  // a failed output does not fail the design
+  // Outputs are set last: a failed call of an output does not change the status of the design.
+  for (std::size_t i = 0; i < parts_.reports.size(); ++i)
     if (const std::string* const call = parts_.reports[i].quantity->external_call())
       result.reports[i] = value_of_call(*call);
   return result.status == Status::failed ? failure : "";
 }
 
 void DesignProblem::complete(std::span<EvaluatedDesign> rows) const {
-  // Values of a rejected design are computed only if all are requested; those of a failed one never.
+  // The external functions of a rejected design are called only if all values are requested; those of a failed design
+  // are never called.
   const auto is_wanted = [](const EvaluatedDesign& row) {
     return row.slot.status == Status::feasible || row.slot.status == Status::infeasible ||
            (row.slot.status == Status::rejected && row.slot.detail != Detail::enough);
@@ -289,8 +292,8 @@ void DesignProblem::evaluate_external(const std::string& call, std::span<const d
   std::ranges::fill(values, kNotCalled);
 }
 
-/// Finds the first quantity whose value is not finite and that states a reason for it, and returns the reason. The
-/// order is that of evaluation: margins, then objectives.
+/// Returns the reason stated by the first quantity whose value is not finite and that states a reason. The order is
+/// that of evaluation: margins, then objectives.
 std::string DesignProblem::failure_reason(const DesignReport& report) const {
   Scratch scratch;
   const DesignView<double> view{*parts_.mechanism, report.parameters, &report.workspace, scratch};

@@ -18,11 +18,11 @@ struct NamedQuantity {
   std::string meaning;
   Direction direction = Direction::maximise;  ///< objectives only
   std::shared_ptr<const Quantity> quantity;
-  std::size_t analysis = 0;  ///< workspace analysis that it uses: 0 the workspace, k the k-th region
+  std::size_t analysis = 0;  ///< workspace analysis that the quantity uses; 0: the workspace, k: the k-th region
   bool uses_workspace = true;
   Range range = {};  ///< possible values of the quantity
-  /// Bound of a constraint on a quantity: its margin is value - lower_bound, or upper_bound - value. Neither: the
-  /// quantity is the margin itself.
+  /// Bound of a constraint on a quantity: its margin is value - lower_bound, or upper_bound - value. If neither is set,
+  /// the margin is the value itself.
   std::optional<double> lower_bound, upper_bound;
 };
 
@@ -35,7 +35,7 @@ struct FollowedMotion {
 
 struct ProblemParts {
   std::shared_ptr<const Mechanism> mechanism;
-  std::vector<double> parameters;  ///< all parameters of the mechanism; variables overwrite theirs
+  std::vector<double> parameters;  ///< values of all parameters of the mechanism; a design replaces those that vary
   DesignSpace space;
   std::vector<std::size_t> varies;  ///< variable i is parameter varies[i]
   WorkspacePlan plan;
@@ -43,7 +43,7 @@ struct ProblemParts {
   std::vector<Region> regions;
   std::vector<NamedQuantity> objectives;
   std::vector<NamedQuantity> design_margins;     ///< constraints without workspace analysis: evaluated first
-  std::vector<NamedQuantity> workspace_margins;  ///< the other constraints, those of external functions among them
+  std::vector<NamedQuantity> workspace_margins;  ///< all other constraints, including those on external functions
   std::vector<NamedQuantity> reports;
   std::vector<FollowedMotion> followed;
   std::shared_ptr<ExternalFunctions> functions = std::make_shared<ExternalFunctions>();
@@ -54,7 +54,7 @@ struct DesignReport {
   std::vector<double> parameters;
   std::vector<double> objectives, margins, reports;  ///< NaN: not computed
   Status status = Status::failed;
-  std::string reason;  ///< why a value is missing (also of a rejected design); "" if none is
+  std::string reason;  ///< why a value is missing (also for a rejected design); "" if no value is missing
   WorkspaceResult<double> workspace;
 };
 
@@ -65,12 +65,12 @@ class DesignProblem final : public Problem {
 
   const DesignSpace& space() const override { return parts_.space; }
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
-  const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level ones first
+  const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level margins first
   const std::vector<OutputInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const override;
   void complete(std::span<EvaluatedDesign> rows) const override;
   bool needs_completion() const override { return !calls_.empty(); }
-  /// The external functions that quantities call, without repetitions.
+  /// The external functions that the quantities call, each listed once.
   const std::vector<std::string>& external_calls() const { return calls_; }
   /// Derivatives require that all workspace analyses in use and all quantities have derivatives.
   Unsupported why_no_derivatives() const override;
@@ -92,14 +92,15 @@ class DesignProblem final : public Problem {
   std::vector<double> derivatives(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
-  /// The analyses of a design: of the workspace, then of the regions; empty if no quantity uses it.
+  /// The analyses of a design: first of the workspace, then of each region. An analysis that no quantity uses is empty.
   template <class S>
   using WorkspaceResults = std::vector<WorkspaceResult<S>>;
 
   struct Buffers;  ///< scratch memory of evaluations
 
   Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const;
-  /// Computes the values of external functions of a design, after compute(). @return why it failed; "": it did not
+  /// Computes the values of external functions of a design, after compute(). @return why a call failed; "" if none
+  /// failed
   std::string complete(std::span<const double> parameters, const EvaluationSlot& result) const;
   /// Calls an external function for the designs whose parameters are the rows of `parameters`.
   void evaluate_external(const std::string& call, std::span<const double> parameters,
@@ -109,7 +110,7 @@ class DesignProblem final : public Problem {
   DesignReport empty_report(std::span<const double> parameters) const;
   std::string failure_reason(const DesignReport& report) const;
   /// Forward-mode automatic differentiation with respect to the parameters `by`, in blocks of four. Writes the
-  /// derivatives, and the values of the workspace analyses to the buffers in `scratch`.
+  /// derivatives to `derivatives`, and the values of the workspace analyses to the buffers in `scratch`.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> derivatives,
                      Scratch& scratch) const;
   /// Runs the workspace analyses that quantities use. @param all  true: analyses the main workspace in any case

@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kPosesPerAxis = 9;  // along each swept coordinate; odd, so that the midpoint is included
 constexpr std::size_t kMaxLineLength = 1000;
 constexpr std::size_t kMaxAnalyses =
-    16;  // repeated workspace analyses, of designs that seem to have an empty workspace
+    16;  // maximum number of repeated analyses of designs that seem to have an empty workspace
 
 struct TableRow {
   const EvaluationTable* table = nullptr;
@@ -71,9 +71,10 @@ bool has_empty_workspace(const Designs& designs, const TableRow& at) {
       analyses, [&](std::size_t analysis) { return designs.problem->workspace(parameters, analysis).volume == 0; });
 }
 
-/// Whether a feasible design is useful: it is, unless all objectives have the value of an empty workspace and the
-/// workspace is empty. The analysis is repeated for at most kMaxAnalyses designs with such objective values: a
-/// non-empty workspace has them only with special formulas, such as max(0, volume - 1) or a constant.
+/// Whether a feasible design is useful. A design is useless if its workspace is empty and all objectives have the value
+/// of an empty workspace. The analysis is repeated for at most kMaxAnalyses designs with such objective values: a
+/// design with a non-empty workspace has such values only with special formulas, such as max(0, volume - 1) or a
+/// constant.
 bool has_useful_design(const Designs& designs) {
   std::size_t analyses_left = kMaxAnalyses;
   for (const EvaluationTable* table : designs.tables)

@@ -30,12 +30,12 @@ struct Diagnosis {
 std::vector<Reason> contradictions(const ProblemParts& parts);
 
 /// Requirements that are most likely mistakes, although they do not contradict each other: bounds that every design
-/// satisfies, one of several values out of reach. One sentence each.
+/// satisfies, or a list of values of which one is out of reach. One sentence each.
 std::vector<std::string> consistency_warnings(const ProblemParts& parts);
 
 /// Diagnoses evaluated designs.
-/// @param problem  the problem of the tables, to evaluate some designs again; null: an objective value of 0 is taken as
-///                 that of an empty workspace
+/// @param problem  the problem of the tables, used to evaluate some designs again; null: an objective value of 0 is
+///                 assumed to be that of an empty workspace
 /// @return nullopt if there are no designs, or if one is feasible with a non-empty workspace or an objective that does
 ///         not depend on the workspace
 std::optional<Diagnosis> diagnose(const std::vector<const EvaluationTable*>& tables,

@@ -129,7 +129,7 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
     std::fill(table.seconds.begin() + static_cast<std::ptrdiff_t>(first), table.seconds.end(), kNotEvaluated);
     try {
       evaluate_here(problem, table, {first, table.size()}, mean_seconds(table, first));
-    } catch (const Stopped&) {  // keep the rows before the first incomplete one: a resumed run continues there
+    } catch (const Stopped&) {  // keep the rows before the first incomplete one, from which a resumed run continues
       const auto begin = table.seconds.begin();
       const auto left = std::find_if(begin + static_cast<std::ptrdiff_t>(first), table.seconds.end(),
                                      [](float seconds) { return seconds < 0; });

@@ -11,8 +11,8 @@
 
 namespace pkm {
 
-/// Evaluates one design on this thread. DesignError and values that contradict the status make it a failed one; other
-/// exceptions are rethrown.
+/// Evaluates one design on this thread. If this throws DesignError or gives values that contradict the status, the
+/// design gets the status `failed`; other exceptions are rethrown.
 void evaluate_design(const Problem& problem, std::span<const double> design, Scratch& scratch,
                      const EvaluationSlot& slot);
 
@@ -31,9 +31,10 @@ class Evaluator {
 /// team, which is slow for many calls. The threads of one team may call it concurrently, each with its own table.
 ///
 /// With several MPI ranks, all ranks pass the same designs and receive the same results, and each computes a part of
-/// the rows. The rows are distributed statically by index, or, if that leaves ranks idle or if claims are cheap
-/// compared with the evaluations, dynamically: ranks claim chunks of decreasing size (guided self-scheduling). Batches
-/// that are cheaper than the messages (among them single designs) are evaluated by every rank without communication.
+/// the rows. The rows are distributed statically by index, or dynamically: ranks claim chunks of decreasing size
+/// (guided self-scheduling). The dynamic distribution is used if the static one leaves ranks idle, or if claims are
+/// cheap compared with the evaluations. Batches that are cheaper than the messages (among them single designs) are
+/// evaluated by every rank without communication.
 class ParallelEvaluator final : public Evaluator {
  public:
   /// @param threads  number of threads as for team_size(); within with_team(), 1 or the size of the team
@@ -43,8 +44,8 @@ class ParallelEvaluator final : public Evaluator {
   int threads() const { return threads_; }
 
  private:
-  /// Timings of the latest batch that was distributed among ranks. Identical on every rank, so that all ranks choose
-  /// the same distribution.
+  /// Timings of the latest batch that was distributed among ranks. They are identical on every rank, so that all ranks
+  /// choose the same distribution.
   struct BatchTimings {
     double seconds_per_design = 0;  ///< 0: no such batch yet
     bool imbalanced = true;         ///< static distribution by index would have left ranks idle

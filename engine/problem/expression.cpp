@@ -70,13 +70,13 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const W
   std::vector<ExpressionName> names;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
-    if (find_named(info.limits, parameter.name)) continue;   // the name stands for the threshold in effect
+    if (find_named(info.limits, parameter.name)) continue;   // this name denotes the threshold in effect
     if (!expression::may_be_name(parameter.name)) continue;  // a parameter of one limb: "arm2.l_b"
     names.push_back({parameter.name, parameter.unit, parameter.meaning, Origin::parameter, i});
   }
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const LimitInfo& limit = info.limits[i];
-    if (limit.group == kQuantityLimit) continue;  // the name stands for the statistic of the quantity
+    if (limit.group == kQuantityLimit) continue;  // this name denotes the statistic of the quantity
     names.push_back({limit.name, limit.unit, "threshold in effect: " + limit.meaning, Origin::threshold, i});
   }
   if (const Size* const size = mechanism.size())
@@ -130,7 +130,7 @@ void Expression::add_request(const EntryContext& context, FieldRequest& request)
       if (const auto* const quantity = results_[names_[i].index].quantity) request_field(*quantity, context, request);
 }
 
-/// Rejects options without effect: most likely the user expects the expression to use another quantity.
+/// Rejects options that have no effect, because the user probably expects the expression to use another quantity.
 void Expression::refuse_unused_options(const Options& options, const FieldRequest& request) const {
   if (options.has("characteristic_length") && !request.needs_jacobian())
     throw std::invalid_argument("characteristic_length has no effect: the expression does not use the conditioning");

@@ -1,5 +1,5 @@
 // Functions of a study that another program evaluates, such as functions in Python. They depend on the parameters of a
-// design only. Their values are computed after those of pkmopt, for a batch of designs at a time.
+// design only. Their values are computed after those that pkmopt computes itself, for a batch of designs at a time.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ namespace pkm {
 struct ExternalValue {
   double value = 0;
   double seconds = 0;        ///< time of the call [s]
-  std::string failure = {};  ///< why the call failed; "": it did not
+  std::string failure = {};  ///< why the call failed; "" if it succeeded
   bool is_computed = false;  ///< false after a stop request
 };
 
@@ -28,20 +28,21 @@ class FunctionCaller {
   /// Calls a function for several designs. Thread-safe.
   /// @param call        the function as the study names it, "cost.py:price"
   /// @param parameters  [values.size()][parameters]: all parameters of the mechanism in SI units
-  /// @param values      the results. Throws Stopped after a stop request, with those that are not computed marked.
+  /// @param values      receives the results. After a stop request, throws Stopped; values not computed by then have
+  ///                    is_computed = false
   virtual void evaluate(const std::string& call, std::span<const double> parameters,
                         std::span<ExternalValue> values) = 0;
   /// Hash of the source text that defines the function; "": unknown.
   virtual std::string source_hash(const std::string& call) const = 0;
 };
 
-/// How the functions of a study are called. Shared by all copies of its problem; to be set before designs are
-/// evaluated.
+/// The caller of the functions of a study, and the failures of its calls. Shared by all copies of the study's problem.
+/// The caller must be set before designs are evaluated.
 class ExternalFunctions {
  public:
-  std::shared_ptr<FunctionCaller> caller;  ///< null: they are not called, for example to show results
+  std::shared_ptr<FunctionCaller> caller;  ///< null: functions are not called (results are only displayed)
 
-  /// Keeps the reason of the first failure of a function. Thread-safe.
+  /// Records the reason of a failure, unless a failure of the same function has been recorded before. Thread-safe.
   void note_failure(const std::string& call, const std::string& reason);
   std::map<std::string, std::string> failures() const;  ///< reasons by function
 

@@ -23,7 +23,7 @@ std::vector<double> sums(const Scores& scores) {
   return result;
 }
 
-/// Distance of two designs in the maximum norm.
+/// Distance between two designs in the maximum norm.
 double distance(const Scores& scores, std::size_t a, std::size_t b) {
   double largest = 0;
   for (std::size_t k = 0; k < scores.objectives; ++k)
@@ -87,7 +87,7 @@ std::size_t compromise(const Scores& front) {
 std::vector<std::size_t> knees(const Scores& front) {
   constexpr double kRadius = 0.2;  // radius of the neighbourhood, in normalised scores
   constexpr double kMinGain =
-      0.01;  // lower cost than the extreme points; excludes their neighbours and rounding effects
+      0.01;  // minimum cost advantage over the extreme points; excludes their neighbours and rounding effects
   const Scores scaled = normalised(front);
   const Ranges extent = ranges_of(front);
   const std::vector<double> cost = sums(scaled);

@@ -14,23 +14,23 @@ namespace pkm {
 
 class MarginTally {
  public:
-  /// Adds one sample, by its margins and their names. NaN: unknown, not counted.
+  /// Adds one sample, given by the names and values of its margins. A NaN margin is unknown and not counted.
   void add(const std::vector<std::pair<std::string, double>>& margins);
 
   std::size_t samples() const { return samples_; }
   /// At most four reasons: the margins that no sample satisfies; if there are none, the pairs that no sample satisfies
   /// together; otherwise how often each margin is violated, most frequent first.
   /// @param kind    Reason::kind of the reasons
-  /// @param sample  what a sample is, its noun first: "design", "pose sampled for the best-ranked design"
+  /// @param sample  phrase for one sample, beginning with its noun: "design", "pose sampled for the best-ranked design"
   std::vector<Reason> reasons(const std::string& kind, const std::string& sample) const;
 
  private:
   struct Count {
     std::string name;
     std::size_t known = 0, satisfied = 0;
-    double closest = 0;                            ///< maximum of the negative values
-    std::vector<std::size_t> known_with = {};      ///< by earlier margin: number of samples that know both
-    std::vector<std::size_t> satisfied_with = {};  ///< by earlier margin: number of samples that satisfy both
+    double closest = 0;                        ///< maximum of the negative values
+    std::vector<std::size_t> known_with = {};  ///< indexed by earlier margin: number of samples in which both are known
+    std::vector<std::size_t> satisfied_with = {};  ///< indexed by earlier margin: number of samples that satisfy both
   };
   /// Index of a margin in `counts_`; added if it is new.
   std::size_t index_of(const std::string& name);

@@ -26,7 +26,7 @@ inline OptionSpec sharpness_option(const std::string& value) {
               "sharpness of the smooth approximation of " + value + " for gradient solvers; larger is more accurate"};
 }
 
-/// Why the mechanism does not have the dynamics that an objective needs; empty if it has.
+/// The reason why the mechanism lacks the dynamics that an objective needs; empty if it has them.
 inline Unsupported check_dynamics(const std::string& objective, const Mechanism& mechanism) {
   const Unsupported reason = why_no_joint_forces(mechanism);
   return reason ? "objective " + objective + " needs dynamics, and " + *reason : Unsupported();

@@ -56,13 +56,14 @@ class Problem {
   /// @param result  receives the values; result.detail selects what is computed. With Detail::enough, the evaluation
   ///                may end as soon as a design-level constraint is violated.
   virtual void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const = 0;
-  /// Completes designs that evaluate() has evaluated, by values that are computed for a batch of designs: those of
-  /// external functions. Thread-safe.
-  /// @param rows  rows whose values are complete on return get `is_complete`; after Stopped, a part of them
+  /// Completes designs after evaluate(): computes the values that are computed for a batch of designs at a time, i.e.
+  /// those of external functions. Thread-safe.
+  /// @param rows  the designs; is_complete is set for each design whose values are complete. If Stopped is thrown, some
+  ///              may be incomplete
   virtual void complete([[maybe_unused]] std::span<EvaluatedDesign> rows) const {}
-  /// Whether designs are only complete after complete().
+  /// Whether evaluate() must be followed by complete().
   virtual bool needs_completion() const { return false; }
-  /// Empty if the problem supports Detail::derivatives, else the reason why not.
+  /// Empty if the problem supports Detail::derivatives; otherwise the reason why not.
   virtual Unsupported why_no_derivatives() const { return "the problem gives no derivatives"; }
 
   EvaluationShape shape(Detail detail = Detail::enough) const {

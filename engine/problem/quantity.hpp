@@ -34,11 +34,12 @@ class Quantity {
   virtual double value(const DesignView<double>& design) const = 0;
   /// The value with derivatives for gradient solvers; for a non-smooth value (a worst case), a smooth approximation.
   virtual Dual4 smooth(const DesignView<Dual4>& design) const = 0;
-  /// Empty if smooth() is supported, else the reason why not.
+  /// Empty if smooth() is supported; otherwise the reason why not.
   virtual Unsupported why_no_derivatives() const { return {}; }
   /// The reason why the value is not finite; "" if no specific reason is known.
   virtual std::string why_undefined(const DesignView<double>&) const { return {}; }
-  /// The function of another program that computes the value; then value() must not be called. Null: there is none.
+  /// The external function that computes the value, in which case value() must not be called; null if the quantity is
+  /// not computed by an external function.
   virtual const std::string* external_call() const { return nullptr; }
 };
 

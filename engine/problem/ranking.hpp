@@ -13,7 +13,7 @@ namespace pkm {
 /// Sort key of one table row. Total order: by status, then by value, then by row (earlier evaluations first).
 struct RankKey {
   Status status = Status::failed;
-  double value = 0;  ///< minimised: the first objective of a feasible design, else the total violation
+  double value = 0;  ///< minimised: the first objective of a feasible design, otherwise the total violation
   std::int64_t row = -1;
 
   auto operator<=>(const RankKey&) const = default;

@@ -3,7 +3,7 @@
 //
 // An optimiser is a deterministic function of the evaluations it receives. Running it again on the recorded results
 // therefore restores exactly the state in which the earlier run stopped. If only the first rows of a batch are recorded
-// (a limit stopped the run within the batch), the remaining rows are computed.
+// (because a limit stopped the run within the batch), the remaining rows are computed.
 #pragma once
 
 #include <stdexcept>

@@ -37,8 +37,8 @@ struct StartOutcome {
   double optimality = 0;
 };
 
-/// A multistart run whose evaluations are buffered: the runs are concurrent, and their evaluations join the stage's
-/// table in the order of the starts, so they wait until every earlier run has ended.
+/// A multistart run whose evaluations are buffered. The runs are concurrent, but their evaluations are appended to the
+/// stage's table in start order. The evaluations of a run are therefore buffered until every earlier run has ended.
 struct UnmergedRun {
   std::int64_t number = 0;              ///< 0: the first run of the stage
   EvaluationTable table;                ///< its evaluations so far

@@ -15,7 +15,7 @@ namespace pkm {
 struct QuantityGradient {
   std::string name, unit;
   double value;
-  double worse_sign;       ///< sign of a change for the worse: -1 or 1
+  double worse_sign;       ///< sign of a change that makes the quantity worse: -1 or 1
   std::vector<double> by;  ///< derivatives with respect to all parameters [SI]
 };
 
@@ -25,8 +25,8 @@ std::vector<QuantityGradient> quantity_gradients(const DesignProblem& problem, c
 
 /// Worst value of a quantity for parameters within +- their tolerances.
 struct WorstCase {
-  double first_order;  ///< estimate by the gradient
-  double evaluated;    ///< at the corner of the tolerance box that is the worst to first order; NaN: evaluation failed
+  double first_order;  ///< first-order estimate, from the gradient
+  double evaluated;  ///< value at the vertex of the tolerance box that is worst to first order; NaN: evaluation failed
 };
 /// @param gradients  quantity_gradients() of the design
 /// @param k          index of the quantity in `gradients`

@@ -1,5 +1,6 @@
 // Check of the workspace volume computed by columns against certified bounds (interval branch and bound). It detects
-// components that the sampled columns missed, if they are larger than the gap of the bounds.
+// that the sampled columns have missed a component of the workspace, if the component is larger than the gap of the
+// bounds.
 #pragma once
 
 #include <functional>
