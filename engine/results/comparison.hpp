@@ -36,7 +36,7 @@ std::optional<Diagnosis> diagnose(const StudyContents& contents, const DesignPro
 /// @param problem  the study's problem, used to evaluate designs again; null: no reasons are found
 Failures collect_failures(const StudyContents& contents, const DesignProblem* problem);
 
-/// Label of the best evaluation in tables: "best"; "best so far" before the study's end; "compromise" of several
+/// Label of the best evaluation in tables: "best"; "best so far" before the study's end; "compromise" for several
 /// objectives. If a finished study found nothing: "least infeasible", or "empty workspace" if designs are feasible but
 /// every workspace is empty.
 std::string best_design_label(const StudyContents& contents);

@@ -12,7 +12,7 @@
 namespace pkm {
 
 struct DesignTable {
-  /// One design. If `record` has values computed by voxels, `exact` has those of the exact method.
+  /// One design. If the values in `record` were computed by voxels, `exact` contains those of the exact method.
   struct Column {
     std::string name;
     std::optional<DesignRecord> record, exact;
