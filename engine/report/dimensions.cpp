@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-/// Distances between all pairs of ends of links: element i * n + j is the distance of ends i and j of n ends.
+/// Distances between all pairs of ends of links: element i * n + j is the distance between ends i and j of n ends.
 std::vector<double> end_distances(const std::vector<PlacedLink>& links) {
   std::vector<Point3<double>> ends;
   for (const PlacedLink& link : links) {
@@ -36,7 +36,8 @@ std::vector<Dimension> dimensions_of(const Mechanism& mechanism, std::span<const
   const std::vector<double> length = end_distances(links);
   const std::size_t ends = 2 * links.size();
 
-  // Derivatives of all distances by each length parameter; empty if the pose no longer assembles after the step.
+  // Derivatives of all distances with respect to each length parameter; empty if the pose no longer assembles after the
+  // step.
   std::vector<std::vector<double>> derivatives(infos.size());
   for (std::size_t p = 0; p < infos.size(); ++p) {
     if (infos[p].unit != "m" || !(parameters[p] > 0)) continue;

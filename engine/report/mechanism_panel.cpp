@@ -121,7 +121,7 @@ struct LinkEnds {
   std::array<std::vector<double>, 3> positions;  ///< x, y, z of all ends at the first assembled pose, then at the next
 
   explicit LinkEnds(const std::vector<DrawnPose>& poses) {
-    std::vector<std::vector<Point3<double>>> paths;  // by end of a link, by pose
+    std::vector<std::vector<Point3<double>>> paths;  // indexed by end of a link, then by pose
     for (const DrawnPose& pose : poses) {
       if (paths.empty()) paths.resize(2 * pose.links.size());
       for (std::size_t k = 0; k < pose.links.size(); ++k) {

@@ -5,7 +5,7 @@ namespace pkm {
 
 namespace {
 
-/// Why the study cannot have a stage with a gradient solver (the message of the study reader); null: it can.
+/// Why the study cannot have a stage with a gradient solver (the message of the study reader); null if it can.
 Json gradients_unsupported(const DesignProblem& problem) {
   for (const Variable& v : problem.parts().space.variables())
     if (v.step > 0) return "the variable " + v.name + " has a step";

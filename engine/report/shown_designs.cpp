@@ -34,7 +34,8 @@ std::array<double, 2> feasible_range(const WorkspaceAxis& fixed, const ShownDesi
   std::vector<Pose<double>> poses;
   for (const std::size_t i : Thinning(cells.size(), kPoses).indices) poses.push_back(workspace.pose(cells[i]));
 
-  double reach = std::numbers::pi;  // largest displacement: half a turn; for a length twice the largest extent
+  // Maximum displacement: half a turn for an angle, twice the largest extent of the workspace for a length.
+  double reach = std::numbers::pi;
   if (fixed.unit == "m") {
     reach = 0;
     for (const WorkspaceAxis& axis : workspace.axes)

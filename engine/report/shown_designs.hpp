@@ -44,7 +44,7 @@ struct ShownDesigns {
   LimitSpec limits;                  ///< limits of poses
   std::string mode;                  ///< working mode
   std::vector<NamedMotion> motions;  ///< the first motions of the study, limited by the size of a page
-  std::size_t omitted_motions = 0;   ///< number of its further motions
+  std::size_t omitted_motions = 0;   ///< number of motions of the study that are not shown
   std::vector<ShownDesign> designs;
   PageDetail detail = {};
   bool coupling = true;  ///< whether the page shows coupling and inertia; false if the study does not use masses

@@ -75,7 +75,7 @@ Json optimality(const StudyContents& contents) {
   return json;
 }
 
-/// What is needed to run the study again.
+/// The data needed to run the study again.
 Json origin(const PageStudy& page) {
   const StudyContents& c = page.contents;
   Json extensions = Json::array();
