@@ -1,4 +1,5 @@
-// User-defined objective, given as a formula in the study. The constraint of that type is constraints/expression.cpp.
+// User-defined objective, given as a formula in the study. The constraint of the same type is defined in
+// constraints/expression.cpp.
 #include "engine/problem/expression.hpp"
 
 #include "objectives/list.hpp"

@@ -1,7 +1,8 @@
-// Peak loads along a motion: maximum magnitude over the samples of the motion of actuator force, actuator power (force
-// times speed, driving or braking), joint speed and joint acceleration; with drive trains, of motor torque (also its
-// root mean square) and motor speed. Speeds and accelerations do not need masses. Gradient solvers use the power mean
-// of the magnitudes instead of the maximum (power_mean).
+// Peak loads along a motion. The load is an actuator force, an actuator power (force times speed, driving or braking),
+// a joint speed or a joint acceleration; for mechanisms with drive trains also a motor torque or a motor speed. The
+// value is the maximum magnitude over the samples of the motion; for the motor torque, the root mean square is also
+// available. Speeds and accelerations do not need masses. Gradient solvers use the power mean of the magnitudes instead
+// of the maximum (power_mean).
 //
 // The values depend on the design only. They use neither a workspace analysis nor the limits of poses, which the
 // constraint `motion` tests (constraints/motion.cpp). If the mechanism does not assemble at a sample, the value is NaN
@@ -117,7 +118,8 @@ class PeakLoad final : public Quantity {
                                      design.scratch.template get<InverseDynamicsScratch<S>>(),
                                      [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, loads); });
   }
-  /// Variant of collect() for mechanisms without joint forces: computes the loads by influence coefficients.
+  /// Variant of collect() for mechanisms without joint forces: computes speeds and accelerations by influence
+  /// coefficients.
   std::size_t collect_rates(const DesignView<double>& design, std::vector<double>& loads) const {
     for (std::size_t k = 0; k < samples_.size(); ++k) {
       const MotionSample& at = samples_[k];

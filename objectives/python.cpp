@@ -1,4 +1,4 @@
-// The value of a function in Python, of the parameters of a design.
+// Value of a Python function of the parameters of a design.
 #include <algorithm>
 #include <cctype>
 
@@ -14,8 +14,8 @@ bool is_python_name(const std::string& text) {
   return !text.empty() && !std::isdigit(static_cast<unsigned char>(text[0])) && std::ranges::all_of(text, is_letter);
 }
 
-/// The option `call`. Throws std::invalid_argument unless it is "FILE.py:FUNCTION", or the name of a function that the
-/// program that runs the study provides.
+/// The option `call`: "FILE.py:FUNCTION", or the name of a function that the program running the study provides. Throws
+/// std::invalid_argument if it has neither form.
 const std::string& call_of(const EntryContext& context) {
   const std::string& call = context.options.word("call");
   const std::size_t colon = call.rfind(':');

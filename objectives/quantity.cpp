@@ -1,8 +1,8 @@
-// A statistic over the poses of any pose quantity: a formula, [[quantity]] of the mechanism file or of the study, or a
-// built-in one. Quantities with one value per joint count with their worst joint.
+// Statistic of a pose quantity over the poses. The quantity is a formula ([[quantity]] in the mechanism file or the
+// study) or built in. If it has one value per joint, the value of the worst joint is used.
 //
-// For gradient solvers the minimum and the maximum are replaced by a Kreisselmeier-Steinhauser aggregate; the values of
-// a formula, which can have any unit, are scaled to [0, 1] for it. Quantiles have no derivatives.
+// For gradient solvers the minimum and the maximum are replaced by a Kreisselmeier-Steinhauser aggregate; for this
+// purpose, the values of a formula, which can have any unit, are scaled to [0, 1]. Quantiles have no derivatives.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

@@ -3,8 +3,8 @@
 // (engine/workspace/installation_space.hpp); and the mass of the moving bodies.
 //
 // The poses are those of the workspace analysis: the centres of all feasible cells (voxels) or the nodes of the
-// quadrature (columns). Both lie inside of the workspace, so that the box is too small by less than a cell, or by less
-// than the distance of the boundary from the outermost nodes.
+// quadrature (columns). Both lie inside the workspace, so that the box is too small: by less than a cell, or by less
+// than the distance between the boundary and the outermost nodes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,7 +21,7 @@ namespace {
 
 bool has_motion(const EntryContext& context) { return context.options.has("motion"); }
 
-/// The last installation space of a thread: several quantities of a design use the same one.
+/// The installation space that a thread computed last, because several quantities of a design use the same one.
 struct SpaceScratch {
   const Mechanism* mechanism = nullptr;
   std::string mode;
@@ -77,8 +77,8 @@ class SizeMeasure final : public Quantity {
   std::string name_, mode_;
   Measure measure_;
   std::string motion_;               ///< "": over the workspace
-  std::vector<Pose<double>> poses_;  ///< of the motion
-  std::vector<double> times_;        ///< of these poses [s]
+  std::vector<Pose<double>> poses_;  ///< poses of the motion
+  std::vector<double> times_;        ///< times of these poses [s]
 };
 
 /// @param what  "base area of the box of all links"
