@@ -1,5 +1,6 @@
-// Minimum clearance (distance) between links that are not joined: of different limbs, platforms, sliders on one rail,
-// rails. Links are modelled as capsules; the mechanism defines which pairs are tested.
+// Minimum clearance (distance) between links that are not connected by a joint, for example links of different limbs,
+// platforms, rails, and sliders on one rail. Links are modelled as capsules; the mechanism defines which pairs are
+// tested.
 #include "constraints/list.hpp"
 #include "constraints/pose_level.hpp"
 

@@ -13,7 +13,7 @@ namespace {
 
 struct Bounds {
   std::optional<double> max;
-  double min = 0;  ///< without max
+  double min = 0;  ///< used if there is no max
 };
 
 Bounds bounds(const Options& options) {

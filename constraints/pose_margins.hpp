@@ -23,9 +23,9 @@ struct MarginsOfPoses {
   std::vector<S> all;
 };
 
-/// All margins of all poses, from the mechanism's PoseMargins capability, otherwise (double only) from
-/// Mechanism::inspect(); in this case a NaN margin and a pose that does not assemble count as -1. The reference is
-/// valid until the next call with the same scratch memory.
+/// All margins of all poses, from the mechanism's PoseMargins capability or, without this capability (double only),
+/// from Mechanism::inspect(). In the latter case, a NaN margin and a pose that does not assemble count as -1. The
+/// reference is valid until the next call with the same scratch memory.
 template <class S>
 const std::vector<S>& margins_of(const DesignView<S>& design, const MarginPoses& of) {
   const Mechanism& mechanism = design.mechanism;
@@ -58,7 +58,7 @@ inline std::string unit_of_minimum(const EntryContext& context) {
   return margins && !margins->margin_unit().empty() ? margins->margin_unit() : std::string("1");
 }
 
-/// Empty if the minimum has derivatives, else the reason why not.
+/// Empty if the minimum has derivatives; otherwise the reason why not.
 inline Unsupported no_margin_derivatives(const Mechanism& mechanism, const LimitSpec& limits,
                                          const std::string& constraint) {
   if (mechanism.pose_margins()) return mechanism.pose_margins()->why_no_derivatives(limits);
