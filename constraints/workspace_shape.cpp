@@ -1,4 +1,4 @@
-// Design-level constraint: the workspace has a usable shape (4PPa-2PaR: eq 21, its upper and lower part are separate).
+// Design-level constraint: the workspace has a usable shape (4PPa-2PaR: eq 21, its upper and lower parts are separate).
 #include "constraints/list.hpp"
 #include "engine/problem/design_test.hpp"
 

@@ -130,7 +130,7 @@ struct OptimiserEntry {
   std::vector<OptionSpec> options;
   std::unique_ptr<Optimiser> (*make)(const Options&, const DesignSpace&);
   /// Sets the unset options whose default value depends on the variables, so that listings show the values that `make`
-  /// uses. Null: there are no such options.
+  /// uses. Null if there are no such options.
   void (*resolve)(Options&, const DesignSpace&) = nullptr;
 };
 

@@ -131,8 +131,8 @@ std::vector<Pose<double>> poses_of(const DesignProblem& problem, const std::vect
   return poses;
 }
 
-/// The limits that make the workspace of a design empty, found on a grid of poses. No reasons if the mechanism defines
-/// no box of poses.
+/// The limits that make the workspace of a design empty, found on a grid of poses. There are no reasons if the
+/// mechanism defines no box of poses.
 std::vector<Reason> limits_of_empty_workspace(const DesignProblem& problem, const std::vector<double>& parameters) {
   const ProblemParts& parts = problem.parts();
   const std::string& requested = parts.request.mode;

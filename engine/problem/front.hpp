@@ -53,8 +53,8 @@ Scores normalised(const Scores& front);
 /// Extreme points: for each score, the first design with its minimum. The front must not be empty.
 std::vector<std::size_t> ends_of(const Scores& front);
 
-/// Chebyshev compromise solution: the design that minimises the maximum of its normalised scores. Ties: the lowest sum
-/// of normalised scores, then the first. The front must not be empty.
+/// Chebyshev compromise solution: the design that minimises the maximum of its normalised scores. Ties are broken by
+/// the lowest sum of normalised scores, then by the lowest index. The front must not be empty.
 std::size_t compromise(const Scores& front);
 
 /// Knees of the front, by increasing cost; the cost of a design is the sum of its normalised scores. A knee has the

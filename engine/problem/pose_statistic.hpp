@@ -12,7 +12,7 @@
 
 namespace pkm {
 
-/// Text on the value of an empty workspace: "; 1 if no pose is feasible", or "" if that value is 0.
+/// Text that states the value for an empty workspace: "; 1 if no pose is feasible", or "" if that value is 0.
 inline std::string empty_workspace_note(const PoseQuantity& quantity) {
   if (quantity.value_if_undefined == 0) return {};
   if (std::isnan(quantity.value_if_undefined)) return "; undefined if no pose is feasible";

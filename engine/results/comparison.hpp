@@ -41,7 +41,8 @@ Failures collect_failures(const StudyContents& contents, const DesignProblem* pr
 /// every workspace is empty.
 std::string best_design_label(const StudyContents& contents);
 
-/// One sentence for each final design whose exact volume lies outside its certified bounds: a numerical error.
+/// One sentence for each final design whose exact volume lies outside its certified bounds, which indicates a numerical
+/// error.
 std::vector<std::string> contradicted(const StudyContents& contents);
 
 /// Index of the most negative margin, i.e. of the most violated constraint; std::nullopt if all are satisfied.

@@ -219,7 +219,7 @@ class PythonWorkers::Batch {
     process.send({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)});
   }
 
-  /// Receives the values of a chunk. @return number of designs of the batch that are thereby done
+  /// Receives the values of a chunk. @return number of designs that this completes
   std::size_t finish(std::unique_ptr<Process>& process, const Rows& rows) {
     const auto answer = process->receive();
     process->is_busy = false;

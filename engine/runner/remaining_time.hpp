@@ -52,7 +52,7 @@ class RemainingTime {
   std::vector<bool> is_solver_;  ///< solver stages: their evaluation limit is rarely reached
   double final_steps_;           ///< maximum time of the final steps [s]
   std::size_t stage_ = 0;        ///< current stage
-  Sample begin_ = {0, 0};        ///< begin of the current stage
+  Sample begin_ = {0, 0};        ///< beginning of the current stage
   std::deque<Sample> samples_;   ///< recent samples of the current stage
   Sample last_ = {0, 0};         ///< last sample
   std::optional<double> bound_;  ///< current solver stage: upper bound so far [s]

@@ -31,7 +31,7 @@ class TimedEvaluator final : public Evaluator {
   ParallelEvaluator inner_;
   std::mutex mutex_;
   int active_calls_ = 0;
-  double begin_ = 0;            ///< begin of the current period with active calls [s]
+  double begin_ = 0;            ///< beginning of the current period with active calls [s]
   double wall_ = 0, busy_ = 0;  ///< wall time with active calls, and sum of the evaluation times [s]
   std::atomic<std::int64_t> made_ = 0;
 };

@@ -1,8 +1,8 @@
 // Schedules the checkpoints of a running study.
 //
 // Unless a fixed period is given, the interval adapts to the time that writing takes, so that checkpoints cost 2 % of
-// the run time. Let c be the duration of the last checkpoint and s the total duration of all so far. The next one is
-// due at
+// the run time. Let c be the duration of the last checkpoint and s the total duration of all checkpoints so far. The
+// next checkpoint is due at
 //
 //     max(end of the last + c / 0.02, start + (s + c) / 0.02).
 //

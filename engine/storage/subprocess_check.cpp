@@ -99,7 +99,7 @@ int wait_for(pid_t child) {
   return status;
 }
 
-/// @return true for signals that a program raises by a fault of its own, false for signals from outside such as Ctrl-C
+/// @return true for signals caused by a fault of the program itself, false for signals from outside such as Ctrl-C
 bool is_crash(int signal) {
   constexpr int kCrashes[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
   return std::ranges::find(kCrashes, signal) != std::end(kCrashes);

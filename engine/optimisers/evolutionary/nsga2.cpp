@@ -102,7 +102,7 @@ class Nsga2Selection final : public SurvivorSelection {
   }
 
   /// Progress is an increase of the hypervolume. While there is no hypervolume, any change of the front counts as
-  /// progress; while no design is feasible, a smaller constraint violation.
+  /// progress; while no design is feasible, a reduction of the constraint violation does.
   bool has_progressed(bool archive_changed, bool violation_reduced) {
     const double hypervolume = archive_.front().hypervolume;
     if (std::isnan(hypervolume)) return archive_changed || (violation_reduced && archive_.compromise_row() < 0);

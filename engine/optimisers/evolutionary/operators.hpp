@@ -2,8 +2,8 @@
 //
 // Selection uses only the rank in the population (index 0 is the best) and therefore serves one and several objectives.
 // Crossover is linear in the parents' physical values and therefore independent of the unit of a variable. Mutation
-// steps are fractions of the variable's range [lower, upper]. The caller projects the results onto the bounds; an
-// optimum in a corner of the design space is then found exactly.
+// steps are fractions of the variable's range [lower, upper]. The caller projects the results onto the bounds, so that
+// an optimum at a vertex of the design space is found exactly.
 #pragma once
 
 #include <cstddef>
