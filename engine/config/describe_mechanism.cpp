@@ -14,11 +14,10 @@
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/mechanism/availability.hpp"
+#include "engine/mechanism/sampled_poses.hpp"
 
 namespace pkm {
 namespace {
-
-constexpr std::int64_t kNominalCells = 16;  // grid cells per swept coordinate, to find a nominal pose
 
 std::string names_text(const std::vector<std::string>& names, std::size_t max_count = 8) {
   const std::vector<std::string> first(names.begin(),
@@ -26,75 +25,44 @@ std::string names_text(const std::vector<std::string>& names, std::size_t max_co
   return join(first) + (names.size() > max_count ? ", .. (" + std::to_string(names.size()) + " in all)" : "");
 }
 
-/// The poses of a coarse grid over the box of the default sweep; empty if there is no box.
-std::vector<Pose<double>> grid_of_poses(const Mechanism& mechanism, std::span<const double> parameters) {
-  const MechanismInfo& info = mechanism.info();
-  const auto ranges = mechanism.ranges(parameters);
-  if (!ranges) return {};
-  const Sweep& sweep = info.sweeps.front();
-  Pose<double> pose(info.coordinates.size());
-  for (const int fixed : sweep.fixed) {
-    const auto middle = mechanism.default_value(parameters, fixed);
-    if (!middle) return {};
-    pose[static_cast<std::size_t>(fixed)] = *middle;
+/// Why no pose is feasible: the margins that are negative at all of the first poses of a sequence.
+std::string why_no_feasible_pose(const Mechanism& mechanism, std::span<const double> parameters) {
+  constexpr std::size_t kTrials = 10'000;
+  const SampledPoses poses(mechanism, parameters);
+  std::set<std::string> satisfied;
+  NamedValues margins;  // of a pose that has most of them
+  for (std::size_t trial = 1; trial <= kTrials; ++trial) {
+    const MechanismInfo& info = mechanism.info();
+    PoseReport report = mechanism.inspect(parameters, poses[trial], info.modes.front(), no_limits(info));
+    for (const auto& [name, margin] : report.margins)
+      if (margin >= 0) satisfied.insert(name);
+    if (report.margins.size() > margins.size()) margins = std::move(report.margins);
   }
-  std::vector<Pose<double>> poses = {pose};
-  for (const int coordinate : sweep.swept) {
-    const auto at = static_cast<std::size_t>(coordinate);
-    std::vector<Pose<double>> next;
-    for (Pose<double> each : poses)
-      for (std::int64_t k = 0; k < kNominalCells; ++k) {
-        const auto [lower, upper] = (*ranges)[at];
-        each[at] = lower + (static_cast<double>(k) + 0.5) / static_cast<double>(kNominalCells) * (upper - lower);
-        next.push_back(each);
-      }
-    poses = std::move(next);
-  }
-  return poses;
+  std::vector<std::string> never;
+  for (const auto& [name, margin] : margins)
+    if (!satisfied.contains(name)) never.push_back(name);
+  return "none of " + std::to_string(kTrials) + " sampled poses in the search box is feasible; " +
+         (never.empty() ? "every limit is satisfied at some pose, but no pose satisfies all of them"
+                        : "satisfied at no pose: " + names_text(never));
 }
 
-/// Writes the feasible pose closest to the centroid of all feasible poses, otherwise the margins that no pose
-/// satisfies.
+/// Writes a feasible pose in the middle of the workspace, otherwise the margins that no pose satisfies.
 void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span<const double> parameters) {
   const MechanismInfo& info = mechanism.info();
-  const std::vector<Pose<double>> poses = grid_of_poses(mechanism, parameters);
-  const LimitSpec limits = no_limits(info);
-  std::vector<Pose<double>> feasible;
-  std::set<std::string> kept;
-  NamedValues margins;
-  for (const Pose<double>& pose : poses) {
-    const PoseReport report = mechanism.inspect(parameters, pose, info.modes.front(), limits);
-    if (report.feasible) feasible.push_back(pose);
-    for (const auto& [name, margin] : report.margins)
-      if (margin >= 0) kept.insert(name);
-    margins = report.margins;
-  }
   out << "\nnominal pose, of the default parameters in working mode " << info.modes.front() << '\n';
-  if (poses.empty()) {
+  if (!mechanism.ranges(parameters)) {
     out << "  none: [survey] has no box of all swept coordinates, or no default values of the fixed ones\n";
     return;
   }
-  if (feasible.empty()) {
-    std::vector<std::string> never;
-    for (const auto& [name, margin] : margins)
-      if (!kept.contains(name)) never.push_back(name);
-    out << "  none of " << poses.size() << " sampled poses in the search box is feasible; "
-        << (never.empty() ? "every limit is satisfied at some pose, but no pose satisfies all of them"
-                          : "satisfied at no pose: " + names_text(never))
-        << '\n';
+  const auto nominal = central_pose(mechanism, parameters, no_limits(info), info.modes.front());
+  if (!nominal) {
+    out << "  " << why_no_feasible_pose(mechanism, parameters) << '\n';
     return;
   }
-  Pose<double> middle(info.coordinates.size());
-  for (const Pose<double>& pose : feasible) middle = middle + pose * (1 / static_cast<double>(feasible.size()));
-  const auto distance = [&](const Pose<double>& pose) {
-    const Pose<double> way = pose - middle;
-    return dot(way, way);
-  };
-  const Pose<double>& nominal = *std::ranges::min_element(feasible, {}, distance);
-  const PoseReport report = mechanism.inspect(parameters, nominal, info.modes.front(), limits);
+  const PoseReport report = mechanism.inspect(parameters, *nominal, info.modes.front(), no_limits(info));
   std::vector<std::string> at, joints;
-  for (std::size_t i = 0; i < nominal.size(); ++i)
-    at.push_back(info.coordinates[i].name + " = " + with_degrees(nominal[i], info.coordinates[i].unit));
+  for (std::size_t i = 0; i < nominal->size(); ++i)
+    at.push_back(info.coordinates[i].name + " = " + with_degrees((*nominal)[i], info.coordinates[i].unit));
   for (std::size_t i = 0; i < info.joints.size(); ++i)
     joints.push_back(info.joints[i].name + " = " + with_degrees((*report.joints)[i], info.joints[i].unit));
   out << "  " << join(at) << "\n  " << join(joints) << '\n';
@@ -107,7 +75,7 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
     for (Eigen::Index j = 0; j < J.cols(); ++j)
       J(i, j) = (*report.J)(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
   const auto rank = static_cast<std::size_t>(J.jacobiSvd().setThreshold(1e-9).rank());
-  out << "  mobility: " << mobility_text(mechanism, parameters, nominal, rank) << '\n';
+  out << "  mobility: " << mobility_text(mechanism, parameters, *nominal, rank) << '\n';
 }
 
 /// Why the masses of the default design are invalid; "" if they are valid.

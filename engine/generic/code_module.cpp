@@ -12,6 +12,7 @@
 #include "engine/generic/report_limits.hpp"
 #include "engine/geometry/singular.hpp"
 #include "engine/math/halton.hpp"
+#include "engine/mechanism/sampled_poses.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
 
 namespace pkm::code {
@@ -191,26 +192,13 @@ std::vector<Sample> samples_of(const Mechanism& mechanism, std::span<const doubl
                                const std::string& mode, const Module& module, double min_conditioning) {
   constexpr std::size_t kMaxTrials = 50'000;
   const MechanismInfo& info = mechanism.info();
-  const auto ranges = mechanism.ranges(parameters);
-  if (!ranges) throw DesignError("no poses for a test were found, because the ranges of the coordinates are unknown");
   const std::size_t n = info.coordinates.size();
-  // Coordinates that the default workspace does not sweep stay near their default values: with all of six coordinates
-  // far away from them, hardly any pose is feasible.
-  std::vector<std::array<double, 2>> box = *ranges;
-  for (const int fixed : info.sweeps.front().fixed) {
-    auto& [from, to] = box[static_cast<std::size_t>(fixed)];
-    const double middle = mechanism.default_value(parameters, fixed).value_or(0.5 * (from + to));
-    const double reach = 0.1 * (to - from);
-    from = std::max(from, middle - reach);
-    to = std::min(to, middle + reach);
-  }
+  const SampledPoses poses(mechanism, parameters, 0.1);
   std::vector<Sample> samples;
   for (std::size_t trial = 0; trial < kMaxTrials && samples.size() < module.options.samples; ++trial) {
-    Pose<double> pose(n);
+    const Pose<double> pose = poses[trial + 1];
     Sample sample;
     for (std::size_t i = 0; i < n; ++i) {
-      const auto [from, to] = box[i];
-      pose[i] = from + (to - from) * halton(trial + 1, i);
       sample.velocity.push_back(2 * halton(trial + 1, n + i) - 1);
       sample.acceleration.push_back(2 * halton(trial + 3, n + i) - 1);
     }

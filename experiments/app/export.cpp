@@ -7,7 +7,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/export/study_tables.hpp"
-#include "engine/mechanism/central_pose.hpp"
+#include "engine/mechanism/sampled_poses.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/model_files.hpp"

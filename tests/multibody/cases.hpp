@@ -11,7 +11,7 @@
 #include "engine/generic/multibody_model.hpp"
 #include "engine/generic/rigid_pose.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanism/central_pose.hpp"
+#include "engine/mechanism/sampled_poses.hpp"
 #include "tests/unit/generic/files.hpp"
 
 namespace pkm::test {
