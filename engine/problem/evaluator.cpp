@@ -47,12 +47,14 @@ void begin_evaluation(const Problem& problem, std::span<const double> design, Sc
 }
 
 // Evaluates rows [first, last) and records the time of each. One clock reading ends a row and starts the next. Rows
-// that need Problem::complete() keep a negative time, kNotEvaluated - time.
+// that need Problem::complete() keep a negative time, kNotEvaluated - time. Throws Stopped.
 void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t first, std::size_t last,
                    Scratch& scratch) {
+  constexpr std::size_t kRowsPerCheck = 64;  // of microseconds; the evaluation of a longer row checks by itself
   const bool is_complete = !problem.needs_completion();
   auto begin = Clock::now();
   for (std::size_t row = first; row < last; ++row) {
+    if (row % kRowsPerCheck == 0) check_stop();
     begin_evaluation(problem, design_of(table, row), scratch, table.slot(row));
     const auto end = Clock::now();
     const float seconds = std::chrono::duration<float>(end - begin).count();
