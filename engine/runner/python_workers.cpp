@@ -177,7 +177,7 @@ class PythonWorkers::Batch {
   Batch(std::size_t function, std::span<const double> parameters, std::span<ExternalValue> values, const Setup& setup)
       : function_(function), parameters_(parameters), values_(values), setup_(setup) {}
 
-  /// After a stop request, replaces the busy processes and throws Stopped.
+  /// Starts processes that are missing. Throws Stopped; then busy processes have been ended.
   void evaluate(std::vector<std::unique_ptr<Process>>& processes) {
     const std::size_t count = values_.size();
     const std::size_t size = std::max<std::size_t>(1, count / (kChunksPerWorker * processes.size()));
@@ -187,13 +187,13 @@ class PythonWorkers::Batch {
     for (std::size_t left = count; left > 0;) {
       if (stop_requested()) {
         for (auto& process : processes)
-          if (process->is_busy) process = std::make_unique<Process>(setup_);
+          if (is_busy(process)) process.reset();
         throw Stopped();
       }
       std::vector<pollfd> polled;
       for (std::size_t p = 0; p < processes.size(); ++p) {
-        if (!processes[p]->is_busy && !waiting_.empty()) start(*processes[p], work[p]);
-        polled.push_back({processes[p]->is_busy ? processes[p]->connection() : -1, POLLIN, 0});
+        if (!is_busy(processes[p]) && !waiting_.empty()) start(processes[p], work[p]);
+        polled.push_back({is_busy(processes[p]) ? processes[p]->connection() : -1, POLLIN, 0});
       }
       if (::poll(polled.data(), polled.size(), kPollTime) <= 0) continue;
       for (std::size_t p = 0; p < processes.size(); ++p)
@@ -207,16 +207,19 @@ class PythonWorkers::Batch {
     std::size_t count() const { return end - begin; }
   };
 
-  void start(Process& process, Rows& rows) {
+  static bool is_busy(const std::unique_ptr<Process>& process) { return process && process->is_busy; }
+
+  void start(std::unique_ptr<Process>& process, Rows& rows) {
     rows = waiting_.front();
     waiting_.pop_front();
     const std::size_t width = parameters_.size() / values_.size();
     std::vector<double> numbers = {static_cast<double>(function_)};
     const auto designs = parameters_.subspan(rows.begin * width, rows.count() * width);
     numbers.insert(numbers.end(), designs.begin(), designs.end());
-    process.await_start();
-    process.is_busy = true;
-    process.send({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)});
+    if (!process) process = std::make_unique<Process>(setup_);
+    process->await_start();
+    process->is_busy = true;
+    process->send({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)});
   }
 
   /// Receives the values of a chunk. @return number of designs that this completes
@@ -226,7 +229,7 @@ class PythonWorkers::Batch {
     const std::size_t bytes = 2 * sizeof(double) * rows.count();
     if (!answer || answer->size() < bytes) {
       const std::string end = process->end_text();
-      process = std::make_unique<Process>(setup_);
+      process.reset();
       return fail(rows, "Python ended during the call (" + end + ")");
     }
     std::vector<double> numbers(2 * rows.count());
