@@ -1,4 +1,4 @@
-// The program of a worker process, python_worker.py.
+// The program of a worker process, bindings/python/pkmopt/_worker.py.
 #pragma once
 
 namespace pkm {

@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 import ctypes
-import difflib
-import importlib.util
 import inspect
-import math
 import os
 import sys
-import traceback
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Union
+from typing import Any, Dict, Iterable, List, Mapping, Sequence, Union
 
 from . import _library as lib
-
-Function = Callable[[Dict[str, float]], Any]
-
-#: Environment variable of the processes that call functions.
-_WORKER = "PKMOPT_WORKER"
+from . import _worker
+from ._worker import Function
 
 
 def name_of(function: Function) -> str:
@@ -60,40 +53,10 @@ def load(call: str, folder: str) -> Function:
     file = Path(folder, path).resolve()
     if not file.is_file():
         raise lib.InputError('call = "%s": there is no file %s' % (call, file))
-    for module in list(sys.modules.values()):
-        if getattr(module, "__file__", None) == str(file):
-            break
-    else:
-        spec = importlib.util.spec_from_file_location(file.stem, file)
-        assert spec is not None and spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        sys.path.insert(0, str(file.parent))
-        try:
-            sys.modules[file.stem] = module
-            spec.loader.exec_module(module)
-        except BaseException:
-            del sys.modules[file.stem]
-            raise
-        finally:
-            sys.path.remove(str(file.parent))
-    found: Any = module
-    for part in name.split("."):
-        if not hasattr(found, part):
-            near = difflib.get_close_matches(part, dir(found), 1)
-            suggestion = "; did you mean %s?" % near[0] if near else ""
-            raise lib.InputError("%s has no function %s%s" % (file, name, suggestion))
-        found = getattr(found, part)
-    if not callable(found):
-        raise lib.InputError("%s of %s is no function" % (name, file))
-    return found  # type: ignore[no-any-return]
-
-
-def _describe(error: BaseException) -> str:
-    """The error and its traceback in one line."""
-    text = "".join(traceback.format_exception_only(type(error), error)).strip().replace("\n", "; ")
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename[:1] != "<" and f.filename != __file__]
-    places = ["%s:%s in %s" % (os.path.basename(f.filename), f.lineno, f.name) for f in reversed(frames)]
-    return text + (" (%s)" % ", called from ".join(places) if places else "")
+    try:
+        return _worker.load(str(file), name)
+    except _worker.NoFunction as error:
+        raise lib.InputError(str(error)) from None
 
 
 _FUNCTION = ctypes.CFUNCTYPE(
@@ -132,21 +95,14 @@ class Connected:
         self.struct = _Struct(_FUNCTION(self._call), None, len(calls), *self._texts)
 
     def _call(self, call: bytes, parameters: Any, value: Any, reason: int, capacity: int, _user: Any) -> int:
+        design = dict(zip(self._parameters, parameters[: len(self._parameters)]))
         try:
-            design = dict(zip(self._parameters, parameters[: len(self._parameters)]))
-            result = self._functions[call.decode("utf-8")](design)
-            if result is None:
-                failure = "the function returned None; expected a number"
-            else:
-                value[0] = float(result)
-                if math.isfinite(value[0]):
-                    return 0
-                failure = "the function returned %r; expected a finite number" % value[0]
-        except (Exception, SystemExit) as error:
-            failure = _describe(error)
+            value[0], failure = _worker.call(self._functions[call.decode("utf-8")], design)
         except BaseException as error:
             lib.set_exception(error)
-            failure = _describe(error)
+            failure = _worker.describe(error)
+        if not failure:
+            return 0
         text = failure.encode("utf-8", "replace")[: capacity - 1] + b"\0"
         ctypes.memmove(reason, text, len(text))
         return 1
@@ -186,7 +142,7 @@ def take_functions(entries: List[Dict[str, Any]], into: Dict[str, Function]) -> 
 
 
 def refuse_in_worker() -> None:
-    if os.environ.get(_WORKER):
+    if os.environ.get(_worker.WORKER):
         raise RuntimeError(
             "a file whose functions a study calls runs a study when it is imported; put that part below "
             'if __name__ == "__main__":'

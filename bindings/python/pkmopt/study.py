@@ -16,8 +16,8 @@ import numpy.typing as npt
 from . import _functions
 from . import _library as lib
 from . import _toml
-from ._functions import Function
 from ._library import Array, Progress
+from ._worker import Function
 from .mechanism import Mechanism
 
 Path_ = Union[str, Path]
