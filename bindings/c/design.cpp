@@ -5,7 +5,10 @@
 
 #include "bindings/c/handles.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
 #include "engine/generic/mechanism.hpp"
+#include "engine/mechanism/abilities/nearest_assembly.hpp"
+#include "engine/mechanism/sampled_poses.hpp"
 
 namespace pkm::c {
 namespace {
@@ -63,27 +66,18 @@ PoseReport inspect(const pkmopt_design& design, const Pose<double>& pose) {
   return design.mechanism->inspect(design.parameters, pose, design.mode, design.limits);
 }
 
-/// Names of the margins of a pose that assembles; others have the first of them only. Found at a pose of a coarse grid,
-/// at the first use.
+/// Names of the margins of a pose that assembles; others have the first of them only. Found at the first use.
 const std::vector<std::string>& margin_names(const pkmopt_design& design) {
-  constexpr std::size_t kCells = 7;
+  constexpr std::size_t kTrials = 10'000;
   std::call_once(design.has_margin_names, [&] {
-    const auto ranges = design.mechanism->ranges(design.parameters);
-    if (!ranges) throw DesignError("the ranges of the coordinates are unknown, so that no pose to examine was found");
-    const std::size_t n = ranges->size(), number = static_cast<std::size_t>(std::pow(kCells, n));
-    for (std::size_t k = 0; k < number; ++k) {
-      Pose<double> pose(n);
-      std::size_t rest = k;
-      for (std::size_t i = 0; i < n; ++i, rest /= kCells) {
-        const auto [from, to] = (*ranges)[i];
-        pose[i] = from + (to - from) * (static_cast<double>(rest % kCells) + 0.5) / kCells;
-      }
-      const PoseReport report = inspect(design, pose);
+    const SampledPoses poses(*design.mechanism, design.parameters);
+    for (std::size_t trial = 1; trial <= kTrials; ++trial) {
+      const PoseReport report = inspect(design, poses[trial]);
       if (!report.assembles) continue;
       for (const auto& [name, value] : report.margins) design.margin_names.push_back(name);
       return;
     }
-    throw DesignError("none of " + std::to_string(number) + " poses of a grid assembles");
+    throw DesignError("none of " + std::to_string(kTrials) + " sampled poses assembles");
   });
   return design.margin_names;
 }
@@ -150,9 +144,8 @@ pkmopt_status pkmopt_design_create(const pkmopt_mechanism* mechanism, const doub
       if (std::isnan(limits[i])) continue;
       const pkm::LimitInfo& limit = info.limits[i];
       if (!(limits[i] >= limit.lower && limits[i] <= limit.upper))
-        throw pkm::ConfigError(
-            {"", 0, "limits." + limit.name}, std::to_string(limits[i]),
-            "a value from " + std::to_string(limit.lower) + " to " + std::to_string(limit.upper) + " " + limit.unit);
+        throw pkm::ConfigError({"", 0, "limits." + limit.name}, pkm::with_degrees(limits[i], limit.unit),
+                               "a value in " + pkm::format_range(limit.lower, limit.upper, limit.unit));
       made->limits.given[i] = limits[i];
     }
     if (const pkm::Unsupported reason = made->mechanism->refuse(made->parameters)) throw pkm::DesignError(*reason);
@@ -241,11 +234,17 @@ pkmopt_status pkmopt_design_forward(const pkmopt_design* design, size_t count, c
     for_each_pose(count, options, [&](std::size_t k) {
       pkm::AxisVector<double> values(q);
       std::copy_n(joints + k * q, q, values.begin());
-      const auto modes = near ? forward->assemblies_near(design->parameters, values, pose_at(*design, near, k))
-                              : forward->assemblies(design->parameters, values);
+      std::vector<pkm::AssemblyMode> modes;
+      if (near) {
+        if (auto nearest =
+                pkm::nearest_assembly(*design->mechanism, design->parameters, values, pose_at(*design, near, k)))
+          modes.push_back(std::move(*nearest));
+      } else {
+        modes = forward->assemblies(design->parameters, values);
+        std::erase_if(modes, [](const pkm::AssemblyMode& mode) { return !mode.usual; });
+      }
       found[k] = 0;
       for (const pkm::AssemblyMode& mode : modes) {
-        if (!mode.usual) continue;
         if (found[k] < capacity) std::ranges::copy(mode.pose, poses + (k * capacity + found[k]) * n);
         ++found[k];
       }

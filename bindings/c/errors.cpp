@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <stdexcept>
 
 #include "bindings/c/handles.hpp"
@@ -72,6 +73,12 @@ std::string required_text(const char* text, const char* argument) {
   return text;
 }
 
+void refuse_existing(const std::string& file, bool overwrite) {
+  std::error_code ignored;
+  if (!overwrite && std::filesystem::exists(file, ignored))
+    throw StorageError(file + " exists already; set overwrite to replace it, or choose another name");
+}
+
 bool Interrupt::is_requested() {
   constexpr std::chrono::milliseconds kInterval(50);
   if (requested_.load(std::memory_order_relaxed)) return true;
@@ -100,7 +107,7 @@ pkmopt_status pkmopt_number(const char* text, const char* unit, double* value) {
     const std::string given = required_text(text, "text"), si_unit = required_text(unit, "unit");
     const auto parsed = pkm::parse_quantity(given, si_unit);
     if (!parsed)
-      throw pkm::ConfigError({"", 0, "number"}, "'" + given + "'",
+      throw pkm::ConfigError({"", 0, "value"}, "'" + given + "'",
                              "a number, with or without a unit of the dimension of " + si_unit);
     *value = *parsed;
   });

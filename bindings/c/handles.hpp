@@ -61,6 +61,9 @@ T* allocated_array(std::size_t count) {
 std::string required_text(const char* text, const char* argument);
 inline std::string text_or_empty(const char* text) { return text ? text : ""; }
 
+/// Throws StorageError if the file exists and is not to be overwritten.
+void refuse_existing(const std::string& file, bool overwrite);
+
 /// Polls pkmopt_options.interrupt on the calling thread. Thread-safe.
 class Interrupt {
  public:

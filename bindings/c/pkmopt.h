@@ -125,7 +125,8 @@ PKMOPT_API pkmopt_status pkmopt_design_margins(const pkmopt_design* design, size
                                                double* margins, const pkmopt_options* options);
 /* Forward kinematics: the poses for given joint values.
  * joints    [count][joints]
- * near      [count][coordinates]: search near these poses only; NULL: all poses that the mechanism's method finds
+ * near      [count][coordinates]: only the pose nearest to these, of those that a search from there finds; NULL: all
+ *           poses that the mechanism's method finds, but those that are unusual in practice
  * capacity  number of poses stored for each row
  * poses     [count][capacity][coordinates]
  * found     [count]: number of poses found, which may exceed the capacity */
@@ -208,7 +209,8 @@ enum {
   PKMOPT_FAILED = 3      /* the design cannot be evaluated, or a value is not finite */
 };
 /* Evaluates designs on all threads. Each output may be NULL.
- * designs     [count][variables]
+ * designs     [count][variables]: may be outside of the bounds of the variables; outside of what the mechanism allows,
+ *             designs have failed
  * objectives  [count][objectives]: values, whether minimised or maximised
  * margins     [count][constraints]: satisfied if >= 0
  * outputs     [count][outputs]

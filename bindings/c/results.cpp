@@ -125,6 +125,7 @@ pkmopt_status pkmopt_report(size_t count, const char* const* paths, const char* 
                             const pkmopt_options* options) {
   return guarded([&] {
     const std::string file = required_text(output, "output");
+    refuse_existing(file, overwrite != 0);
     pkm::page_assets();  // throws now, before any evaluation, if this library has no page
     std::vector<pkm::PageStudy> studies;
     for (std::size_t i = 0; i < count; ++i) {

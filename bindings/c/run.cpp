@@ -43,6 +43,8 @@ Json outcome_of(const pkmopt_run_options* given, const Body& body) {
   Reported progress(options);
   Interrupt interrupt(options.common);
   RunOptions run{.threads = options.common.threads, .program = {program_version(), program_revision(), "libpkmopt"}};
+  if (!(options.time_limit >= 0))
+    throw ConfigError({"", 0, "time_limit"}, std::to_string(options.time_limit), "a time > 0, or 0 for none");
   if (options.time_limit > 0) run.time_limit = options.time_limit;
   run.stop = [&] { return progress.is_stop_requested() || interrupt.is_requested(); };
   run.handles_signals = false;
@@ -67,6 +69,7 @@ pkmopt_status pkmopt_study_run(const pkmopt_study* study, const char* path, int6
                                const pkmopt_run_options* options, char** json) {
   return guarded([&] {
     const std::string file = required_text(path, "path");
+    refuse_existing(file, options && options->overwrite != 0);
     pkm::Study copy = study->study;
     if (seed >= 0) copy.seed = static_cast<std::uint64_t>(seed);
     pkm::require_stages(copy, catalogues());
@@ -81,6 +84,9 @@ pkmopt_status pkmopt_study_resume(const char* path, int64_t generations, int64_t
   return guarded([&] {
     const std::string file = required_text(path, "path");
     pkm::ExtensionRequest extension;
+    for (const auto& [name, value] : {std::pair("generations", generations), std::pair("evaluations", evaluations)})
+      if (value < 0)
+        throw pkm::ConfigError({"", 0, name}, std::to_string(value), "a number > 0, or 0 for no extension");
     if (generations > 0) extension.generations = generations;
     if (evaluations > 0) extension.evaluations = evaluations;
     *json = allocated(outcome_of(options, [&](const pkm::RunOptions& run, pkm::Progress& progress) {

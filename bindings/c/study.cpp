@@ -124,21 +124,45 @@ void evaluate_one(const pkmopt_study& handle, const double* design, Detail detai
   handle.idle_scratch.push_back(std::move(scratch));
 }
 
+/// Why a design is outside of what the mechanism allows. Only designs outside of the variables' bounds can be.
+Unsupported refusal(const DesignProblem& problem, std::span<const double> design) {
+  for (std::size_t i = 0; i < design.size(); ++i)
+    if (!(design[i] >= problem.space()[i].lower && design[i] <= problem.space()[i].upper))
+      return problem.parts().mechanism->refuse(problem.parameters(design));
+  return {};
+}
+
+/// Evaluates the designs that the mechanism does not refuse; the others have failed.
 void evaluate_all(const pkmopt_study& handle, std::size_t count, const double* designs, Detail detail,
                   const Outputs& to, const pkmopt_options* options) {
   const DesignProblem& problem = *handle.study.problem;
-  if (count == 1) return with_options(options, false, [&] { evaluate_one(handle, designs, detail, to); });
-  EvaluationTable table(problem.shape(detail));
-  table.extend(count);
-  std::copy_n(designs, table.designs.size(), table.designs.begin());
+  const EvaluationShape shape = problem.shape(detail);
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < count; ++k)
+    if (!refusal(problem, {designs + k * shape.variables, shape.variables})) rows.push_back(k);
+  if (count == 1 && rows.size() == 1)
+    return with_options(options, false, [&] { evaluate_one(handle, designs, detail, to); });
+  EvaluationTable table(shape);
+  table.extend(rows.size());
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    std::copy_n(designs + rows[row] * shape.variables, shape.variables,
+                table.designs.begin() + static_cast<std::ptrdiff_t>(row * shape.variables));
   ParallelEvaluator evaluator(options ? options->threads : 0);
-  with_options(options, true, [&] { evaluator.evaluate(problem, table, 0); });
-  copy_unless_null(table.objectives, to.objectives);
-  copy_unless_null(table.margins, to.margins);
-  copy_unless_null(table.reports, to.outputs);
-  copy_unless_null(table.derivatives, to.derivatives);
-  for (std::size_t row = 0; to.status && row < count; ++row)
-    to.status[row] = static_cast<std::uint8_t>(table.status[row]);
+  if (!rows.empty()) with_options(options, true, [&] { evaluator.evaluate(problem, table, 0); });
+  const auto scatter = [&](const std::vector<double>& from, std::size_t width, double* values) {
+    if (!values) return;
+    std::fill_n(values, count * width, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(row * width), width, values + rows[row] * width);
+  };
+  scatter(table.objectives, shape.objectives, to.objectives);
+  scatter(table.margins, shape.margins, to.margins);
+  scatter(table.reports, shape.reports, to.outputs);
+  scatter(table.derivatives, shape.derivatives(), to.derivatives);
+  if (!to.status) return;
+  std::fill_n(to.status, count, static_cast<std::uint8_t>(Status::failed));
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    to.status[rows[row]] = static_cast<std::uint8_t>(table.status[row]);
 }
 
 }  // namespace
@@ -195,6 +219,10 @@ pkmopt_status pkmopt_study_why_failed(const pkmopt_study* study, const double* d
                                       const pkmopt_options* options) {
   return guarded([&] {
     const pkm::DesignProblem& problem = *study->study.problem;
+    if (const pkm::Unsupported refused = refusal(problem, {design, problem.space().dimension()})) {
+      *sentence = allocated(*refused);
+      return;
+    }
     std::string reason;
     with_options(options, false, [&] {
       std::uint8_t status = PKMOPT_FAILED;

@@ -6,6 +6,7 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/geometry/singular.hpp"
+#include "engine/mechanism/abilities/nearest_assembly.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/target.hpp"
 
@@ -54,24 +55,14 @@ std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& as
   return rates;
 }
 
-/// The assembly mode closest to the pose of --near (Euclidean distance, 1 m counts as 1 rad); empty if there is none.
-std::vector<AssemblyMode> nearest_mode(const ForwardKinematics& kinematics, const Target& target,
-                                       const AxisVector<double>& joints, const std::vector<std::string>& near) {
-  const Axes& coordinates = target.info().coordinates;
-  const auto from = axis_vector(parse_all_assignments(near, "--near", assignable_axes(coordinates)));
-  const auto distance = [&](const AssemblyMode& mode) {
-    double square = 0;
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-      const double difference = mode.pose[i] - from[i];
-      square += std::pow(coordinates[i].turns() ? wrapped(difference) : difference, 2);
-    }
-    return square;
-  };
-  const std::vector<AssemblyMode> modes = kinematics.assemblies_near(target.parameters, joints, from);
-  if (modes.empty()) return {};
-  AssemblyMode next = *std::ranges::min_element(modes, {}, distance);
-  next.usual = true;  // requested, therefore listed
-  return {next};
+/// The assembly mode closest to the pose of --near; empty if there is none.
+std::vector<AssemblyMode> nearest_mode(const Target& target, const AxisVector<double>& joints,
+                                       const std::vector<std::string>& near) {
+  const auto from = axis_vector(parse_all_assignments(near, "--near", assignable_axes(target.info().coordinates)));
+  auto found = nearest_assembly(*target.mechanism, target.parameters, joints, from);
+  if (!found) return {};
+  found->usual = true;  // requested, therefore listed
+  return {*found};
 }
 
 /// Whether the list of poses is complete, and by which method it was found.
@@ -97,7 +88,7 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
   if (arguments.near.empty())
     modes = kinematics.assemblies(target.parameters, joints);
   else
-    modes = nearest_mode(kinematics, target, joints, arguments.near);
+    modes = nearest_mode(target, joints, arguments.near);
   const ForwardStatus status = kinematics.status(target.parameters, joints, modes);
 
   Json poses = Json::array();

@@ -215,6 +215,22 @@ TEST(CInterface, ForwardInvertsInverseAndJacobiansAreItsDerivatives) {
   }
 }
 
+TEST(CInterface, ForwardFindsTheNearestPoseEvenIfItIsUnusual) {
+  const MechanismHandle robot = mechanism("4ppa-2par");
+  const DesignHandle design = design_of(robot.get());
+  const std::array<double, 4> pose = {0.42, 0.02, -0.31, 0.1};  // the joints of the platform are above the rails
+  std::array<double, 4> joints{}, near{};
+  std::array<double, 16 * 4> all{};
+  std::size_t count = 0;
+  ASSERT_OK(pkmopt_design_inverse(design.get(), 1, pose.data(), joints.data(), nullptr));
+  ASSERT_OK(pkmopt_design_forward(design.get(), 1, joints.data(), pose.data(), 1, near.data(), &count, nullptr));
+  EXPECT_EQ(count, 1U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(near[i], pose[i], 1e-12);
+  ASSERT_OK(pkmopt_design_forward(design.get(), 1, joints.data(), nullptr, 16, all.data(), &count, nullptr));
+  ASSERT_GE(count, 1U);
+  for (std::size_t k = 0; k < count; ++k) EXPECT_GT(std::abs(all[4 * k + 2] - pose[2]), 0.01);
+}
+
 TEST(CInterface, PosesThatDoNotAssembleAreNan) {
   const MechanismHandle robot = delta();
   const DesignHandle design = design_of(robot.get());
@@ -371,6 +387,28 @@ TEST(CInterface, DesignsHaveTheSameValuesAloneTogetherAndOnAnyThreads) {
   for (std::size_t k = 0; k < kCount; ++k) EXPECT_EQ(derivatives[6 * k], together.objectives[k]);
 }
 
+TEST(CInterface, DesignsThatTheMechanismRefusesFail) {
+  const StudyHandle study = study_of(kStudy);
+  const Json info = info_of(study.get());
+  const std::vector<double> X = {0.3, 0.9, -1, 0.9, 0.6, 0.8};  // the last one is outside of the variables' bounds only
+  Values together(3, info), alone(3, info);
+  const auto evaluate = [&](std::size_t first, std::size_t count, Values& values) {
+    ASSERT_OK(pkmopt_study_evaluate(study.get(), count, X.data() + 2 * first, 1, values.objectives.data() + first,
+                                    values.margins.data() + first, values.outputs.data(), values.status.data() + first,
+                                    nullptr));
+  };
+  evaluate(0, 3, together);
+  for (std::size_t k = 0; k < 3; ++k) evaluate(k, 1, alone);
+  for (const Values& values : {together, alone}) {
+    EXPECT_EQ(values.status, (std::vector<std::uint8_t>{PKMOPT_FEASIBLE, PKMOPT_FAILED, PKMOPT_FEASIBLE}));
+    EXPECT_TRUE(std::isnan(values.objectives[1]) && std::isnan(values.margins[1]));
+    EXPECT_EQ(values.objectives[2], together.objectives[2]);
+  }
+  char* sentence = nullptr;
+  ASSERT_OK(pkmopt_study_why_failed(study.get(), X.data() + 2, &sentence, nullptr));
+  EXPECT_THAT(taken(sentence), HasSubstr("a = -1 is outside the model's range"));
+}
+
 TEST(CInterface, RunsResumesAndExtends) {
   const StudyHandle study = study_of(kStudy);
   const File whole("whole.h5"), stopped("stopped.h5");
@@ -381,6 +419,11 @@ TEST(CInterface, RunsResumesAndExtends) {
   EXPECT_THAT(pkmopt_error(), HasSubstr("exists already"));
 
   pkmopt_run_options options = {};
+  options.time_limit = -1;
+  EXPECT_EQ(pkmopt_study_run(study.get(), stopped.path.c_str(), -1, &options, &json), PKMOPT_INVALID_INPUT);
+  EXPECT_EQ(pkmopt_study_resume(whole.path.c_str(), -5, 0, nullptr, &json), PKMOPT_INVALID_INPUT);
+  EXPECT_THAT(pkmopt_error(), HasSubstr("generations: found -5"));
+  options.time_limit = 0;
   int generations = 0;
   options.user = &generations;
   options.progress = [](const pkmopt_progress* progress, void* user) {

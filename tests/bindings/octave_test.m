@@ -271,7 +271,7 @@ function test_mistakes()
   check_fails(@() pkmopt.Mechanism.fromText('[mechanism'), invalid, 'mechanism.toml:1');
   check_fails(@() m.design('l_c', 1), invalid, 'unknown parameter ''l_c''; expected one of R, r, l_a, l_b');
   check_fails(@() m.design('l_c', 1), invalid, 'did you mean ''l_a''?');
-  check_fails(@() m.design('l_a', '3 kg'), invalid, '3 kg');
+  check_fails(@() m.design('l_a', '3 kg'), invalid, '''l_a'': found ''3 kg''');
   check_fails(@() m.design('l_a', [1, 2]), invalid, 'expected a number');
   check_fails(@() m.design('l_a', -1), 'pkmopt:designError', 'outside');
   check_fails(@() m.design([1, 2]), invalid, 'there are 2 values');

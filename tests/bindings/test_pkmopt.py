@@ -80,6 +80,19 @@ class MechanismTest(unittest.TestCase):
         for pose, found in zip(self.poses, self.design.forward(q)):
             self.assertLess(np.abs(found - pose).max(axis=1).min(), 1e-9)
 
+    def test_near_selects_the_nearest_pose(self):
+        """Also among the poses that are unusual in practice, and where the forward kinematics is a closed form."""
+        for name, pose in (
+            ("4ppa-2par", [0.42, 0.02, -0.31, 0.1]),
+            ("4ppa-2par", [0.45, 0.75, -0.72, 0.5]),
+            ("quadrupteron", [0.19, 0.15, 0.19, -0.11]),
+            ("2t1r-p-hybrid", [-0.03, 0.19, 0.24, -0.15]),
+        ):
+            design = pkmopt.Mechanism(name).design()
+            joints = design.inverse(pose)
+            near = design.forward(joints, near=np.add(pose, 0.003))
+            np.testing.assert_allclose(near, pose, atol=1e-9, err_msg=name)
+
     def test_forces_are_those_of_virtual_work(self):
         """At rest, drive forces and a wrench in equilibrium do no work: J^T tau + W = 0, besides gravity."""
         wrench = [3, -2, 5, 0, 0, 0]
@@ -99,6 +112,11 @@ class MechanismTest(unittest.TestCase):
         self.assertEqual(self.design.links(pose).start.shape, (9, 3))
         self.assertEqual(self.design.forward(self.design.inverse(pose), near=pose).shape, (3,))
         self.assertEqual(self.design.inverse(np.empty((0, 3))).shape, (0, 3))
+        self.assertEqual(self.design.inverse([]).shape, (0, 3))
+        np.testing.assert_array_equal(
+            self.design.inverse({"x": "10 mm", "y": 0, "z": "-400 mm"}), self.design.inverse([0.01, 0, -0.4]))
+        forward = self.design.forward(self.design.inverse(self.poses[:3]), near=[0, 0, -0.4])
+        np.testing.assert_allclose(forward, self.poses[:3], atol=1e-9)
 
     def test_feasible_poses_are_those_of_the_margins(self):
         poses = [[0, 0, -0.4], [0, 0, -4], [0.3, 0, -0.2]]
@@ -117,7 +135,9 @@ class MechanismTest(unittest.TestCase):
         self.assertNotEqual(other.inverse([0, 0, -0.4])[1], self.design.inverse([0, 0, -0.4])[1])
         wrong = [
             (lambda: self.delta.design(l_c=1), "unknown parameter 'l_c'"),
-            (lambda: self.delta.design(l_a="3 kg"), "'3 kg'"),
+            (lambda: self.delta.design(la=1), "did you mean 'l_a'?"),
+            (lambda: self.delta.design(l_a="3 kg"), "l_a: found '3 kg'"),
+            (lambda: self.design.inverse({"x": 0, "y": 0, "z": "400 kg"}), "z: found '400 kg'"),
             (lambda: self.delta.design(l_a=-1), "outside"),
             (lambda: self.delta.design(limits={"lti": 1}), "unknown limit"),
             (lambda: self.delta.design(mode="x"), "mode"),
@@ -125,11 +145,20 @@ class MechanismTest(unittest.TestCase):
             (lambda: self.design.inverse({"x": 1, "y": 2}), "expected x, y, z"),
             (lambda: self.design.quantity("ltj", [0, 0, -0.4]), "did you mean 'lti'?"),
             (lambda: self.design.inverse([0, 0, 0], threads=-1), "threads"),
+            (lambda: self.design.forward(np.zeros((3, 3)), near=np.zeros((2, 3))), "near has 2 rows; expected 3 or 1"),
+            (lambda: pkmopt.Mechanism("rotary-delta.toml"), "Mechanism.from_file"),
             (lambda: pkmopt.Mechanism("4ppa"), "did you mean '4ppa-2par'?"),
             (lambda: pkmopt.Mechanism.from_text("[mechanism"), "mechanism.toml:1"),
         ]
         for call, message in wrong:
             with self.assertRaisesRegex(ValueError, message.replace("(", r"\(").replace(")", r"\)").replace("?", r"\?")):
+                call()
+        for call in (
+            lambda: pkmopt.Mechanism(3),
+            lambda: self.delta.design(l_a=None),
+            lambda: self.design.inverse(np.full((2, 3), 1j)),
+        ):
+            with self.assertRaisesRegex(TypeError, "expected"):
                 call()
 
 
@@ -224,6 +253,22 @@ class ProblemTest(unittest.TestCase):
         self.assertTrue(np.isnan(found.objectives[1, 0]))
         self.assertIn("root", problem.why_failed([0.4]))
         self.assertEqual(problem.why_failed([0.25]), "")
+        with self.assertRaisesRegex(ValueError, "expected one"):
+            problem.why_failed([[0.25], [0.3]])
+
+    def test_designs_outside_of_the_model_fail(self):
+        """A length of -1 m or NaN is no design, but one outside of the bounds of the variables is."""
+        outside = [[0.3, 0.9], [-1, 0.9], [0.6, 0.9], [np.nan, 0.9]]
+        found = self.problem.evaluate(outside)
+        self.assertEqual((found.status == pkmopt.FAILED).tolist(), [False, True, False, True])
+        np.testing.assert_array_equal(np.isnan(found.objectives[:, 0]), [False, True, False, True])
+        for k in range(4):
+            np.testing.assert_array_equal(self.problem.evaluate(outside[k]).objectives, found.objectives[k])
+        slopes = self.problem.differentiate(outside).objectives
+        np.testing.assert_array_equal(slopes[2], self.problem.differentiate(outside[2]).objectives)
+        self.assertTrue(np.isnan(slopes[1]).all())
+        self.assertIn("a = -1 is outside the model's range", self.problem.why_failed([-1, 0.9]))
+        self.assertEqual(self.problem.evaluate([-1, 0.9]).status, pkmopt.FAILED)
 
     def test_scipy_interface(self):
         scipy = self.problem.as_scipy()
@@ -240,6 +285,7 @@ class ProblemTest(unittest.TestCase):
             lambda: pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volum"),
             lambda: pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume", workspase={}),
             lambda: pkmopt.Problem("4ppa-2par", {"a": (1, 2, 3, 4)}, "workspace-volume"),
+            lambda: pkmopt.Problem("4ppa-2par", {"a": "0.5"}, "workspace-volume"),
             lambda: self.problem.evaluate([1, 2, 3]),
         ):
             with self.assertRaises(ValueError):
@@ -391,12 +437,28 @@ class StudyTest(InFolder):
         threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):
             problem.evaluate(X)
+        # Evaluations of microseconds, of which there are seconds.
+        problem = pkmopt.Problem("4ppa-2par", VARIABLES, "workspace-volume")
+        X = np.tile(X, (3, 1))
+        begin = time.process_time()
+        problem.evaluate(X[:100000])
+        whole = 30 * (time.process_time() - begin)
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begin = time.process_time()
+        with self.assertRaises(KeyboardInterrupt):
+            problem.evaluate(X)
+        self.assertLess(time.process_time() - begin, whole / 2)
 
     def test_seeds_and_existing_files(self):
         first, second = (small_study().run("seed-%d.h5" % seed, seed=seed).evaluations() for seed in (1, 2))
         self.assertFalse(same(first, second))
-        with self.assertRaisesRegex(pkmopt.FileError, "exists already"):
+        with self.assertRaisesRegex(pkmopt.FileError, "exists already; set overwrite"):
             small_study().run("seed-1.h5")
+        for wrong in ({"seed": -5}, {"time_limit": 0}, {"time_limit": -1}, {"threads": "2"}):
+            with self.assertRaisesRegex(ValueError, "expected"):
+                small_study().run("seed-1.h5", overwrite=True, **wrong)
+        with self.assertRaisesRegex(ValueError, "generations is -10"):
+            pkmopt.resume("seed-1.h5", generations=-10)
         with self.assertRaisesRegex(pkmopt.InputError, "at least one"):
             small_study(stages=[]).run("none.h5")
         with self.assertRaises(OSError):
@@ -535,6 +597,28 @@ class FunctionTest(InFolder):
             with self.assertRaisesRegex(error, message):
                 call()
 
+    def test_files_may_import_others_and_have_any_name(self):
+        """The file "math.py" does not replace the module, and imports a file beside it when its function is called."""
+        pathlib.Path("study").mkdir()
+        pathlib.Path("study", "helper_of_math.py").write_text("WEIGHT = 3\n", encoding="utf-8")
+        pathlib.Path("study", "math.py").write_text(
+            "def cost(design):\n    import helper_of_math\n    return helper_of_math.WEIGHT * design['a']\n"
+            "def deep(design):\n    return deep(design)\n", encoding="utf-8")
+        modules = dict(sys.modules)
+        for name in ("cost", "deep"):
+            pathlib.Path("study", name + ".toml").write_text(
+                "mechanism = { type = '4ppa-2par' }\nvariables = { a = { min = 0.2, max = 0.5 } }\n"
+                "objective = [{ type = 'python', call = 'math.py:%s' }]\n" % name, encoding="utf-8")
+        for start_workers in (False, True):
+            cost, deep = (pkmopt.Problem.from_toml("study/%s.toml" % name) for name in ("cost", "deep"))
+            if start_workers:
+                cost.start_workers(1)
+                deep.start_workers(1)
+            self.assertAlmostEqual(cost.evaluate([0.25]).objectives[0], 0.75)
+            self.assertRegex(deep.why_failed([0.25]), r"RecursionError: .*called from \d+ more\)$")
+            self.assertLess(len(deep.why_failed([0.25])), 500)
+        self.assertIs(sys.modules["math"], modules["math"])
+
     def test_a_file_that_runs_its_own_study_is_refused(self):
         pathlib.Path("script.py").write_text(
             "import pkmopt\ndef cost(design):\n    return design['a']\n"
@@ -624,8 +708,23 @@ class OptimiserTest(InFolder):
         ):
             with self.assertRaises(ValueError):
                 call()
+        for arguments, options, message in (
+            ([[]], {}, "bounds"),
+            ([[(1,)]], {}, "bounds"),
+            ([[1, 2]], {}, "bounds"),
+            ([self.BOUNDS], {"objectives": 0}, "objectives is 0"),
+            ([self.BOUNDS], {"constraints": -1}, "constraints is -1"),
+        ):
+            with self.assertRaisesRegex(ValueError, message):
+                pkmopt.Optimiser("ga", *arguments, **options)
+        np.savez("other.npz", a=1)
+        with self.assertRaisesRegex(pkmopt.FileError, "other.npz: found no saved optimiser"):
+            pkmopt.Optimiser.load("other.npz")
         optimiser = pkmopt.Optimiser("ga", self.BOUNDS)
+        with self.assertRaisesRegex(ValueError, "n is -1"):
+            optimiser.ask(-1)
         X = optimiser.ask()
+        self.assertEqual(repr(optimiser), "<Optimiser ga: 2 variables, 0 evaluations>")
         with self.assertRaisesRegex(ValueError, "in their order"):
             optimiser.tell(X[::-1], X[:, 0])
         with self.assertRaisesRegex(ValueError, "F has shape"):

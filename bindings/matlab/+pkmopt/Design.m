@@ -81,7 +81,7 @@ classdef Design < pkmopt.internal.LibraryObject
 
     function poses = forward(self, joints, varargin)
     % FORWARD  Forward kinematics.
-    %   poses = d.forward(joints, near)      near: one pose per row; the pose found from there, a row of NaN if none
+    %   poses = d.forward(joints, near)      near: one pose per row; the nearest pose found, a row of NaN if none
     %   poses = d.forward(joints)            cell column: all poses that the mechanism's method finds, for each row
     %   poses = d.forward(joints, near, threads)
     % `pkmopt forward` says how complete the list is.

@@ -116,10 +116,8 @@ class PythonOptions(ctypes.Structure):
 
 def python_options(workers: int) -> PythonOptions:
     """This interpreter, with this process's folders of modules."""
-    if workers < 0:
-        raise ValueError("workers is %d; expected a number >= 1, or 0" % workers)
     path = ":".join(os.path.abspath(folder) for folder in sys.path if ":" not in folder)
-    return PythonOptions(workers, os.fsencode(sys.executable), os.fsencode(path))
+    return PythonOptions(lib.count(workers, "workers", "0 for one per core"), os.fsencode(sys.executable), os.fsencode(path))
 
 
 def by_name(functions: Union[Mapping[str, Function], Iterable[Function]]) -> Dict[str, Function]:

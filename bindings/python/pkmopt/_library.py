@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import difflib
 import json
 import os
 import signal
@@ -196,9 +197,14 @@ def set_exception(error: BaseException) -> None:
 
 
 def options(threads: int = 0) -> Options:
-    if threads < 0:
-        raise ValueError("threads is %d; expected a number >= 1, or 0 for all cores" % threads)
-    return Options(threads, _interrupt, None)
+    return Options(count(threads, "threads", "0 for all cores"), _interrupt, None)
+
+
+def count(value: Any, what: str, zero: str) -> int:
+    """A number >= 1, or 0 with the given meaning."""
+    if not isinstance(value, (int, np.integer)) or value < 0:
+        raise ValueError("%s is %r; expected a number >= 1, or %s" % (what, value, zero))
+    return int(value)
 
 
 def call(name: str, *arguments: Any) -> None:
@@ -297,25 +303,42 @@ def pointer(array: Optional[npt.NDArray[Any]]) -> Optional[ctypes.c_void_p]:
 
 
 def encoded(value: Optional[str]) -> Optional[bytes]:
+    if value is not None and not isinstance(value, str):
+        raise TypeError("%r is of type %s; expected a text" % (value, type(value).__name__))
     return None if value is None else value.encode("utf-8")
+
+
+def suggestion(name: Any, names: Sequence[str]) -> str:
+    """The closest name, for the end of a message."""
+    near = difflib.get_close_matches(str(name), names, 1)
+    return "; did you mean %r?" % near[0] if near else ""
 
 
 def size(value: int) -> ctypes.c_size_t:
     return ctypes.c_size_t(value)
 
 
-def rows(values: Any, width: int, what: str, names: Sequence[str]) -> Tuple[Array, bool]:
-    """Values as an array [count, width], and whether they were a single row. Accepts names in a dict."""
+def rows(values: Any, what: str, names: Sequence[str], units: Sequence[str]) -> Tuple[Array, bool]:
+    """Values as an array [count, names], and whether they were a single row. A dict has arrays, numbers or texts with a
+    unit by name."""
     if isinstance(values, dict):
         unknown = [name for name in values if name not in names]
         missing = [name for name in names if name not in values]
         if unknown or missing:
             raise ValueError("%s has %s; expected %s" % (what, ", ".join(map(str, values)), ", ".join(names)))
-        values = np.stack(np.broadcast_arrays(*[np.asarray(values[name], dtype=float) for name in names]), axis=-1)
-    array = np.ascontiguousarray(values, dtype=np.float64)
-    single = array.ndim == 1
-    if single:
-        array = array[np.newaxis, :]
+        columns: List[Any] = [
+            number(values[name], unit, name) if isinstance(values[name], str) else np.asarray(values[name], dtype=float)
+            for name, unit in zip(names, units)
+        ]
+        values = np.stack(np.broadcast_arrays(*columns), axis=-1)
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise TypeError("%s has complex numbers; expected real ones" % what)
+    array = np.ascontiguousarray(array, dtype=np.float64)
+    width = len(names)
+    single = array.ndim == 1 and array.size > 0
+    if array.ndim == 1:
+        array = array.reshape(1, -1) if single else array.reshape(0, width)
     if array.ndim != 2 or array.shape[1] != width:
         raise ValueError(
             "%s has shape %s; expected (%d,) or (count, %d): %s"
@@ -324,10 +347,14 @@ def rows(values: Any, width: int, what: str, names: Sequence[str]) -> Tuple[Arra
     return array, single
 
 
-def number(value: Any, unit: str) -> float:
-    """A number, or a text such as "200 mm" in the given SI unit."""
-    if not isinstance(value, str):
+def number(value: Any, unit: str, name: str) -> float:
+    """A number, or a text such as "200 mm" in the given SI unit; ``name`` is that of the value, for messages."""
+    if isinstance(value, str):
+        found = ctypes.c_double()
+        if library.pkmopt_number(encoded(value), encoded(unit), ctypes.byref(found)) != _OK:
+            raise InputError("%s: found %r; expected a number, alone or with a unit like %s" % (name, value, unit))
+        return found.value
+    try:
         return float(value)
-    found = ctypes.c_double()
-    call("pkmopt_number", encoded(value), encoded(unit), ctypes.byref(found))
-    return found.value
+    except TypeError:
+        raise TypeError("%s: found %r; expected a number or a text" % (name, value)) from None

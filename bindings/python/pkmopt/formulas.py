@@ -11,6 +11,7 @@
 
 from __future__ import annotations
 
+import numbers
 from typing import Any, Dict, List, Tuple, Union
 
 from . import _toml
@@ -68,6 +69,9 @@ class Formula:
             return sqrt(self)
         return Formula("%s^%s" % (self._in(_ATOM), _formula(other)._in(_ATOM)), _POWER)
 
+    def __rpow__(self, other: Term) -> "Formula":
+        return _formula(other) ** self
+
     def __neg__(self) -> "Formula":
         return Formula("-%s" % self._in(_POWER), _UNARY)
 
@@ -77,7 +81,7 @@ def _formula(term: Term) -> Formula:
         return term
     if isinstance(term, str):
         return Formula(term, _SUM)
-    text = repr(term)
+    text = repr(int(term) if isinstance(term, numbers.Integral) else float(term))
     return Formula(text, _UNARY if text.startswith("-") else _ATOM)
 
 

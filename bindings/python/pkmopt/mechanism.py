@@ -115,6 +115,8 @@ class Mechanism:
     """
 
     def __init__(self, name: str) -> None:
+        if str(name).endswith(".toml"):
+            raise lib.InputError("%r is a file; read it by Mechanism.from_file()" % name)
         self._set(lib.handle("pkmopt_mechanism_by_name", "pkmopt_mechanism_free", lib.encoded(name)))
         self._is_built_in = True
         self._file_name = name
@@ -230,10 +232,20 @@ class Mechanism:
 
 
 def _chosen(what: str, given: Mapping[str, Number], known: Mapping[str, Any]) -> Dict[str, float]:
-    unknown = [name for name in given if name not in known]
-    if unknown:
-        raise lib.InputError("unknown %s %r; expected one of %s" % (what, unknown[0], ", ".join(known)))
-    return {name: lib.number(value, known[name].unit) for name, value in given.items()}
+    for name in given:
+        if name not in known:
+            hint = lib.suggestion(name, list(known))
+            raise lib.InputError("unknown %s %r; expected one of %s%s" % (what, name, ", ".join(known), hint))
+    return {name: lib.number(value, known[name].unit, name) for name, value in given.items()}
+
+
+def _matching(values: Array, count: int, what: str) -> Array:
+    """An array of ``count`` rows; a single row is repeated."""
+    if len(values) == 1:
+        return np.ascontiguousarray(np.broadcast_to(values, (count, values.shape[1])))
+    if len(values) != count:
+        raise ValueError("%s has %d rows; expected %d or 1" % (what, len(values), count))
+    return values
 
 
 class Design:
@@ -269,8 +281,7 @@ class Design:
         self._margin_names: Optional[List[str]] = None
 
     def _poses(self, poses: Any) -> Tuple[Array, bool]:
-        names = self.mechanism.coordinates
-        return lib.rows(poses, len(names), "poses", names)
+        return lib.rows(poses, "poses", self.mechanism.coordinates, self.mechanism.info["coordinate_units"])
 
     def _at(self, function: str, poses: Any, shape: Tuple[int, ...], threads: int, *before: Any) -> Array:
         """Calls function(design, *before, count, poses, values, options)."""
@@ -321,15 +332,12 @@ class Design:
     def forward(self, joints: Any, near: Any = None, threads: int = 0) -> Any:
         """Forward kinematics: for each row of joint values the poses [found, coordinates].
 
-        With ``near``, poses of the same count, only the pose found from there: an array [count, coordinates], NaN if
-        there is none. How complete a list is depends on the mechanism: see `pkmopt forward`.
+        With ``near``, one pose or as many as rows, only the nearest pose that a search from there finds: an array
+        [count, coordinates], NaN if there is none. How complete a list is depends on the mechanism: see `pkmopt forward`.
         """
-        names = self.mechanism.joints
-        q, single = lib.rows(joints, len(names), "joints", names)
+        q, single = lib.rows(joints, "joints", self.mechanism.joints, self.mechanism.info["joint_units"])
         n = len(self.mechanism.coordinates)
-        start = None if near is None else self._poses(near)[0]
-        if start is not None and len(start) != len(q):
-            raise ValueError("near has %d poses, joints has %d rows" % (len(start), len(q)))
+        start = None if near is None else _matching(self._poses(near)[0], len(q), "near")
         capacity = 1 if start is not None else 16
         options = lib.options(threads)
         while True:
@@ -362,19 +370,15 @@ class Design:
         names = self.mechanism.coordinates
         n = len(self.mechanism.joints)
 
-        def matching(values: Any, what: str, columns: Sequence[str]) -> Optional[Array]:
+        def matching(values: Any, what: str, columns: Sequence[str], units: Sequence[str]) -> Optional[Array]:
             if values is None:
                 return None
-            array = lib.rows(values, len(columns), what, columns)[0]
-            if len(array) == 1 and len(x) > 1:
-                array = np.ascontiguousarray(np.broadcast_to(array, (len(x), len(columns))))
-            if len(array) != len(x):
-                raise ValueError("%s has %d rows, poses has %d" % (what, len(array), len(x)))
-            return array
+            return _matching(lib.rows(values, what, columns, units)[0], len(x), what)
 
-        v = matching(velocities, "velocities", names)
-        a = matching(accelerations, "accelerations", names)
-        w = matching(wrenches, "wrenches", ["Fx", "Fy", "Fz", "Mx", "My", "Mz"])
+        units = self.mechanism.info["coordinate_units"]
+        v = matching(velocities, "velocities", names, [unit + "/s" for unit in units])
+        a = matching(accelerations, "accelerations", names, [unit + "/s^2" for unit in units])
+        w = matching(wrenches, "wrenches", ["Fx", "Fy", "Fz", "Mx", "My", "Mz"], 3 * ["N"] + 3 * ["N m"])
         result = Dynamics(
             np.empty((len(x), n)), np.empty((len(x), n, n)), np.empty((len(x), n)), np.empty((len(x), n))
         )

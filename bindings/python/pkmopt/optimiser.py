@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import zipfile
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Union
 
@@ -53,8 +54,11 @@ class Optimiser:
         flags = [bool(maximise)] * objectives if isinstance(maximise, (bool, np.bool_)) else [bool(m) for m in maximise]
         if len(flags) != objectives:
             raise ValueError("maximise has %d flags; the problem has %d objectives" % (len(flags), objectives))
-        if seed < 0:
-            raise ValueError("seed is %d; expected a number >= 0" % seed)
+        for what, value, least in (("objectives", objectives, 1), ("constraints", constraints, 0), ("seed", seed, 0)):
+            if value < least:
+                raise ValueError("%s is %r; expected a number >= %d" % (what, value, least))
+        if len(bounds) == 0 or any(np.ndim(each) != 1 or len(each) not in (2, 3) for each in bounds):
+            raise ValueError("bounds is %r; expected (min, max) or (min, max, step) for each variable" % (bounds,))
         self._arguments: Dict[str, Any] = {
             "name": name,
             "bounds": [[float(x) for x in each] for each in bounds],
@@ -113,6 +117,8 @@ class Optimiser:
     def ask(self, n: Optional[int] = None) -> Array:
         """The next designs to evaluate [count, variables]: all that the optimiser needs at once, such as a generation,
         or at most ``n`` of them. Empty if all open designs have been asked for, or if it has ended."""
+        if n is not None and n < 0:
+            raise ValueError("n is %r; expected a number >= 0, or None for all" % n)
         end = len(self._batch) if n is None else min(len(self._batch), self._asked + n)
         designs = self._batch[self._asked : end].copy()
         self._asked = end
@@ -151,6 +157,10 @@ class Optimiser:
             None,
         )
         self._fetch()
+
+    def __repr__(self) -> str:
+        bounds, name = self._arguments["bounds"], self._arguments["name"]
+        return "<Optimiser %s: %d variables, %d evaluations>" % (name, len(bounds), len(self.evaluations.designs))
 
     @staticmethod
     def _shaped(values: Any, shape: Any, what: str) -> Array:
@@ -205,9 +215,12 @@ class Optimiser:
     @classmethod
     def load(cls, path: Union[str, Path]) -> "Optimiser":
         """Continues a saved optimiser: it runs again and is told the saved values, which restores its state."""
-        with np.load(path) as saved:
-            arguments = json.loads(str(saved["arguments"]))
-            designs, F, G = saved["designs"], saved["objectives"], saved["constraints"]
+        try:
+            with np.load(path) as saved:
+                arguments = json.loads(str(saved["arguments"]))
+                designs, F, G = saved["designs"], saved["objectives"], saved["constraints"]
+        except (KeyError, ValueError, zipfile.BadZipFile):
+            raise lib.FileError("%s: found no saved optimiser; expected a file of Optimiser.save()" % path) from None
         optimiser = cls(arguments.pop("name"), arguments.pop("bounds"), **arguments)
         first = 0
         while first < len(designs):

@@ -78,10 +78,8 @@ def _entries(entries: Union[Entry, Sequence[Entry]]) -> List[Dict[str, Any]]:
 def _range(name: str, bounds: Any) -> Dict[str, Any]:
     if isinstance(bounds, Mapping):
         return dict(bounds)
-    if len(bounds) == 2:
-        return {"min": bounds[0], "max": bounds[1]}
-    if len(bounds) == 3:
-        return {"min": bounds[0], "max": bounds[1], "step": bounds[2]}
+    if isinstance(bounds, (tuple, list, np.ndarray)) and len(bounds) in (2, 3):
+        return dict(zip(("min", "max", "step"), bounds))
     raise ValueError("variable %s has %r; expected (min, max), (min, max, step) or a dict" % (name, bounds))
 
 
@@ -115,8 +113,10 @@ class Problem:
         seed: int = 1,
         **tables: Any,
     ) -> None:
-        if isinstance(mechanism, str):
+        if not isinstance(mechanism, Mechanism):
             mechanism = Mechanism(mechanism)
+        if not isinstance(variables, Mapping):
+            raise TypeError('variables is %r; expected a dict such as {"a": (0.2, 0.5)}' % (variables,))
         document: Dict[str, Any] = {"study": {"name": name, "seed": seed}}
         document.update(mechanism._study_tables())
         if "parameters" in tables:  # fixed values, which are a key of [mechanism]
@@ -199,6 +199,8 @@ class Problem:
         self.info: Dict[str, Any] = lib.parsed("pkmopt_study_info", handle)
         self._folder = ""  # where files of functions are
         self._is_quick = False  # whether the last evaluation of a single design was
+        self._names = [v["name"] for v in self.info["variables"]]
+        self._units = [v["unit"] for v in self.info["variables"]]
         self._widths = [len(self.info[key]) for key in ("objectives", "constraints", "outputs")]
 
     @property
@@ -239,7 +241,8 @@ class Problem:
         return str(self.info["text"])
 
     def evaluate(self, designs: Any, *, complete: bool = True, threads: int = 0) -> Evaluation:
-        """Evaluates designs on all threads: an array [count, variables], one design, or a dict of variables.
+        """Evaluates designs on all threads: an array [count, variables], one design, or a dict of variables. They may be
+        outside of the bounds of the variables, but not outside of what the mechanism allows.
 
         A design that cannot be evaluated has the status FAILED and NaN; :meth:`why_failed` says why. Without
         ``complete``, the evaluation of a design ends at a violated constraint that depends on the design alone, as in
@@ -308,7 +311,9 @@ class Problem:
 
     def why_failed(self, design: Any) -> str:
         """Why a design failed, one sentence."""
-        x = self._designs(design)[0]
+        x, single = self._designs(design)
+        if not single and len(x) != 1:
+            raise ValueError("design has %d designs; expected one" % len(x))
         sentence = ctypes.c_void_p()
         options = lib.options()
         lib.call(
@@ -321,8 +326,7 @@ class Problem:
         return ScipyProblem(self)
 
     def _designs(self, designs: Any) -> Any:
-        names = [v["name"] for v in self.info["variables"]]
-        return lib.rows(designs, len(names), "designs", names)
+        return lib.rows(designs, "designs", self._names, self._units)
 
     def _empty(self, count: int) -> Evaluation:
         objectives, constraints, outputs = [np.empty((count, width)) for width in self._widths]
@@ -425,6 +429,8 @@ class Study(Problem):
         Without ``path`` the file is the study's output. Functions in Python are called in this process, or by
         ``workers`` processes; the results are the same.
         """
+        if seed is not None and not 0 <= seed < 2**63:
+            raise ValueError("seed is %r; expected a number >= 0, or None for that of the study" % seed)
         if workers != 0:
             self.start_workers(workers)
         file = str(path if path is not None else self.info["output"])
@@ -463,7 +469,8 @@ def resume(
             info = results.study.info
         found = {call: given[call] if call in given else _functions.load(call, "") for call in info["functions"]}
         connected = _functions.Connected(found, [p["name"] for p in info["parameters"]])
-    limits = [ctypes.c_int64(generations), ctypes.c_int64(evaluations)]
+    given_limits = {"generations": generations, "evaluations": evaluations}
+    limits = [ctypes.c_int64(lib.count(n, what, "0 for no extension")) for what, n in given_limits.items()]
     outcome = _run(
         "pkmopt_study_resume",
         [lib.encoded(str(path)), *limits],
@@ -498,9 +505,11 @@ def _run(
             lib.set_exception(error)
         return 1 if lib.is_stop_requested() else 0
 
+    if time_limit is not None and not time_limit > 0:
+        raise ValueError("time_limit is %r; expected a time in s above 0, or None" % time_limit)
     options = lib.RunOptions()
     options.common = lib.options(threads)
-    options.time_limit = 0 if time_limit is None else time_limit
+    options.time_limit = time_limit or 0
     options.overwrite = 1 if overwrite else 0
     options.progress = lib.PROGRESS(report)
     python = _functions.python_options(workers)

@@ -9,7 +9,12 @@ for i = 1:2:numel(list)
   end
   value = list{i + 1};
   if ischar(value) || isa(value, 'string')
-    value = pkmopt_mex('number', char(value), known(at).unit);
+    try
+      value = pkmopt_mex('number', char(value), known(at).unit);
+    catch
+      error('pkmopt:invalidInput', '%s ''%s'': found ''%s''; expected a number, alone or with a unit like %s', ...
+            what, list{i}, char(value), known(at).unit);
+    end
   end
   if ~isnumeric(value) || ~isscalar(value) || ~isreal(value)
     error('pkmopt:invalidInput', '%s ''%s'' is of class %s and size %s; expected a number, or a text with a unit', ...
