@@ -754,6 +754,14 @@ class DescribeTest(unittest.TestCase):
         x, y = poses.T
         np.testing.assert_allclose(design.quantity("product", poses), -x * (y - 1) / 2, atol=1e-16)
 
+    def test_numbers_of_all_kinds_are_terms(self):
+        x = formulas.Formula("x")
+        for formula, text in (
+            (2**x, "2^x"), (np.float64(0.5) * x, "0.5*x"), (x - np.int64(-3), "x - -3"), ((-x) ** 2, "(-x)^2"),
+            (1 / (x + "y - z"), "1/(x + (y - z))"),
+        ):
+            self.assertEqual(str(formula), text)
+
 
 def evaluate_in_child(connection):
     try:
