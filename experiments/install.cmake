@@ -83,6 +83,16 @@ pkmopt (@PROJECT_VERSION@) stable; urgency=medium
 ]])
   execute_process(COMMAND gzip -9nf ${CMAKE_CURRENT_BINARY_DIR}/debian/changelog COMMAND_ERROR_IS_FATAL ANY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/debian/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  file(CONFIGURE OUTPUT debian/overrides @ONLY CONTENT [[
+# The program, its library and the files to build with it are one package, whose scripts of CPack call ldconfig.
+pkmopt: package-name-doesnt-match-sonames
+pkmopt: link-to-shared-library-in-wrong-package
+pkmopt: maintscript-calls-ldconfig
+]])
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/debian/overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
+          RENAME pkmopt)
+  file(CONFIGURE OUTPUT debian/triggers CONTENT "activate-noawait ldconfig\n")
+  set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/debian/triggers)
   set(CPACK_GENERATOR DEB)
 else()
   set(CPACK_GENERATOR TGZ)
@@ -121,6 +131,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3:any")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy")  # for `import pkmopt`
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, man-db, g++, cmake, pkg-config, libeigen3-dev, libhdf5-dev, libnlopt-dev, \
 coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev, zlib1g-dev, octave-dev")

@@ -44,7 +44,40 @@ offered() {
 }
 
 ls packages/pkmopt* >/dev/null 2>&1 || quietly experiments/package.sh
-package=$(ls packages/pkmopt_*.deb) archive=$(ls packages/pkmopt-*.tar.gz)
+package=$(ls packages/pkmopt_*.deb) archive=$(ls packages/pkmopt-*.tar.gz) wheel=$(ls packages/pkmopt-*.whl)
+# The package for Python: inverse and forward kinematics, a workspace with derivatives, a study with a function in
+# Python that worker processes call, and its report.
+cat >"$work/use.py" <<'PYTHON'
+import os
+import sys
+
+import numpy as np
+import pkmopt
+
+
+def price(design):
+    return 40 * design["a"] + 10 * design["b"]
+
+
+if __name__ == "__main__":
+    design = pkmopt.Mechanism("4ppa-2par").design()
+    poses = [[0.4, 0.0, -0.3, 0.0], [0.42, 0.02, -0.31, 0.1]]
+    joints = design.inverse(poses)
+    assert np.abs(design.forward(joints, near=poses) - poses).max() < 1e-12, joints
+    volume, gradient = design.volume_and_gradient()
+    assert abs(volume - 0.55015737) < 1e-7, volume
+    assert np.isfinite(list(gradient.values())).all(), gradient
+    study = pkmopt.Study(
+        "4ppa-2par",
+        {"a": ("200 mm", "500 mm"), "b": ("500 mm", "1.2 m")},
+        ["workspace-volume", {"type": "python", "call": price, "unit": "1"}],
+        stages={"optimiser": "nsga2", "population": 8, "generations": 3},
+    )
+    results = study.run("python.h5", workers=2, overwrite=True)
+    assert results.state == "finished" and len(results.front) > 0, results
+    assert os.path.getsize(results.report("python.html", overwrite=True)) > 100_000
+    print(pkmopt.version, "in", os.path.dirname(pkmopt.__file__), "by Python", sys.version.split()[0])
+PYTHON
 quietly lintian --allow-root --fail-on error,warning "$package"
 [[ -x $bare/usr/bin/apt-get ]] || quietly debootstrap --variant=minbase bookworm "$bare"
 
@@ -59,6 +92,18 @@ step "write a proof" inside "/opt/some where/bin/pkmopt" certify --proof proof.t
   "/opt/some where/share/pkmopt/experiments/mechanisms/orthoglide.toml"
 step "check the proof" inside "/opt/some where/bin/pkmopt-check-proof" proof.txt
 goal 60 "from the archive to the first report"
+quietly inside apt-get update -q
+quietly installed python3-numpy
+cp -- "$work/use.py" "$root/root/"
+step "use it from Python by PYTHONPATH" inside PYTHONPATH="/opt/some where/python" python3 use.py
+
+fresh_system "the wheel, in a virtual environment"
+cp -- "$wheel" "$work/use.py" "$root/root/"
+quietly inside apt-get update -q
+quietly installed python3-venv python3-numpy
+step "create the environment" inside python3 -m venv --system-site-packages environment
+step "pip install the wheel, without a network" inside environment/bin/pip install --no-index "${wheel##*/}"
+step "use it from Python" inside environment/bin/python use.py
 
 fresh_system "the package"
 cp -- "$package" "$root/root/pkmopt.deb"
@@ -74,7 +119,10 @@ step "pkmopt report" inside pkmopt report my-study.h5
 inside test -s my-study.html
 goal 120 "from the package to the first report"
 
-echo "== manual, completion, scripts, library"
+echo "== Python, manual, completion, scripts, library"
+quietly inside apt-get install -q --yes ./pkmopt.deb python3-numpy
+cp -- "$work/use.py" "$root/root/"
+step "use it from Python" inside python3 use.py
 quietly installed man-db bash-completion
 cp -- "$root/etc/skel/.bashrc" "$root/root/"  # as for a normal user, with completion enabled
 step "man pkmopt-run" inside sh -c 'man pkmopt-run | grep -q instruction-set'
@@ -85,6 +133,11 @@ step "run a script of the experiments" inside /usr/share/pkmopt/experiments/2t1r
 mapfile -t suggested < <(dpkg-deb --field "$package" Suggests | tr ',' '\n')
 quietly installed g++ cmake make pkg-config ${suggested[*]}
 cp -r --parents tests/packaging/external tests/own_mechanisms "$root/root/"
+step "build and run the example in C" inside sh -c \
+  'cc /usr/share/doc/pkmopt/example.c $(pkg-config --cflags --libs pkmopt) -o example &&
+   ./example /usr/share/pkmopt/experiments/mechanisms/rotary-delta.toml'
+step "build and use the functions for Octave" inside octave-cli --eval \
+  "addpath /usr/share/pkmopt/matlab; pkmopt.build; disp(pkmopt.Mechanism('4ppa-2par').design().volume())"
 step "build a program with its own mechanism" inside sh -c \
   'cmake -S tests/packaging/external -B build && cmake --build build --target scara'
 step "run its study" inside build/scara run tests/packaging/external/scara.toml
