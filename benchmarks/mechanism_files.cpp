@@ -158,6 +158,36 @@ WorkspacePlan plan_of_60_cubed(const Mechanism& mechanism) {
   return plan;
 }
 
+// The component of the home pose on 40^3 voxels, relative to the analysis of all components with the same samples: the
+// count alone (the flood fill evaluates more poses than the count, whose columns are bounded in closed form), or the
+// conditioning of every feasible voxel.
+void home_component(benchmark::State& state, const std::string& name, const std::array<double, 3>& home,
+                    bool conditioning) {
+  const SerialScope alone;
+  const Mechanism& mechanism = find_mechanism(name);
+  WorkspacePlan plan{.method = VoxelOptions{.cells = {40, 40, 40}}, .fixed = {}, .limits = no_limits(mechanism.info())};
+  FieldRequest request;
+  if (conditioning) request.add(kConditioning);
+  const auto all = prepare_workspace(mechanism, plan, request);
+  plan.home = home;
+  const auto component = prepare_workspace(mechanism, plan, request);
+  const std::vector<double> design = nominal(mechanism);
+  Scratch scratch;
+  WorkspaceResult<double> result;
+  const PairedTimes times = time_alternately(
+      state, "all_s", [&] { all->evaluate(design, scratch, result); }, "component_s",
+      [&] { component->evaluate(design, scratch, result); });
+  state.counters["flood_fill_in_surveys"] = times.second / times.first - 1;
+}
+BENCHMARK_CAPTURE(home_component, delta, "rotary-delta", {0, 0, -0.5}, false)
+    ->Name("mechanism_file/home_component/rotary-delta_count");
+BENCHMARK_CAPTURE(home_component, delta_conditioning, "rotary-delta", {0, 0, -0.5}, true)
+    ->Name("mechanism_file/home_component/rotary-delta_conditioning");
+BENCHMARK_CAPTURE(home_component, rpr, "3-rpr", {0.5, 0.3, 0}, false)
+    ->Name("mechanism_file/home_component/3-rpr_count");
+BENCHMARK_CAPTURE(home_component, rpr_conditioning, "3-rpr", {0.5, 0.3, 0}, true)
+    ->Name("mechanism_file/home_component/3-rpr_conditioning");
+
 // Joint-space inertia matrix and coupling indices of every feasible voxel of 60^3; `per_pose` is the time per voxel.
 void coupling(benchmark::State& state, const std::string& name) {
   const SerialScope alone;

@@ -85,6 +85,12 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
   if (plan.voxels()) rows.push_back({"cells", join(cells), mark(usual_cells)});
   if (plan.voxels() || !box.empty())
     rows.push_back({"box", box.empty() ? "derived from each design" : join(box), mark(box.empty())});
+  if (plan.home) {
+    std::vector<std::string> home;
+    for (std::size_t k = 0; k < sweep.swept.size(); ++k)
+      home.push_back(swept[k] + " = " + with_degrees((*plan.home)[k], coordinate(sweep.swept[k]).unit));
+    rows.push_back({"home", join(home) + "; only the component that holds this pose counts"});
+  }
   if (const ColumnOptions* const columns = plan.columns()) {
     if (columns->nodes[0] > 0)
       rows.push_back({"nodes", join(nodes) + " per smooth subinterval"});
@@ -226,7 +232,7 @@ std::string describe(const Study& study) {
                                                   : "adaptive: at most 2 % of the run time",
                            mark(!study.checkpoint_every)},
                           {"final", round, mark(!study.round)}};
-  if (parts.plan.voxels() && parts.mechanism->columns())
+  if (parts.plan.voxels() && !parts.plan.home && parts.mechanism->columns())
     run.push_back({"exact",
                    study.exact_seconds > 0
                        ? "exact values of final designs, at most " + with_unit(study.exact_seconds, "s")

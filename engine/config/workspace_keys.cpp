@@ -28,6 +28,10 @@ std::vector<OptionSpec> analysis_keys() {
                                            .count = 2,
                                            .parts = {{.unit = kUnitOfEntry}}}},
                                 .noun = "coordinate"};
+  static const TableSpec home = {.meaning = "a pose: the values of all swept coordinates",
+                                 .keys = {},
+                                 .named = {{.unit = kUnitOfEntry, .meaning = "value of the coordinate"}},
+                                 .noun = "coordinate"};
   return {{.name = "method",
            .kind = OptionKind::word,
            .initial = "columns",
@@ -42,6 +46,9 @@ std::vector<OptionSpec> analysis_keys() {
                     "columns: fixed numbers of Gauss-Legendre nodes per smooth subinterval, instead of `tolerance`"),
           table_key("cells", cells, "voxels: numbers of cells along the swept coordinates, at most 2^28 in all"),
           table_key("box", box, "box that restricts the workspace; with voxels it also defines the grid"),
+          table_key("home", home,
+                    "voxels: count only the component of the workspace that holds this pose, which the robot can move "
+                    "in without leaving limits and without crossing a singularity"),
           {.name = "sweep",
            .kind = OptionKind::list,
            .meaning = "swept coordinates, one to three; default: those that are not fixed, or the mechanism's",

@@ -91,6 +91,16 @@ Box read_box(const ConfigValue& given, const MechanismInfo& info, const std::vec
   return box;
 }
 
+/// Reads `home`: the values of the swept coordinates.
+std::array<double, 3> read_home(const ConfigValue& given, const MechanismInfo& info, const std::vector<int>& swept) {
+  const std::vector<std::string> known = coordinate_names(info, swept);
+  const ConfigValue table = given.table_of_names(known);
+  std::array<double, 3> home{};
+  for (std::size_t k = 0; k < swept.size(); ++k)
+    home[k] = table.at(known[k], "a value of the coordinate").number(axis_of(info, swept[k]).unit);
+  return home;
+}
+
 void read_nodes(const ConfigValue& given, const MechanismInfo& info, const Sweep& sweep, ColumnOptions& columns) {
   std::vector<int> others = sweep.swept;
   std::erase(others, sweep.column);
@@ -200,6 +210,16 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
     set_defaults(info, plan);
     if (const auto cells = table.find("cells")) read_cells(*cells, info, plan);
   }
+  if (const auto home = table.find("home")) {
+    if (!plan.voxels())
+      throw home->refusal(
+          "exact columns integrate over all components of the workspace, and cannot single out the one that holds the "
+          "home pose; set method = \"voxels\"");
+    if (const auto fixed = std::ranges::find_if(plan.fixed, integrated); fixed != plan.fixed.end())
+      throw home->refusal("components need a single value of " + axis_of(info, fixed->coordinate).name +
+                          ", but the workspace analysis integrates over it; fix it at one value, or sweep it");
+    plan.home = read_home(*home, info, sweep.swept);
+  }
   if (const auto given = table.find("box"))
     std::visit([&](auto& options) { options.box = read_box(*given, info, sweep.swept); }, plan.method);
 }
@@ -232,6 +252,9 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
     }
     if (const auto exact = table->find("exact")) {
       if (!plan.voxels()) throw error_of_other_method(*exact, plan);
+      if (plan.home && !(exact->is_flag() && !exact->flag()))
+        throw exact->refusal("exact values count all components of the workspace, but `home` singles out one; remove " +
+                             std::string("`exact` or `home`"));
       draft.study.exact_seconds = read_exact(*exact, *draft.parts.mechanism, draft.study.exact_seconds);
     }
     if (const auto limits = table->find("limits")) read_limits(*limits, draft);

@@ -111,6 +111,7 @@ class SurfaceBuilder {
         const auto is_inside = [&](double fraction) {
           return margin(workspace.pose(edges_[k].at(fraction)), scratch[worker]) >= 0;
         };
+        if (is_inside(1)) continue;  // the surface is a singularity, beyond which a component does not count
         const Bracket bracket = bisect(is_inside, {.with = 0, .without = 1}, kEdgeFraction);
         surface_.vertices[k] = edges_[k].at(bracket.middle());
         if (bracket.with > 0) surface_.inside[k] = edges_[k].at(bracket.with);

@@ -10,6 +10,7 @@
 #include "engine/generic/report_limits.hpp"
 #include "engine/workspace/bounds/pose_box.hpp"
 #include "engine/workspace/bounds/proof.hpp"
+#include "engine/workspace/bounds/separation.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -38,6 +39,10 @@ std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e,
 }  // namespace
 
 void require_bounds(const Model& model, const WorkspacePlan& plan) {
+  if (plan.home)
+    throw std::invalid_argument(
+        "certified bounds of a volume count all components of the workspace, and not only the one that holds the home "
+        "pose; remove home");
   refuse_limits_of_boxes(model, plan.limits);
   for (const int coordinate : sweep_of(model.info, plan).fixed) {
     const FixedCoordinate fixed = how_fixed(plan, coordinate);
@@ -259,6 +264,32 @@ PoseCertificate certify_motion(const Evaluation& e, std::span<const double> para
       finding->pose = motion.at(*finding->time).pose;
     }
   return found;
+}
+
+Separation separate_poses(const Evaluation& e, std::span<const double> parameters, const WorkspacePlan& plan,
+                          std::size_t mode, const Pose<double>& from, const Pose<double>& to,
+                          const BoundsOptions& options) {
+  std::vector<Interval> inputs = inputs_of(e, parameters, plan.limits, mode);
+  for (std::size_t i = 0; i < from.size(); ++i) inputs[e.model.inputs.coordinate(i)] = from[i];
+  const std::vector<int>& swept = sweep_of(e.model.info, plan).swept;
+  const Box box = e.search_box(parameters, plan, mode, swept);
+  std::vector<bounds::SeparationAxis> axes;
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const auto coordinate = static_cast<std::size_t>(swept[i]);
+    positions.push_back(e.model.inputs.coordinate(coordinate));
+    axes.push_back({box[i], from[coordinate], to[coordinate],
+                    e.model.info.coordinates[coordinate].turns() && box[i][1] - box[i][0] > 2 * kPi * (1 - 1e-12)});
+  }
+  const IntervalConstraints constraints = interval_constraints(e.model, inputs);
+  const bounds::Constraints conditions(constraints.graph, constraints.all, positions, inputs);
+  Graph graph;
+  std::optional<bounds::Matrices> matrices;
+  if (e.model.inputs.joints == e.model.inputs.coordinates) {
+    const auto named = jacobians(e.model, graph, inputs);
+    matrices.emplace(graph, named, positions, inputs);
+  }
+  return bounds::separate(conditions, matrices ? &*matrices : nullptr, axes, options);
 }
 
 }  // namespace pkm::generic

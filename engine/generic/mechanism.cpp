@@ -16,6 +16,7 @@
 #include "engine/generic/mobility.hpp"
 #include "engine/generic/newton_euler.hpp"
 #include "engine/generic/pose_margins.hpp"
+#include "engine/generic/pose_sides.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/voxels.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
@@ -158,6 +159,9 @@ class GenericMechanism final : public Mechanism,
       return accelerators_.voxels->prepare(*of_file, voxels, request);
     return prepare_voxels(e_, plan, voxels, request, accelerated_box(plan, request));
   }
+  std::unique_ptr<const PoseSides> prepare_sides(const WorkspacePlan& plan, const std::string& mode) const override {
+    return prepare_pose_sides(e_, plan, mode);
+  }
   /// The plan without the limits of quantities, which accelerators do not have.
   WorkspacePlan without_quantities(WorkspacePlan plan) const {
     for (std::size_t i = info().limits.size(); i-- > 0;)
@@ -167,9 +171,9 @@ class GenericMechanism final : public Mechanism,
       }
     return plan;
   }
-  /// The plan for accelerators; std::nullopt if it limits quantities or evaluates formulas.
+  /// The plan for accelerators; std::nullopt if it limits quantities, or if the request is for formulas or every pose.
   std::optional<WorkspacePlan> accelerated_plan(const WorkspacePlan& plan, const FieldRequest& request) const {
-    if (request.has_formulas()) return {};
+    if (request.has_formulas() || request.every_pose) return {};
     for (std::size_t i = 0; i < info().limits.size(); ++i)
       if (info().limits[i].group == kQuantityLimit && plan.limits.given[i]) return {};
     return without_quantities(plan);
@@ -219,6 +223,10 @@ class GenericMechanism final : public Mechanism,
   PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
                          const Motion& motion, const BoundsOptions& options) const override {
     return certify_motion(e_, parameters, limits, mode_index(info(), mode), motion, options);
+  }
+  Separation separate(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                      const Pose<double>& from, const Pose<double>& to, const BoundsOptions& options) const override {
+    return separate_poses(e_, parameters, plan, mode_index(info(), mode), from, to, options);
   }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {

@@ -54,6 +54,9 @@ struct WorkspacePlan {
   std::vector<int> swept = {};         ///< all of them, if the study names them; empty: derived from `fixed`
   std::vector<FixedCoordinate> fixed;  ///< those that the study names; the other ones have their default values
   LimitSpec limits;
+  /// Only the component of the workspace that holds this pose counts: values of the swept coordinates, in the order of
+  /// Sweep::swept. std::nullopt: all components count.
+  std::optional<std::array<double, 3>> home = {};
 
   const VoxelOptions* voxels() const { return std::get_if<VoxelOptions>(&method); }
   const ColumnOptions* columns() const { return std::get_if<ColumnOptions>(&method); }
@@ -81,6 +84,7 @@ inline FixedCoordinate how_fixed(const WorkspacePlan& plan, int coordinate) {
 struct FieldRequest {
   std::vector<const PoseQuantity*> fields;
   bool poses = false;                           ///< also store poses; columns may omit them if no field needs inertia
+  bool every_pose = false;                      ///< voxels: store the pose of each cell, also of symmetric images
   std::optional<double> characteristic_length;  ///< for fields that need a Jacobian [m]; std::nullopt: the mechanism's
   std::string mode;                             ///< working mode for fields of inertia; "": the mechanism's default
   std::vector<double> rotors;                   ///< by joint: reflected inertia of drive trains; empty: none

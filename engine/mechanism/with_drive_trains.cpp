@@ -79,6 +79,9 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
                                                 const FieldRequest& request) const override {
     return bare_->voxels()->prepare(plan, voxels, add_rotors(request));
   }
+  std::unique_ptr<const PoseSides> prepare_sides(const WorkspacePlan& plan, const std::string& mode) const override {
+    return bare_->voxels()->prepare_sides(plan, mode);
+  }
   bool supports_rotors() const override { return true; }
   bool supports_obstacles() const override { return bare_->voxels()->supports_obstacles(); }
   std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,

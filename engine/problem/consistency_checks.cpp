@@ -114,6 +114,7 @@ void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double
 void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<double>>& designs, WorkspacePlan plan,
                     Box& hull) {
   std::visit([](auto& method) { method.box.reset(); }, plan.method);
+  plan.home.reset();
   WorkspacePlan picture = visualisation_plan(mechanism.info(), plan, {1, 1, 1});
   std::get<VoxelOptions>(picture.method).cells = {1, 1, 1};
   try {

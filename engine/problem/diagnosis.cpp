@@ -113,6 +113,7 @@ std::vector<Pose<double>> poses_of(const DesignProblem& problem, const std::vect
   auto& cells = std::get<VoxelOptions>(plan.method).cells;
   cells = {1, 1, 1};
   plan.limits = no_limits(info);
+  plan.home.reset();
   const VoxelMap map = voxel_map(*parts.mechanism, parameters, plan);
   std::vector<Pose<double>> poses = {Pose<double>(info.coordinates.size())};
   for (const int fixed : sweep.fixed)

@@ -42,6 +42,7 @@ Unsupported ExactValues::poses_beyond_box(std::span<const double> parameters) co
   const std::optional<Box>& box = parts_.plan.box();
   if (!box || problem_->parts().plan.box()) return {};
   WorkspacePlan plan = parts_.plan;
+  plan.home.reset();
   plan.method = VoxelOptions{};  // a single cell whose box contains all reachable poses
   VoxelMap reachable;
   try {

@@ -150,7 +150,8 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
 
 bool has_exact_step(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
-  return parts.plan.voxels() && parts.mechanism->columns() && study.exact_seconds > 0;
+  // columns integrate over all components of the workspace
+  return parts.plan.voxels() && !parts.plan.home && parts.mechanism->columns() && study.exact_seconds > 0;
 }
 
 void complete_final_record(const Study& study, StudyContents& contents,

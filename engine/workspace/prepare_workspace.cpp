@@ -5,6 +5,7 @@
 
 #include "engine/core/team.hpp"
 #include "engine/workspace/cellwise_voxels.hpp"
+#include "engine/workspace/home_component.hpp"
 #include "engine/workspace/with_gradients.hpp"
 
 namespace pkm {
@@ -70,22 +71,39 @@ bool has_voxels(const Mechanism& mechanism, const WorkspacePlan& plan) {
   return mechanism.voxels() && (!needs_obstacles || mechanism.voxels()->supports_obstacles());
 }
 
+std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism, const WorkspacePlan& plan,
+                                                     const FieldRequest& request) {
+  if (plan.home) {
+    WorkspacePlan without = plan;
+    without.home.reset();
+    FieldRequest of_cells = request;
+    of_cells.poses = of_cells.every_pose = true;
+    return prepare_home_component(mechanism, plan, request, prepare_voxels(mechanism, without, {.mode = request.mode}),
+                                  request.needs_samples() ? prepare_voxels(mechanism, without, of_cells) : nullptr);
+  }
+  if (has_voxels(mechanism, plan) && !first_cellwise_field(request))
+    return mechanism.voxels()->prepare(plan, *plan.voxels(), request);
+  return prepare_cellwise_voxels(mechanism, plan, *plan.voxels(), request);
+}
+
 std::unique_ptr<const WorkspaceEvaluator> prepare_one(const Mechanism& mechanism, const WorkspacePlan& plan,
                                                       const FieldRequest& request) {
   sweep_of(mechanism.info(), plan);  // throws if there is no sweep
-  const PoseQuantity* const cellwise = first_cellwise_field(request);
   if (const ColumnOptions* const columns = plan.columns()) {
     const std::string remedy = "; set workspace.method = \"voxels\"", &name = mechanism.info().name;
     const std::string why = mechanism.why_no_columns();
     if (!mechanism.columns())
       throw std::invalid_argument("mechanism " + name + " has no columns" + (why.empty() ? "" : ": " + why) + remedy);
-    if (cellwise) throw std::invalid_argument("columns do not compute " + std::string(cellwise->meaning) + remedy);
+    if (plan.home)
+      throw std::invalid_argument("columns integrate over all components of the workspace, and not only over the one " +
+                                  std::string("that holds the home pose") + remedy);
+    if (const PoseQuantity* const cellwise = first_cellwise_field(request))
+      throw std::invalid_argument("columns do not compute " + std::string(cellwise->meaning) + remedy);
     if (columns->box && !mechanism.columns()->supports_box())
       throw std::invalid_argument("columns of mechanism " + name + " do not support a box" + remedy);
     return mechanism.columns()->prepare(plan, *columns, request);
   }
-  if (has_voxels(mechanism, plan) && !cellwise) return mechanism.voxels()->prepare(plan, *plan.voxels(), request);
-  return prepare_cellwise_voxels(mechanism, plan, *plan.voxels(), request);
+  return prepare_voxels(mechanism, plan, request);
 }
 
 /// Expands a plan with lists of fixed values into plans with one value each.
@@ -118,11 +136,10 @@ std::unique_ptr<const WorkspaceEvaluator> prepare_workspace(const Mechanism& mec
   return std::make_unique<AverageEvaluator>(std::move(members), request, plan.columns() != nullptr);
 }
 
-std::unique_ptr<const VoxelEvaluator> prepare_voxel_map(const Mechanism& mechanism, const WorkspacePlan& plan) {
+std::unique_ptr<const VoxelEvaluator> prepare_voxel_map(const Mechanism& mechanism, const WorkspacePlan& plan,
+                                                        const std::string& mode) {
   sweep_of(mechanism.info(), plan);
-  const VoxelOptions& voxels = *plan.voxels();
-  if (has_voxels(mechanism, plan)) return mechanism.voxels()->prepare(plan, voxels, {});
-  return prepare_cellwise_voxels(mechanism, plan, voxels, {});
+  return prepare_voxels(mechanism, plan, {.mode = mode});
 }
 
 VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const WorkspacePlan& plan) {

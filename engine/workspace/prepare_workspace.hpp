@@ -19,7 +19,9 @@ std::unique_ptr<const WorkspaceEvaluator> prepare_workspace(const Mechanism& mec
 const PoseQuantity* first_cellwise_field(const FieldRequest& request);
 
 /// Creates the evaluator of a voxel plan, for maps of many designs. Throws like prepare_workspace().
-std::unique_ptr<const VoxelEvaluator> prepare_voxel_map(const Mechanism& mechanism, const WorkspacePlan& plan);
+/// @param mode  working mode; "": the first
+std::unique_ptr<const VoxelEvaluator> prepare_voxel_map(const Mechanism& mechanism, const WorkspacePlan& plan,
+                                                        const std::string& mode = "");
 
 /// The voxel map of one design. Throws like prepare_workspace().
 VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const WorkspacePlan& plan);

@@ -142,11 +142,12 @@ class Evaluator {
     for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(joints_ + i, cell) = (*report.joints)[i];
   }
 
-  /// Makes the sign of the margin agree with the field `feasible`, also after rounding and at poses without margins.
+  /// Makes the sign of the margin agree with the field `feasible`, also after rounding, at poses without margins, and
+  /// in components that do not count.
   static double with_sign(double margin, bool feasible) {
     constexpr double kMinMagnitude = 1e-12;
     if (!std::isfinite(margin)) return feasible ? 1 : -1;
-    return feasible ? std::fmax(margin, kMinMagnitude) : std::fmin(margin, -kMinMagnitude);
+    return feasible ? std::fmax(margin, kMinMagnitude) : -std::fmax(std::fabs(margin), kMinMagnitude);
   }
 
   void evaluate_inertia_fields(std::size_t first, std::size_t end, FieldScratch& scratch) const {

@@ -48,6 +48,8 @@ Json workspace_json(const MechanismInfo& info, const WorkspacePlan& plan) {
     json["box"] = nullptr;  // computed for each design
   }
   for (std::size_t k = 0; plan.box() && k < swept.size(); ++k) json["box"][swept[k]] = (*plan.box())[k];
+  json["home"] = nullptr;  // all components count
+  for (std::size_t k = 0; plan.home && k < swept.size(); ++k) json["home"][swept[k]] = (*plan.home)[k];
   if (const ColumnOptions* columns = plan.columns()) {
     const bool fixed = columns->nodes[0] > 0;
     json["tolerance"] = fixed ? Json() : Json(columns->tolerance);

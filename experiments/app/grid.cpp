@@ -26,6 +26,7 @@ VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells) {
 Box reachable_box(const WorkspacePlan& plan, const Target& target) {
   WorkspacePlan unbounded = plan;
   unbounded.method = VoxelOptions{};
+  unbounded.home.reset();
   Box box;
   box.fill({0, 1});
   try {
@@ -44,6 +45,12 @@ std::vector<Assignable> assignable_coordinates(const MechanismInfo& info, const 
     swept.push_back({axis.name, axis.unit});
   }
   return swept;
+}
+
+std::array<double, 3> parse_home(const std::vector<std::string>& lists, const MechanismInfo& info, const Sweep& sweep) {
+  std::array<double, 3> home{};
+  std::ranges::copy(parse_all_assignments(lists, "--home", assignable_coordinates(info, sweep)), home.begin());
+  return home;
 }
 
 std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,

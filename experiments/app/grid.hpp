@@ -23,6 +23,9 @@ void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t 
 /// The swept coordinates as names that --box and --cells may assign.
 std::vector<Assignable> assignable_coordinates(const MechanismInfo& info, const Sweep& sweep);
 
+/// Parses --home: values of all swept coordinates, in the order of Sweep::swept. Throws ConfigError.
+std::array<double, 3> parse_home(const std::vector<std::string>& lists, const MechanismInfo& info, const Sweep& sweep);
+
 /// A grid with the same number of cells along each swept coordinate.
 VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells);
 

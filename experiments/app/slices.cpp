@@ -39,6 +39,7 @@ Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, con
     plan.fixed.clear();
     plan.swept.clear();
     plan.method = ColumnOptions();
+    plan.home.reset();
   }
   for (const FixedCoordinate& fixed : plan.fixed)
     if (std::ranges::find(given, fixed.coordinate, &FixedCoordinate::coordinate) == given.end()) given.push_back(fixed);

@@ -13,7 +13,7 @@ namespace pkm {
 
 /// Fixes the coordinates named by --fixed at their values. Those that no sweep of the mechanism keeps fixed become
 /// slices. If the sweep of the plan can fix the others, the coordinates that the plan has fixed stay fixed. Otherwise
-/// another sweep is selected, and fixed coordinates and method are reset, because box and cells belong to other axes.
+/// another sweep is selected, and fixed coordinates, method and home pose are reset, because they belong to other axes.
 /// Throws ConfigError.
 /// @param lists  of --fixed: name=value
 /// @return the slices

@@ -22,6 +22,7 @@ step env PKM_BOUNDED_DESIGNS=1000 "$root/build/ci/tests/pkm_tests" --gtest_filte
 step env PKM_SLOPE_DESIGNS=1000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*DerivativeContract*'
 step env PKM_EVERY_MESSAGE=1 "$root/build/ci/tests/cli/pkm_cli_tests" --gtest_filter='CliMessages*'
 step env PKM_RANDOM_SLOPES=2000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*RandomSlopes*'
+step env PKM_COMPONENT_DESIGNS=200 "$root/build/ci/tests/pkm_tests" --gtest_filter='Components.OfRandomDesigns*'
 step env PKM_POWER_STATES=10000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*PowerOfTheDrives*'
 step ./disk.py "$program" "$disk"
 step ./soak.py "$program" --evaluations 10000000 --runs 200

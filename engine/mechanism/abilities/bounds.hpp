@@ -46,6 +46,14 @@ struct PoseCertificate {
   bool stopped = false;
 };
 
+/// Result of the attempt to prove that no path leads from one pose to another.
+struct Separation {
+  enum class Kind { boxes, signs, undecided };
+  Kind kind = Kind::undecided;  ///< boxes without feasible poses, or signs of a determinant, separate the poses
+  std::string detail = {};      ///< Kind::signs: the matrix; Kind::undecided: what is undecided
+  std::size_t boxes = 0;        ///< number of boxes examined
+};
+
 class RigorousBounds {
  public:
   virtual ~RigorousBounds() = default;
@@ -63,6 +71,11 @@ class RigorousBounds {
   /// infeasible instant, to 1e-6 of the duration.
   virtual PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
                                  const Motion& motion, const BoundsOptions& options) const = 0;
+  /// Tries to prove that every path from one pose to another along which only the swept coordinates of the plan vary
+  /// leaves the limits, the plan's box (if it has none, the ranges that contain the workspace), or the working mode,
+  /// or crosses a singularity. Throws std::invalid_argument like volume().
+  virtual Separation separate(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                              const Pose<double>& from, const Pose<double>& to, const BoundsOptions& options) const = 0;
 };
 
 }  // namespace pkm

@@ -83,6 +83,10 @@ class Bounded final : public Mechanism, RigorousBounds {
                          const BoundsOptions&) const override {
     return {};
   }
+  Separation separate(std::span<const double>, const WorkspacePlan&, const std::string&, const Pose<double>&,
+                      const Pose<double>&, const BoundsOptions&) const override {
+    return {};
+  }
 
   std::shared_ptr<const Mechanism> inner_ = find_named_mechanism();
   static std::shared_ptr<const Mechanism> find_named_mechanism() {

@@ -1,0 +1,78 @@
+// Connected components of a voxel workspace, by union-find over cells: the parts of the workspace in which the robot
+// can move without leaving the limits and without crossing a singularity ("generalised aspects" of a working mode,
+// Wenger and Chablat 1998).
+//
+// Two neighbouring feasible cells are connected if their centres and the centre of their common face are feasible and
+// lie on the same side of the singularities (PoseSides). Cells whose centre is singular belong to no component. An axis
+// over a full turn is periodic: its last cell is a neighbour of its first one. Gaps and necks of less than half a cell
+// may be missed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/workspace/voxel_grid.hpp"
+
+namespace pkm {
+
+struct WorkspaceComponent {
+  std::int64_t cells = 0;
+  std::size_t first = 0;  ///< its cell with the lowest index
+  std::int8_t side = 0;   ///< sign of det J; PoseSides::kSingular if components may cross singularities
+};
+
+struct ConnectedComponents {
+  std::vector<std::uint32_t> label;     ///< by cell: number of its component, from 1; 0: the cell belongs to none
+  std::vector<WorkspaceComponent> all;  ///< component k has the number k + 1; the largest one comes first
+};
+
+/// Whether components end at singularities.
+enum class Crossing { forbidden, allowed };
+
+/// Immutable and thread-safe.
+class ComponentFinder {
+ public:
+  /// Throws std::invalid_argument with one sentence if the plan is not supported: coordinates that are integrated over
+  /// or have several values, and mechanisms with fewer joints than coordinates.
+  /// @param mechanism  must outlive this object
+  /// @param mode       working mode; "": the first
+  ComponentFinder(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,
+                  Crossing crossing = Crossing::forbidden);
+
+  /// @param map  feasible cells of the same design and plan
+  ConnectedComponents find(std::span<const double> parameters, const VoxelMap& map, Scratch& scratch) const;
+  /// Number of the component that holds a pose. Throws DesignError with the reason if there is none: the pose is
+  /// outside of the grid, infeasible or singular, or no cell near it is connected with it.
+  /// @param at    values of the swept coordinates
+  /// @param what  name of the pose in messages: "the home pose"
+  std::uint32_t holding(std::span<const double> parameters, const VoxelMap& map, const ConnectedComponents& components,
+                        const std::array<double, 3>& at, const std::string& what, Scratch& scratch) const;
+  /// A polyline within one component from one pose to another, through centres of connected cells. It prefers cells far
+  /// from the boundary of the component: the shortest path (Dijkstra's algorithm) with the cost 1 + 8 / d^2 of a cell
+  /// at the distance d from the boundary, in cells. Every two neighbouring points are connected by a straight line
+  /// whose sampled poses are feasible and on one side of the singularities. Throws DesignError like holding(), also if
+  /// the two poses are in different components.
+  struct Path {
+    std::vector<Pose<double>> cells;    ///< all points
+    std::vector<Pose<double>> corners;  ///< without those that a straight line can leave out
+  };
+  Path path(std::span<const double> parameters, const VoxelMap& map, const ConnectedComponents& components,
+            const std::array<double, 3>& from, const std::array<double, 3>& to, Scratch& scratch) const;
+
+ private:
+  class Search;
+
+  const Mechanism& mechanism_;
+  WorkspacePlan plan_;
+  const Sweep& sweep_;
+  std::string mode_;
+  Crossing crossing_;
+  std::unique_ptr<const PoseSides> sides_;
+};
+
+}  // namespace pkm
