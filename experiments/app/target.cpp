@@ -214,6 +214,10 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
              "Name of a mechanism, or path of a mechanism file or a study; or use --from");
   add_option(command, "--from F.h5", arguments.from,
              "Use the best design of a study file (of a Pareto front the compromise), and its problem");
+  add_design_options(command, arguments);
+}
+
+void add_design_options(CLI::App& command, DesignArguments& arguments) {
   add_choice_options(command, arguments.choice);
   add_list_option(command, "--set", arguments.set,
                   "Parameter values, overriding those of the baseline, else the default values");

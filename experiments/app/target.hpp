@@ -107,6 +107,8 @@ Target find_target(const Session& session, const DesignArguments& arguments);
 /// Declares the arguments that select a design.
 /// @param arguments  receives the parsed values; must outlive `command`
 void add_design_arguments(CLI::App& command, DesignArguments& arguments);
+/// Declares those of them that change the design, and --json.
+void add_design_options(CLI::App& command, DesignArguments& arguments);
 
 /// Adds a subcommand that analyses one design and prints the results.
 /// @param run  run(Target, Arguments, Printout&): returns "", or an error message, which is printed after the results,

@@ -14,6 +14,7 @@
 #include "engine/storage/safe_file.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/component_list.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/largest_cube.hpp"
 #include "experiments/app/running.hpp"
@@ -25,7 +26,7 @@ namespace pkm {
 namespace {
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, CubeArguments {
-  std::vector<std::string> fixed, cut, fields;
+  std::vector<std::string> fixed, cut, fields, home;
   std::string csv, html, svg, png;
   int threads = 0;
 
@@ -197,6 +198,12 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     add_cuts(slices, plan, target.info(), arguments.cut);
     if (!slices.empty() && !arguments.html.empty())
       throw ConfigError({"", 0, "--html"}, "a slice of a workspace", "a full workspace; --svg and --png draw slices");
+    if (!arguments.home.empty()) plan.home = parse_home(arguments.home, target.info(), sweep_of(target.info(), plan));
+    if (plan.home && !slices.empty()) {
+      if (!arguments.home.empty()) throw ConfigError({"", 0, "--home"}, "a slice of a workspace", "a full workspace");
+      plan.home.reset();
+      out.head.push_back({"note", "a slice shows all components, not only the one that holds the home pose"});
+    }
     auto ranges_given = set_grid(plan, target, arguments, kPictureCells, kMaxFieldCells);
     expect_axes(swept_axes(plan, target.info(), slices), arguments);
     apply_slices(plan, target, slices, ranges_given);
@@ -216,8 +223,10 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
     report_workspace(target, found, out);
+    if (slices.empty()) report_components(target, plan, out);
     report_largest_cube(found, arguments, out);
     if (arguments.picture().empty()) return;
+    if (plan.home) out.head.push_back({"note", "the picture shows all components of the workspace"});
     const std::vector<Picture> pictures = slice_pictures(target, found, arguments, mode, out);
     const std::vector<std::string> svg = arguments.pictures(arguments.svg), png = arguments.pictures(arguments.png);
     for (std::size_t i = 0; i < svg.size(); ++i) write_file(svg[i], svg_file(pictures[i]), existing);
@@ -241,6 +250,8 @@ void add_workspace(CLI::App& app, Session& session) {
   add_list_option(command, "--fixed", arguments.fixed,
                   "Coordinates to fix at a value; default: those of the study, else at the design's default");
   add_list_option(command, "--cut", arguments.cut, "Values of swept coordinates at which the workspace is sliced");
+  add_list_option(command, "--home", arguments.home,
+                  "A pose: count only the component of the workspace that holds it; default: that of the study");
   add_option(command, "--mode MODE", arguments.mode, "Working mode of the coupling indices; default: the first");
   add_workspace_outputs(command, arguments);
   add_option(command, "--csv FILE", arguments.csv, "Write a row per cell to this file");
