@@ -93,7 +93,6 @@ class ComponentFinder::Search {
     finder.sides_->start(parameters, scratch);
   }
 
-  const VoxelGrid& grid() const { return grid_; }
   std::size_t axes() const { return axes_; }
   std::size_t size(std::size_t axis) const { return static_cast<std::size_t>(grid_.cells[axis]); }
   std::size_t count() const { return static_cast<std::size_t>(grid_.count()); }
