@@ -214,8 +214,14 @@ MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogu
   const std::string expected = "a study or a mechanism in TOML";
   const SourceText source{read_text_file(path, expected), path};
   const TomlValue document = parse_toml(source.text, path, expected);
-  if (describes_mechanism(document))
-    return read_mechanism_toml(source.text, path, limb_parameters(changes), joint_error_addition(changes.joint_error));
+  if (describes_mechanism(document)) {
+    const auto read = [&](const StudyAdditions& additions) {
+      return read_mechanism_toml(source.text, path, limb_parameters(changes), additions);
+    };
+    const std::shared_ptr<const Mechanism> mechanism = read(nullptr);
+    if (changes.joint_error.empty()) return mechanism;
+    return read(joint_error_addition(mechanism->info(), changes.joint_error));
+  }
   if (!changes.joint_error.empty())
     throw ConfigError({"", 0, "--joint-error"}, "a study",
                       "a mechanism; in a study, set joint_error in its table [accuracy]");

@@ -47,8 +47,9 @@ MechanismOrStudy find_by_name(const Catalogues& catalogues, const std::string& n
   for (const auto& mechanism : catalogues.mechanisms) {
     known.push_back(mechanism.name());
     if (known.back() == name)
-      return changes.joint_error.empty() ? mechanism.get()
-                                         : built_in_mechanism(name, joint_error_addition(changes.joint_error));
+      return changes.joint_error.empty()
+                 ? mechanism.get()
+                 : built_in_mechanism(name, joint_error_addition(mechanism.get()->info(), changes.joint_error));
   }
   if (looks_like_file(name)) return load_mechanism_or_study(name, catalogues, changes);
   throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",

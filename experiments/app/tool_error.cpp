@@ -4,27 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/config/assignments.hpp"
+#include "engine/config/study_additions.hpp"
 #include "engine/geometry/pose_error.hpp"
 #include "engine/geometry/singular.hpp"
 #include "experiments/app/axes.hpp"
 
 namespace pkm {
 namespace {
-
-/// Parses --joint-error: one bound for all joints, or bounds by name.
-/// @return bounds of all joints [SI], >= 0
-std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<std::string>& lists) {
-  const std::string option = "--joint-error";
-  std::vector<double> errors;
-  if (lists.size() == 1 && lists[0].find('=') == std::string::npos)
-    for (const AxisInfo& joint : info.joints) errors.push_back(parse_number(lists[0], option, joint.unit));
-  else
-    errors = parse_some_assignments(lists, option, assignable_axes(info.joints));
-  for (const double error : errors)
-    if (error < 0) throw ConfigError({"", 0, option}, shortest(error), "an error >= 0");
-  return errors;
-}
 
 /// The pose with these joint coordinates, by Newton's method; std::nullopt if it does not converge.
 std::optional<Pose<double>> pose_of_joints(const Target& target, const std::string& mode, Pose<double> pose,
@@ -85,7 +71,7 @@ void report_tool_error(const Target& target, const std::string& mode, const Moti
   if (info.joints.size() != info.coordinates.size())
     throw ConfigError({"", 0, "--joint-error"},
                       "mechanism " + info.name + " does not have as many joints as coordinates");
-  const std::vector<double> errors = joint_errors(info, lists);
+  const std::vector<double> errors = parse_joint_errors(info, lists);
   out.json["joint_error"] = values_by_name(info.joints, errors);
   out.json["tool_error"] = nullptr;
   const auto influence = velocities.influence(target.parameters, at.pose, mode);

@@ -104,7 +104,9 @@ TEST(CliWorkspace, HasTheAccuracyForJointErrorsOfAnOption) {
   EXPECT_THAT(refused.err, HasSubstr("there is no [accuracy]"));
   const auto wrong = pkmopt({"workspace", delta, "--joint-error", "10um"});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.err, HasSubstr("joint_error"));
+  EXPECT_THAT(wrong.err, HasSubstr("--joint-error: found 10um; expected a number in rad"));
+  const auto unknown = pkmopt({"workspace", delta, "--joint-error", "arm4=1mrad"});
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'arm"));
 }
 
 }  // namespace
