@@ -142,6 +142,11 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
     B(row + k, k) = B(row + 3 + k, 3 + k) = -1;
     B.block<3, 1>(row + 3, k) = -arm.cross(Vector3d(Vector3d::Unit(k)));
   }
+  for (const JointNodes& joint : bodies.joints)
+    if (joint.holds_pin) {  // as in newton_euler()
+      const Vector3d axis = numbers(joint.axes[0]).normalized();
+      B.middleRows<3>(row + 3) -= axis * (axis.transpose() * B.middleRows<3>(row + 3)).eval();
+    }
   Eigen::VectorXd scale_rows = Eigen::VectorXd::Ones(A.rows()), scale_columns = Eigen::VectorXd::Ones(A.cols());
   for (Index i = 0; i < A.rows(); ++i)
     if (i % 6 >= 3) scale_rows[i] = 1 / size;
@@ -173,8 +178,16 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
   const MatrixXd N = decomposition.matrixV().rightCols(A.cols() - rank);
   MatrixXd x = x_0;
   if (N.cols() > 0) {
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> of_energy(N.transpose() * scaled_Q * N);
-    x -= N * of_energy.solve(N.transpose() * scaled_Q * x_0);
+    // smaller eigenvalues are rounding errors: redundant forces that load rigid bodies only, and have no energy
+    constexpr double kNoEnergy = 1e-13;  // relative to the largest element of the energy
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> of_energy(N.transpose() * scaled_Q * N);
+    const double threshold = kNoEnergy * scaled_Q.diagonal().maxCoeff();
+    for (Index k = 0; k < N.cols(); ++k) {
+      const double eigenvalue = of_energy.eigenvalues()[k];
+      if (!(eigenvalue > threshold)) continue;
+      const Eigen::VectorXd direction = N * of_energy.eigenvectors().col(k);
+      x -= direction * (direction.transpose() * scaled_Q * x_0) / eigenvalue;
+    }
   }
   // back from scaled wrenches to orthonormal ones in N and N m
   const MatrixXd wrenches = scale_wrench.asDiagonal() * supported;
@@ -183,12 +196,14 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
           ? MatrixXd::Identity(6, 6)
           : MatrixXd(Eigen::HouseholderQR<MatrixXd>(wrenches).householderQ() * MatrixXd::Identity(6, wrenches.cols()));
   const MatrixXd back = (basis.transpose() * wrenches).inverse();
-  MatrixXd C = back.transpose() * (x.transpose() * scaled_Q * x) * back;
+  const MatrixXd scaled_C = x.transpose() * scaled_Q * x;
+  MatrixXd C = back.transpose() * scaled_C * back;
   C = ((C + C.transpose()) / 2).eval();
-  constexpr double kRounding = 1e-13;  // relative to the diagonal: smaller elements are rounding errors
+  constexpr double kRounding = 1e-13;  // relative to the largest compliance: smaller elements are rounding errors
+  const Eigen::VectorXd scale = (scale_wrench.cwiseInverse().asDiagonal() * basis).colwise().norm();
   for (Index i = 0; i < C.rows(); ++i)
     for (Index j = 0; j < C.cols(); ++j)
-      if (i != j && std::fabs(C(i, j)) < kRounding * std::sqrt(C(i, i) * C(j, j))) C(i, j) = 0;
+      if (std::fabs(C(i, j)) < kRounding * scaled_C.diagonal().maxCoeff() * scale[i] * scale[j]) C(i, j) = 0;
   return {axis_matrix(basis), axis_matrix(C)};
 }
 

@@ -72,9 +72,12 @@ std::vector<double> natural_frequencies(const Target& target, const std::string&
   if (inertia.info() != Eigen::Success) return {};
   // C_x M x'' + x = 0: the eigenvalues of L^T C_x L are 1 / omega^2
   const MatrixXd L = inertia.matrixL(), C_x = carried.transpose() * elastic.C * carried;
+  const VectorXd squares = eigenvalues(L.transpose() * C_x * L);
+  constexpr double kRigid = 1e-13;  // relative to the largest: smaller eigenvalues are rounding errors
   std::vector<double> frequencies;
-  for (const double square : eigenvalues(L.transpose() * C_x * L))
-    if (square > 0) frequencies.push_back(1 / (2 * std::numbers::pi * std::sqrt(square)));
+  for (const double square : squares)
+    if (square > kRigid * squares[squares.size() - 1])
+      frequencies.push_back(1 / (2 * std::numbers::pi * std::sqrt(square)));
   std::ranges::sort(frequencies);
   return frequencies;
 }

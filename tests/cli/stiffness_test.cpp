@@ -55,6 +55,91 @@ TEST(CliStiffness, OfATranslatorWithUniversalJoints) {
   EXPECT_THAT(printed.out, HasSubstr("(21.4124 um)"));
 }
 
+/// `pose --stiffness` of a mechanism file.
+json stiffness_of(const std::string& file, const std::string& at, const std::string& design = "") {
+  std::vector<std::string> words = {"pose", file, "--at", at, "--stiffness", "--json"};
+  if (!design.empty()) words.insert(words.end(), {"--set", design});
+  return pkmopt(words).json()["stiffness"];
+}
+
+void expect_frequencies(const json& found, const std::vector<double>& expected) {
+  ASSERT_EQ(found.size(), expected.size()) << found;
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(found[i].get<double>(), expected[i], 1e-6) << i;
+}
+
+/// Drives of 1000 N m/rad and 1 kg at the tool; the frequencies were computed by an independent program.
+TEST(CliStiffness, FrequenciesOfAFiveBar) {
+  const StudyFolder folder;
+  const std::string file = folder.write("five-bar.toml", R"([mechanism]
+name = "five-bar"
+[parameters]
+d = { default = "137.5 mm", min = 0, max = "1 m" }
+[platform]
+coordinates = { x = "along x", y = "along y" }
+mass = "1 kg"
+[[limb]]
+name = "left"
+drive = "crank"
+base = ["-d", 0, 0]
+axis = [0, 0, 1]
+zero = [1, 0, 0]
+across = [0, 0, 1]
+crank = "230 mm"
+rod = "230 mm"
+platform = [0, 0, 0]
+branch = "+"
+drive_stiffness = 1000
+[[limb]]
+name = "right"
+drive = "crank"
+base = ["d", 0, 0]
+axis = [0, 0, 1]
+zero = [1, 0, 0]
+across = [0, 0, 1]
+crank = "230 mm"
+rod = "230 mm"
+platform = [0, 0, 0]
+branch = "-"
+drive_stiffness = 1000
+)");
+  expect_frequencies(stiffness_of(file, "x=0,y=0.3")["natural_frequencies"], {11.204621774, 28.860869760});
+}
+
+/// Six legs along edges of a cube, 1e6 N/m each: 2 k I, and k a^2 [[1, .5, .5], ..] for rotations about the centre.
+TEST(CliStiffness, OfACubicHexapod) {
+  const StudyFolder folder;
+  std::string text = R"([mechanism]
+name = "cube"
+[parameters]
+a = { default = "300 mm", min = "0.1 m", max = "1 m" }
+[platform]
+coordinates = { x = "along x", y = "along y", z = "along z", alpha = "about x", beta = "about y", gamma = "about z" }
+characteristic_length = "a"
+mass = "10 kg"
+inertia = [0.2, 0.2, 0.2]
+)";
+  const char* const legs[][2] = {{"--+", "+-+"}, {"-+-", "-++"}, {"+--", "++-"},
+                                 {"-+-", "++-"}, {"+--", "+-+"}, {"--+", "-++"}};
+  const auto point = [](const std::string& signs) {
+    std::string list = "[";
+    for (const char sign : signs) list += std::string(list.size() > 1 ? ", " : "") + '"' + sign + "a/2\"";
+    return list + "]";
+  };
+  for (const auto& leg : legs)
+    text += "[[limb]]\nname = \"leg" + std::to_string(&leg - legs + 1) +
+            "\"\ndrive = \"telescope\"\nbase = " + point(leg[0]) + "\nplatform = " + point(leg[1]) +
+            "\ndrive_stiffness = 1e6\n";
+  const json found = stiffness_of(folder.write("cube.toml", text), "x=0,y=0,z=0,alpha=0,beta=0,gamma=0");
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      EXPECT_NEAR(found["matrix"][i][j].get<double>(),
+                  i / 3 != j / 3 ? 0
+                  : i < 3        ? (i == j ? 2e6 : 0)
+                                 : 9e4 * (i == j ? 1 : .5),
+                  1e-3);
+  expect_frequencies(found["natural_frequencies"], {71.176254, 71.176254, 71.176254, 75.493818, 75.493818, 150.987636});
+}
+
 TEST(CliStiffness, SaysWhichWrenchesAreNotCarried) {
   const StudyFolder folder;
   std::string text = translator();
