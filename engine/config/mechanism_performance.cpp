@@ -131,6 +131,7 @@ class Performance {
     for (std::size_t joint = 0; joint < joints_; ++joint)
       if (const NamedLimb* const limb = limb_of(joint); limb && limb->play)
         for (int end = 0; end < 2; ++end) add_error(joint, *limb->play / joint_motion(*limb));
+    for (const Term& bound : errors_.bound) model_.joint_errors.push_back(bound.node());
     add(generic::accuracy_quantities(at_, errors_));
   }
   /// Displacement of the inner end of a rod or leg along it, by the joint coordinate.

@@ -237,6 +237,7 @@ struct Model {
   std::vector<RodAndPathNodes> paths;
   std::vector<Node> quantities;  ///< in the order of MechanismInfo::quantities
   std::vector<ReportLimit> report_limits;
+  std::vector<Node> joint_errors;  ///< bounds that the quantity `accuracy` assumes, by joint [m, rad]; or empty
   std::vector<Result> angles;  ///< of passive joints
 
   // platform frame

@@ -2,12 +2,14 @@
 // other programs.
 
 #include <filesystem>
+#include <limits>
 #include <numbers>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/export/picture.hpp"
 #include "engine/export/tables.hpp"
+#include "engine/generic/exact_accuracy.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/mechanism/availability.hpp"
 #include "engine/report/html_page.hpp"
@@ -67,20 +69,47 @@ void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
   expect_surface(arguments, names);
 }
 
+/// The fields of exact errors at feasible poses, if one of them is to be drawn: they take longer than all others.
+std::vector<WorkspaceField> exact_fields(const Target& target, const WorkspaceArguments& arguments,
+                                         const std::vector<Pose<double>>& poses) {
+  const auto compute = [&](const std::vector<Pose<double>>& at) {
+    return generic::exact_accuracy_fields(*target.mechanism, target.parameters, at);
+  };
+  for (const std::string& name : names_of(compute({})))
+    if (contains(arguments.fields, name)) return compute(poses);
+  return {};
+}
+
+/// Adds exact_fields() to the fields of a workspace; NaN at infeasible cells.
+void add_exact_fields(const Target& target, const WorkspaceArguments& arguments, WorkspaceFields& workspace) {
+  const std::vector<std::size_t> cells = workspace.feasible_cells();
+  std::vector<Pose<double>> poses;
+  for (const std::size_t cell : cells) poses.push_back(workspace.pose(cell));
+  for (WorkspaceField& field : exact_fields(target, arguments, poses)) {
+    std::vector<double> values(workspace.cells(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < cells.size(); ++i) values[cells[i]] = field.values[i];
+    field.values = std::move(values);
+    workspace.fields.push_back(std::move(field));
+  }
+}
+
 /// Throws ConfigError if a field cannot be drawn.
 void expect_drawn_fields(const Target& target, const WorkspaceArguments& arguments, const std::string& mode) {
   if (arguments.fields.empty()) return;
   const SourceLocation place{"", 0, "--field"};
   if (arguments.picture().empty() && arguments.csv.empty() && arguments.html.empty() && !arguments.any())
     throw ConfigError(place, "no file", "a picture to draw the field in, such as -o map.svg");
-  const std::vector<std::string> known =
-      names_of(fields_at(*target.mechanism, target.parameters, target.limits, mode, {}));
+  std::vector<std::string> known = names_of(fields_at(*target.mechanism, target.parameters, target.limits, mode, {}));
+  for (const std::string& exact : names_of(generic::exact_accuracy_fields(*target.mechanism, target.parameters, {})))
+    known.push_back(exact);
   for (const std::string& field : arguments.fields) {
-    if (const auto* const undefined = find_named(target.info().undefined_quantities, field))
-      throw ConfigError(place,
-                        "'" + field + "' is undefined for mechanism " + target.info().name + ": " + undefined->why);
-    if (!contains(known, field))
+    if (!contains(known, field)) {
+      for (const UndefinedQuantity& undefined : target.info().undefined_quantities)
+        if (field == undefined.name || field.starts_with(undefined.name + "_"))
+          throw ConfigError(place,
+                            "'" + field + "' is undefined for mechanism " + target.info().name + ": " + undefined.why);
       throw ConfigError(place, "'" + field + "'", "one of " + join(known), nearest_name(field, known));
+    }
     if (std::ranges::count(arguments.fields, field) > 1)
       throw ConfigError(place, "'" + field + "' twice", "each field once");
     if (const Unsupported undefined = why_no_conditioning(target.info()); undefined && field == kConditioning.name)
@@ -106,7 +135,8 @@ std::vector<Picture> slice_pictures(const Target& target, const WorkspaceFields&
   if (arguments.fields.empty()) return {draw_slice(outline, lines)};
   std::vector<Pose<double>> poses;
   for (const auto& [x, y] : mesh.points) poses.push_back(workspace.pose({x, y, 0}));
-  const auto fields = fields_at(*target.mechanism, target.parameters, target.limits, mode, poses);
+  auto fields = fields_at(*target.mechanism, target.parameters, target.limits, mode, poses);
+  for (WorkspaceField& exact : exact_fields(target, arguments, poses)) fields.push_back(std::move(exact));
   std::vector<Picture> pictures;
   for (const std::string& name : arguments.fields) pictures.push_back(draw_map(mesh, *find_named(fields, name), lines));
   return pictures;
@@ -211,6 +241,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     expect_drawn_fields(target, arguments, mode);
     check_outputs(files, target.files, existing);
     WorkspaceFields found = compute_fields(target, plan, mode);
+    add_exact_fields(target, arguments, found);
     found.touches_box = touches(found, ranges_given);
     remove_sliced_axes(found, target.info(), slices);
     expect_known_fields(found, target.info(), arguments);

@@ -194,5 +194,21 @@ TEST(CliWorkspace, HasTheAccuracyForJointErrorsOfAnOption) {
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'arm"));
 }
 
+/// The errors of the poses of all extreme joint errors; the values at (0, 300 mm) are those of the test above.
+TEST(CliWorkspace, DrawsTheExactErrorOfAPlane) {
+  const StudyFolder folder;
+  const auto run = [&](const std::string& field, const std::string& file) {
+    return pkmopt({"workspace", PKM_EXPERIMENTS "/mechanisms/five-bar.toml", "--set", "d=137.5mm,l_a=230mm,l_b=230mm",
+                   "--box", "x=-0.01:0.01,y=0.29:0.31", "--cells", "1", "--joint-error", "0.01deg", "--field", field,
+                   "-o", folder.path() + "/" + file, "--json"});
+  };
+  const json fields = run("accuracy,accuracy_exact", "map.svg").json()["fields"];
+  EXPECT_NEAR(fields["accuracy"]["least"].get<double>(), .11087032e-3, 1e-11);
+  EXPECT_NEAR(fields["accuracy_exact"]["least"].get<double>(), .11093631e-3, 1e-11);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() + "/map-accuracy_exact.svg"));
+  EXPECT_FALSE(run("accuracy", "plain.svg").json()["fields"].contains("accuracy_exact"));
+  EXPECT_THAT(run("accuracy_exakt", "wrong.svg").err, HasSubstr("did you mean 'accuracy_exact'?"));
+}
+
 }  // namespace
 }  // namespace pkm::testing

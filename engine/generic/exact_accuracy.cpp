@@ -1,0 +1,119 @@
+#include "engine/generic/exact_accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/core/stop.hpp"
+#include "engine/core/team.hpp"
+#include "engine/generic/evaluation.hpp"
+#include "engine/generic/kinematics.hpp"
+#include "engine/generic/mechanism.hpp"
+#include "engine/geometry/singular.hpp"
+
+namespace pkm::generic {
+namespace {
+
+struct PlatformError {
+  double position = 0, angle = 0;  ///< [m], [rad]
+};
+
+/// The displacement between two frames, each given by the origin and the rows of the rotation matrix.
+PlatformError displacement(const std::vector<double>& from, const std::vector<double>& to) {
+  const auto R = [](const std::vector<double>& frame, std::size_t i, std::size_t k) { return frame[3 + 3 * i + k]; };
+  Matrix<double, 3, 3> turn;  // from one frame to the other
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) turn(i, j) += R(to, i, k) * R(from, j, k);
+  const double sine = std::hypot(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) / 2,
+               cosine = (turn(0, 0) + turn(1, 1) + turn(2, 2) - 1) / 2;
+  return {std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]), std::atan2(sine, cosine)};
+}
+
+class ExactAccuracy {
+ public:
+  ExactAccuracy(const Evaluation& e, std::span<const double> parameters)
+      : e_(e),
+        parameters_(parameters),
+        inputs_(e.inputs(parameters, no_limits(e.model.info), 0)),
+        bounds_(e.model.graph, e.model.joint_errors) {}
+
+  PlatformError operator()(const Pose<double>& pose) const {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> inputs = inputs_;
+    place(pose, inputs);
+    const std::vector<double> bounds = outputs_of(bounds_, inputs), frame = outputs_of(e_.frame, inputs);
+    const PoseReport report = inspect_sample(e_, parameters_, pose, inputs);
+    if (!report.J || is_singular(*report.J)) return {kNaN, kNaN};
+    PlatformError worst;
+    for (unsigned vertex = 0; vertex < 1U << bounds.size(); ++vertex) {
+      AxisVector<double> joints = *report.joints;
+      for (std::size_t i = 0; i < bounds.size(); ++i) joints[i] += vertex >> i & 1U ? bounds[i] : -bounds[i];
+      if (!find_pose(joints, *report.J, pose, inputs)) return {kNaN, kNaN};
+      const PlatformError error = displacement(frame, outputs_of(e_.frame, inputs));
+      worst = {std::fmax(worst.position, error.position), std::fmax(worst.angle, error.angle)};
+    }
+    return worst;
+  }
+
+ private:
+  void place(const Pose<double>& pose, std::vector<double>& inputs) const {
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+  }
+  /// Writes the pose with the given joints to `inputs`. @return false if the iteration does not converge
+  bool find_pose(const AxisVector<double>& joints, const AxisMatrix<double>& J, Pose<double> pose,
+                 std::vector<double>& inputs) const {
+    constexpr int kMaxSteps = 100;
+    constexpr double kConverged = 1e-9;  // last step [m, rad], after which rounding errors prevent a smaller one
+    double last = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kMaxSteps; ++step) {
+      place(pose, inputs);
+      const std::vector<double> found = outputs_of(e_.joints, inputs);
+      AxisVector<double> rest = joints;
+      for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= found[i];
+      const AxisVector<double> change = solve(J, rest);
+      double size = 0;
+      for (std::size_t i = 0; i < pose.size(); ++i) {
+        pose[i] += change[i];
+        size += std::fabs(change[i]);
+      }
+      if (!(size < last)) return last < kConverged;
+      last = size;
+    }
+    return false;
+  }
+
+  const Evaluation& e_;
+  std::span<const double> parameters_;
+  std::vector<double> inputs_;
+  expression::Program bounds_;
+};
+
+}  // namespace
+
+std::vector<WorkspaceField> exact_accuracy_fields(const Mechanism& mechanism, std::span<const double> parameters,
+                                                  const std::vector<Pose<double>>& poses) {
+  const Evaluation* const e = evaluation_of(mechanism);
+  if (!e || e->model.joint_errors.empty()) return {};
+  std::vector<PlatformError> errors(poses.size());
+  const ExactAccuracy at(*e, parameters);
+  parallel_for(poses.size(), [&](std::size_t i, std::size_t end) {
+    for (; i < end; ++i) {
+      check_stop();
+      errors[i] = at(poses[i]);
+    }
+  });
+  std::vector<WorkspaceField> fields;
+  const auto add = [&](const std::string& name, const std::string& unit, const std::string& what,
+                       double PlatformError::*value) {
+    if (!find_named(mechanism.info().quantities, name)) return;
+    fields.push_back({name + "_exact", unit, "maximum " + what + " error of the platform", {}});
+    for (const PlatformError& error : errors) fields.back().values.push_back(error.*value);
+  };
+  add("accuracy", "m", "position", &PlatformError::position);
+  add("accuracy_angle", "rad", "orientation", &PlatformError::angle);
+  return fields;
+}
+
+}  // namespace pkm::generic
