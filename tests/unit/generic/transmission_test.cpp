@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "engine/workspace/pose_quantities.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
@@ -76,32 +77,80 @@ TEST(Transmission, HasTheReferenceValues) {
   }
 }
 
-/// The same sources, by limb.
+struct LimbReference {
+  const char* mechanism;
+  nlohmann::json design;
+  std::vector<double> pose;
+  std::vector<double> angles, input,
+      output;  ///< by limb: of the cranks [deg], or empty; transmission indices, or empty
+  double digits = 1e-9;
+};
+
+/// The same sources, by limb. The limbs of the ABB IRB 340 are at -90, 30 and 150 deg there, and its angles at the
+/// first pose are the published ones, -20.5 deg; here they are at 0, 120 and 240 deg. The 3-RRR's limbs are at 90, 210
+/// and 330 deg there: its pose (.05, .02) is (.02, -.05) here, and 90 deg are subtracted from its crank angles.
 TEST(Transmission, HasTheReferenceValuesOfEachLimb) {
-  const Mechanism& delta = *test::described("rotary-delta");
-  const MechanismInfo& info = delta.info();
-  const auto expect = [&](const nlohmann::json& parameters, const std::array<double, 3>& at,
-                          const std::array<double, 3>& input, const std::array<double, 3>& output, double digits) {
-    const std::vector<double> design = test::design_with(info, parameters);
-    Pose<double> pose(3);
-    std::ranges::copy(at, pose.begin());
-    const PoseReport report = delta.inspect(design, pose, info.modes.front(), no_limits(info));
+  const nlohmann::json five_bar = {{"d", .1375}, {"l_a", .23}, {"l_b", .23}},
+                       irb_340 = {{"R", std::sqrt(3) / 6 * .567},
+                                  {"r", std::sqrt(3) / 3 * .076},
+                                  {"l_a", .524},
+                                  {"l_b", 1.244}},
+                       three_rrr = {{"R", .5}, {"r", .15}, {"l_a", .3}, {"l_b", .35}};
+  const std::vector<LimbReference> references = {
+      {"five-bar", five_bar, {0, .3}, {109.535223, 70.464777}, {.999568913, .999568913}, {.674757167, .674757167}},
+      {"five-bar", five_bar, {0, .25}, {112.854368, 67.145632}, {.973056986, .973056986}, {.326361634, .326361634}},
+      {"five-bar", five_bar, {.1, .3}, {85.347822, 48.215439}, {.923415419, .990702413}, {.78674775, .78674775}},
+      {"rotary-delta",
+       nlohmann::json::object(),
+       {0, 0, -.5},
+       {34.116052, 34.116052, 34.116052},
+       {.996164520, .996164520, .996164520},
+       {.876938493, .876938493, .876938493}},
+      {"rotary-delta",
+       nlohmann::json::object(),
+       {.1, 0, -.5},
+       {},
+       {.982264603, .984171606, .984171606},
+       {.892441203, .841090820, .841090820}},
+      {"rotary-delta", irb_340, {0, 0, -.9}, {-20.54728, -20.54728, -20.54728}, {}, {}},
+      {"rotary-delta",
+       irb_340,
+       {-.5, .3, -1.1},
+       {47.50405, -11.56855, 21.37839},
+       {.96469944, .92915288, .8613811},
+       {.6650402, .74891493, .6811163},
+       5e-8},
+      {"3-rrr", three_rrr, {0, 0, 0}, {}, {.903507903, .903507903, .903507903}, {.964866624, .964866624, .964866624}},
+      {"3-rrr",
+       three_rrr,
+       {.02, -.05, .1},
+       {},
+       {.874439925, .972704598, .856347718},
+       {.940473648, .964460055, .999672541}},
+  };
+  for (const LimbReference& reference : references) {
+    const Mechanism& mechanism = *test::described(reference.mechanism);
+    const MechanismInfo& info = mechanism.info();
+    SCOPED_TRACE(std::string(reference.mechanism) + " at " + std::to_string(reference.pose[0]));
+    const std::vector<double> design = test::design_with(info, reference.design);
+    Pose<double> pose(reference.pose.size());
+    std::ranges::copy(reference.pose, pose.begin());
+    const std::string mode = info.name == "3-rrr" ? "+,+,+" : info.modes.front();
+    const PoseReport report = mechanism.inspect(design, pose, mode, no_limits(info));
     const auto value = [&](const std::string& name) {
       const auto found = std::ranges::find(info.quantities, name, &QuantityInfo::name);
       return report.quantities.at(static_cast<std::size_t>(found - info.quantities.begin()));
     };
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::string limb = "arm" + std::to_string(i + 1);
-      EXPECT_NEAR(value("lti_input_" + limb), input[i], digits) << limb;
-      EXPECT_NEAR(value("lti_output_" + limb), output[i], digits) << limb;
-      EXPECT_NEAR(std::cos(value("pressure_angle_" + limb)), input[i], digits) << limb;
+    constexpr double kDegree = std::numbers::pi / 180;
+    for (std::size_t i = 0; i < reference.angles.size(); ++i)
+      EXPECT_NEAR((*report.joints)[i] / kDegree, reference.angles[i], 1e-5);
+    for (std::size_t i = 0; i < reference.input.size(); ++i) {
+      const std::string& limb = info.joints[i].name;
+      EXPECT_NEAR(value("lti_input_" + limb), reference.input[i], reference.digits) << limb;
+      EXPECT_NEAR(value("lti_output_" + limb), reference.output[i], reference.digits) << limb;
+      EXPECT_NEAR(std::cos(value("pressure_angle_" + limb)), reference.input[i], reference.digits) << limb;
     }
-  };
-  expect(nlohmann::json::object(), {.1, 0, -.5}, {.982264603, .984171606, .984171606},
-         {.892441203, .841090820, .841090820}, 1e-9);
-  // limbs at -90, 30 and 150 deg there, at 0, 120 and 240 deg here
-  expect({{"R", std::sqrt(3) / 6 * .567}, {"r", std::sqrt(3) / 3 * .076}, {"l_a", .524}, {"l_b", 1.244}},
-         {-.5, .3, -1.1}, {.96469944, .92915288, .8613811}, {.6650402, .74891493, .6811163}, 5e-8);
+  }
 }
 
 TEST(Transmission, OfTelescopesHasTheInputIndexOne) {
@@ -113,18 +162,26 @@ TEST(Transmission, OfTelescopesHasTheInputIndexOne) {
   EXPECT_LT(found.output, 1);
 }
 
-/// The area of poses with y > 0 and an index of at least 0.7, on both sides of the parallel singularity, was computed
-/// by an independent program.
+/// The areas of poses with y > 0 and an index of at least 0.7, on both sides of the parallel singularity and on that of
+/// (0, 300 mm), were computed by an independent program.
 TEST(Transmission, IsAFieldOfTheWorkspaceOfAFiveBar) {
   const Mechanism& five_bar = *test::described("five-bar");
   const std::vector<double> design = test::design_with(five_bar.info(), {{"d", .1375}, {"l_a", .23}, {"l_b", .23}});
   const auto lti = std::ranges::find(five_bar.info().quantities, "lti", &QuantityInfo::name)->of_pose;
   WorkspacePlan plan{.method = VoxelOptions{.cells = {1000, 1000, 1}, .box = Box{{{-.5, .5}, {0, .5}, {0, 1}}}},
                      .limits = no_limits(five_bar.info())};
-  const WorkspaceResult<double> result = test::survey(five_bar, design, plan, {.fields = {lti.get()}});
-  std::int64_t cells = 0;
-  for (const double value : result.field(*lti)) cells += value >= 0.7;
+  const WorkspaceResult<double> result = test::survey(five_bar, design, plan, {.fields = {lti.get()}, .poses = true});
+  const auto det_G = [&](const Pose<double>& pose) {
+    return *five_bar.inspect(design, pose, five_bar.info().modes.front(), plan.limits).det_G;
+  };
+  std::int64_t cells = 0, on_side = 0;
+  for (std::size_t k = 0; k < result.pose.size(); ++k) {
+    if (result.field(*lti)[k] < 0.7) continue;
+    ++cells;
+    on_side += det_G(result.pose[k]) > 0;  // as at (0, 300 mm): .0357
+  }
   EXPECT_NEAR(static_cast<double>(cells) * result.cell_volume, 0.0366001, 3e-5);
+  EXPECT_NEAR(static_cast<double>(on_side) * result.cell_volume, 0.0361221, 3e-5);
 }
 
 std::string why_undefined(const MechanismInfo& info, const std::string& quantity) {
