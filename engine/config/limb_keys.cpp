@@ -93,6 +93,21 @@ OptionSpec leg_section_key() {
   return table_key("leg_section", section, "cross-section and material of the leg, for its axial stiffness");
 }
 
+/// Cross-section of a slider, for its stiffness.
+OptionSpec slider_section_key() {
+  static const TableSpec section = {
+      .meaning = "tube or rod of some material",
+      .keys = {required(formula_key("outer", "m", "outer diameter")),
+               formula_key("inner", "m", "inner diameter; default: 0"),
+               required(formula_key("young", "Pa", "Young's modulus")),
+               formula_key("shear", "Pa", "shear modulus; default: young/2.6"),
+               formula_key("length", "m",
+                           "distance along the slide from its guide, where it is clamped, to the rod; default: the "
+                           "joint coordinate, for a guide at `base`")}};
+  return table_key("slider_section", section,
+                   "cross-section and material of the slider of a limb with a `rod`, a cantilever");
+}
+
 Keys all(std::initializer_list<Keys> lists) {
   Keys keys;
   for (const Keys& list : lists) keys.insert(keys.end(), list.begin(), list.end());
@@ -131,8 +146,13 @@ std::vector<TableVariant> drives() {
   return {{"telescope", "leg of variable length",
            all({geometry_keys(), mass_keys("cylinder"), mass_keys("piston"), {leg_section_key()}})},
           {"slider", "slide on a rail, alone or with a rod or two links",
-           all({geometry_keys(), mass_keys("slider"), mass_keys("rod"), mass_keys("first_link"),
-                mass_keys("second_link"), slider})},
+           all({geometry_keys(),
+                mass_keys("slider"),
+                mass_keys("rod"),
+                mass_keys("first_link"),
+                mass_keys("second_link"),
+                slider,
+                {slider_section_key()}})},
           {"crank", "crank with a rod", all({geometry_keys(), mass_keys("crank"), mass_keys("rod"), crank})},
           {"formula", "joints given by formulas", formulas}};
 }

@@ -53,17 +53,18 @@ struct NamedLimb {
   bool has_links = false;                       ///< two links instead of a rod
   /// Of a slide with ball joints: from C to B, as a formula that does not contain the position along the slide.
   std::optional<limbs::Vector3> rod = {};
-  std::optional<limbs::Vector3> beside = {};    ///< vector from the middle of a pair of rods to one of them
-  std::string end_on = "";                      ///< the body to which its end is attached; "": unspecified
+  std::optional<limbs::Vector3> beside = {};  ///< vector from the middle of a pair of rods to one of them
+  std::string end_on = "";                    ///< the body to which its end is attached; "": unspecified
 
   std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]
   /// Stiffness of a round tube, axial E A [N], bending E I and torsional G J [N m^2], and its cross-section A [m^2].
   struct Section {
     limbs::Term EA, EI, GJ, area;
   };
-  /// Cross-section of one rod or of the leg, and of the crank; std::nullopt: rigid.
-  std::optional<Section> rod_section = {}, crank_section = {};
-  std::optional<limbs::Vector3> universal = {};  ///< axis of its universal joints, on the drive's side of each joint
+  /// Cross-section of one rod or of the leg, of the crank, and of the slider; std::nullopt: rigid.
+  std::optional<Section> rod_section = {}, crank_section = {}, slider_section = {};
+  std::optional<limbs::Term> slider_length = {};  ///< from the guide to the slider, along the slide [m]
+  std::optional<limbs::Vector3> universal = {};   ///< axis of its universal joints, on the drive's side of each joint
 };
 
 /// A limb with the key `across`: the distance of its ends along the normal must be the same at every pose.
@@ -147,7 +148,7 @@ void add_transmission(const ConfigValue& root, const ConfigValue* study, Mechani
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
 /// Reads the elastic moduli of a limb's cross-sections, and the play of its joints.
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
-/// Compliance of the limb's end along the line of its rod or leg, due to rods and crank [m/N].
+/// Compliance of the limb's end along the line of its rod or leg, due to rods, crank and slider [m/N].
 limbs::Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft);
 /// Compliance of a limb's drive at the joint [m/N or rad/(N m)]: that of the drive, and of a telescope's leg.
 std::optional<limbs::Term> drive_compliance(const NamedLimb& limb, MechanismDraft& draft);

@@ -10,7 +10,7 @@ namespace {
 
 using limbs::Term, limbs::Vector3;
 
-/// Reads a cross-section; std::nullopt if it is not given, or has no Young's modulus.
+/// Reads a cross-section; std::nullopt if it is not given, or if a section that gives the mass has no Young's modulus.
 std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const std::string& key,
                                                MechanismDraft& draft) {
   const auto section = table.find_table(key);
@@ -18,7 +18,8 @@ std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const s
   const auto shear_modulus = key == "leg_section" ? std::nullopt : section->find("shear");
   if (shear_modulus && !section->has("young"))
     throw shear_modulus->refusal("a shear modulus needs Young's modulus, `young`, too");
-  if (!section->has("young")) return {};
+  const bool is_of_mass = key == "rod_section" || key == "crank_section";
+  if (is_of_mass && !section->has("young")) return {};
   const auto positive = [&](const char* name, const char* unit) {
     return draft.scope.positive(section->at(name), unit, key);
   };
@@ -37,6 +38,23 @@ Term length_of(const NamedLimb& limb, const std::string& part) {
   return std::ranges::find(limb.parts, part, &LimbPart::name)->length.value();
 }
 
+void read_slider(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft) {
+  const auto section = table.find_table("slider_section");
+  if (!section) return;
+  if (!limb.has_rod) throw section->refusal("the limb has no rod: only the bending by the force of a rod is computed");
+  limb.slider_section = read_section(table, "slider_section", draft);
+  const auto length = section->find("length");
+  limb.slider_length =
+      length ? draft.scope.positive(*length, "m", "slider_section") : draft.model.term(draft.model.joints[limb.joint]);
+}
+
+/// Adds the compliance of a cantilever in the direction of a force at its end.
+/// @param along  component of the unit vector of the force along the beam
+Term add_cantilever(const Term& compliance, const NamedLimb::Section& section, const Term& length, const Term& along) {
+  return compliance + along * along * length / section.EA +
+         (Term(length.graph(), 1.0) - along * along) * length * length * length / (section.EI * 3);
+}
+
 }  // namespace
 
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft) {
@@ -47,6 +65,7 @@ void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& 
   if (limb.has_rod)
     limb.rod_section = read_section(table, limb.drive == "telescope" ? "leg_section" : "rod_section", draft);
   if (limb.drive == "crank") limb.crank_section = read_section(table, "crank_section", draft);
+  if (limb.drive == "slider") read_slider(table, limb, draft);
 }
 
 Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft) {
@@ -56,12 +75,14 @@ Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft) {
         limb.drive == "telescope" ? draft.model.term(draft.model.joints[limb.joint]) : length_of(limb, "rod");
     compliance = length / (limb.rod_section->EA * (limb.beside ? 2.0 : 1.0));
   }
-  if (limb.crank_section) {  // the crank is a cantilever with the rod's force at its end
-    const Term r = length_of(limb, "crank"), one(draft.model.graph, 1.0);
-    const Term along = dot(force_of(limb)->force, limb.points.at("C") - limb.points.at("A")) / r;
-    compliance = compliance + along * along * r / limb.crank_section->EA +
-                 (one - along * along) * r * r * r / (limb.crank_section->EI * 3);
+  if (limb.crank_section) {
+    const Term r = length_of(limb, "crank");
+    compliance = add_cantilever(compliance, *limb.crank_section, r,
+                                dot(force_of(limb)->force, limb.points.at("C") - limb.points.at("A")) / r);
   }
+  if (limb.slider_section)
+    compliance = add_cantilever(compliance, *limb.slider_section, abs(*limb.slider_length),
+                                dot(force_of(limb)->force, *limb.axis));
   return compliance;
 }
 

@@ -97,17 +97,13 @@ class JointReader {
     return joint(name, point, on, from, JointNodes::Couples::all_but_about, {});
   }
 
-  /// An elastic beam that is connected to the joint added last.
-  SolidNodes::Beam beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far,
-                           bool is_rod) const {
-    return {.near = nodes(near),
-            .far = nodes(far),
-            .EA = section.EA.node(),
-            .EI = section.EI.node(),
-            .GJ = section.GJ.node(),
-            .near_joint = joints_.size() - 1,
-            .area = section.area.node(),
-            .is_rod = is_rod};
+  static generic::BeamNodes beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far) {
+    return {nodes(near), nodes(far), section.EA.node(), section.EI.node(), section.GJ.node(), section.area.node()};
+  }
+  /// The beam of a body that the joint added last holds.
+  SolidNodes::Beam held_beam(const NamedLimb::Section& section, const Vector3& near, const Vector3& far,
+                             bool is_rod) const {
+    return {beam_of(section, near, far), joints_.size() - 1, is_rod};
   }
   /// Makes the joint added last a universal one, if the limb has such joints: it rotates about the axis a of the body
   /// that carries the rod, and about a x rod, and transmits a couple normal to both. @param solid  index of the rod
@@ -172,6 +168,8 @@ class JointReader {
                has_links = first.name != "slider" && slides;
     JointNodes::Drive drive{limb.joint, nodes(telescope ? *last.line : *limb.axis), limb.drive == "crank"};
     if (const auto compliance = drive_compliance(limb, draft_)) drive.compliance = compliance->node();
+    if (const auto& section = limb.slider_section)
+      drive.ram = beam_of(*section, S - *limb.axis * *limb.slider_length, S);
     if (slides)
       for (std::size_t i = 0; i < model_.bodies.size(); ++i)
         if (model_.bodies[i].name == "slider of " + limb.name) drive.slide = i;
@@ -190,7 +188,7 @@ class JointReader {
     }
     if (limb.drive == "crank") {
       joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, {}));
-      if (const auto& section = limb.crank_section) solids_[*inner].beam = beam_of(*section, A, C, false);
+      if (const auto& section = limb.crank_section) solids_[*inner].beam = held_beam(*section, A, C, false);
     }
     if (has_links) joints_.push_back(limb_joint(limb, limb.name + ".S", S, *inner, {}, {}));
     if (inner) joints_.back().drive = drive;
@@ -215,7 +213,7 @@ class JointReader {
         drive.slide = {};  // the slide counts once for both rods
       }
       make_universal(limb, far - near, outer, false);
-      if (const auto& section = limb.rod_section) solids_[outer].beam = beam_of(*section, near, far, true);
+      if (const auto& section = limb.rod_section) solids_[outer].beam = held_beam(*section, near, far, true);
       joints_.push_back(limb_joint(limb, limb.name + ".B" + number, far, outer, carrier, {}, turns));
       make_universal(limb, far - near, outer, true);
     }
@@ -355,8 +353,9 @@ void add_joints(const ConfigValue& root, MechanismDraft& draft) {
     model.jointed = reader.read(tables);
     const bool has_beam =
         std::ranges::any_of(model.jointed->solids, [](const SolidNodes& solid) { return solid.beam.has_value(); });
-    const bool has_spring = std::ranges::any_of(
-        model.jointed->joints, [](const JointNodes& joint) { return joint.drive && joint.drive->compliance; });
+    const bool has_spring = std::ranges::any_of(model.jointed->joints, [](const JointNodes& joint) {
+      return joint.drive && (joint.drive->compliance || joint.drive->ram);
+    });
     if (!has_beam && !has_spring) model.why_no_elasticity = "no limb has `drive_stiffness`, or a section with `young`";
     if (model.bodies.empty()) throw IncompleteDescription{"the mechanism file has no masses"};
     model.jointed = reader.with_masses();

@@ -16,22 +16,37 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::Vector3d;
 
 Vector3d vector(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Evaluates nodes at a pose.
+/// Values at a pose of the dimensions and compliances of all elastic bodies, of the platform's origin, and of the axis
+/// of a platform that is a pin.
 class Numbers {
  public:
-  Numbers(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
-      : e_(e), inputs_(e.inputs(parameters, no_limits(e.model.info), mode)) {
-    std::ranges::copy(pose, inputs_.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.coordinate(0)));
+  Numbers(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode) {
+    std::vector<Node> nodes(e.model.origin.begin(), e.model.origin.end());
+    const auto add = [&nodes](const BeamNodes& beam) {
+      nodes.insert(nodes.end(), beam.near.begin(), beam.near.end());
+      nodes.insert(nodes.end(), beam.far.begin(), beam.far.end());
+      nodes.insert(nodes.end(), {beam.EA, beam.EI, beam.GJ});
+    };
+    for (const SolidNodes& solid : e.model.jointed->solids)
+      if (solid.beam) add(*solid.beam);
+    for (const JointNodes& joint : e.model.jointed->joints) {
+      if (joint.holds_pin) nodes.insert(nodes.end(), joint.axes[0].begin(), joint.axes[0].end());
+      if (!joint.drive) continue;
+      if (joint.drive->ram) add(*joint.drive->ram);
+      if (joint.drive->compliance) nodes.push_back(*joint.drive->compliance);
+    }
+    std::vector<double> inputs = e.inputs(parameters, no_limits(e.model.info), mode);
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.coordinate(0)));
+    const std::vector<double> values = outputs_of(expression::Program(e.model.graph, nodes), inputs);
+    for (std::size_t i = 0; i < nodes.size(); ++i) value_.emplace(nodes[i], values[i]);
   }
-  double operator()(Node node) const { return outputs_of(expression::Program(e_.model.graph, {&node, 1}), inputs_)[0]; }
+  double operator()(Node node) const { return value_.at(node); }
   Vector3d operator()(const std::array<Node, 3>& nodes) const {
-    const std::vector<double> v = outputs_of(expression::Program(e_.model.graph, nodes), inputs_);
-    return {v[0], v[1], v[2]};
+    return {value_.at(nodes[0]), value_.at(nodes[1]), value_.at(nodes[2])};
   }
 
  private:
-  const Evaluation& e_;
-  std::vector<double> inputs_;
+  std::map<Node, double> value_;
 };
 
 /// The columns of a joint among the unknowns: three forces, then its couples.
@@ -49,7 +64,9 @@ class Energy {
     Q_ = MatrixXd::Zero(first_.back(), first_.back());
     add_drives();
     for (std::size_t i = 0; i < bodies.solids.size(); ++i)
-      if (bodies.solids[i].beam) add_beam(i, *bodies.solids[i].beam);
+      if (const auto& beam = bodies.solids[i].beam) add_beam(*beam, loads_of_solid(i, beam->near_joint));
+    for (const auto& [drive, joints] : joints_of_rams())
+      add_beam(*bodies.joints[joints.front().first].drive->ram, joints);
   }
   const MatrixXd& matrix() const { return Q_; }
 
@@ -82,17 +99,34 @@ class Energy {
     }
     for (const auto& [drive, sum] : forces) Q_ += compliances[drive] * sum.transpose() * sum;
   }
-  /// Adds the energy of a beam from `near`, where it is clamped, to `far`, with the loads of all other joints at its
-  /// end. The moment is linear along the beam; the integral of its square follows from its values at both ends.
-  void add_beam(std::size_t solid, const SolidNodes::Beam& beam) {
-    const Vector3d near = numbers_(beam.near), far = numbers_(beam.far);
-    const double length = (far - near).norm();
-    const Vector3d u = (far - near) / length;
-    Rows load = no_rows(), at_near = no_rows(), at_far = no_rows();
+  /// Joints that load a beam, with the signs of their forces and couples.
+  using Loads = std::vector<std::pair<std::size_t, double>>;
+
+  Loads loads_of_solid(std::size_t solid, std::size_t near_joint) const {
+    Loads loads;
     for (std::size_t i = 0; i < bodies_.joints.size(); ++i) {
       const JointNodes& joint = bodies_.joints[i];
-      if (i == beam.near_joint || (joint.on != solid && joint.from != solid)) continue;
-      const double sign = joint.on == solid ? 1 : -1;
+      if (i != near_joint && (joint.on == solid || joint.from == solid))
+        loads.push_back({i, joint.on == solid ? 1 : -1});
+    }
+    return loads;
+  }
+  /// The loads of elastic slides, by drive.
+  std::map<std::size_t, Loads> joints_of_rams() const {
+    std::map<std::size_t, Loads> loads;
+    for (std::size_t i = 0; i < bodies_.joints.size(); ++i)
+      if (const auto& drive = bodies_.joints[i].drive; drive && drive->ram) loads[drive->joint].push_back({i, 1});
+    return loads;
+  }
+  /// Adds the energy of a beam. The moment is linear along the beam; the integral of its square follows from its values
+  /// at both ends.
+  void add_beam(const BeamNodes& beam, const Loads& loads) {
+    const Vector3d near = numbers_(beam.near), far = numbers_(beam.far);
+    const double length = (far - near).norm();
+    if (length == 0) return;  // a slide that is retracted into its guide
+    const Vector3d u = (far - near) / length;
+    Rows load = no_rows(), at_near = no_rows(), at_far = no_rows();
+    for (const auto& [i, sign] : loads) {
       const Rows F = force(i) * sign, M = couple(i) * sign;
       const Vector3d p = vector(system_.joints[i].point);
       load += F;

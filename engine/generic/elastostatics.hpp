@@ -1,4 +1,4 @@
-// Compliance of the platform at a pose, with the elasticity of drives, rods, legs and cranks.
+// Compliance of the platform at a pose, with the elasticity of drives, rods, legs, cranks and slides.
 //
 // The forces and couples x in the joints are in equilibrium with a wrench w at the platform, A x = B w (the
 // Newton-Euler equations at rest, without weight). Among all x in equilibrium, that of an elastic mechanism minimises

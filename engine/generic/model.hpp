@@ -149,6 +149,13 @@ struct BodyNodes {
   std::string part_of{};  ///< the body to which this one is rigidly attached; "": none
 };
 
+/// An elastic beam that is clamped at `near` and loaded at `far`.
+struct BeamNodes {
+  std::array<Node, 3> near, far;
+  Node EA, EI, GJ;  ///< axial [N], bending and torsional stiffness [N m^2]
+  Node area;        ///< of the cross-section [m^2]
+};
+
 /// A free body of the Newton-Euler equations.
 struct SolidNodes {
   std::string name;
@@ -159,12 +166,9 @@ struct SolidNodes {
   std::optional<std::array<Node, 3>> centre_offset{};  ///< of its centre of mass from that of its bodies
   bool with_platform = false;                          ///< the body rotates with the platform
 
-  /// An elastic beam from `near` to `far`, where all joints but one load it.
-  struct Beam {
-    std::array<Node, 3> near, far;
-    Node EA, EI, GJ;         ///< axial [N], bending and torsional stiffness [N m^2]
+  /// An elastic body, loaded by all of its joints but one.
+  struct Beam : BeamNodes {
     std::size_t near_joint;  ///< index of the joint that holds it
-    Node area;               ///< of the cross-section [m^2]
     bool is_rod;             ///< pinned at both ends; false: a crank
   };
   std::optional<Beam> beam{};  ///< std::nullopt: rigid
@@ -180,6 +184,7 @@ struct JointNodes {
     bool turns = false;                  ///< true: revolute; false: prismatic
     std::optional<std::size_t> slide{};  ///< body (a point mass) that moves with the drive
     std::optional<Node> compliance{};    ///< [m/N or rad/(N m)]; std::nullopt: rigid
+    std::optional<BeamNodes> ram{};      ///< elastic slide, loaded by all joints with this drive
   };
   std::string name;
   std::array<Node, 3> point;
@@ -238,7 +243,7 @@ struct Model {
   std::vector<Node> quantities;  ///< in the order of MechanismInfo::quantities
   std::vector<ReportLimit> report_limits;
   std::vector<Node> joint_errors;  ///< bounds that the quantity `accuracy` assumes, by joint [m, rad]; or empty
-  std::vector<Result> angles;  ///< of passive joints
+  std::vector<Result> angles;      ///< of passive joints
 
   // platform frame
   std::array<Node, 3> origin;
