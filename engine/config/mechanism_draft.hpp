@@ -51,10 +51,8 @@ struct NamedLimb {
   std::optional<limbs::Vector3> revolute = {};  ///< the axis of its joints, if they are parallel revolutes
   bool has_rod = false;                         ///< a rod or telescope; false: a slide that carries the platform
   bool has_links = false;                       ///< two links instead of a rod
-  /// Of a slide with ball joints: from C to B, as a formula that does not contain the position along the slide.
-  std::optional<limbs::Vector3> rod = {};
-  std::optional<limbs::Vector3> beside = {};  ///< vector from the middle of a pair of rods to one of them
-  std::string end_on = "";                    ///< the body to which its end is attached; "": unspecified
+  std::optional<limbs::Vector3> beside = {};    ///< vector from the middle of a pair of rods to one of them
+  std::string end_on = "";                      ///< the body to which its end is attached; "": unspecified
 
   std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]
   /// Stiffness of a round tube, axial E A [N], bending E I and torsional G J [N m^2], and its cross-section A [m^2].

@@ -162,11 +162,6 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
     throw end_on->refusal("`end_on` requires `end`; a limb that ends at `platform` is attached to the platform");
   limb.end_on = end_on ? end_on->text("\"platform\" or the name of a body") : table.has("end") ? "" : "platform";
   limb.beside = read_pair(copy, limb);
-  if (driven.path && !driven.path->is_circle) {
-    const limbs::RodAndPath& path = *driven.path;
-    const Vector3 normal = path.v - path.axis * dot(path.v, path.axis);
-    limb.rod = normal - path.axis * (path.branch * sqrt(path.rod * path.rod - dot(normal, normal)));
-  }
   if (const auto universal = table.find("universal")) {
     if (!limb.has_rod || limb.revolute || limb.beside)
       throw universal->refusal("`universal` requires a single rod or leg, without `across`, `pair` or `links`");

@@ -145,20 +145,6 @@ TEST(Quantity, ExampleOfTransmissionImprovesByGradients) {
   EXPECT_GT(best["objectives"]["ratio"].get<double>(), 1.002 * 0.05955956942) << "of the genetic algorithm's design";
 }
 
-/// The index of a linear Delta does not depend on the height, so that exact columns support its limit. An independent
-/// program counted 0.0493216 m^3 by the closed form of the index on a grid of 2000 x 2000 points.
-TEST(Quantity, TransmissionLimitsColumnsOfALinearDelta) {
-  const StudyFolder folder;
-  const std::string study = folder.write(
-      "s.toml", "[mechanism]\nfile = \"" PKM_EXPERIMENTS
-                "/mechanisms/linear-delta.toml\"\n[variables]\n"
-                "R = { min = 0.2, max = 0.4 }\n[workspace]\ntolerance = 1e-6\nlimits = { lti = { min = 0.6 } }\n"
-                "[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\n");
-  const auto found = pkmopt({"evaluate", study, "--json"});
-  ASSERT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_NEAR(found.json()["workspace"]["volume"].get<double>(), 0.0493216, 1e-6);
-}
-
 TEST(Quantity, MessagesExplainWhatIsMissing) {
   const StudyFolder folder;
   const auto check = [&](const std::string& workspace, const std::string& tables = "") {
