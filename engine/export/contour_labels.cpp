@@ -8,10 +8,10 @@ namespace pkm {
 namespace {
 
 constexpr double kLabelDistance = 44, kOutlineDistance = 9;  // minimum distance of labels, and from outline [pixel]
-constexpr double kMinStraight = 0.97;  // distance of a label's ends, relative to the length of the line between them
-constexpr double kClearance = 8;       // between a label and the ends of its line [pixel]
-constexpr double kGap = 3;             // between a label and the line that continues [pixel]
-constexpr double kStep = 6;            // between the places examined [pixel]
+constexpr double kMinStraight = 0.97;  // minimum distance of a label's ends, relative to the arc length between them
+constexpr double kClearance = 8;       // minimum distance between a label and the ends of its line [pixel]
+constexpr double kGap = 3;             // gap between a label and the rest of its line [pixel]
+constexpr double kStep = 6;            // distance between candidate positions [pixel]
 
 double distance(const PlanePoint& a, const PlanePoint& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
 

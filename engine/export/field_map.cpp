@@ -6,8 +6,8 @@
 namespace pkm {
 namespace {
 
-constexpr double kTail = 0.02;       // share of the values at either end that may lie beyond an open scale
-constexpr double kConstant = 1e-9;   // relative range of a field that is constant up to rounding errors
+constexpr double kTail = 0.02;       // maximum share of the values beyond an open end of the scale
+constexpr double kConstant = 1e-9;   // relative range below which a field counts as constant: rounding errors
 constexpr double kMinIntervals = 7;  // minimum number of intervals of a scale
 
 /// Divides polygons into triangles around their centres. A point on an edge of a triangle is identified by the indices

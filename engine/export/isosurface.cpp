@@ -15,8 +15,8 @@ namespace {
 using Point = std::array<double, 3>;
 using Index = std::array<std::size_t, 3>;
 
-/// Grid of nodes: along each axis the centres of the cells, and on each face of the box two layers that coincide, of
-/// which the outer one is infeasible.
+/// Grid of nodes. Along each axis, there is one node at the centre of each cell. On each face of the box there are two
+/// coincident layers of nodes, the outer of which is infeasible.
 class Nodes {
  public:
   explicit Nodes(const WorkspaceFields& workspace)
@@ -30,18 +30,18 @@ class Nodes {
   Index size{};  ///< nodes along each axis
 
   std::size_t number(const Index& n) const { return (n[0] * size[1] + n[1]) * size[2] + n[2]; }
-  /// The cell whose margin the node has.
+  /// The cell from which a node takes its margin.
   std::size_t cell(const Index& n) const {
     return (nearest(n, 0) * cells_[1] + nearest(n, 1)) * cells_[2] + nearest(n, 2);
   }
-  /// The node is in the outer of the two layers on a face.
+  /// True if the node is in the outer of the two layers on a face.
   bool is_outer(const Index& n) const {
     for (std::size_t i = 0; i < 3; ++i)
       if (n[i] == 0 || n[i] == size[i] - 1) return true;
     return false;
   }
   double margin(const Index& n) const { return is_outer(n) ? -1 : margin_[cell(n)]; }
-  /// Centre of the cell whose margin the node has.
+  /// Centre of the cell from which a node takes its margin.
   Point centre(const Index& n) const {
     Point at;
     for (std::size_t i = 0; i < 3; ++i) at[i] = grid_.centre(i, static_cast<std::int64_t>(nearest(n, i)));
@@ -59,7 +59,7 @@ class Nodes {
  private:
   static constexpr std::size_t kLayers = 2;  ///< number of layers on each face of the box
 
-  /// Number of the nearest cell along an axis.
+  /// Index of the nearest cell along an axis.
   std::size_t nearest(const Index& n, std::size_t axis) const {
     return std::clamp(n[axis], kLayers, size[axis] - kLayers - 1) - kLayers;
   }
@@ -180,7 +180,8 @@ class SurfaceBuilder {
 
   const Nodes& nodes_;
   std::vector<Edge> edges_;  ///< one per vertex
-  /// Number of the vertex on each edge, by 8 * (number of its first node) + direction; direction 0: at the node itself.
+  /// Index of the vertex on each edge, by 8 * (index of the edge's first node) + direction; direction 0: at the node
+  /// itself.
   std::vector<std::uint32_t> vertex_of_edge_;
   Isosurface surface_;
 };

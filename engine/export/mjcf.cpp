@@ -68,7 +68,8 @@ std::string mjcf_body(const MultibodyModel& model, std::size_t index, const std:
   return index == 0 ? text : text + indent + "</body>\n";
 }
 
-/// A revolute joint is two points of its axis at a distance of `arm` that coincide.
+/// Constraint elements for a joint that closes a loop. A revolute joint is represented by two points on its axis, `arm`
+/// apart, at each of which both bodies have to coincide.
 std::string mjcf_closure(const MultibodyModel& model, const MultibodyModel::Joint& joint, double arm) {
   const std::string bodies = xml_attribute("body1", model.bodies[joint.parent].name) +
                              (joint.child ? xml_attribute("body2", model.bodies[joint.child].name) : "");

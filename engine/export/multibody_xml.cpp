@@ -18,7 +18,7 @@ using Body = MultibodyModel::Body;
 using Joint = MultibodyModel::Joint;
 using Type = MultibodyModel::JointType;
 
-constexpr double kMinimumMass = 1e-6;  // relative to the total mass: minimum of each body
+constexpr double kMinimumMass = 1e-6;  // minimum mass of a body, relative to the total mass
 
 /// The minimum mass and moment of inertia of a body.
 struct Minimum {
@@ -31,8 +31,8 @@ Minimum minimum_of(const MultibodyModel& model) {
   return {kMinimumMass * total, kMinimumMass * total * size * size};
 }
 
-/// Raises principal moments to a minimum, and the two smaller ones equally until the largest is at most their sum.
-/// @return whether a moment changed
+/// Raises principal moments to a minimum, and then the two smaller ones by equal amounts until the largest does not
+/// exceed their sum. @return true if a moment has changed
 bool make_physical(Eigen::Matrix3d& inertia, double minimum) {
   constexpr double kRounding = 1e-9;  // relative
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
@@ -53,7 +53,7 @@ void add_note_on_small_bodies(double mass, MultibodyModel& model) {
       xml_number(mass) + " kg each.");
 }
 
-/// A name that no other has.
+/// A name with only valid characters that is not in `used`; it is added to `used`.
 std::string distinct(const std::string& name, std::set<std::string>& used) {
   std::string candidate = plain_name(name);
   for (int k = 2; !used.insert(candidate).second; ++k) candidate = plain_name(name) + '_' + std::to_string(k);

@@ -1,5 +1,5 @@
-// What the files of multibody models have in common: numbers, names, comments, and the changes to a model that
-// simulation programs require.
+// Functions shared by the writers of multibody models: formatting of numbers, names and comments, and the changes to a
+// model that simulation programs require.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace pkm {
 std::string xml_number(double value);
 /// The three components, separated by spaces.
 std::string xml_numbers(const Eigen::Vector3d& v);
-/// NAME="VALUE" after a space.
+/// An attribute, NAME="VALUE", preceded by a space.
 std::string xml_attribute(const std::string& name, const std::string& value);
 std::string xml_attribute(const std::string& name, double value);
 std::string xml_attribute(const std::string& name, const Eigen::Vector3d& value);
@@ -23,23 +23,24 @@ std::string xml_comment(std::string text);
 /// Replaces characters that are not letters, digits or underscores: not all programs accept them in names.
 std::string plain_name(std::string name);
 
-/// The model with distinct plain names, and with positive masses and moments of inertia that satisfy the triangle
-/// inequality, as simulation programs require. A note names the changes. They add less than 1e-4 to the total mass.
+/// The model with unique names that contain only letters, digits and underscores, and with positive masses and moments
+/// of inertia that satisfy the triangle inequality, as simulation programs require. A note in the model lists the
+/// changed bodies. The changes increase the total mass by less than 1e-4 of its value.
 MultibodyModel for_simulators(MultibodyModel model);
-/// The model with each universal and ball joint of the spanning tree as two or three revolute joints with small bodies
-/// between them. @param model  result of for_simulators()
+/// The model with each universal or ball joint of the spanning tree replaced by two or three revolute joints with small
+/// bodies between them. @param model  result of for_simulators()
 MultibodyModel with_revolute_joints(const MultibodyModel& model);
-/// The model with each universal joint that closes a loop as a small body between two revolute joints, the first of
-/// which is in the spanning tree. @param model  result of for_simulators()
+/// The model with each universal joint that closes a loop replaced by a small body between two revolute joints, the
+/// first of which belongs to the spanning tree. @param model  result of for_simulators()
 MultibodyModel without_universal_closures(const MultibodyModel& model);
 
 /// Origin of the frame of a body: the point of its joint in the spanning tree.
 Eigen::Vector3d frame_origin(const MultibodyModel& model, std::size_t body);
-/// Title, pose and notes as comments.
+/// Title, reference pose and notes of the model as comments.
 std::string model_comments(const MultibodyModel& model, const std::string& title);
 /// Roll, pitch and yaw of a rotation: the angles about the fixed axes x, y and z, in this order.
 Eigen::Vector3d roll_pitch_yaw(const Eigen::Matrix3d& R);
-/// The same for the rotation that turns z into a direction.
+/// Roll, pitch and yaw of a rotation that maps the z axis to the given direction.
 Eigen::Vector3d angles_of_z(const Eigen::Vector3d& direction);
 
 }  // namespace pkm

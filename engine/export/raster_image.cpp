@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-constexpr int kScanLinesPerPixel = 4;  // the coverage of a filled area is computed on these and averaged
+constexpr int kScanLinesPerPixel = 4;  // coverage is averaged over these scan lines
 
 double centre(std::size_t pixel) { return static_cast<double>(pixel) + 0.5; }
 

@@ -1,8 +1,9 @@
 // Polygon mesh of the feasible set of a workspace over two coordinates, by marching squares.
 //
-// Every grid node is classified as feasible or infeasible. Squares with four feasible nodes are polygons of the mesh;
-// of the squares on the boundary, the part between the feasible nodes and the edges' points where the minimum margin of
-// the pose changes sign, which are located by bisection. Features smaller than a grid square can be missed.
+// Every grid node is classified as feasible or infeasible. A square with four feasible nodes is a polygon of the mesh.
+// A square on the boundary contributes the polygon of its feasible nodes and of the points on its edges at which the
+// minimum margin of the pose changes sign; these points are located by bisection. Features smaller than a grid square
+// can be missed.
 #pragma once
 
 #include <array>
@@ -26,10 +27,10 @@ struct SliceMesh {
 };
 
 /// Evaluates the margins in parallel on the caller's threads; the result does not depend on their number.
-/// @param workspace  over two swept coordinates; gives their ranges and the values of the fixed coordinates
+/// @param workspace  has two swept coordinates; gives their ranges and the values of the fixed coordinates
 SliceMesh slice_mesh(const WorkspaceFields& workspace, const PoseMargin& margin);
 
-/// The edges that belong to one polygon only; the mesh is on their left.
+/// The edges that belong to exactly one polygon, directed so that the mesh is on their left.
 std::vector<PathEdge> boundary_edges(const std::vector<MeshPolygon>& polygons);
 
 /// Joins directed edges to paths: first the open paths, then the closed ones.

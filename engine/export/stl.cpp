@@ -27,7 +27,7 @@ std::string stl_file(const Isosurface& surface, const std::string& title) {
                &r = surface.vertices[triangle[2]];
     const Point3<double> normal = cross(difference(q, p), difference(r, p));
     const double area = std::sqrt(dot(normal, normal));
-    if (!(area > 0)) continue;  // degenerate triangles on edges of the box, where vertices coincide
+    if (!(area > 0)) continue;  // degenerate triangles on edges of the box, where vertices coincide, are omitted
     append(facets, {normal[0] / area, normal[1] / area, normal[2] / area});
     for (const auto& vertex : {p, q, r}) append(facets, vertex);
     facets.append(2, '\0');  // attribute byte count

@@ -6,8 +6,8 @@
 //   best.csv         the best design, and the rounded design and the baseline if the study has them
 //   front.csv        the Pareto fronts, for several objectives
 //
-// Numbers are SI in full precision; a column's unit is in its header, "a [m]". `evaluation` counts each stage's rows
-// from 0, as the study file does, `stage` and `individual` from 1, `generation` from 0.
+// Numbers are in SI units with full precision; the header of a column contains its unit, "a [m]". `evaluation` counts
+// the rows of each stage from 0, as in the study file; `stage` and `individual` count from 1, `generation` from 0.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct NamedTable {
   CsvTable table;
 };
 
-/// best.csv is omitted while nothing has been evaluated, front.csv if no stage has a front.
+/// best.csv is omitted if nothing has been evaluated yet, front.csv if no stage has a front.
 std::vector<NamedTable> study_tables(const StudyContents& contents);
 
 }  // namespace pkm

@@ -13,7 +13,7 @@ namespace pkm {
 CsvTable workspace_table(const WorkspaceFields& workspace);
 
 /// One row per feasible cell: the coordinates of its centre, the coupling index of each joint, and the largest of them.
-/// @param workspace  result with poses and the field kCouplingIndex
+/// @param workspace  its result has poses and the field kCouplingIndex
 CsvTable coupling_table(const MechanismInfo& info, const WorkspaceResult<double>& workspace);
 
 /// One row per sample; undefined values are empty cells.

@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kCoincidence = 1e-9;  // closer points coincide; relative to the size of the mechanism
+constexpr double kCoincidence = 1e-9;  // distance below which points coincide, relative to the size of the mechanism
 
 using Position = Point3<double>;
 
@@ -54,7 +54,7 @@ std::vector<TreeLink> tree_links(const std::vector<PlacedLink>& links) {
   return found;
 }
 
-/// An end of a capsule, and whether it has the same position at another pose.
+/// An end of a capsule, and whether it has the same position at the other pose.
 struct End {
   Position point;
   bool is_stationary;
@@ -72,16 +72,16 @@ std::vector<End> ends_of(const std::vector<PlacedLink>& links, const std::vector
   return ends;
 }
 
-/// Whether a link is a slide: it lies on the frame completely.
+/// Whether a link is a slide, i.e. lies completely on the frame.
 bool is_slide(const TreeLink& frame, const TreeLink& body, double tolerance) {
   return std::ranges::all_of(body.shape, [&](const auto& part) {
     return frame.contains(part.axis.from, tolerance) && frame.contains(part.axis.to, tolerance);
   });
 }
 
-/// Finds the junctions: two links are joined where an end of one lies on the other, and a link is joined to the frame
-/// at a stationary end. If several links share a point, one of them is joined to all others: the first slide or point,
-/// else the first link. Two links have at most one junction.
+/// Finds the junctions. Two links are joined where an end of one lies on the other; a link is joined to the frame at a
+/// stationary end. If several links share a point, one of them is joined to all others: the first slide or point if
+/// there is one, otherwise the first link. Two links have at most one junction.
 std::vector<Junction> junctions_of(const std::vector<TreeLink>& links, const std::vector<End>& ends, double tolerance) {
   std::vector<Junction> found;
   const auto joined = [&found](std::size_t a, std::size_t b) {

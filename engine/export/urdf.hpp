@@ -9,13 +9,13 @@
 
 namespace pkm {
 
-/// Contents of a URDF file: the links with their capsules as visuals, and a joint where two links share a point. All
-/// joints are fixed: the capsules show where links are connected, but not how they move. A breadth-first search from
-/// the frame selects the joints of the tree. Each further connection, which closes a loop, is listed in a comment with
-/// the point where the loop is cut. Links without a connection to the frame are attached to it, and listed in a
+/// Contents of a URDF file: the links with their capsules as visuals, and a joint wherever two links share a point. All
+/// joints are fixed: the file shows where links are connected, but not how they move. The joints of the tree are found
+/// by a breadth-first search from the frame. Every other connection closes a loop; a comment lists these connections
+/// with the points where the loops are cut. Links without a connection to the frame are attached to it, and listed in a
 /// comment.
-/// @param moved  the same links at another pose: ends that do not move are taken as connected to the frame; empty: only
-///               ends on the capsules of the frame are
+/// @param moved  the same links at another pose, or empty. Ends that do not move count as connected to the frame; if
+///               empty, only ends that lie on the capsules of the frame do
 /// @param name   name of the robot
 /// @param title  text of a comment
 std::string links_urdf(const std::vector<PlacedLink>& links, const std::vector<PlacedLink>& moved,

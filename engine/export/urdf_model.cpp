@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 using Type = MultibodyModel::JointType;
 
-constexpr double kUnlimited = 1e6;  // effort, speed or travel where URDF requires a number and none is known
+constexpr double kUnlimited = 1e6;  // effort, speed or travel where URDF requires a number but none is known
 
 std::string urdf_origin(const Vector3d& xyz, const Vector3d& rpy = Vector3d::Zero()) {
   return "<origin" + xml_attribute("xyz", xyz) + xml_attribute("rpy", rpy) + "/>";
@@ -132,7 +132,7 @@ std::string loop_closures_yaml(const MultibodyModel& of_mechanism, const std::st
     for (auto at = numbers.find(' '); at != std::string::npos; at = numbers.find(' ', at + 2)) numbers.insert(at, ",");
     return '[' + numbers + ']';
   };
-  const auto quoted = [](const std::string& name) { return '"' + name + '"'; };  // a plain y or no may be a truth value
+  const auto quoted = [](const std::string& name) { return '"' + name + '"'; };  // unquoted, y and no are truth values
   std::string text =
       "# Loop closures of " + urdf_file + ": " + title +
       ". Units are m and rad.\n# Points and axes are in the frame of the link. A drive's position in the "

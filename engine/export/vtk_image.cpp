@@ -24,7 +24,7 @@ std::vector<double> first_axis_fastest(const WorkspaceField& field, const std::a
 std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, std::span<const double> parameters,
                       const std::string& title) {
   const std::string root = "/VTKHDF", points = root + "/PointData";
-  const std::string notes = "/pkmopt";  // not FieldData, which VTK 9.1 reads as point arrays
+  const std::string notes = "/pkmopt";  // name of the group; VTK 9.1 would read FieldData as point arrays
   const VoxelGrid grid = workspace.grid();
   std::vector<std::int64_t> extent;
   std::vector<double> origin;

@@ -16,7 +16,7 @@ std::string element(const std::string& tag, const std::string& attributes, const
   return text + "</" + tag + ">\n";
 }
 
-/// A VTK array of strings: the codes of their characters, each string terminated by 0.
+/// A VTK array of strings: their character codes, with a 0 after each string.
 std::string texts(const std::string& name, const std::vector<std::string>& list) {
   const std::string attributes =
       "type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"" + std::to_string(list.size()) + '"';

@@ -5,7 +5,7 @@
 namespace pkm::code {
 namespace in_cpp {
 
-/// Declaration of an array, whose name may end with the size of an array of arrays: "poses[20]".
+/// Declaration of an array. A name with a size declares an array of arrays: "poses[20]".
 std::string array(const std::string& name, std::size_t size) {
   return "std::array<real, " + std::to_string(size) + "> " + name;
 }

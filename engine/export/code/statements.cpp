@@ -9,9 +9,9 @@ namespace {
 using expression::Entry;
 using expression::Node;
 
-constexpr std::size_t kMaxLength = 60;  // of an expression that is written where it is used
+constexpr std::size_t kMaxLength = 60;  // maximum length of an expression that is written inline
 
-/// Whether the parentheses at both ends belong together.
+/// Whether the first and the last character are a matching pair of parentheses.
 bool is_enclosed(const std::string& text) {
   if (text.size() < 2 || text.front() != '(' || text.back() != ')') return false;
   int depth = 0;
@@ -24,7 +24,7 @@ bool is_enclosed(const std::string& text) {
 
 struct Statements {
   std::vector<std::string> definitions;
-  std::vector<std::string> values;  ///< of the outputs, one output after the other
+  std::vector<std::string> values;  ///< values of all outputs, concatenated
 };
 
 Statements statements_of(const Module& module, const Function& function, const Syntax& syntax) {

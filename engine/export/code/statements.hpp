@@ -17,20 +17,20 @@ namespace pkm::code {
 struct Syntax {
   std::string (*number)(double value, bool single_precision);
   std::string (*input)(const InputPlace& place);
-  /// The operation on operands that are names, numbers or in parentheses. An expression with operators is in
-  /// parentheses.
+  /// An operation applied to operands, each of which is a name, a number or an expression in parentheses. If the result
+  /// contains operators, it is in parentheses, too.
   std::string (*call)(const std::string& operation, const std::vector<std::string>& operands);
   /// The definition of a constant: "const real t1 = a + b;".
   std::string (*define)(const std::string& name, const std::string& expression);
 };
 
-/// The lines of the definitions, and then those of assign() for each output.
-/// @param indent  before each definition
-/// @param assign  assign(output, values): the lines that assign the values of an output
+/// The lines that define the constants, followed by the lines that assign() gives for each output.
+/// @param indent  indentation of the definitions
+/// @param assign  assign(output, values) gives the lines that assign `values` to an output
 std::string body_of(const Module& module, const Function& function, const Syntax& syntax, const std::string& indent,
                     const std::function<std::string(const Output&, const std::string*)>& assign);
 
-/// A number with the fewest digits that give it back: "0.1", "1e-05".
+/// The shortest decimal text from which the number can be read back exactly: "0.1", "1e-05".
 std::string shortest_number(double value);
 /// The text with every `from` replaced.
 std::string with_replacements(std::string text, const std::string& from, const std::string& to);
