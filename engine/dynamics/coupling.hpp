@@ -52,7 +52,7 @@ typename M::Scalar inertia_condition(const M& M_q) {
     for (int j = 0; j < n; ++j) values(i, j) = value_of(element(i, j));
   if (!values.allFinite()) return S(0.0);
   const Eigen::SelfAdjointEigenSolver<Values> eigen(values);
-  const auto eigenvalue = [&](int which) {  // v^T M v, for the derivatives
+  const auto eigenvalue = [&](int which) {  // v^T M v, whose derivatives are those of the eigenvalue
     S sum(0.0);
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)

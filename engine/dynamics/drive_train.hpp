@@ -34,7 +34,7 @@ struct DriveTrain {
   S direction(const S& speed) const {
     return speed / sqrt(S(speed * speed + slow * slow));
   }
-  /// Friction force, positive against a positive joint speed [N, N m].
+  /// Friction force; a positive value opposes a positive joint speed [N, N m].
   template <class S>
   S friction(const S& speed) const {
     return direction(speed) * coulomb + speed * viscous;

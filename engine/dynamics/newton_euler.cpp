@@ -66,7 +66,7 @@ LinearEquations equations(const NewtonEuler& system) {
   const auto rows = static_cast<Index>(6 * system.bodies.size());
   const Index unknowns = columns.empty() ? 0 : columns.back().couples + columns.back().couple_count;
   LinearEquations e{Eigen::MatrixXd::Zero(rows, unknowns), Eigen::VectorXd(rows)};
-  // adds the columns of a joint to the rows of a body; sign: -1 for the body on which the opposite force and couple act
+  // adds the columns of a joint to the rows of a body; sign is -1 for the body on which the opposite loads act
   const auto add_joint = [&](const JointColumns& at, std::size_t body, double sign) {
     const auto row = static_cast<Index>(6 * body);
     const Eigen::Vector3d r = eigen(at.joint.point - system.bodies[body].centre) * sign;

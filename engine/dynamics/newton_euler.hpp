@@ -28,19 +28,19 @@ namespace pkm {
 struct Actuator {
   std::size_t joint;       ///< index among the mechanism's actuated joints
   Vector<double, 3> axis;  ///< unit vector of the positive direction
-  /// Additional force for a slide between actuator and joint that is not among the bodies: its mass times
-  /// (acceleration - g) along the axis [N].
+  /// Additional drive force for a slide between the actuator and the joint that is not modelled as a body: the mass of
+  /// the slide times (acceleration - g) along the axis [N].
   double on_slide = 0;
-  bool turns = false;  ///< rotary: acts on the couple, not on the force
+  bool turns = false;  ///< true for a rotary actuator, which exerts a couple instead of a force
 };
 
 /// A joint between two bodies, or a body and the ground. It transmits forces in all directions.
 struct Joint {
   std::string name;
-  Vector<double, 3> point;          ///< [m]
-  std::size_t on;                   ///< index of the body that the force and the couples act on
-  std::optional<std::size_t> from;  ///< index of the other body, which carries the opposites; std::nullopt: the ground
-  std::vector<Vector<double, 3>> couples;  ///< unit vectors of the couples that it can transmit
+  Vector<double, 3> point;                 ///< [m]
+  std::size_t on;                          ///< index of the body that the force and the couples act on
+  std::optional<std::size_t> from;         ///< index of the body on which the opposites act; std::nullopt: the ground
+  std::vector<Vector<double, 3>> couples;  ///< unit vectors of the couples that the joint transmits
   std::optional<Actuator> actuator;
 };
 
@@ -61,7 +61,7 @@ LinearEquations equations(const NewtonEuler& system);
 /// Minimum-norm solution, and the null space of the equations.
 struct MinNormSolution {
   Eigen::VectorXd x;           ///< the unknowns in column order [N, N m]
-  Eigen::MatrixXd null_space;  ///< orthonormal basis in columns; forces in 1 N, couples in couple_length() N m
+  Eigen::MatrixXd null_space;  ///< orthonormal columns; units: forces 1 N, couples couple_length() N m
   int rank = 0;
 };
 

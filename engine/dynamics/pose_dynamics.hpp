@@ -41,7 +41,7 @@ struct MotionState {
 /// The equations of motion in the coordinates of the platform.
 template <class S>
 struct PoseDynamics {
-  bool assembles = false;  ///< false: the pose does not assemble, and nothing below is set
+  bool assembles = false;  ///< false: the mechanism cannot be assembled at the pose, and nothing below is set
   AxisVector<S> q;         ///< joint positions [m, rad]
   AxisMatrix<S> J;         ///< joints x coordinates: qdot = J Xdot
   AxisVector<S> J_rate_X;  ///< Jdot Xdot

@@ -116,7 +116,7 @@ class Integrator {
     const AxisVector<double> friction = setup_.friction ? setup_.friction(d.J * velocity) : tau * 0.0;
     return {tau - friction, friction};
   }
-  /// Evaluates a stage. @return false if the pose does not assemble
+  /// Evaluates a stage. @return false if the mechanism cannot be assembled at the pose
   bool evaluate(double time, const AxisVector<double>& pose, const AxisVector<double>& velocity, Stage& stage) const {
     const PoseDynamics<double> d = setup_.dynamics({pose, velocity});
     if (!d.assembles) return false;

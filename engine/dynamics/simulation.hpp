@@ -1,10 +1,10 @@
 // Simulation (forward dynamics over time): motion of the platform under given actuator forces, gravity and a wrench.
 //
 // The equations of motion are integrated by the three-stage Gauss method, an implicit Runge-Kutta method of order 6. It
-// is symmetric (integrating backwards in time returns to the initial state), therefore the energy does not drift as
+// is symmetric (integrating backwards in time returns to the initial state), so the energy does not drift as it does
 // with explicit methods. The work of the actuators, of friction, of gravity and of the wrench is integrated by the same
-// quadrature. The difference between the kinetic energy and the sum of these works measures the integration error; the
-// simulation stops with a message if it exceeds the tolerance.
+// quadrature. The difference between the change in kinetic energy and the sum of these works measures the integration
+// error; the simulation stops with a message if it exceeds the tolerance.
 //
 // Reference: Hairer, Norsett, Wanner, "Solving Ordinary Differential Equations I", section II.7, table 7.4.
 #pragma once
@@ -30,7 +30,8 @@ struct SimulationSetup {
   /// The equations of motion of the mechanism.
   std::function<PoseDynamics<double>(const MotionState<double>&)> dynamics;
   std::function<AxisVector<double>(double time)> forces;  ///< actuator forces tau [N, N m]
-  /// Friction forces as a function of the joint speeds, positive against a positive speed [N, N m]; empty: no friction.
+  /// Friction forces as a function of the joint speeds; positive values oppose positive speeds [N, N m]. Empty: no
+  /// friction.
   std::function<AxisVector<double>(const AxisVector<double>& speeds)> friction;
   Wrench<double> wrench;  ///< constant load on the platform
   /// Returns "" or a sentence why the simulation stops at a pose, for example a violated limit; empty: no such check.

@@ -8,7 +8,7 @@ namespace pkm {
 
 std::vector<expression::Node> Motion::write(TimeGraph& to) const {
   std::vector<expression::Node> pose = write_(to);
-  for (expression::Node& node : pose)  // constants become inputs, as constant folding would round
+  for (expression::Node& node : pose)  // constants become inputs, because constant folding would round
     if (to.graph[node].is_number()) node = to.input(to.graph[node].number).node();
   return pose;
 }

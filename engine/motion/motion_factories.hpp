@@ -32,7 +32,7 @@ struct PeakRates {
 };
 
 /// The shortest duration [s] of a move that satisfies the limits; 0 if no limited coordinate moves.
-/// @param limits  limits of the position apply to the vector of all coordinates that are lengths
+/// @param limits  linear limits apply to the vector of all coordinates that are lengths
 double min_move_duration(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
                          const AxisVector<double>& to, const PeakRates& limits);
 
@@ -43,28 +43,28 @@ struct SpaceAxes {
 /// Finds the lengths named x, y, z, and the first angle as `turn`.
 SpaceAxes space_axes(std::span<const AxisInfo> coordinates);
 
-/// Harmonic oscillation x = x0 + A sin wt, y = y0 + A cos wt, z = z0 + A sin wt of those coordinates that the platform
-/// has, the others being constant; w = 2 pi / period. Source: Transactions of the Chinese Society for Agricultural
-/// Machinery 54 (9), 2023, 448-458, eq 35.
+/// Harmonic oscillation x = x0 + A sin wt, y = y0 + A cos wt, z = z0 + A sin wt with w = 2 pi / period. Coordinates
+/// that the platform lacks are omitted; all other coordinates are constant. Source: Transactions of the Chinese Society
+/// for Agricultural Machinery 54 (9), 2023, 448-458, eq 35.
 std::shared_ptr<const Motion> oscillation(const SpaceAxes& axes, const AxisVector<double>& centre, double amplitude,
                                           double period, double cycles);
 
 /// Pick-and-place cycle: lift, move along a horizontal line and rotate, lower. With t_h = T_v - o, t_d = t_h + T_h - o,
 ///   z = z0 + Q(t, T_v, lift) - Q(t - t_d, T_v, lift)
 ///   (x, y) = (x0, y0) + (cos d, sin d) Q(t - t_h, T_h, reach),   rotation = rotation0 + Q(t - t_h, T_h, turn)
-/// where Q(t, T, s) is the time law: it increases from 0 to s for t from 0 to T. One way takes t_d + T_v. Axes that the
-/// cycle does not move may be missing.
+/// where Q(t, T, s) is the time law: it increases from 0 to s for t from 0 to T. One direction takes the time t_d +
+/// T_v. Coordinates that the cycle does not move may be missing.
 struct PickAndPlace {
   SpaceAxes axes;
   AxisVector<double> start;
   double lift = 0.025, reach = 0.305;  ///< [m]
   double lift_time = 0.1;              ///< T_v [s], > 0
   double reach_time = 0.3;             ///< T_h [s], > 0
-  double overlap = 0;                  ///< o [s], in [0, min(T_v, T_h)]; 0: it stops at the corners
+  double overlap = 0;                  ///< o [s], in [0, min(T_v, T_h)]; 0: rest at both corners of the path
   double direction = 0;                ///< d [rad], from x towards y
   double turn = 0;                     ///< [rad]
-  double wait = 0;                     ///< pause at the end of each way [s]
-  bool back = false;                   ///< whole cycle: returns the same way
+  double wait = 0;                     ///< pause after the movement in each direction [s]
+  bool back = false;                   ///< true: the cycle includes the return along the same path
   TimeLaw law = TimeLaw::quintic;
 };
 std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);

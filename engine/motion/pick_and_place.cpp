@@ -5,9 +5,9 @@
 namespace pkm {
 namespace {
 
-/// A sample of one way of the cycle.
-/// @param t      time since the way began
-/// @param along  horizontal displacement and rotation over the whole way
+/// A sample of the forward or the return movement of a cycle.
+/// @param t      time since the movement began
+/// @param along  horizontal displacement and rotation over the whole movement
 MotionSample sample_way(const PickAndPlace& cycle, double time, double t, const AxisVector<double>& from,
                         const AxisVector<double>& along) {
   const double reach_begins = cycle.lift_time - cycle.overlap;                     // t_h
@@ -24,8 +24,8 @@ MotionSample sample_way(const PickAndPlace& cycle, double time, double t, const 
   return sample;
 }
 
-/// One way of the cycle as expressions of the time.
-/// @param begin  time at which the way begins
+/// The forward or the return movement of a cycle as expressions of the time.
+/// @param begin  time at which the movement begins
 /// @return height above the start, and fraction of the displacement `along`
 std::array<expression::Term, 2> write_way(const PickAndPlace& cycle, TimeGraph& to, const Interval& begin) {
   const Interval reach_begins = begin + Interval(cycle.lift_time) - Interval(cycle.overlap);

@@ -15,7 +15,7 @@ struct TimeGraph {
   std::size_t position;           ///< index of the time among the inputs
   expression::Term time;
 
-  /// @param known  values of the inputs that exist in the graph; the values of time and constants are appended
+  /// @param known  values of the existing inputs of the graph; the values of the time and of constants are appended
   TimeGraph(expression::Graph& to, std::vector<Interval>& known)
       : graph(to), inputs(known), position(known.size()), time(input(0.0)) {}
 
