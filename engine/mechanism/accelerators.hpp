@@ -10,18 +10,18 @@
 
 namespace pkm {
 
-/// Columns in closed form, for the plans that it serves.
+/// Workspace analysis by columns in closed form, for the plans that it supports.
 class ColumnAccelerator {
  public:
   virtual ~ColumnAccelerator() = default;
-  /// @return false if the plan requires the generic engine. May throw std::invalid_argument with one sentence if the
-  /// generic engine does not support the plan either.
+  /// @return false if the generic engine has to analyse the plan. May throw std::invalid_argument with one sentence if
+  /// the generic engine does not support the plan either.
   virtual bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest& request) const = 0;
   virtual std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                             const FieldRequest& request) const = 0;
 };
 
-/// Feasible voxels in closed form, for the plans that it serves.
+/// Workspace analysis by voxels in closed form, for the plans that it supports.
 class VoxelAccelerator {
  public:
   virtual ~VoxelAccelerator() = default;
@@ -30,8 +30,8 @@ class VoxelAccelerator {
                                                         const FieldRequest& request) const = 0;
 };
 
-/// @return true if a plan sweeps the coordinates `default_swept`: the plan either names them, or it names no swept
-/// coordinates and fixes none of `default_swept`
+/// @return true if a plan sweeps the coordinates `default_swept`, either because it names them, or because it names no
+/// swept coordinates and fixes none of `default_swept`
 inline bool sweeps(const WorkspacePlan& plan, const std::vector<int>& default_swept) {
   if (!plan.swept.empty()) return std::ranges::is_permutation(plan.swept, default_swept);
   return std::ranges::none_of(plan.fixed, [&](const FixedCoordinate& fixed) {
@@ -39,11 +39,11 @@ inline bool sweeps(const WorkspacePlan& plan, const std::vector<int>& default_sw
   });
 }
 
-/// The accelerators of a mechanism; null if there is none of a kind.
+/// The accelerators of a mechanism; a null pointer for each kind that it does not have.
 struct Accelerators {
   std::shared_ptr<const ColumnAccelerator> columns = {};
   std::shared_ptr<const VoxelAccelerator> voxels = {};
-  std::shared_ptr<const ForwardKinematics> forward = {};  ///< finds every assembly mode
+  std::shared_ptr<const ForwardKinematics> forward = {};  ///< finds all assembly modes
 };
 
 }  // namespace pkm

@@ -1,5 +1,5 @@
-// Availability of pose quantities for a mechanism: the conditioning needs consistent units and enough drives, the
-// quantities of the joint-space inertia need dynamics.
+// Availability of pose quantities for a mechanism. The conditioning requires consistent units and enough drives;
+// quantities derived from the joint-space inertia require dynamics.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"

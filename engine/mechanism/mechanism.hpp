@@ -20,32 +20,32 @@
 
 namespace pkm {
 
-/// LimitInfo::group of limits of pose quantities, which a study adds: "LTI_min".
+/// LimitInfo::group of the limits that a study sets for pose quantities: "LTI_min".
 inline constexpr const char* kQuantityLimit = "quantity";
 
-/// Description of a limit: the threshold of a constraint of poses.
+/// Description of a limit, i.e. of the threshold of a constraint on poses.
 struct LimitInfo {
   std::string name;  ///< "beta_max"
   std::string unit;
-  double inactive = 0;  ///< default threshold, which excludes no pose. Of a limit with the name of a parameter: the
-                        ///< nominal value; unless a threshold is given, the design's parameter is the threshold
+  double inactive = 0;  ///< default threshold, which excludes no pose. If a parameter has the same name: its nominal
+                        ///< value; unless a threshold is given, the parameter's value in the design is the threshold
   double lower = 0;     ///< range of thresholds that a study may give
   double upper = 0;
-  std::string group;       ///< the constraint that owns it: "interference", "singularity-margin" or "clearance"; or
-                           ///< kQuantityLimit
+  std::string group;       ///< the constraint to which it belongs: "interference", "singularity-margin" or "clearance";
+                           ///< or kQuantityLimit
   std::string derivation;  ///< formula of the threshold from the parameters; "" if there is none
   std::string meaning;
 };
 
-/// One to three coordinates over which a workspace is analysed; the others are fixed.
+/// A choice of the one to three coordinates that a workspace analysis sweeps; the others are fixed.
 struct Sweep {
-  std::vector<int> swept;   ///< in the order of the axes of a voxel map, outermost first
-  std::vector<int> fixed;   ///< the others, in their order
-  int column = 0;           ///< swept coordinate along which columns run; the others, in order, are integrated
-  bool integrates = false;  ///< FixedCoordinate::Kind::integrated is available
+  std::vector<int> swept;   ///< in the order of the axes of a voxel map; the first axis varies slowest
+  std::vector<int> fixed;   ///< all other coordinates, in ascending order
+  int column = 0;           ///< swept coordinate along which columns run; the others are outer coordinates
+  bool integrates = false;  ///< true if fixed coordinates can be integrated over (FixedCoordinate::Kind::integrated)
 };
 
-/// A value beside the pose on which quantities depend, such as the angle of an input shaft.
+/// A value other than the pose on which quantities depend, such as the angle of an input shaft.
 struct InputInfo {
   std::string name, unit, meaning;
   double value = 0;  ///< default
@@ -61,7 +61,7 @@ struct QuantityInfo {
   std::shared_ptr<const PoseQuantity> of_pose = nullptr;
 };
 
-/// A quantity that other mechanisms have.
+/// A quantity that this mechanism lacks, although other mechanisms have it.
 struct UndefinedQuantity {
   std::string name, why;  ///< "accuracy", "[accuracy] joint_error is missing"
 };
@@ -71,7 +71,7 @@ struct MechanismInfo {
   std::string title;   ///< one line
   std::string source;  ///< the paper
   std::vector<Parameter> parameters;
-  std::vector<AxisInfo> coordinates;  ///< of the pose, 1 to kMaxCoordinates: translations and rotations
+  std::vector<AxisInfo> coordinates;  ///< pose coordinates, translations and rotations; 1 to kMaxCoordinates
   std::vector<AxisInfo> joints;       ///< actuated joints, 1 to kMaxJoints
   std::vector<std::string> modes;     ///< working modes; the first is the default
   std::vector<std::string> branches;  ///< signs that a mode may require after a "/"; the first is the default
@@ -81,7 +81,7 @@ struct MechanismInfo {
   std::vector<QuantityInfo> quantities;
   std::vector<UndefinedQuantity> undefined_quantities{};
   std::string characteristic_length;      ///< formula of its default; "" if the conditioning is undefined
-  std::vector<std::string> closed_forms;  ///< by joint: method of the inverse kinematics, for people; or empty
+  std::vector<std::string> closed_forms;  ///< text for each joint: method of the inverse kinematics; may be empty
 };
 
 class Mechanism {
@@ -89,8 +89,8 @@ class Mechanism {
   virtual ~Mechanism() = default;
   virtual const MechanismInfo& info() const = 0;
 
-  /// Checks that the parameters describe a mechanism. By default each has to be within its range.
-  /// @return the reason if they do not
+  /// Checks that the parameters describe a mechanism. By default, each parameter has to be within its range.
+  /// @return the reason if the parameters are refused
   virtual Unsupported refuse(std::span<const double> parameters) const;
   /// Inverse kinematics: joint coordinates, Jacobian, conditioning and named margins.
   /// @param mode  one of MechanismInfo::modes
@@ -99,14 +99,16 @@ class Mechanism {
   /// Ranges of all coordinates that contain the workspace, for plans without a box [m, rad]; std::nullopt: unknown.
   virtual std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double>) const { return {}; }
   /// Range outside of which no value of a fixed coordinate has feasible poses [m or rad]; std::nullopt: unknown. By
-  /// default from ranges(). Over a box of parameters, both ends have their minimum and maximum at vertices of the box.
+  /// default, derived from ranges(). Over a box of parameters, both ends of the range attain their minimum and maximum
+  /// at vertices of the box.
   /// @param coordinate  fixed coordinate of one of the sweeps
   virtual std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const;
   /// Default value of a fixed coordinate, for FixedCoordinate::Kind::default_value [m or rad]; std::nullopt: none.
   /// @param coordinate  fixed coordinate of one of the sweeps
   virtual std::optional<double> default_value(std::span<const double>, int /*coordinate*/) const { return {}; }
-  /// Computes the effective thresholds of a design, in the order of MechanismInfo::limits: by default the given ones,
-  /// otherwise the inactive ones. Mechanisms with derived limits override both overloads.
+  /// Computes the effective thresholds of a design, in the order of MechanismInfo::limits. By default, these are the
+  /// given thresholds, and the inactive ones for limits that are not given. Mechanisms with derived limits override
+  /// both overloads.
   virtual void thresholds(std::span<const double> parameters, const LimitSpec& limits, std::span<double> values) const;
   virtual void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const;
   /// The values of MechanismInfo::quantities at a pose and motion, NaN where they are undefined.
@@ -135,12 +137,12 @@ class Mechanism {
   virtual const RigorousBounds* bounds() const { return nullptr; }
 };
 
-/// Why coupling indices, joint-space inertia and drive forces are undefined: the mechanism has no masses, or a Jacobian
-/// that is not square and therefore has no inverse. Empty if they are defined.
+/// Why coupling indices, joint-space inertia and drive forces are undefined: the mechanism has no masses, or its
+/// Jacobian is not square and therefore has no inverse. Empty if they are defined.
 Unsupported why_no_joint_forces(const Mechanism& mechanism);
 
-/// The sweep of a plan: the first one over the coordinates that the plan sweeps, if it names them, with all of its
-/// fixed coordinates fixed. Throws std::invalid_argument if the mechanism has no such sweep.
+/// The sweep of a plan: the first sweep of the mechanism that fixes all fixed coordinates of the plan and, if the plan
+/// names swept coordinates, sweeps exactly these. Throws std::invalid_argument if the mechanism has no such sweep.
 const Sweep& sweep_of(const MechanismInfo& info, const WorkspacePlan& plan);
 
 /// Lists every sweep over three, two and one coordinates, in this order.
@@ -150,8 +152,8 @@ std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const st
 /// Index of a working mode by its name, 0 for "". Throws std::invalid_argument if the name is unknown.
 std::size_t mode_index(const MechanismInfo& info, const std::string& name);
 
-/// Value of a fixed coordinate in maps [m or rad]: the plan's value, the first one of a list, otherwise the default
-/// value of the design. Throws std::invalid_argument if there is none.
+/// Value at which maps fix a coordinate [m or rad]: the value in the plan, or the first one if the plan lists several,
+/// otherwise the default value of the design. Throws std::invalid_argument if there is none.
 double fixed_value(const Mechanism& mechanism, std::span<const double> parameters, const WorkspacePlan& plan,
                    int coordinate);
 /// Throws std::invalid_argument: a fixed coordinate has neither a value nor a default value.

@@ -32,30 +32,33 @@ struct MultibodyModel {
   enum class JointType { fixed, prismatic, revolute, universal, ball };
   struct Drive {
     std::size_t joint;                             ///< index among MechanismInfo::joints
-    double position;                               ///< of the joint at the reference pose [m or rad]
-    std::optional<std::array<double, 2>> range{};  ///< of the position
+    double position;                               ///< position of the joint at the reference pose [m or rad]
+    std::optional<std::array<double, 2>> range{};  ///< range of the position
     std::optional<double> peak_force{};            ///< [N or N m]
     double inertia = 0;                            ///< of the drive train, reflected to the joint [kg or kg m^2]
     double viscous = 0, coulomb = 0;               ///< friction at the joint [N s/m or N m s/rad, N or N m]
   };
-  /// Its positive direction is that of the child relative to the parent along or about the axis.
+  /// The joint coordinate is positive if the child has moved relative to the parent in the positive sense along or
+  /// about the axis.
   struct Joint {
     std::string name;
     JointType type;
     std::size_t parent, child;  ///< indices of bodies
     Eigen::Vector3d point;
-    std::vector<Eigen::Vector3d> axes{};  ///< unit vectors: one, or for a universal joint that on the parent and the
-                                          ///< one on the child, normal to each other; none if fixed or ball
+    std::vector<Eigen::Vector3d> axes{};  ///< unit vectors. Fixed or ball joint: none; universal joint: the axis on the
+                                          ///< parent and the one on the child, perpendicular to each other; otherwise
+                                          ///< one
     std::optional<Drive> drive{};
   };
 
   std::string name;
   std::vector<Body> bodies;     ///< the first is the base, which does not move
-  std::vector<Joint> tree;      ///< one for each body but the base, whose child it is; parents before their children
+  std::vector<Joint> tree;      ///< for each body except the base, the joint whose child it is; parents before their
+                                ///< children
   std::vector<Joint> closures;  ///< the other joints, none of which has a drive
-  std::size_t platform = 0;     ///< index of the body
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();        ///< of the platform frame
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from the platform frame to the base frame
+  std::size_t platform = 0;     ///< index of the platform among the bodies
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();        ///< origin of the platform frame
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< rotation from the platform frame to the base frame
   std::vector<std::pair<std::string, double>> pose;        ///< the reference pose
   std::vector<std::string> notes;                          ///< sentences on what the model does not represent
 };

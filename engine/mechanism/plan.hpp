@@ -29,8 +29,8 @@ struct FixedCoordinate {
   int coordinate = 0;  ///< index of MechanismInfo::coordinates
   Kind kind = Kind::default_value;
   double value = 0;
-  std::vector<double> values = {};  ///< of Kind::listed
-  std::int64_t cells = 0;           ///< of Kind::integrated with voxels: number of cells
+  std::vector<double> values = {};  ///< values for Kind::listed
+  std::int64_t cells = 0;           ///< number of cells for Kind::integrated in an analysis by voxels
 };
 
 /// Ranges of the swept coordinates, in the order of Sweep::swept; [0, 1] for axes without a swept coordinate.
@@ -51,8 +51,8 @@ struct ColumnOptions {
 
 struct WorkspacePlan {
   std::variant<ColumnOptions, VoxelOptions> method;
-  std::vector<int> swept = {};         ///< all of them, if the study names them; empty: derived from `fixed`
-  std::vector<FixedCoordinate> fixed;  ///< those that the study names; the other ones have their default values
+  std::vector<int> swept = {};         ///< all swept coordinates; empty: they are derived from `fixed`
+  std::vector<FixedCoordinate> fixed;  ///< those that the study names; all others have default values
   LimitSpec limits;
   /// Only the component of the workspace that holds this pose counts: values of the swept coordinates, in the order of
   /// Sweep::swept. std::nullopt: all components count.

@@ -45,31 +45,32 @@ class InertiaFunction {
 
 /// A statistic of a quantity over the workspace, which expressions call `name_statistic`.
 struct NamedStatistic {
-  const char* statistic;  ///< "mean", "min", "max", or "worst": mean over the poses of the worst joint
+  const char* statistic;  ///< "mean", "min", "max", or "worst": mean over the poses of the worst value among the joints
   const char* meaning;
 };
 
 struct PoseQuantity {
   enum class Worst { minimum, maximum };
 
-  const char* name;           ///< name of its field, "inertia_condition"; the objective's name has hyphens instead
+  const char* name;           ///< name of the field, "inertia_condition"; the name of the objective has hyphens instead
+                              ///< of underscores
   const char* unit;           ///< SI, "1"
   const char* meaning;        ///< "inverse condition number of the Jacobian"
   double lower, upper;        ///< range of possible values
   Worst worst;                ///< whether the minimum or the maximum over a workspace is the worst case
-  double value_if_undefined;  ///< value of poses where it is not finite, and of workspaces without poses
+  double value_if_undefined;  ///< value at poses where the quantity is not finite, and for workspaces without poses
   bool per_joint = false;
   std::array<NamedStatistic, 4> results = {};  ///< an entry without a statistic is unused
-  // Source of the values at a pose, one or one per joint: exactly one of the following is set.
+  // The source of the values at a pose (one value, or one for each joint): exactly one of the following members is set.
   void (*from_report)(const PoseReport&, double* values) = nullptr;  ///< from inverse kinematics: J, margins, ...
   InertiaFunction from_inertia = {};                                 ///< from the joint-space inertia M_q
   std::optional<std::size_t> formula = {};                           ///< index among MechanismInfo::quantities
 
-  /// @return true if it needs dynamics and a working mode
+  /// @return true if the quantity requires dynamics and a working mode
   bool needs_inertia() const { return !from_report && !formula; }
-  /// @return true if it needs a Jacobian and may depend on a characteristic length
+  /// @return true if the quantity requires a Jacobian and may depend on a characteristic length
   bool needs_report() const { return from_report != nullptr; }
-  /// Evaluates a quantity that does not need inertia.
+  /// Evaluates a quantity that does not require the joint-space inertia.
   void evaluate(const PoseReport& report, double* values) const {
     if (formula)
       *values = report.quantities[*formula];

@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kRounding = 1e-12;  // relative; couples are compared with forces at a lever arm of 1 m
+constexpr double kRounding = 1e-12;  // relative to the other load, with a lever arm of 1 m between forces and couples
 
 /// Load of the joint with index `joint`.
 /// @param kind  &JointReaction::force or &JointReaction::couple

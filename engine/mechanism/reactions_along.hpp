@@ -16,8 +16,8 @@ namespace pkm {
 void add_reactions(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
                    const Wrench<double>& wrench, Trajectory& trajectory);
 
-/// Magnitude of a joint's force or couple over the samples, from the components that are determined at every sample.
-/// Zero if it is a rounding error relative to the joint's couple or force.
+/// Magnitude of a joint's force or couple over the samples, computed from the components that are determined at every
+/// sample. A force or couple that is only a rounding error compared with the other one is set to zero.
 struct LoadSummary {
   std::array<bool, 3> determined = {true, true, true};  ///< along x, y, z
   double peak = 0, rms = 0;                             ///< maximum, and root of the mean square [N, N m]

@@ -13,9 +13,10 @@
 
 namespace pkm {
 
-/// One sample. Values that do not exist (the pose cannot be assembled, there are no masses) are empty. If J is singular
-/// to working precision (engine/geometry/singular.hpp), no forces produce the motion: the sample is infeasible and has
-/// no forces. The forces of redundant drives are not unique: samples have joint speeds, but no forces.
+/// One sample. Values that do not exist (because the mechanism cannot be assembled at the pose, or has no masses) are
+/// empty. If J is singular to working precision (engine/geometry/singular.hpp), no forces produce the motion: the
+/// sample is infeasible and has no forces. With redundant drives the forces are not unique: the sample has joint
+/// speeds, but no forces.
 struct TrajectoryPoint {
   MotionSample motion;
   bool feasible = false;
@@ -28,7 +29,7 @@ struct TrajectoryPoint {
   std::optional<Reactions> reactions;                       ///< reactions in the joints, set by add_reactions()
 };
 
-/// Statistics by joint over all samples that have the value.
+/// Statistics for each joint, over all samples at which the value exists.
 struct TrajectorySummary {
   std::size_t infeasible = 0;                    ///< number of infeasible samples
   std::optional<AxisVector<double>> peak_speed;  ///< maximum |qdot| [m/s, rad/s]; empty if no sample has speeds
@@ -44,13 +45,13 @@ struct TrajectorySummary {
 
 struct Trajectory {
   double duration = 0;
-  bool periodic = false;  ///< is_periodic(): energies are those of one cycle
+  bool periodic = false;  ///< is_periodic() holds, and the energies are those of one cycle
   std::vector<TrajectoryPoint> points;
   TrajectorySummary summary;
 };
 
 /// Computes `count` >= 2 samples at equidistant times, including the start and the end of the motion. Joint speeds and
-/// accelerations need dynamics or influence coefficients; they are not computed by differences. Throws
+/// accelerations require dynamics or influence coefficients; they are not approximated by finite differences. Throws
 /// DesignError if a mass is not positive.
 /// @param parameters  all parameters of the design
 /// @param mode        one of MechanismInfo::modes
@@ -59,7 +60,7 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
                               const LimitSpec& limits, const Motion& motion, std::size_t count,
                               const Wrench<double>& wrench = {});
 
-/// Names and values of the quantities of a pose and motion: all but those of the design.
+/// Names and values of the quantities of a pose and motion, i.e. of all quantities except those of the design alone.
 /// @param values  values of MechanismInfo::quantities; may be empty
 NamedValues pose_quantities_of(const MechanismInfo& info, const std::vector<double>& values);
 

@@ -1,5 +1,5 @@
-// Decorator that adds drive trains to a mechanism: the reflected inertia of their rotors enters the equations of
-// motion, everything else is forwarded.
+// Decorator that adds drive trains to a mechanism: the equations of motion include the reflected inertia of their
+// rotors; everything else is forwarded.
 #pragma once
 
 #include <memory>

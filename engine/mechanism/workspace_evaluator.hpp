@@ -12,8 +12,8 @@ namespace pkm {
 
 class GradientEvaluator;
 
-/// Evaluator of a plan. The constructor computes everything that does not depend on the design. Immutable and
-/// thread-safe.
+/// Analyses the workspaces of designs under one plan. The constructor computes everything that does not depend on the
+/// design. Immutable and thread-safe.
 class WorkspaceEvaluator {
  public:
   virtual ~WorkspaceEvaluator() = default;
@@ -29,7 +29,7 @@ class WorkspaceEvaluator {
 class GradientEvaluator {
  public:
   virtual ~GradientEvaluator() = default;
-  /// The same analysis with derivatives by up to four variables. Values are bit-identical to those of
+  /// The same analysis with derivatives with respect to up to four variables. Values are bit-identical to those of
   /// WorkspaceEvaluator::evaluate().
   virtual void evaluate(std::span<const Dual4> parameters, Scratch& scratch, WorkspaceResult<Dual4>& result) const = 0;
 };

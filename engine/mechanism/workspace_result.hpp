@@ -30,9 +30,9 @@ struct WorkspaceResult {
   // One element per feasible sample, if requested; otherwise empty:
   std::vector<S> weight;
   std::vector<Pose<S>> pose;
-  std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;  ///< one vector, or one by joint
+  std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;  ///< one vector, or one for each joint
 
-  /// Values of a quantity by sample; empty if it was not requested.
+  /// Values of a quantity for all samples; empty if it was not requested.
   const std::vector<S>& field(const PoseQuantity& quantity, std::size_t joint = 0) const {
     static const std::vector<S> none;
     const auto found = fields.find(&quantity);

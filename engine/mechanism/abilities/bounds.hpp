@@ -17,14 +17,14 @@ struct BoundsOptions {
   double gap = 1e-2;                ///< target: upper minus lower bound, relative to their mean
   std::size_t max_boxes = 4000000;  ///< stop at this number of boxes
   std::string* proof = nullptr;     ///< receives the text of a proof; null: no proof
-  std::function<bool()> stop = {};  ///< called often, by any thread of the team; returns true to stop
+  std::function<bool()> stop = {};  ///< called often, by any thread; returns true to stop
 };
 
 struct VolumeBounds {
   double lower = 0, upper = 0;
   int innermost = 0;         ///< column coordinate, by index of MechanismInfo::coordinates
-  std::size_t boxes = 0;     ///< number of boxes whose bounds are added up
-  std::size_t examined = 0;  ///< number of boxes examined, bisected ones included
+  std::size_t boxes = 0;     ///< number of boxes whose bounds are summed
+  std::size_t examined = 0;  ///< number of boxes examined, including bisected ones
   bool stopped = false;
 
   double gap() const { return upper > 0 ? 2 * (upper - lower) / (upper + lower) : 0; }
@@ -34,8 +34,8 @@ struct VolumeBounds {
 struct PropertyResult {
   enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
-  std::string detail = {};                ///< the constraint or matrix that fails or is undecided; why not examined
-  std::optional<Pose<double>> pose = {};  ///< a pose where it fails, or near which it is undecided
+  std::string detail = {};                ///< the constraint or matrix that fails or is undecided; not_examined: why
+  std::optional<Pose<double>> pose = {};  ///< a pose at which the property fails, or near which it is undecided
   std::optional<double> time = {};        ///< time of that pose [s], for motions
 };
 
@@ -59,16 +59,16 @@ class RigorousBounds {
   virtual ~RigorousBounds() = default;
   /// Throws std::invalid_argument with one sentence if the workspace of a plan cannot be bounded.
   virtual void require_bounds(const WorkspacePlan& plan) const = 0;
-  /// Bounds of the workspace volume within the plan's box, otherwise within ranges that contain the workspace.
-  /// Parameters count as exact. Throws std::invalid_argument with one sentence if the plan is not supported.
+  /// Bounds of the workspace volume within the plan's box or, if it has none, within ranges that contain the workspace.
+  /// The parameters are taken as exact. Throws std::invalid_argument with one sentence if the plan is not supported.
   virtual VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               const BoundsOptions& options) const = 0;
   /// Feasibility and regularity of all poses of a box, under the plan's limits.
   /// @param ranges  range of each coordinate; lower = upper fixes the coordinate
   virtual PoseCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
-  /// Feasibility and regularity at every instant of a motion. If it is infeasible, PropertyResult::time is the first
-  /// infeasible instant, to 1e-6 of the duration.
+  /// Feasibility and regularity at every instant of a motion. If the motion is infeasible, PropertyResult::time is its
+  /// first infeasible instant, to 1e-6 of the duration.
   virtual PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
                                  const Motion& motion, const BoundsOptions& options) const = 0;
   /// Tries to prove that every path from one pose to another along which only the swept coordinates of the plan vary

@@ -1,4 +1,5 @@
-// Abilities that depend on the design alone, and margins of poses; for doubles and with derivatives by the parameters.
+// Abilities that depend on the design alone, and margins of poses; each as double and with derivatives with respect to
+// the parameters.
 #pragma once
 
 #include <span>
@@ -48,10 +49,10 @@ class PoseMargins {
   virtual ~PoseMargins() = default;
   /// Unit of all margins; "" if each has its own (m, rad or 1).
   virtual std::string margin_unit() const = 0;
-  /// Why the margins have no derivatives under given limits; empty if they have.
+  /// Why the margins have no derivatives under the given limits; empty if they have derivatives.
   virtual Unsupported why_no_derivatives(const LimitSpec&) const { return {}; }
-  /// Appends the margins of all poses; they are finite. A pose that cannot be assembled also has margins, of which at
-  /// least one is negative.
+  /// Appends the margins of all poses. They are always finite; at a pose where the mechanism cannot be assembled, at
+  /// least one of them is negative.
   /// @param mode     one of MechanismInfo::modes, or "": the first
   /// @param scratch  scratch memory of the calling thread
   virtual void append(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,

@@ -18,7 +18,7 @@ class Dynamics {
  public:
   virtual ~Dynamics() = default;
   virtual const std::vector<std::string>& mass_models() const = 0;  ///< names of all mass models, the default first
-  virtual const std::string& mass_model() const = 0;                ///< the selected one
+  virtual const std::string& mass_model() const = 0;                ///< name of the selected mass model
   /// The same mechanism with another mass model; null if there is no such model.
   virtual std::shared_ptr<const Mechanism> with_masses(const std::string& model) const = 0;
 
