@@ -199,7 +199,7 @@ std::vector<std::optional<std::array<double, 2>>> parse_some_ranges(const std::v
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!texts[i]) continue;
     std::string text = *texts[i];
-    if (const auto dots = text.find(".."); dots != std::string::npos) text.replace(dots, 2, ":");  // as we print it
+    if (const auto dots = text.find(".."); dots != std::string::npos) text.replace(dots, 2, ":");  // as printed
     const auto ends = split(text, ':');
     const std::string found = known[i].name + "=" + *texts[i];
     if (ends.size() != 2) throw ConfigError(place_of(option), found, "name=from:to");

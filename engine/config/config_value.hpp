@@ -69,34 +69,35 @@ class ConfigValue {
 
   // Tables
 
-  /// The table, to be read by its description. Refuses anything but a table, and keys that it does not describe. For
-  /// tables with variants, also refuses a missing or unknown TableSpec::choice, and the keys of other variants.
-  /// @param more  further keys: of a catalogue entry, or the names of TableSpec::named if these are known
+  /// This value as a table described by `spec`. Refuses values that are not tables, and keys that are not described. If
+  /// the table has variants, also refuses a missing or unknown TableSpec::choice, and keys of other variants.
+  /// @param more  further keys: those of a catalogue entry, or the names of TableSpec::named if these are known
   ConfigValue described_by(const TableSpec& spec, const std::vector<OptionSpec>& more = {}) const;
-  /// The table, to be read by the description that its key has.
+  /// This value as a table, with the description of its key.
   ConfigValue table(const std::vector<OptionSpec>& more = {}) const;
-  /// The table, if its keys are names of the user's, which have to be among `names`.
+  /// This value as a table whose keys are names chosen by the user. Refuses keys that are not in `names`.
   ConfigValue table_of_names(const std::vector<std::string>& names) const;
-  /// The table [key], read by its description; std::nullopt if the file has none.
+  /// The table [key] with its description; std::nullopt if the file has none.
   std::optional<ConfigValue> find_table(const std::string& key, const std::vector<OptionSpec>& more = {}) const;
   /// The description of this value as a table.
   const TableSpec& table_spec() const { return *described_as(OptionKind::table).table; }
-  /// The tables [[key]], read by their description; empty if the file has none.
+  /// The tables [[key]] with their description; empty if the file has none.
   std::vector<ConfigValue> tables(const std::string& key, const std::vector<OptionSpec>& more = {}) const;
   /// Refuses any key that is not in `known`. @param what  what the keys are: "key", "parameter"
   void allow(const std::vector<std::string>& known, std::string_view what = "key") const;
   const std::vector<std::string>& keys() const { return value_->keys; }
-  /// The keys; for keys with tables, dotted keys: "arm2.l_b".
-  /// @param of_tables  the values are tables themselves; only tables of tables give dotted keys
+  /// The keys of this table. A nested table contributes dotted keys, such as "arm2.l_b", instead of its own key.
+  /// @param of_tables  the values of this table are themselves tables; then only tables that contain nothing but tables
+  ///                   contribute dotted keys
   std::vector<std::string> dotted_keys(bool of_tables) const;
   bool has(const std::string& key) const { return find(key).has_value(); }
-  /// The value under "arm2.l_b", whether the key is written in this form or the table contains a table arm2.
+  /// The value under a dotted key such as "arm2.l_b", written in this form or as a table arm2 with the key l_b.
   std::optional<ConfigValue> find(const std::string& key) const;
   /// The value of a required key.
   ConfigValue at(const std::string& key, std::string_view expected) const;
   /// The value of a required key; the message for a missing key is taken from the description of the key.
   ConfigValue at(const std::string& key) const;
-  /// The value of a key, else its default.
+  /// The value of a key, or its default.
   double number_at(const std::string& key) const;
   bool flag_at(const std::string& key) const;
   std::string word_at(const std::string& key) const;
@@ -115,12 +116,12 @@ class ConfigValue {
 
   const TomlValue& toml() const { return *value_; }
   SourceLocation place() const { return {file_, value_->line, path_}; }
-  /// "line 12", for a message about another place.
+  /// "line 12", for a message that refers to another location.
   std::string line() const { return "line " + std::to_string(value_->line); }
   /// An error that names the value as written, what is expected, and the nearest known name.
   ConfigError error(std::string_view expected, std::string_view nearest = {}) const;
   ConfigError error_of(std::string_view found, std::string_view expected, std::string_view nearest = {}) const;
-  /// A message that is a sentence of its own.
+  /// An error whose message is the given sentence.
   ConfigError refusal(std::string_view sentence) const;
   /// Calls `work`, and converts std::invalid_argument into a refusal of this value.
   template <class Work>
@@ -133,7 +134,7 @@ class ConfigValue {
   }
 
  private:
-  /// The description of a table, and the keys that this table accepts in addition to the described ones.
+  /// The description of a table, with further keys that this table accepts.
   struct Description {
     const TableSpec* spec;
     std::vector<OptionSpec> more;
@@ -157,11 +158,11 @@ class ConfigValue {
   std::shared_ptr<const Description> table_ = nullptr;  ///< description of its keys
 };
 
-/// Descriptions of the values under these names, by TableSpec::named.
+/// Descriptions of the values under the given names, from TableSpec::named.
 std::vector<OptionSpec> named_keys(const TableSpec& table, const std::vector<std::string>& names);
 
-/// The options of one entry of a catalogue, read by their descriptions; defaults filled in. Other keys are ignored: the
-/// table has been described_by() these options.
+/// The options of a catalogue entry, with defaults filled in. Keys that `specs` does not describe are ignored: they
+/// were checked by described_by() before.
 Options read_options(const ConfigValue& table, const std::vector<OptionSpec>& specs);
 
 }  // namespace pkm

@@ -26,7 +26,7 @@ class Rows {
     }
     return false;
   }
-  int line() const { return line_; }  ///< of the last row
+  int line() const { return line_; }  ///< line of the last row
 
  private:
   /// @return false if the cell is the last one of its row
@@ -40,7 +40,7 @@ class Rows {
         if (text_[at_] == '"' && (at_ + 1 >= text_.size() || text_[++at_] != '"')) break;
         cell += text_[at_];
       }
-      if (at_ + 1 == text_.size() && text_[at_] == '"') ++at_;  // the closing one ends the text
+      if (at_ + 1 == text_.size() && text_[at_] == '"') ++at_;  // a closing quote at the end of the text
     }
     while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n') cell += text_[at_++];
     while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r')) cell.pop_back();
@@ -77,7 +77,7 @@ CsvColumns read_csv_columns(const std::string& text, const std::string& file_nam
   CsvColumns found;
   found.values.resize(known.size());
   std::vector<Header> headers;
-  std::vector<std::optional<std::size_t>> targets;  // by column of the file
+  std::vector<std::optional<std::size_t>> targets;  // index of the known name, for each column of the file
   for (const std::string& cell : cells) {
     const Header& header = headers.emplace_back(header_of(cell));
     const auto at = std::ranges::find(known, header.name, &Assignable::name);

@@ -11,7 +11,7 @@ namespace pkm {
 
 struct CsvColumns {
   std::size_t rows = 0;
-  /// By known name: the values [SI]; std::nullopt if the table has no such column.
+  /// For each known name, the values [SI]; std::nullopt if the table has no such column.
   std::vector<std::optional<std::vector<double>>> values;
   std::vector<std::string> others;  ///< names of the columns that are not known
 };

@@ -46,7 +46,8 @@ std::string why_no_feasible_pose(const Mechanism& mechanism, std::span<const dou
                         : "satisfied at no pose: " + names_text(never));
 }
 
-/// Writes a feasible pose in the middle of the workspace, otherwise the margins that no pose satisfies.
+/// Writes a feasible pose in the middle of the workspace. If no pose is feasible, writes the margins that are negative
+/// at all sampled poses.
 void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span<const double> parameters) {
   const MechanismInfo& info = mechanism.info();
   out << "\nnominal pose, of the default parameters in working mode " << info.modes.front() << '\n';

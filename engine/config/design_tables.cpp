@@ -1,4 +1,5 @@
-// Readers of [mechanism], [variables] and [baseline]: mechanism, parameters that vary, design to compare with.
+// Readers of [mechanism], [variables] and [baseline]: the mechanism, the parameters that vary, and the design for
+// comparison.
 
 #include <algorithm>
 
@@ -43,7 +44,8 @@ void find_limb_parameters(const ConfigValue& root, StudyDraft& draft) {
   for (const StudyChanges& changes : draft.changes) std::ranges::for_each(limb_parameters(changes), add);
 }
 
-/// Sets the parameters of single limbs that are not given to the values of the common parameters.
+/// Sets the parameters of single limbs that have no value of their own to the values of the parameters that all limbs
+/// share.
 template <class Given>
 void apply_common_parameters(const StudyDraft& draft, const Given& given, std::vector<double>& values) {
   const auto& known = draft.info().parameters;
@@ -80,7 +82,8 @@ Variable read_variable(const ConfigValue& value, const Parameter& parameter) {
   return variable;
 }
 
-/// The variable as recorded in a study file; `of_text`, the variable of the study's text, if there is no record.
+/// The variable as recorded in the study file or, if it is not recorded, `of_text`, the variable given by the study's
+/// text.
 Variable recorded_variable(const StudyDraft& draft, const Variable& of_text, const Parameter& parameter) {
   for (const StudyChanges& changes : draft.changes)
     if (const Variable* const recorded = find_named(changes.recorded_variables, of_text.name)) {

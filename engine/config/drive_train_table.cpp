@@ -18,7 +18,7 @@ void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
                            "; gear and lead need none");
 }
 
-/// Whether the table has only keys that quantities of the pose need: stiffness and peak_force.
+/// Whether the table has only keys that pose quantities need: stiffness and peak_force.
 bool is_for_quantities(const ConfigValue& table) {
   return table.keys().size() > 1 && std::ranges::all_of(table.keys(), [](const std::string& key) {
            return key == "joint" || key == "stiffness" || key == "peak_force";

@@ -18,7 +18,8 @@ std::string in_unit(const std::string& unit) { return unit == "1" ? "dimensionle
 
 constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
 
-/// The name of an entry within its kind: `name = `, else its type. Names are keys of the study file and of JSON.
+/// The name of an entry within its kind: the value of `name`, otherwise the type. Names are keys of the study file and
+/// of JSON.
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
   std::string name = given ? given->text("text") : type;
@@ -40,8 +41,8 @@ std::vector<ConfigValue> tables_in(const ConfigValue& root, const std::string& n
   return tables;
 }
 
-/// The name of an objective that the study does not name: "LTI-min" for a statistic of a quantity; peak and RMS of one
-/// kind are two quantities.
+/// The default name of an objective: "LTI-min" for a statistic of a quantity. The peak and the RMS value of one
+/// quantity have different names.
 std::string default_name(const ObjectiveEntry& entry, const Options& options) {
   if (options.has("quantity")) return options.word("quantity") + "-" + options.word("statistic");
   if (options.has("call")) return options.word("call").substr(options.word("call").rfind(':') + 1);
@@ -49,8 +50,8 @@ std::string default_name(const ObjectiveEntry& entry, const Options& options) {
   return entry.name + (rms ? "-rms" : "");
 }
 
-/// Adds the fields that an entry requests, `own`, to those that the previous entries have requested. Refuses a second
-/// characteristic length or working mode: all samples of a workspace analysis have the same.
+/// Adds the fields `own` that an entry requests to those requested by the previous entries. Refuses a second
+/// characteristic length or working mode, because all samples of a workspace analysis share one of each.
 void add_request(const ConfigValue& table, const FieldRequest& own, FieldRequest& request) {
   if (own.needs_jacobian()) {
     if (request.needs_jacobian() && own.characteristic_length != request.characteristic_length)
@@ -133,7 +134,7 @@ void read_objective(const ConfigValue& value, StudyDraft& draft, bool optimised)
   (optimised ? draft.parts.objectives : draft.parts.reports).push_back(std::move(made));
 }
 
-/// Reads an objective as a constraint: with a minimum or maximum of its value.
+/// Reads an objective that is used as a constraint, with a minimum or maximum of its value.
 void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entry, StudyDraft& draft) {
   const ConfigValue table = value.described_by(bounded_objective_keys(), entry.options);
   const auto least = table.find("min"), greatest = table.find("max");
@@ -158,7 +159,7 @@ void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& ent
   auto specs = entry.options(draft.info());
   const ConfigValue table = value.described_by(margin_constraint_keys(), specs);
   refuse_unsupported(table, entry, draft);
-  // The unit of the margin may depend on some options and be the unit of others; the latter are read second.
+  // The unit of the margin may depend on some options, and other options may have this unit; these are read second.
   auto first = specs;
   std::erase_if(first, [](const OptionSpec& spec) { return spec.unit == kUnitOfEntry; });
   Options options = read_options(table, first);
@@ -192,8 +193,8 @@ std::string implied_name(const std::string& motion, const std::vector<StudyEntry
   return name;
 }
 
-/// Adds the constraint that a motion satisfies every limit of poses: one for each motion that entries use, and each
-/// working mode, unless the study has the constraint already or the motion has follow = false.
+/// Adds the constraint that a motion satisfies every pose-level limit: one for each motion that entries use and for
+/// each working mode. It is omitted if the study already has the constraint, or the motion has follow = false.
 void add_motion_constraints(StudyDraft& draft) {
   const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, kMotionConstraint);
   if (!entry || draft.implied == ImpliedConstraints::left_out) return;
@@ -258,7 +259,7 @@ void read_pose_constraint(const ConfigValue& value, const ConstraintEntry& entry
   draft.study.constraints.push_back({entry.name, entry.name, role, specs, options});
 }
 
-/// Reads either the pose-level [[constraint]]s or all others; those whose type is an objective belong to the others.
+/// Reads either the pose-level [[constraint]]s or all others, including those whose type is an objective.
 void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level) {
   std::vector<ConstraintEntry> entries = draft.catalogues.constraints;
   for (const DesignMarginInfo& test : design_tests_of(*draft.parts.mechanism))  // defined by the mechanism file

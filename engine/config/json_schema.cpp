@@ -167,7 +167,7 @@ std::string text_of(const std::string& title, const TableSpec& root) {
   return schema.dump(1) + "\n";
 }
 
-/// The tables of studies or tasks with the entries of the catalogues as variants.
+/// The tables of studies or tasks, in which the entries of the catalogues are variants.
 class StudyTables {
  public:
   StudyTables(const Catalogues& catalogues, const TableSpec& root) : catalogues_(catalogues), root_(root) {
@@ -198,7 +198,7 @@ class StudyTables {
 
   void replace(const std::string& name, const std::string& choice, std::vector<TableVariant> variants) {
     TableSpec& table = tables_.emplace_back(*key(name).parts[0].table);
-    if (name == "constraint") table.keys = pose_constraint_keys().keys;  // the variants have the others
+    if (name == "constraint") table.keys = pose_constraint_keys().keys;  // all other keys are in the variants
     table.choice = choice;
     table.variants = std::move(variants);
     key(name).parts[0].table = &table;
@@ -211,7 +211,8 @@ class StudyTables {
     return variants;
   }
 
-  /// The options of a constraint for all mechanisms; if they differ, mechanism files may have others.
+  /// The options of a constraint, combined from all mechanisms. If they differ between mechanisms, those of a mechanism
+  /// file are unknown, and any name is accepted.
   TableVariant variant_of(const ConstraintEntry& entry) const {
     TableVariant variant{entry.name, entry.meaning, {}};
     std::vector<std::string> names;
@@ -233,7 +234,7 @@ class StudyTables {
     return variant;
   }
 
-  /// Inserts the keys that not all constraints have before the other keys.
+  /// Inserts the keys that only some constraints have before the other keys.
   static void add_keys(const TableSpec& table, TableVariant& variant) {
     std::vector<OptionSpec> keys;
     for (const OptionSpec& key : table.keys)

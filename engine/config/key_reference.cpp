@@ -27,7 +27,7 @@ const TableSpec* inline_table(const OptionSpec& key) {
   return nullptr;
 }
 
-/// What a value has to be, with tables by their names only.
+/// What a value has to be; tables are given by their names only.
 std::string value_text(const OptionSpec& key) {
   switch (key.kind) {
     case OptionKind::table:

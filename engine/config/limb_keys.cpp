@@ -84,7 +84,8 @@ Keys geometry_keys() {
       formula_key("play", "m", "radial play of each passive joint at the ends of rod or leg, for `accuracy`")};
 }
 
-/// Cross-section of a leg, for its axial stiffness; masses of legs are those of `cylinder` and `piston`.
+/// Cross-section of a leg, which determines its axial stiffness; the masses of a leg are those of `cylinder` and
+/// `piston`.
 OptionSpec leg_section_key() {
   static const TableSpec section = {.meaning = "tube or rod of some material",
                                     .keys = {required(formula_key("outer", "m", "outer diameter")),

@@ -1,7 +1,8 @@
 // Reader of masses: parts of limbs, links, the platform, [[body]].
 //
-// Parts of limbs and links are thin: they rotate with the line between their ends, without spin about it. Their inertia
-// is therefore one number: about an axis through the centre of mass, normal to that line.
+// Parts of limbs and links are thin: they rotate with the line between their ends, but do not spin about it. Their
+// inertia is therefore a single number: the moment of inertia about an axis through the centre of mass, normal to that
+// line.
 
 #include <algorithm>
 
@@ -25,11 +26,11 @@ Term checked(MechanismDraft& draft, const Term& value, const std::string& name, 
 
 struct Mass {
   Term mass;
-  std::optional<Term> inertia;  ///< if it follows from a cross-section
+  std::optional<Term> inertia;  ///< set if it follows from a cross-section
 };
 
-/// Mass and inertia of a tube or rod of some material.
-/// @param number_of  number of such tubes side by side
+/// Mass and inertia of a tube or rod with a given material.
+/// @param number_of  number of parallel tubes
 Mass mass_of_profile(const ConfigValue& value, const Term& length, double number_of, const std::string& what,
                      MechanismDraft& draft) {
   const ConfigValue profile = value.table();
@@ -46,7 +47,8 @@ Mass mass_of_profile(const ConfigValue& value, const Term& length, double number
   return {mass, mass * (length * length / 12 + (outer * outer + inner * inner) / 16)};
 }
 
-/// The value of a key of a part's mass, "rod_inertia"; std::nullopt also if parts of this kind have no such key.
+/// The value of a key for the mass of a part, such as "rod_inertia"; std::nullopt also if parts of this kind have no
+/// such key.
 std::optional<ConfigValue> find_mass_key(const ConfigValue& table, const std::string& part, const std::string& suffix) {
   return find_named(mass_keys(part), part + suffix) ? table.find(part + suffix) : std::nullopt;
 }
@@ -79,8 +81,9 @@ void add_square(const std::array<expression::Node, 3>& f, const Term& weight, Bo
   body.products.push_back({f, f, weight.node()});
 }
 
-/// Adds the rotational inertia of a body that rotates with the platform, from its principal values along the platform's
-/// axes: the inertia about the only axis of rotation, otherwise the second moments of mass along the axes.
+/// Adds the rotational inertia of a body that rotates with the platform. It is given by its principal moments about the
+/// platform's axes. If the platform rotates about a single axis, the moment of inertia about this axis is sufficient;
+/// otherwise the second moments of mass along all three axes are used.
 void add_platform_rotation(const std::array<Term, 3>& inertia, BodyNodes& body, MechanismDraft& draft) {
   const auto turns = [](const auto& axis) { return axis.has_value(); };
   const auto& about = draft.model.rotation_axes;
@@ -116,8 +119,8 @@ BodyNodes body_at(const Vector3& centre, const Term& mass, const std::string& na
   return body;
 }
 
-/// A thin part of constant length with its centre of mass in the middle. Its kinetic energy by the rates of its ends P,
-/// Q: (m/4 + I/l^2) (P'^2 + Q'^2) + 2 (m/4 - I/l^2) P' . Q'.
+/// A thin part of constant length l with its centre of mass in the middle. In terms of the velocities P' and Q' of its
+/// ends, twice its kinetic energy is (m/4 + I/l^2) (P'^2 + Q'^2) + 2 (m/4 - I/l^2) P' . Q'.
 BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia, const std::string& name,
                     MechanismDraft& draft) {
   const Term quarter = mass * 0.25, turning = inertia / (*part.length * *part.length);

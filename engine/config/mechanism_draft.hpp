@@ -1,9 +1,9 @@
 // Readers of the tables of a mechanism file, one function for each, in the order in which read_mechanism_toml calls
 // them. mechanism_keys.hpp describes the keys.
 //
-// Reading is apart from building: the readers only fill a generic::Model, and generic::make_mechanism() makes a
+// Reading and building are separate: the readers only fill a generic::Model, and generic::make_mechanism() makes a
 // mechanism of any model, however it was built. The classes in engine/generic/limbs add the closed form of a limb to
-// the expression graph of a model; they need no text.
+// the expression graph of a model; they do not depend on TOML.
 #pragma once
 
 #include <functional>
@@ -21,12 +21,13 @@ inline std::array<expression::Node, 3> nodes(const limbs::Vector3& v) {
   return {v[0].node(), v[1].node(), v[2].node()};
 }
 
-/// A part of a limb, or a link: it may have a mass, and [[body]] refers to it as "arm1.crank".
+/// A part of a limb, or a link. It may have a mass; [[body]] refers to it by a name such as "arm1.crank".
 struct LimbPart {
   std::string name;                         ///< "crank", "rod", "slider"
   limbs::Vector3 from, to;                  ///< ends of the part
   std::optional<limbs::Term> length = {};   ///< length, if it is constant
-  std::optional<limbs::Vector3> line = {};  ///< vector along the part, of any length; std::nullopt: it does not rotate
+  std::optional<limbs::Vector3> line = {};  ///< vector along the part, of any length; std::nullopt: the part does not
+                                            ///< rotate
   /// Set if `from` is the end of an arm, or the part is the arm itself.
   struct OnArm {
     std::size_t arm;
@@ -37,20 +38,21 @@ struct LimbPart {
   std::optional<OnArm> on_arm = {};
 };
 
-/// A limb that has been read, as other tables refer to it.
+/// A limb that has been read, under the name by which other tables refer to it.
 struct NamedLimb {
   std::string name;                              ///< "arm2"
-  std::string group;                             ///< "arm": all copies
+  std::string group;                             ///< "arm": name of the limb in the file, which all copies share
   std::map<std::string, limbs::Vector3> points;  ///< "A", "B", "C", "S"
   std::vector<LimbPart> parts;
 
   std::string drive = "formula";
-  std::size_t joint = 0;                        ///< index among the joints of the mechanism; the first of a formula
-  std::size_t joint_count = 1;                  ///< more than one only if the limb is a formula
+  std::size_t joint = 0;                        ///< index among the joints of the mechanism; for a formula limb, of its
+                                                ///< first joint
+  std::size_t joint_count = 1;                  ///< greater than 1 only for formula limbs
   std::optional<limbs::Vector3> axis = {};      ///< axis of the crank's pivot, or direction of the slide
-  std::optional<limbs::Vector3> revolute = {};  ///< the axis of its joints, if they are parallel revolutes
+  std::optional<limbs::Vector3> revolute = {};  ///< common axis of its joints, if they are parallel revolutes
   bool has_rod = false;                         ///< a rod or telescope; false: a slide that carries the platform
-  bool has_links = false;                       ///< two links instead of a rod
+  bool has_links = false;                       ///< it has two links instead of a rod
   std::optional<limbs::Vector3> beside = {};    ///< vector from the middle of a pair of rods to one of them
   std::string end_on = "";                      ///< the body to which its end is attached; "": unspecified
 
@@ -65,7 +67,8 @@ struct NamedLimb {
   std::optional<limbs::Vector3> universal = {};   ///< axis of its universal joints, on the drive's side of each joint
 };
 
-/// A limb with the key `across`: the distance of its ends along the normal must be the same at every pose.
+/// A limb with the key `across`: the component of the vector between its ends along the normal must be the same at
+/// every pose.
 struct LimbInPlane {
   ConfigValue across;
   limbs::Vector3 A, B, normal;
@@ -76,11 +79,12 @@ struct OwnParameter : LimbParameter {
   expression::Node node{};
 };
 
-/// One of the signs that select the working mode: its possible values, and their texts in the names of modes.
+/// A sign that selects the working mode: its possible values, and their texts in the names of modes.
 struct SignChoice {
   std::string signs;               ///< "+-": the first is the default
   std::vector<std::string> names;  ///< texts of the signs
-  bool is_branch = false;          ///< appended to the name of a mode after a "/", unless it is the default
+  bool is_branch = false;          ///< true: its text follows a "/" in the name of the mode, unless the sign is the
+                                   ///< default
 };
 
 /// The mechanism as far as it has been read; each reader adds to it.
@@ -119,14 +123,15 @@ std::string si_unit(const ConfigValue& unit);
 void add_own_parameter(const LimbParameter& own, const Parameter& parameter, MechanismDraft& draft);
 /// Calls `read` with the limb's own parameters in scope, also in formulas of [let].
 void read_as_limb(const std::string& limb, const std::function<void()>& read, MechanismDraft& draft);
-/// Refuses parameters of limbs that do not exist or whose formulas do not use the parameter.
+/// Refuses a parameter of a single limb if the limb does not exist, or if no formula of the limb uses the parameter.
 void refuse_idle_parameters(const MechanismDraft& draft);
 
 /// Reads the tables [[limit]].
 void read_limits(const ConfigValue& root, MechanismDraft& draft);
-/// Reads [inputs]: variables besides the pose, on which quantities, and formulas of [let] that they use, may depend.
+/// Reads [inputs]: variables other than the pose. Quantities, and the formulas of [let] that they use, may depend on
+/// them.
 void read_inputs(const ConfigValue& root, MechanismDraft& draft);
-/// Reads the tables [[quantity]] of the file, and of a study unless it is null. Their formulas may also use
+/// Reads the tables [[quantity]] of the file and, if it is not null, of a study. Their formulas may also use
 /// "NAME_rate", the time derivative of a coordinate, an input or a quantity.
 void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
 /// The force that a limb transmits to the platform, along a rod, a leg or a slide.
@@ -137,18 +142,18 @@ struct LimbForce {
 };
 /// The force of a limb; std::nullopt for limbs that are formulas or have links, which transmit more than one force.
 std::optional<LimbForce> force_of(const NamedLimb& limb);
-/// Whether a file, or a study unless it is null, has a [[quantity]] of this name.
+/// Whether a file or a study has a [[quantity]] of this name. @param study  null if there is none
 bool defines_quantity(const ConfigValue& root, const ConfigValue* study, const std::string& name);
 /// Adds the transmission indices `lti`, `lti_input` and `lti_output` as quantities, if they are defined for the limbs.
 void add_transmission(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
-/// Adds the quantities of engine/generic/performance/performance.hpp for which the file, or the study unless it is
-/// null, has the data.
+/// Adds the quantities of engine/generic/performance/performance.hpp whose data are given by the file or by the study,
+/// which may be null.
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
 /// Reads the elastic moduli of a limb's cross-sections, and the play of its joints.
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
 /// Compliance of the limb's end along the line of its rod or leg, due to rods, crank and slider [m/N].
 limbs::Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft);
-/// Compliance of a limb's drive at the joint [m/N or rad/(N m)]: that of the drive, and of a telescope's leg.
+/// Compliance of a limb's drive, measured at the joint [m/N or rad/(N m)]; for a telescope, including that of the leg.
 std::optional<limbs::Term> drive_compliance(const NamedLimb& limb, MechanismDraft& draft);
 /// The limits of quantities in a study, as a table; std::nullopt if it has none.
 std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
@@ -170,7 +175,7 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft);
 void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft);
 /// Reads the tables [[link]]. @return the links, under the names that [[body]] uses
 std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft);
-/// Adds the limit of the clearance, after all others, if there are links that could collide.
+/// Adds the limit of the clearance, as the last limit, if there are links that could collide.
 void add_clearance(MechanismDraft& draft);
 /// Reads the table [survey].
 void read_survey(const ConfigValue& root, MechanismDraft& draft);
@@ -186,7 +191,7 @@ void add_link_body(const ConfigValue& table, const std::string& name, const limb
 void read_platform_body(const ConfigValue& platform, MechanismDraft& draft);
 /// Reads the tables [[body]]. @param links  result of read_links()
 void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft);
-/// Reads the tables [[joint]], and adds the joints of limbs, for the forces in joints.
+/// Reads the tables [[joint]], and adds the joints of the limbs, to compute the forces in joints.
 void add_joints(const ConfigValue& root, MechanismDraft& draft);
 /// Reads [x, y, z] or the name of a limb's point, "arm1.C".
 limbs::Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft);

@@ -1,5 +1,5 @@
-// Reader of what makes limbs compliant and inexact: elastic moduli of sections, play of joints; and the compliances of
-// limbs that follow.
+// Reads the elastic moduli of the limbs' cross-sections and the play of their joints, and derives the compliances of
+// limbs and drives.
 #include <algorithm>
 #include <numbers>
 

@@ -34,7 +34,7 @@ void read_names(const ConfigValue& root, MechanismDraft& draft) {
   draft.model.info.source = text_of(table, "source");
 }
 
-/// The SI unit of a parameter, by its default: m for "200 mm".
+/// The SI unit of a parameter, inferred from its default: m for "200 mm".
 std::string unit_of(const ConfigValue& table) {
   if (const auto unit = table.find("unit")) return si_unit(*unit);
   const ConfigValue value = table.at("default", "the default, a number or text with a unit: \"200 mm\"");
@@ -46,7 +46,7 @@ std::string unit_of(const ConfigValue& table) {
   throw value.error("a number, or text with a unit: \"200 mm\", \"40 deg\"; other units by unit = \"..\"");
 }
 
-/// A parameter of a single limb: the common one, with the changes in `table`.
+/// A parameter of a single limb: a copy of the parameter that all limbs share, with the changes given in `table`.
 Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, const std::vector<Parameter>& all) {
   const Parameter* const general = find_named(all, own.parameter);
   if (!general)
@@ -148,7 +148,7 @@ void read_let(const ConfigValue& root, MechanismDraft& draft) {
   }
 }
 
-/// Selects one of the mass models in [masses], which have parameters and formulas of their own. @param chosen  name of
+/// Selects one of the mass models in [masses], which can have their own parameters and formulas. @param chosen  name of
 /// the model; "": the first
 void choose_masses(const ConfigValue& root, const std::string& chosen, MechanismDraft& draft) {
   generic::Model& model = draft.model;
@@ -187,7 +187,7 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   if (const auto radius = platform.find("characteristic_radius"))
     model.radius = draft.scope.of_design(*radius, "m", "characteristic_radius").node();
   if (!mixes_units(model.info.coordinates) && model.info.characteristic_length.empty())
-    model.info.characteristic_length = "1";  // has no effect
+    model.info.characteristic_length = "1";  // all coordinates have one unit: no scaling is needed
   if (const auto size = platform.find_table("size")) {
     const std::string unit = si_unit(size->at("unit", "the size's unit: \"m^3\""));
     const ConfigValue formula = size->at("formula", "a formula of parameters");
@@ -196,15 +196,17 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   read_platform_body(platform, draft);
 }
 
-/// Removes the characteristic length if there is no conditioning that it could scale: joints of different kinds need a
-/// radius, and fewer joints than coordinates have no square Jacobian.
+/// Clears the characteristic length if the conditioning is undefined for any length: if lengths and angles are mixed
+/// among the joints and no characteristic radius is given, or if there are fewer joints than coordinates, so that the
+/// Jacobian does not have full column rank.
 void remove_undefined_conditioning(generic::Model& model) {
   const bool needs_radius = mixes_units(model.info.joints) && !model.radius;
   if (needs_radius || model.info.joints.size() < model.info.coordinates.size())
     model.info.characteristic_length.clear();
 }
 
-/// The unit of all conditions that depend on the pose; "": they differ, or one of them is the radicand of a root.
+/// The common unit of all conditions that depend on the pose. It is "" if their units differ, or if one of them is the
+/// argument of a square root or a similar operation, whose unit is not recorded.
 std::string common_margin_unit(const generic::Model& model) {
   std::optional<std::string> unit;
   for (const auto* const conditions : {&model.domains, &model.margins})

@@ -1,8 +1,8 @@
 // Reads mechanism files: parameters, degrees of freedom, limbs in closed form or as formulas, limits, links, masses.
 //
 // Reading TOML and building a mechanism are separate: the reader fills a generic::Model (engine/generic/model.hpp),
-// from which generic::make_mechanism() makes the mechanism. Code that builds a model itself needs no text; what the
-// reader adds for a limb in closed form is in engine/generic/limbs.
+// from which generic::make_mechanism() makes the mechanism. Code that builds a model itself does not need TOML; the
+// classes in engine/generic/limbs add limbs in closed form to a model.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace pkm {
 
 class ConfigValue;
 
-/// A parameter of a single limb, which replaces the parameter that all limbs share: "arm2.l_b".
+/// A parameter of a single limb, which replaces a parameter that all limbs share: "arm2.l_b".
 struct LimbParameter {
   std::string limb, parameter;
   SourceLocation place = {};  ///< location of its name in the input
@@ -25,13 +25,13 @@ struct LimbParameter {
 /// Splits a name such as "arm2.l_b"; std::nullopt for other names.
 std::optional<LimbParameter> limb_parameter(const std::string& name, const SourceLocation& place);
 
-/// The document of a study, whose tables [[quantity]] and limits of quantities are added to its mechanism; null:
-/// nothing is added.
+/// The document of a study whose tables [[quantity]] and limits of quantities are added to its mechanism; null: nothing
+/// is added.
 using StudyAdditions = std::shared_ptr<const ConfigValue>;
 
 /// Reads a mechanism from the text of its file. `file_name` is named in messages. Throws ConfigError.
-/// @param own  further parameters of single limbs, appended to those of the file; they have unit, range and default of
-///             the common parameter
+/// @param own  further parameters of single limbs, appended to those of the file; their unit, range and default are
+///             those of the parameter that all limbs share
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
                                                      const std::vector<LimbParameter>& own = {},
                                                      const StudyAdditions& study = nullptr);

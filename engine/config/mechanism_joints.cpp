@@ -1,18 +1,18 @@
 // Bodies and joints of a mechanism file, for the forces in joints (engine/dynamics/newton_euler.hpp) and for the
 // mobility of the platform.
 //
-// The forces and couples that a joint transmits follow from the limb:
+// The type of the limb determines which forces and couples its joints transmit:
 //
-//   a crank's pivot       all forces and couples, the drive's about its axis among them
-//   a rod, a leg          ball joints at both ends: forces only. Its spin is fixed by a constraint without reaction
+//   a crank's pivot       all forces and couples; the drive exerts the couple about its axis
+//   a rod, a leg          ball joints at both ends: forces only. A constraint without reaction suppresses the spin
+//                         about the rod's own axis
 //   with `universal`      universal joints at both ends: forces, and a couple normal to both axes of the joint
-//   a pair of rods        two of them, side by side, with half the mass each
-//   `links`, `across`     revolutes along one axis: all couples but those about it. Where the platform turns about
-//   other
-//                         axes, the joint at the platform turns about these, too
-//   a leg's slide         all forces and couples, the drive's along it among them, taken in the middle of the leg
-//   a slide on its rail   a point: the drive moves it and its mass
-//   [[joint]]             a revolute of two bodies, or a slide or revolute that is driven
+//   a pair of rods        two parallel rods with half the mass each
+//   `links`, `across`     revolute joints with parallel axes: forces, and couples normal to the axis. If the platform
+//                         rotates about other axes, the joint at the platform is free about these, too
+//   a leg's slide         all forces and couples, at the middle of the leg; the drive exerts the force along it
+//   a slide on its rail   not a body: the drive force includes the force that accelerates the mass of the slide
+//   [[joint]]             a revolute joint of two bodies, or a driven prismatic or revolute joint
 
 #include <algorithm>
 #include <map>
@@ -61,7 +61,7 @@ class JointReader {
  private:
   Vector3 vector(const Nodes& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
 
-  /// @param body  body of the model, or the platform, whose mass, or part of it, the solid has
+  /// @param body  name of a body of the model, or of the platform, whose mass the solid has, completely or in part
   std::size_t add_solid(const std::string& body, SolidNodes solid) {
     made_of_[body].push_back(solids_.size());
     solids_.push_back(std::move(solid));
@@ -81,8 +81,8 @@ class JointReader {
     return joint;
   }
 
-  /// A joint of a limb: a revolute about the limb's axis and those of `also`, or a ball joint that prevents the spin
-  /// about `line`, if given.
+  /// A joint of a limb: a revolute about the limb's axis, which is also free about the axes `also`, or a ball joint
+  /// that, if `line` is given, prevents the spin about it.
   JointNodes limb_joint(const NamedLimb& limb, const std::string& name, const Vector3& point, std::size_t on,
                         std::optional<std::size_t> from, const std::optional<Vector3>& line,
                         const std::vector<Vector3>& also = {}) const {
@@ -105,8 +105,9 @@ class JointReader {
                              bool is_rod) const {
     return {beam_of(section, near, far), joints_.size() - 1, is_rod};
   }
-  /// Makes the joint added last a universal one, if the limb has such joints: it rotates about the axis a of the body
-  /// that carries the rod, and about a x rod, and transmits a couple normal to both. @param solid  index of the rod
+  /// Converts the joint added last into a universal joint, if the limb has such joints: it rotates about the axis a,
+  /// fixed to the body that carries the rod, and about a x rod, and it transmits a couple normal to both.
+  /// @param solid  index of the rod
   void make_universal(const NamedLimb& limb, const Vector3& rod, std::size_t solid, bool on_platform) {
     if (!limb.universal) return;
     const Vector3 a = on_platform && limb.end_on == "platform" ? draft_.turn * *limb.universal : *limb.universal;
@@ -123,8 +124,8 @@ class JointReader {
     return add_solid(name, {.name = name, .point = nodes(point), .line = nodes(line)});
   }
 
-  /// Makes a platform that does not rotate and is a point mass, at which parallel revolute joints meet, part of the
-  /// first rod.
+  /// If the platform does not rotate, is a point mass, and all its joints are revolutes about one common axis, it is
+  /// just the pin that connects the rods. It is then treated as part of the first rod.
   void hold_pin() {
     constexpr std::size_t kPlatform = 0;
     const auto rotates = [](const auto& axis) { return axis.has_value(); };
@@ -142,7 +143,7 @@ class JointReader {
   }
 
   void add_limb(const NamedLimb& limb) {
-    if (limb.drive == "formula") return;  // [[joint]] describes it
+    if (limb.drive == "formula") return;  // described by [[joint]] instead
     if (limb.parts.size() == 1)
       throw IncompleteDescription{"limb " + limb.name +
                                   " has neither `rod` nor `links` that connect it to the platform"};
@@ -174,7 +175,7 @@ class JointReader {
       for (std::size_t i = 0; i < model_.bodies.size(); ++i)
         if (model_.bodies[i].name == "slider of " + limb.name) drive.slide = i;
 
-    std::optional<std::size_t> inner;  // the crank, the cylinder or the first link
+    std::optional<std::size_t> inner;  // index of the crank, the cylinder or the first link
     if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
     if (telescope) {
       joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, {}, first.line));
@@ -210,7 +211,7 @@ class JointReader {
       } else {
         joints_.push_back(limb_joint(limb, limb.name + ".S" + number, near, outer, {}, last.line));
         joints_.back().drive = drive;
-        drive.slide = {};  // the slide counts once for both rods
+        drive.slide = {};  // count the mass of the slide only once for both rods
       }
       make_universal(limb, far - near, outer, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = held_beam(*section, near, far, true);
@@ -221,7 +222,7 @@ class JointReader {
 
   static constexpr const char* kBase = "base";
 
-  /// std::nullopt: the base
+  /// Index of the solid that a value names; std::nullopt: the base.
   std::optional<std::size_t> solid_called(const ConfigValue& value) const {
     std::vector<std::string> names = names_of(solids_);
     names.emplace_back(kBase);
@@ -250,7 +251,8 @@ class JointReader {
     joints_.push_back(rigid_joint(name, at, *first, second));
     joints_.back().drive = JointNodes::Drive{driven_by(*drive, along.has_value()), nodes(axis), !along};
   }
-  /// The joint of a formula that a [[joint]] is. @param slides  it is prismatic
+  /// Index of the joint that is the drive of a [[joint]]; it must belong to a limb with drive = "formula".
+  /// @param slides  true if the [[joint]] is prismatic
   std::size_t driven_by(const ConfigValue& value, bool slides) const {
     std::vector<std::string> names;
     for (const NamedLimb& limb : draft_.limbs)
@@ -269,7 +271,7 @@ class JointReader {
     return std::ranges::any_of(joints_,
                                [&](const JointNodes& each) { return each.drive && each.drive->joint == joint; });
   }
-  /// Refuses limbs given by formulas whose joints are not all drives of a [[joint]].
+  /// Refuses limbs given by formulas unless each of their joints is the drive of a [[joint]].
   void refuse_unknown_links() const {
     for (const NamedLimb& limb : draft_.limbs) {
       if (limb.drive != "formula") continue;
@@ -283,7 +285,7 @@ class JointReader {
     }
   }
 
-  /// Gives each mass to the body that it belongs to.
+  /// Assigns each mass to the solid to which it belongs.
   void assign_masses() {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyNodes& body = model_.bodies[i];
@@ -303,7 +305,7 @@ class JointReader {
     }
   }
 
-  /// Refuses bodies without a joint, and joints with fewer unknowns than there are equations, which leave motions free.
+  /// Refuses bodies without a joint, and systems with fewer unknowns than equations, in which motions remain free.
   void refuse_loose_bodies() {
     std::vector<bool> has_joint(solids_.size(), false);
     std::size_t unknowns = 0;

@@ -20,7 +20,7 @@ const TableSpec& limb_parameter_keys();
 
 /// Keys of a [[limb]].
 const TableSpec& limb_keys();
-/// Keys of a limb's table with the mass of one of its parts: "rod_mass", ..
+/// Keys of a [[limb]] for the mass of one of its parts: "rod_mass", ..
 std::vector<OptionSpec> mass_keys(const std::string& part);
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// Reading of one limb: the drive in closed form, its parts, the links that are drawn.
+// Reading of one limb: the drive in closed form, the parts, and the links that are drawn.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace pkm {
 
-/// One of the copies that a [[limb]] describes, or the limb itself.
+/// One of the copies that a [[limb]] describes, or the limb itself if it has no copies.
 struct LimbCopy {
   const ConfigValue& table;
   MechanismDraft& draft;
@@ -39,13 +39,14 @@ struct DrivenLimb : limbs::Limb {
 /// Reads the drive of a limb. @param q  the joint variable
 DrivenLimb read_drive(const LimbCopy& copy, const limbs::Ends& at, const limbs::Term& q);
 
-/// Names of the parts of a limb: its bodies, as [[body]] refers to them.
+/// Names of the parts of a limb, by which [[body]] refers to them.
 std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::string& drive);
 /// The parts of a limb with their ends. Adds the limb's arm to the model.
 std::vector<LimbPart> read_parts(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 /// Adds the links that are drawn and tested for clearance, if the limb has a `radius`.
 void add_limb_links(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
-/// Adds a box about A, or about the rail, that contains the platform's frame whenever the limb can reach it.
+/// Adds a box around A, or around the rail, that contains the origin of the platform's frame at every pose that the
+/// limb can reach.
 void add_reach(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 
 /// Reads a [[limb]] with drive = "formula": the joints are formulas of the pose.

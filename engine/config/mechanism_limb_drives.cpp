@@ -11,7 +11,7 @@ namespace {
 
 using limbs::Ends, limbs::Term, limbs::Vector3;
 
-/// The sign of a copy's branch. Its name in formulas of quantities and margins is "arm1_branch".
+/// The sign that selects the branch of a copy. Formulas of quantities and margins refer to it as "arm1_branch".
 Term branch(const LimbCopy& copy) {
   const ConfigValue value = copy.table.at("branch", "\"+\" or \"-\"");
   const Term sign = copy.draft.add_sign(value.word()[0], true);

@@ -13,7 +13,7 @@ struct JointVariable {
   Term q;
 };
 
-/// Reads a joint and adds its closure `formula - q`.
+/// Reads a joint and adds its loop-closure equation `formula - q`.
 JointVariable read_joint(const ConfigValue& table, const std::string& limb, const std::string& name,
                          const ConfigValue& text, const std::string& unit, MechanismDraft& draft) {
   generic::Model& model = draft.model;
@@ -28,7 +28,8 @@ JointVariable read_joint(const ConfigValue& table, const std::string& limb, cons
 }
 
 /// Reads the loop-closure equations of a limb, in which the names of its joints are variables. They replace the default
-/// equations q = f(pose), whose Jacobians Jq (by the joints) and G (by the pose) have no serial singularities.
+/// equations q = f(pose), which cannot show serial singularities: their Jacobian Jq with respect to the joints is
+/// constant, and only G, the one with respect to the pose, varies.
 void replace_closures(const ConfigValue& list, const std::vector<JointVariable>& joints, MechanismDraft& draft) {
   const std::string expected = "a list of as many formulas as the limb has joints, " + std::to_string(joints.size());
   const auto closures = list.elements(expected);

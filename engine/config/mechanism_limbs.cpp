@@ -144,7 +144,7 @@ std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   return side * (copy.draft.scope.positive(pair->at("spacing", "the rods' distance"), "m", copy.name) * 0.5);
 }
 
-/// The limb under the name that other tables use, with the axes of its joints.
+/// The limb as other tables refer to it, with the axes of its joints.
 NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& driven) {
   const ConfigValue& table = copy.table;
   NamedLimb limb{.name = copy.name,
@@ -170,8 +170,8 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
   return limb;
 }
 
-/// Adds the geometry and the polynomial constraints that are equivalent to those of a limb's range and reach.
-/// @param has_range  the last two margins of the model are those of the joint's range
+/// Adds the annulus of a limb's reach and the polynomial constraints that are equivalent to its range and reach.
+/// @param has_range  true if the last two margins of the model are those of the joint's range
 void add_equivalent_constraints(const limbs::Limb& limb, bool has_range, generic::Model& model) {
   std::vector<expression::Node> constraints;
   for (const limbs::Constraint& constraint : limb.constraints) constraints.push_back(constraint.margin.node());

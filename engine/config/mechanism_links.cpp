@@ -1,4 +1,4 @@
-// Reader of [[link]]: links besides those of the limbs; the clearance of all links.
+// Reader of [[link]]: links in addition to those of the limbs, and the clearance of all links.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
@@ -29,7 +29,7 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
                   to = read_point(table.at("to", "a point"), name, draft);
     const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
     std::string part = kFramePart;
-    std::vector<std::string> in, copies;  // groups; the name of a limb with copies stands for all of them
+    std::vector<std::string> in, copies;  // names of groups; the name of a limb with copies refers to all of its copies
     if (const auto group = table.find("group")) {
       constexpr const char* kExpected = "a name or a list of names";
       const auto groups = group->is_list() ? group->elements(kExpected) : std::vector{*group};

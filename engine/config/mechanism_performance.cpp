@@ -1,5 +1,5 @@
-// Quantities that every mechanism gets as far as its file or a study has the data: transmission of velocities,
-// accuracy, stiffness, effective mass and acceleration (engine/generic/performance/performance.hpp).
+// Performance quantities that every mechanism has if its file or a study gives the required data: velocity
+// transmission, accuracy, stiffness, effective mass and acceleration (engine/generic/performance/performance.hpp).
 #include <algorithm>
 #include <numbers>
 
@@ -134,7 +134,8 @@ class Performance {
     for (const Term& bound : errors_.bound) model_.joint_errors.push_back(bound.node());
     add(generic::accuracy_quantities(at_, errors_));
   }
-  /// Displacement of the inner end of a rod or leg along it, by the joint coordinate.
+  /// Derivative, with respect to the joint coordinate, of the displacement of a rod's or leg's driven end along its
+  /// line.
   Term joint_motion(const NamedLimb& limb) const {
     const LimbForce force = *force_of(limb);
     return limb.drive == "crank" ? force.input * limbs::length(limb.points.at("C") - limb.points.at("A")) : force.input;
@@ -164,8 +165,8 @@ class Performance {
     for (std::size_t joint = 0; joint < joints_; ++joint)
       if (const auto value = by_name.find(model_.info.joints[joint].name)) read(*value, joint);
   }
-  /// Reads the errors of parameters. A parameter that all limbs share has an independent error in each limb, which acts
-  /// on the joint of this limb only.
+  /// Reads the errors of parameters. A parameter that all limbs share has an independent error in each limb; it affects
+  /// only the joints of that limb.
   void read_parameter_errors(const ConfigValue& all) {
     for (const std::string& name : all.dotted_keys(false)) {
       const ConfigValue value = *all.find(name);
@@ -193,7 +194,8 @@ class Performance {
       if (!has_effect) throw value.refusal("an error of " + name + " has no effect: no joint depends on it");
     }
   }
-  /// Derivative of a joint coordinate by a parameter, of the limb itself if it has one of its own.
+  /// Derivative of a joint coordinate with respect to a parameter: the limb's own parameter if it has one, otherwise
+  /// the one that all limbs share.
   Term by_parameter(std::size_t joint, const std::string& limb, const std::string& parameter, std::size_t index) {
     expression::Node input = model_.graph.input(index, generic::Inputs::kDesign);
     for (const OwnParameter& own : draft_.own)

@@ -1,6 +1,6 @@
-// Check of a limb's `across`: crank and rod stay in planes normal to it, so the component of B - A along it has to be
-// the same at every pose. It is evaluated at random poses in the box of [survey], for the default design and random
-// designs.
+// Check of a limb's `across`: crank and rod stay in planes normal to this direction, so the component of B - A along it
+// has to be the same at every pose. The component is evaluated at random poses in the box of [survey], for the default
+// design and for random designs.
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +93,7 @@ void refuse_changing_planes(MechanismDraft& draft) {
     for (std::uint32_t k = 0; k < kPoses; ++k) {
       const std::vector<double> values = poses.next(nodes);
       for (std::size_t i = 0; i < offsets.size(); ++i) {
-        if (!std::isfinite(values[2 * i]) || !std::isfinite(values[2 * i + 1])) continue;  // it does not assemble
+        if (!std::isfinite(values[2 * i]) || !std::isfinite(values[2 * i + 1])) continue;  // not a valid pose
         offsets[i].add(values[2 * i]);
         sizes[i].add(std::sqrt(values[2 * i + 1]));
       }

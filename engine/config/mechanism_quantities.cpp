@@ -13,13 +13,13 @@ namespace {
 using expression::Node;
 using generic::Inputs;
 
-/// Names that the output, fields of workspaces and formulas of studies use already.
+/// Names that are already used by the output, by fields of workspaces and by formulas of studies.
 const std::vector<std::string> kTaken = {"conditioning", "dci",    "dci_worst", "inertia_condition", "volume",
                                          "clearance",    "det_Jq", "det_G",     "feasible",          "margin"};
 
 constexpr double kNoLimit = 1e30;  // threshold that no value of a quantity violates, in any unit
 
-/// A coordinate, or an input of [inputs]. Its value, rate and acceleration are inputs of the graph.
+/// A coordinate, or an input of [inputs]. Its value, its rate and its acceleration are inputs of the graph.
 struct Moving {
   std::string name;
   Node value, rate, acceleration;
@@ -42,7 +42,7 @@ std::vector<Moving> moving_inputs(generic::Model& model) {
 
 std::string limit_name(const std::string& quantity, const std::string& side) { return quantity + "_" + side; }
 
-/// Calls visit(name, side, value) for the sides "min" and "max" of each limit of a quantity in a study.
+/// Calls visit(name, side, value) for each limit of a quantity in a study; side is "min" or "max".
 template <class Visit>
 void visit_quantity_limits(const ConfigValue& study, const MechanismInfo& info, const Visit& visit) {
   const auto limits = limits_of_quantities(study);
@@ -55,9 +55,10 @@ void visit_quantity_limits(const ConfigValue& study, const MechanismInfo& info, 
   }
 }
 
-/// The margin of a limit: value - threshold for a minimum, threshold - value for a maximum. min and max in the value
-/// are moved outwards, min(a, b) - t = min(a - t, b - t), where the polynomial normal form can eliminate them.
-/// @param most  number of minima and maxima that are moved outwards
+/// The margin of a limit: value - threshold for a minimum, threshold - value for a maximum. If the value is itself a
+/// minimum or maximum, this operation is moved outwards, min(a, b) - t = min(a - t, b - t), so that the polynomial
+/// normal form can eliminate it.
+/// @param most  number of minima and maxima that may still be moved outwards
 Node margin_of(expression::Graph& graph, Node value, Node threshold, bool is_minimum, int& most) {
   const expression::Entry entry = graph[value];
   const auto is = [&](expression::Code code) { return entry.operation && entry.operation->code == code; };

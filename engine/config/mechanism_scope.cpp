@@ -154,7 +154,7 @@ void MechanismScope::add_domains() {
     const expression::Entry entry = model_.graph[node];
     const Term argument = model_.term(entry.arguments[0]), one(model_.graph, 1.0);
     const bool of_circle = entry.operation->name == "asin" || entry.operation->name == "acos";
-    // A limited quantity may be undefined at a pose that can be assembled.
+    // The mechanism may be assembled at a pose where a limited quantity is undefined.
     (is_needed ? model_.domains : model_.margins)
         .push_back({name, "", (of_circle ? one - abs(argument) : argument).node(), consequence});
   }

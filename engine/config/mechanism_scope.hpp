@@ -18,17 +18,17 @@ class MechanismScope {
 
   /// Refuses a name that is invalid in formulas or in use.
   void add(const ConfigValue& at, const std::string& name, expression::Node node);
-  /// Assigns another node to a name: a threshold instead of the parameter.
+  /// Assigns another node to a name, for example a threshold in place of a parameter.
   void replace(const std::string& name, expression::Node node);
-  /// The nodes of all names, for restore(), which keeps names that were added later.
+  /// The nodes of all names. Passing them to restore() resets these names, and keeps names that were added later.
   const std::vector<expression::Node>& meanings() const { return nodes_; }
   void restore(const std::vector<expression::Node>& meanings) { std::ranges::copy(meanings, nodes_.begin()); }
   bool knows(const std::string& name) const;
   /// Sets whether formulas may depend on rates and on [inputs]. Only formulas of quantities may.
   void allow_motion(bool allowed) { motion_allowed_ = allowed; }
 
-  /// Reads a number, text with a unit of the dimension of `unit`, or a formula of the names defined so far. If it may
-  /// be undefined, this becomes a margin named after `what`.
+  /// Reads a number, text with a unit of the dimension of `unit`, or a formula of the names defined so far. If the
+  /// formula can be undefined, add_domains() adds the condition that it is defined, under the name `what`.
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// Reads a formula of parameters only.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
@@ -51,8 +51,9 @@ class MechanismScope {
   /// Marks the square roots in `node` as defined wherever the constraints of the limb are satisfied; add_domains() then
   /// adds no margins for them.
   void mark_as_defined(expression::Node node);
-  /// Adds domains for the operations in joints and margins of the model that may be undefined; margins for those that
-  /// only limits of quantities use.
+  /// Adds the conditions that the operations in joints and margins of the model are defined (for example, that
+  /// radicands are not negative) to the model's domains. Conditions that concern only limits of quantities become
+  /// margins instead.
   void add_domains();
 
  private:

@@ -1,4 +1,4 @@
-// Reader of [survey]: swept coordinates, search box, and default values of the others.
+// Reader of [survey]: the swept coordinates, the search box, and the default values of the fixed coordinates.
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ int coordinate_named(const ConfigValue& value, const MechanismInfo& info) {
   return static_cast<int>(find_named(info.coordinates, name) - info.coordinates.data());
 }
 
-/// Reads a table of ranges { x = [from, to] }, formulas of parameters, by coordinate.
+/// Reads a table of ranges by coordinate, { x = [from, to] }, whose ends are formulas of parameters.
 void read_ranges(const ConfigValue& survey, const char* key, MechanismDraft& draft,
                  std::vector<std::optional<std::array<expression::Node, 2>>>& ranges) {
   const auto value = survey.find(key);

@@ -40,7 +40,7 @@ struct Pace {
   PeakRates most = {};
 };
 
-/// The pace in the table of a point; otherwise `general`, that of the whole motion.
+/// The pace given in the table of a point, otherwise `general`, that of the whole motion.
 Pace pace_of(const ConfigValue& table, const Pace& general) {
   const auto peak = [&table](const char* key) { return table.find_number(key).value_or(kUnbounded); };
   const Pace pace{table.find_number("time"),
@@ -176,7 +176,7 @@ constexpr MotionKind kMotionKinds[] = {{"points", read_points},
 ConfigValue motion_described_by(const TableSpec& spec, const ConfigValue& value, const MotionNames& names) {
   const bool has_points = value.expect_table().choice("type", names_of(kMotionKinds)) == "points";
   Names keys =
-      has_points ? Names() : names_of(names.coordinates);  // with `points`, the coordinates are keys of the points
+      has_points ? Names() : names_of(names.coordinates);  // with `points`, the coordinates are keys of each point
   for (const InputInfo& input : names.inputs) keys.push_back(input.name);
   return value.described_by(spec, named_keys(spec, keys));
 }

@@ -1,4 +1,4 @@
-// Reads motions: motion files. (Studies have tables [[motion]]: study_draft.hpp.)
+// Reads motion files. (study_draft.hpp declares the reader of a study's tables [[motion]].)
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace pkm {
 
-/// The names in motions of a mechanism: its coordinates, and inputs, which may be formulas of the time.
+/// The names that a motion of a mechanism may use: the coordinates, and the inputs, which may be formulas of the time.
 struct MotionNames {
   std::vector<AxisInfo> coordinates;
   std::vector<InputInfo> inputs = {};

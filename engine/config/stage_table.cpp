@@ -58,8 +58,8 @@ void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpa
   }
 }
 
-/// @param each      the table [[stage]]
-/// @param is_first  no stage comes before it
+/// @param each      a table [[stage]]
+/// @param is_first  true if it is the first stage
 Stage read_stage(const ConfigValue& each, const std::vector<OptimiserEntry>& optimisers, const Problem& problem,
                  bool is_first) {
   const OptimiserEntry& entry = *find_named(optimisers, each.choice("optimiser", names_of(optimisers)));

@@ -33,12 +33,12 @@ void read_study_table(const ConfigValue& root, Study& study) {
   }
 }
 
-/// [checkpoint] and [final]: one key each.
+/// Reads [checkpoint] and [final], which have one key each.
 void read_run_tables(const ConfigValue& root, StudyDraft& draft) {
   if (const auto table = root.find_table("checkpoint")) draft.study.checkpoint_every = table->find_number("every");
   if (const auto table = root.find_table("final")) {
     if (const auto round = table->find("round")) {
-      // The step has the unit that all variables share; "1" if their units differ.
+      // The step has the unit that all variables share, or "1" if their units differ.
       const auto& variables = draft.parts.space.variables();
       if (variables.empty()) throw round->refusal("only [variables] are rounded, and the study has none");
       std::string& unit = draft.study.round_unit = variables.front().unit;
@@ -81,7 +81,7 @@ void warn_of_empty_workspace(Study& study) {
     if (limit.is_requested_by_outer_scope()) throw;
     return;
   } catch (const DesignError&) {
-    return;  // a mass that is not positive has a message of its own when the design is evaluated
+    return;  // an invalid mass; reported when the design is evaluated
   }
   std::string where;
   for (const int coordinate : sweep_of(info, plan).fixed) {
@@ -159,7 +159,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   return std::move(draft.study);
 }
 
-/// The mechanism file of a study that was read before.
+/// Finds the mechanism file of a study that was read before.
 FindDescription known_description(const std::optional<SourceText>& description) {
   return [&description](const ConfigValue& file) {
     if (!description) throw file.refusal("the contents of the mechanism file are not available here");

@@ -66,11 +66,11 @@ struct Study {
   std::optional<std::string> output;
   /// Mechanism, parameters, variables and survey plan are in problem->parts().
   std::shared_ptr<const DesignProblem> problem;
-  std::optional<std::vector<double>> baseline;  ///< every parameter of the mechanism
+  std::optional<std::vector<double>> baseline;  ///< values of all parameters of the mechanism
   std::vector<StartDesign> starts;              ///< designs of another study for the first stage, best first
-  std::vector<Stage> stages;                    ///< may be empty: then the study can be evaluated, but not run
+  std::vector<Stage> stages;                    ///< if empty, the study can be evaluated, but not run
   std::optional<double> round;                  ///< [final]: step [SI] to which the best design is rounded
-  std::string round_unit = "1";                 ///< the unit that all variables share, else "1"
+  std::string round_unit = "1";                 ///< the unit that all variables share; "1" if their units differ
   double exact_seconds = 10;               ///< [workspace] exact: time limit of the exact values; 0: none are computed
   std::optional<double> checkpoint_every;  ///< [s]; std::nullopt: adaptive
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
@@ -81,13 +81,14 @@ struct Study {
   std::vector<std::string> unfollowed_motions;  ///< motions with follow = false
 
   std::vector<StudyEntry> objectives, constraints, outputs;
-  std::vector<std::string> limit_origins;  ///< for each limit of the mechanism: where it is set; "": nowhere
+  std::vector<std::string> limit_origins;  ///< for each limit of the mechanism, where its threshold is set; "": nowhere
 
   /// `output`, else the study file's stem + ".h5" in the current folder.
   std::string output_file() const;
 };
 
-/// Whether a study gets the constraints that its motions imply. Study files of earlier versions do not have them.
+/// Whether a study gets the constraints that its motions imply. Study files written by earlier versions do not have
+/// them.
 enum class ImpliedConstraints { added, left_out };
 
 /// Builds a study from a TOML document. `file_name` is named in messages. Opens no file: if [mechanism] names one,
@@ -104,15 +105,15 @@ Study read_study_document(const TomlValue& document, const std::string& file_nam
 /// when a file cannot be read.
 Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes = {});
 
-/// Reads the options of one optimiser, the lines of a [[stage]] without its header, for a problem that belongs to no
-/// study. Throws ConfigError. `file_name` is named in messages.
+/// Reads the options of one optimiser, i.e. the lines of a [[stage]] without its header, for a problem that does not
+/// come from a study. Throws ConfigError. `file_name` is named in messages.
 Stage read_stage_toml(const std::string& lines, const std::string& file_name,
                       const std::vector<OptimiserEntry>& optimisers, const Problem& problem);
 
 /// Throws ConfigError if a study has no stages, so that it cannot be run.
 void require_stages(const Study& study, const Catalogues& catalogues);
 
-/// Whether a document is a mechanism file: these have a name in [mechanism], or a [platform].
+/// Whether a document is a mechanism file, which has a `name` in [mechanism] or a table [platform].
 bool describes_mechanism(const TomlValue& document);
 
 /// Contents of a file that is a study or a mechanism file.

@@ -1,5 +1,5 @@
-// Changes of a study by the command line. They are appended to the text of the study, so that resuming and reporting a
-// run use the problem that was run.
+// Changes made to a study on the command line. They are appended to the text of the study, so that `resume` and
+// `report` use the problem that was run.
 #pragma once
 
 #include <string>
@@ -15,17 +15,17 @@ namespace pkm {
 struct StudyChanges {
   std::vector<std::string> set;         ///< fixed parameters
   std::vector<std::string> limit;       ///< thresholds of poses
-  std::vector<std::string> cells;       ///< numbers of voxels; or one number for all coordinates
+  std::vector<std::string> cells;       ///< numbers of voxels by coordinate, or one number for all coordinates
   std::vector<std::string> start_from;  ///< name of the study file whose designs the first stage starts from
   std::vector<std::string> start;       ///< these designs, one list each, see engine/runner/start_from.hpp
 
-  /// Parameters of single limbs, "arm2.l_b", that the mechanism has to have besides those that the study names. They do
-  /// not change the study.
+  /// Parameters of single limbs, such as "arm2.l_b", that the mechanism must have in addition to those that the study
+  /// names. They do not change the study.
   std::vector<std::string> limb_parameters;
   std::vector<std::string> joint_error;  ///< [accuracy] joint_error of a mechanism without a study
 
-  /// Values of parameters and bounds of variables that a study file records; they replace those that its text gives,
-  /// without a change of the text.
+  /// Values of parameters and bounds of variables recorded in a study file. They replace the values given by the
+  /// study's text, but do not change the text.
   std::vector<std::pair<std::string, double>> recorded_parameters;
   std::vector<Variable> recorded_variables;
 

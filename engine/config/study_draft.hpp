@@ -32,7 +32,7 @@ void read_overrides(const ConfigValue& root, StudyDraft& draft);
 void override_parameters(const ConfigValue& root, StudyDraft& draft);
 /// Applies the overrides of limits.
 void override_limits(StudyDraft& draft);
-/// Reads the designs of another study at which the first stage starts.
+/// Reads the designs of another study from which the first stage starts.
 void override_starts(StudyDraft& draft);
 /// Reads [mechanism]: type or file, masses, fixed parameters.
 void read_mechanism(const ConfigValue& root, StudyDraft& draft);

@@ -37,7 +37,7 @@ FixedCoordinate read_fixed(const ConfigValue& value, const MechanismInfo& info, 
   return {.coordinate = coordinate, .kind = Kind::value, .value = number};
 }
 
-/// Reads a list of values of a fixed coordinate.
+/// Reads a list of values at which a coordinate is fixed.
 FixedCoordinate read_fixed_values(const ConfigValue& list, const MechanismInfo& info, int coordinate, bool integrates) {
   const std::string expected = "a list of values of " + axis_of(info, coordinate).name;
   FixedCoordinate fixed{.coordinate = coordinate, .kind = FixedCoordinate::Kind::listed};

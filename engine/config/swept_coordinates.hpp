@@ -15,10 +15,11 @@ inline const AxisInfo& axis_of(const MechanismInfo& info, int coordinate) {
 /// Names of the coordinates with these indices.
 std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::vector<int>& coordinates);
 
-/// Describes valid angles, for messages. A number beyond pi without a unit is probably meant in degrees.
+/// Text for messages: which angles are valid. A number beyond pi without a unit was probably meant in degrees.
 std::string angle_expectation(const ConfigValue& written, double value);
 
-/// The coordinates that at least one sweep of the mechanism fixes; first those that the default sweep fixes.
+/// The coordinates that are fixed in at least one sweep of the mechanism, beginning with those that the default sweep
+/// fixes.
 std::vector<int> fixable(const MechanismInfo& info);
 /// Reads the list of swept coordinates, in any order.
 void read_sweep(const ConfigValue& list, const MechanismInfo& info, WorkspacePlan& plan);

@@ -35,7 +35,7 @@ void set(TomlValue& table, const std::string& key, TomlValue value) {
   std::ranges::sort(table.order, {}, [&table](std::size_t i) { return table.keys[i]; });
 }
 
-/// A table with those entries for which keep(key) holds.
+/// A copy of a table with only the entries for which keep(key) is true.
 template <class Keep>
 TomlValue filtered(const TomlValue& table, const Keep& keep) {
   TomlValue result = table;
@@ -51,13 +51,13 @@ TomlValue text_value(const std::string& text) { return {.kind = Kind::text, .tex
 TomlValue number_value(double number) { return {.kind = Kind::number, .number = number, .written = shortest(number)}; }
 TomlValue list_value() { return {.kind = Kind::array}; }
 
-/// The element of a table, an empty table or list if there is none.
+/// The value of a key of a table, or `otherwise` if the table lacks the key.
 TomlValue value_or(const TomlValue& table, const std::string& key, TomlValue otherwise) {
   const TomlValue* const found = table.find(key);
   return found ? *found : std::move(otherwise);
 }
 
-/// Writes a task for one robot, in its coordinates.
+/// Writes a task as a study of one robot, in the coordinates of this robot.
 class TaskOfRobot {
  public:
   TaskOfRobot(const Task& task, const TaskRobot& robot, const Names& coordinates)
@@ -122,7 +122,8 @@ class TaskOfRobot {
     }
   }
 
-  /// The table without the coordinates of other robots, and with the values of the robot's in its frame.
+  /// A copy of the table without the coordinates that only other robots have; the values of this robot's coordinates
+  /// are converted to its frame.
   TomlValue in_robot_frame(const TomlValue& table) const {
     TomlValue own = filtered(table, [this](const std::string& key) { return !is_other_robots(key); });
     for (std::size_t i = 0; i < own.keys.size(); ++i)
@@ -130,7 +131,7 @@ class TaskOfRobot {
     return own;
   }
 
-  /// Gives the coordinates that neither `table` nor `given` names their default values.
+  /// Adds the default values of the coordinates that neither `table` nor `given` names.
   void add_default_values(const TomlValue& given, TomlValue& table) const {
     for (std::size_t i = 0; i < info().coordinates.size(); ++i) {
       const std::string& name = info().coordinates[i].name;
@@ -179,7 +180,7 @@ class TaskOfRobot {
     return own;
   }
 
-  /// [workspace] with the limits of the robot's study and of the task, which replace those of the same name.
+  /// [workspace] with the limits of the robot's study and those of the task; the latter take precedence.
   TomlValue workspace() const {
     TomlValue limits;
     for (const TomlValue* const document : {&robot_.study, &task_.document})
@@ -214,7 +215,7 @@ struct Line {
   std::string name;
   bool is_margin = false;
   TomlValue entry;
-  bool is_users = false;  ///< an [[output]] of the task
+  bool is_users = false;  ///< true for an [[output]] of the task
 };
 
 Names names_of_tables(const TomlValue& document, const std::string& key) {
@@ -257,14 +258,14 @@ std::vector<Line> lines_of(const Task& task) {
   return lines;
 }
 
-/// The message of an error without its place.
+/// The message of an error without its location.
 std::string sentence_of(const ConfigError& error) {
   const std::string all = error.what(), place = error.place().key + ": ";
   const std::size_t at = error.place().key.empty() ? std::string::npos : all.find(place);
   return at == std::string::npos ? all : all.substr(at + place.size());
 }
 
-/// Evaluates the lines that the robot supports together.
+/// Evaluates the lines that the robot supports, all in one evaluation of its design.
 void evaluate(const TaskRobot& robot, const Study& study, const Names& names, std::vector<TaskValue>& values) {
   const DesignProblem& problem = *study.problem;
   const DesignReport report = problem.report(robot.parameters);

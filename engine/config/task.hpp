@@ -1,8 +1,9 @@
-// A task that several robots are compared in: regions, motions and limits, written like those of a study.
+// A task for the comparison of several robots: regions, motions and limits, written like those of a study.
 //
-// A task file is a study without a robot. Robots may lack coordinates that the task names (a planar robot has no z);
-// what the task says of these is left out for them. Coordinates of a robot that the task does not name have their
-// default values. A robot's base may stand elsewhere: [origin] gives its position in the frame of the task.
+// A task file is a study without a robot. The task may name coordinates that some of the robots lack (a planar robot
+// has no z); the entries for these coordinates are ignored for those robots. Coordinates of a robot that the task does
+// not name have their default values. [origin] gives the position of a robot's base in the frame of the task, if it is
+// not at the origin.
 #pragma once
 
 #include <string>
@@ -23,16 +24,16 @@ struct Task {
 /// Reads the file at `path`, and checks its keys. Throws ConfigError.
 Task load_task_toml(const std::string& path);
 
-/// A robot that does a task.
+/// A robot that is compared in a task.
 struct TaskRobot {
   std::string name;  ///< unique, for [origin]
   std::shared_ptr<const Mechanism> mechanism;
   std::vector<double> parameters;
-  TomlValue study;                        ///< document of its study; for a mechanism only the table [mechanism]
+  TomlValue study;                        ///< document of its study; without a study, only the table [mechanism]
   std::optional<SourceText> description;  ///< its mechanism file
 };
 
-/// One line of a comparison: a margin (the robot does this part of the task if it is >= 0), or a value.
+/// One line of a comparison: a value, or a margin, which is >= 0 if the robot can perform this part of the task.
 struct TaskValue {
   std::string name;  ///< "region bin, all poses"
   std::string unit;
@@ -42,9 +43,9 @@ struct TaskValue {
   bool is_mistake = false;  ///< an [[output]] of the task that the robot refuses; a mistake if all robots refuse it
 };
 
-/// Evaluates one robot in the task: for each region the minimum of all margins in its box and indices over it, for each
-/// motion the minimum of the margins and the peak power, and the task's outputs. The lists of different robots
-/// have the same lines in the same order. Throws ConfigError for a mistake in the task.
+/// Evaluates one robot in the task. For each region: the minimum of all margins in its box, and indices over it. For
+/// each motion: the minimum of the margins and the peak power. In addition, the outputs of the task. The lists of all
+/// robots have the same lines in the same order. Throws ConfigError for a mistake in the task.
 /// @param coordinates  names of the coordinates of all robots that are compared
 std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot,
                                      const std::vector<std::string>& coordinates, const Catalogues& catalogues);

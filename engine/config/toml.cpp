@@ -14,7 +14,7 @@ constexpr std::size_t kLongestQuote = 60;  // characters of a value that a messa
 
 std::vector<std::string_view> split_lines(std::string_view text) {
   std::vector<std::string_view> lines;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark counts no column
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark does not count as a column
   while (!text.empty()) {
     const auto end = text.find('\n');
     lines.push_back(text.substr(0, end));
@@ -51,8 +51,8 @@ class Source {
   std::vector<std::size_t> begins_;
 };
 
-/// The source text of a value, abbreviated if it is long; a word if it has several lines or is the body below a
-/// [header].
+/// The source text of a value, abbreviated if it is long. If the value extends over several lines or is the body below
+/// a [header], words such as "a table" instead.
 std::string quote(const toml::node& node, Source& source) {
   const auto& [begin, end, path] = node.source();
   const char* word = node.is_table() ? "a table" : node.is_array() ? "an array" : "text of several lines";
@@ -112,8 +112,8 @@ struct Depth {
 };
 
 /// The line (1-based) at which tables are nested so deeply that recursive functions, such as the parser, would run out
-/// of stack; 0 if there is none. No study needs this depth. It is found from the text alone, up to the first syntax
-/// error.
+/// of stack; 0 if there is none. No study needs this depth. The depth is determined from the text, without the parser,
+/// up to the first syntax error.
 int line_too_deep(std::string_view text) {
   constexpr Depth kMax{32, 16};
   Depth depth;

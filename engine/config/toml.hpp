@@ -1,7 +1,7 @@
 // A TOML document as a tree of values with the lines where they were written.
 //
-// The parser is toml++, which is used in toml.cpp only. Unlike the tables of toml++, these keep the order of the file:
-// variables are stored and shown in the order in which the study names them.
+// The parser is toml++, which is used in toml.cpp only. Unlike the tables of toml++, those of TomlValue keep the order
+// of the file, so that variables are stored and shown in the order in which the study names them.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Lexical scanner for the keys of a TOML text with their positions, so that a key can be replaced without any other
-// change of the text. toml++ gives the positions of values and of the first header of an array of tables only.
+// Lexical scanner for the keys of a TOML text and their positions, so that a key can be replaced without changing any
+// other text. toml++ gives only the positions of values and of the first header of an array of tables.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace pkm {
 
 /// One part of a key as it is written: `b` of `a.b = 1`, of `[a.b]`, or of `a = { b = 1 }`.
 struct TomlKey {
-  std::vector<std::string> path;    ///< the tables that contain it, then its own name; lists have no index
+  std::vector<std::string> path;    ///< names of the enclosing tables, then its own name; lists have no index
   std::size_t begin = 0, size = 0;  ///< bytes of the name in the text, without quotes
   int line = 0;                     ///< 1-based
 };

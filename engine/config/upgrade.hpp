@@ -1,5 +1,5 @@
 // Replaces old names of keys in the text of a study or of a mechanism file by the present ones (renamed_keys.hpp). All
-// other text stays as it is, with comments and layout.
+// other text, including comments and layout, is unchanged.
 #pragma once
 
 #include <string>

@@ -15,14 +15,14 @@
 namespace pkm {
 namespace {
 
-constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid: the one of the 4PPa-2PaR paper
+constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid, taken from the 4PPa-2PaR paper
 constexpr std::int64_t kIntegratedCells = 32;                   // default along a coordinate that is integrated over
-constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;       // a voxel map takes a byte per cell
+constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;       // maximum; a voxel map takes one byte per cell
 constexpr double kDefaultGap = 1e-2;                            // relative gap for `certified = true`
 
 bool integrated(const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; }
 
-/// Names of the coordinates with cells: the swept ones, then those that are integrated over.
+/// Names of the coordinates that have cells: the swept ones, followed by those that are integrated over.
 std::vector<std::string> names_with_cells(const MechanismInfo& info, const WorkspacePlan& plan) {
   std::vector<std::string> names = coordinate_names(info, sweep_of(info, plan).swept);
   for (const FixedCoordinate& fixed : plan.fixed)
@@ -30,8 +30,8 @@ std::vector<std::string> names_with_cells(const MechanismInfo& info, const Works
   return names;
 }
 
-/// Sets the numbers of cells along all axes of a plan of voxels to cells_of(name). @return the product along the swept
-/// coordinates
+/// Sets the numbers of cells along all axes of a voxel plan to cells_of(name). @return the product of the numbers along
+/// the swept coordinates
 template <class CellsOf>
 std::int64_t set_cells(const MechanismInfo& info, WorkspacePlan& plan, const CellsOf& cells_of) {
   const std::vector<int>& swept = sweep_of(info, plan).swept;
@@ -127,7 +127,7 @@ std::optional<double> read_certified(const ConfigValue& value, const Mechanism& 
   return gap;
 }
 
-/// Reads `exact`: false, true, or a time.
+/// Reads `exact`: false, true, or a time limit.
 /// @param default_seconds  time limit for `exact = true`
 /// @return time limit of the exact values [s]; 0: they are not computed
 double read_exact(const ConfigValue& value, const Mechanism& mechanism, double default_seconds) {
@@ -151,7 +151,7 @@ void read_limits(const ConfigValue& given, StudyDraft& draft) {
   const auto& built_in = all_mechanisms();
   const bool is_generic = draft.study.description ||
                           std::ranges::find(built_in, draft.info().name, &MechanismEntry::name) != built_in.end();
-  if (is_generic)  // mechanisms in C++ have no limits of quantities
+  if (is_generic)  // mechanisms implemented in C++ have no limits of quantities
     for (const PoseQuantity* const quantity : pose_quantities(draft.info()))
       if (!quantity->needs_inertia()) names.emplace_back(quantity->name);
   const ConfigValue table = given.table_of_names(names);
