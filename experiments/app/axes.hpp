@@ -38,9 +38,9 @@ Json matrix_json(const std::optional<AxisMatrix<double>>& matrix);
 /// The rows of a matrix in aligned columns, below a title.
 std::string matrix_text(const std::string& title, const AxisMatrix<double>& matrix);
 
-/// Adds the pose to the output, whether it assembles, and whether it is feasible.
+/// Adds the pose to the output, with whether it can be assembled and whether it is feasible.
 void report_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out);
-/// Error message for a pose that does not assemble in `mode`; "" if it assembles.
+/// Error message if the mechanism cannot be assembled at the pose in `mode`; "" if it can.
 std::string assembly_error(const std::string& mode, const PoseReport& report);
 
 }  // namespace pkm

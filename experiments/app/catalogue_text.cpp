@@ -36,10 +36,10 @@ std::string sweep_summary(const Json& sweeps) {
   return join(words) + "; --json lists them";
 }
 
-/// The names of expressions with one entry for all statistics of a quantity: "lti_mean, _std, _min, _max".
+/// The names in expressions, with one entry for all statistics of a quantity: "lti_mean, _std, _min, _max".
 Json with_joined_statistics(const Json& names, const Json& quantities) {
   Json joined = Json::array();
-  const std::string* last = nullptr;  // the quantity of the last entry
+  const std::string* last = nullptr;  // quantity of the last entry; null if there is none
   for (const Json& entry : names) {
     const std::string& name = entry["name"].get_ref<const std::string&>();
     const std::size_t end = name.rfind('_');

@@ -102,7 +102,7 @@ std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, con
   }
 }
 
-/// Adds both results, on feasibility and on singularities, to the output. @return as of report_claim
+/// Adds the results on feasibility and on singularities to the output. @return see report_claim()
 std::string report_poses(const MechanismInfo& info, const PoseCertificate& found, const std::string& region,
                          Printout& out) {
   const std::string in = (region == "box" ? "in the " : "along the ") + region;

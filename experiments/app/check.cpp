@@ -1,5 +1,5 @@
-// `pkmopt check`: prints a study as it was interpreted, with all defaults, its contradictory requirements and the
-// feasibility of a few sample designs; or a mechanism file as it was interpreted. Nothing is optimised.
+// `pkmopt check`: prints a study as it was interpreted, with all defaults, contradictions between its requirements and
+// the feasibility of a few sample designs; or a mechanism file as it was interpreted. Nothing is optimised.
 
 #include <algorithm>
 #include <iostream>
@@ -135,7 +135,7 @@ Json probe_json(const Probe& probe) {
       {"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"diagnosis", diagnosis_json(probe.diagnosis)}};
 }
 
-/// Contradictions are omitted: they are printed before.
+/// The text omits contradictions, because they have been printed before.
 std::string probe_text(const Probe& probe) {
   std::string text = "\nprobe: " + describe_probe(probe) + '\n';
   if (!probe.diagnosis) return text;

@@ -23,7 +23,7 @@ const std::vector<std::string> kLists = {"--set",          "--limit",  "--at",  
 /// Repeats the option before each element of a list: "--set a=1 b=2" becomes "--set a=1 --set b=2".
 std::vector<std::string> expand_lists(const std::vector<std::string>& arguments) {
   std::vector<std::string> expanded;
-  std::string option;  // whose list is being read; "" outside of a list
+  std::string option;  // option whose list is being read; "" outside of a list
   for (const auto& argument : arguments) {
     const bool assignment = !argument.starts_with('-') && argument.find('=') != std::string::npos;
     const bool continues_list = assignment && !option.empty() && expanded.back() != option;

@@ -19,7 +19,7 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// The robot of one argument: a mechanism, a study, or a study file, of which its best design is taken.
+/// The robot that an argument names: a mechanism, a study, or a study file, whose best design is used.
 TaskRobot find_robot(const Session& session, const std::string& argument) {
   const std::filesystem::path path(argument);
   DesignArguments design;
@@ -50,7 +50,7 @@ std::vector<TaskRobot> find_robots(const Session& session, const std::vector<std
   return robots;
 }
 
-/// The names of the robots in the task have to be those of the robots that are compared.
+/// Throws ConfigError if [origin] in the task names a robot that is not compared, or a coordinate that no robot has.
 void check_origins(const Task& task, const std::vector<TaskRobot>& robots,
                    const std::vector<std::string>& coordinates) {
   const TomlValue* const origins = task.document.find("origin");
@@ -68,7 +68,7 @@ void check_origins(const Task& task, const std::vector<TaskRobot>& robots,
   }
 }
 
-/// The lines of all robots: lines[robot][line]. Throws ConfigError if an [[output]] of the task fits no robot.
+/// The lines of all robots: lines[robot][line]. Throws ConfigError if no robot supports an [[output]] of the task.
 std::vector<std::vector<TaskValue>> compared(const Task& task, const std::vector<TaskRobot>& robots,
                                              const Catalogues& catalogues) {
   std::set<std::string> all;
@@ -84,7 +84,7 @@ std::vector<std::vector<TaskValue>> compared(const Task& task, const std::vector
   return lines;
 }
 
-/// The margin that decides: the first negative one, or none.
+/// The first margin that is negative or unknown, which is why the robot cannot do the task; null if there is none.
 const TaskValue* violated(const std::vector<TaskValue>& lines) {
   for (const TaskValue& line : lines)
     if (line.is_margin && !(line.value >= 0)) return &line;

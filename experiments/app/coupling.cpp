@@ -25,8 +25,8 @@ struct CouplingArguments : DesignArguments, GridArguments, TableOutput {
   std::string phi, mode;
 };
 
-/// The voxel grid of the command line, with the study's limits and, for options that are not given, the study's grid.
-/// With --phi, phi is the last fixed coordinate and has the listed values.
+/// The voxel grid given on the command line; options that are not given are taken from the study, as are the limits.
+/// With --phi, the last fixed coordinate is phi, which takes the listed values.
 WorkspacePlan plan_of(const Target& target, const CouplingArguments& arguments) {
   const MechanismInfo& info = target.info();
   WorkspacePlan plan = target.plan();
@@ -47,8 +47,8 @@ WorkspacePlan plan_of(const Target& target, const CouplingArguments& arguments) 
   return plan;
 }
 
-/// Statistics of the coupling indices over the sampled poses, as JSON and as table rows: of each joint, of the largest
-/// and of the mean index of a pose.
+/// Statistics over the sampled poses, as JSON and as table rows: of the coupling index of each joint, and of the
+/// largest and the mean index at a pose.
 std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const WorkspaceResult<double>& survey) {
   Json json = {{"samples", survey.weight.size()}, {"cells", survey.cells}, {"volume", survey.volume}};
   for (const char* name : {"max", "mean", "std", "p95"}) json[name] = Json::object();

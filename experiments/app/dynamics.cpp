@@ -21,7 +21,7 @@ std::string inertia_units(const Axes& joints) {
 }
 
 /// Adds the joint-space dynamics to the output: positions, speeds, drive forces, powers and coupling indices.
-/// @return the reason why there are no forces, if J is singular; else ""
+/// @return why there are no forces, if J is singular; otherwise ""
 std::string report_drive_forces(const MechanismInfo& info, const PoseDynamics<double>& d, const MotionSample& at,
                                 const Wrench<double>& wrench, Printout& out) {
   const AxisVector<double> q_rate = d.J * at.velocity;

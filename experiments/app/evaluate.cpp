@@ -29,10 +29,10 @@ struct EvaluateArguments : DesignArguments, SensitivityArguments {
   TableJob designs;
 };
 
-/// The problem of a mechanism without a study: all objectives of its workspace that support the mechanism and the
-/// method, with their default options. Objectives that need all poses are left out: most closed forms do not store
-/// them.
-/// @param cells  of voxels; empty: a default number
+/// The problem of a mechanism without a study: all objectives of its workspace that the mechanism and the method
+/// support, with their default options. Objectives that need the pose of every sample are omitted, because most closed
+/// forms do not store poses.
+/// @param cells  numbers of voxels; empty: a default number
 DesignProblem problem_of_all_objectives(const Target& target, const Catalogues& catalogues, bool by_columns,
                                         const std::vector<std::string>& cells) {
   ProblemParts parts;
@@ -65,10 +65,10 @@ DesignProblem problem_of_all_objectives(const Target& target, const Catalogues& 
 
 struct ProblemOfMechanism {
   std::shared_ptr<const DesignProblem> problem;
-  std::string why_voxels;  ///< if the mechanism's columns cannot be computed in time
+  std::string why_voxels;  ///< why voxels are used although the mechanism has columns; "" otherwise
 };
 
-/// By exact columns if the mechanism has them and no cells are given, otherwise by voxels.
+/// Uses exact columns if the mechanism has them and no cells are given, otherwise voxels.
 ProblemOfMechanism default_problem(const Target& target, const Catalogues& catalogues,
                                    const std::vector<std::string>& cells) {
   ProblemOfMechanism made;
@@ -155,7 +155,7 @@ std::string feasibility_text(const DesignProblem& problem, const DesignReport& r
   return "no: " + (report.status == Status::failed ? report.reason : join(violated) + " violated" + reason);
 }
 
-/// Evaluates the designs of a table: its columns are parameters, the other parameters are those of the target.
+/// Evaluates the designs of a table. Its columns are parameters; all other parameters have the values of the target.
 void evaluate_table(const DesignProblem& problem, const Target& target, const EvaluateArguments& arguments,
                     const std::string& program, Printout& out) {
   std::vector<Assignable> parameters;  // without ranges: a design outside of them fails

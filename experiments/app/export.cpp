@@ -27,7 +27,7 @@ struct ExportArguments : DesignArguments, WorkspaceOutputs {
   int threads = 0;
 };
 
-/// The pose of --at, otherwise a central one of the workspace.
+/// The pose given by --at, otherwise a central one of the workspace.
 Pose<double> reference_pose(const Target& target, const std::string& mode, const ExportArguments& arguments) {
   if (!arguments.at.empty()) {
     MotionArguments motion;

@@ -44,7 +44,7 @@ std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& as
   const auto& modes = target.info().modes;
   const std::string mode = assembly.working_mode.empty() ? modes.front() : assembly.working_mode;
   if (std::ranges::find(modes, mode) == modes.end())
-    return std::nullopt;  // between two working modes: a limb is singular
+    return std::nullopt;  // a limb is singular, so the pose is between two working modes
   const auto influence = target.mechanism->velocities()->influence(target.parameters, assembly.pose, mode);
   if (!influence || is_singular(influence->G)) return std::nullopt;
   const Influence<double> back = reversed(*influence);

@@ -32,10 +32,10 @@ VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells);
 /// The box of the swept coordinates that encloses all poses the design can reach. Throws ConfigError if it is unknown.
 Box reachable_box(const WorkspacePlan& plan, const Target& target);
 
-/// Changes the method of a plan to voxels, with the cells and the box of the command line, else of the study, else the
-/// defaults. The fixed coordinates of the plan must be set before. Throws ConfigError.
+/// Changes the method of a plan to voxels. Cells and box are taken from the command line, otherwise from the study,
+/// otherwise they have default values. The fixed coordinates of the plan must have been set before. Throws ConfigError.
 /// @param max_cells  limit of the total number of cells
-/// @return by swept coordinate: whether its range was specified, so that feasible poses may exist beyond it
+/// @return for each swept coordinate: true if its range was specified, so that feasible poses may exist beyond it
 std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,
                              std::int64_t default_cells, double max_cells);
 

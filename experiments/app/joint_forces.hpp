@@ -30,11 +30,11 @@ Json reactions_json(const Reactions& reactions);
 
 /// Adds the forces and couples at one state to the output.
 void report_reactions(const Reactions& reactions, Printout& out);
-/// Adds axial forces, stresses and buckling of the rods whose sections have Young's modulus, if there are any.
-/// @param pose  assembles
+/// Adds axial forces, stresses and buckling loads of all rods whose cross-sections have a Young's modulus.
+/// @param pose  a pose that can be assembled
 void report_rods(const Target& target, const std::string& mode, const Pose<double>& pose, const Reactions& reactions,
                  Printout& out);
-/// Adds their extrema along a trajectory with reactions to the output and to out.json["summary"].
+/// Adds the extrema of these quantities along a trajectory with reactions to the output and to out.json["summary"].
 void report_rods(const Target& target, const std::string& mode, const Trajectory& trajectory, Printout& out);
 
 /// Adds the peak and root-mean-square magnitudes along a trajectory to the output and to out.json["summary"].

@@ -19,7 +19,7 @@ std::vector<std::optional<double>> minimum_values(const WorkspaceFields& workspa
   return parse_assignments(arguments.least, "--least", known);
 }
 
-/// By cell: whether it is feasible and reaches all minimum values.
+/// For each cell: whether it is feasible and satisfies all minimum values.
 std::vector<bool> good_cells(const WorkspaceFields& workspace, const CubeArguments& arguments) {
   const auto least = minimum_values(workspace, arguments);
   const std::vector<double>& feasible = workspace.field("feasible").values;

@@ -25,8 +25,7 @@ void expect_length_axes(const Axes& swept, const CubeArguments& arguments);
 /// Throws ConfigError if --least names a field that the workspace lacks, or one that the mechanism does not define.
 void expect_known_fields(const WorkspaceFields& workspace, const MechanismInfo& info, const CubeArguments& arguments);
 
-/// If requested, adds to the output the largest cube of cells that are feasible and reach the minimum values of
-/// --least.
+/// If requested, adds to the output the largest cube of feasible cells that satisfy the minimum values of --least.
 void report_largest_cube(const WorkspaceFields& workspace, const CubeArguments& arguments, Printout& out);
 
 }  // namespace pkm

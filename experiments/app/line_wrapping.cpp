@@ -11,7 +11,7 @@ namespace {
 
 using Text = std::string_view;
 
-constexpr std::size_t kMinSentenceWidth = 24;  // columns; narrower sentences are not wrapped
+constexpr std::size_t kMinSentenceWidth = 24;  // columns; sentences are not wrapped if less space is available
 
 /// Length of the colour escape sequence with which the text begins; 0 if there is none.
 std::size_t escape_length(Text text) { return text.starts_with("\x1b[") ? text.find('m') + 1 : 0; }

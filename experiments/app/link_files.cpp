@@ -12,11 +12,12 @@
 namespace pkm {
 namespace {
 
-/// The links at a pose displaced by a small step in the positive or, if that does not assemble, in the negative
-/// direction; empty if neither assembles.
+/// The links at a pose displaced by a small step, in the positive direction of all coordinates or, if the mechanism
+/// cannot be assembled there, in the negative direction; empty if it cannot be assembled at either pose.
 std::vector<PlacedLink> displaced_links(const Links& mechanism, const Target& target, const std::string& mode,
                                         const Pose<double>& pose) {
-  // [m or rad], divided by 1, 2, 3, .. for the coordinates, so that the effects of two coordinates do not cancel
+  // [m or rad]; divided by 1, 2, 3, .. for the coordinates in order, so that the effects of two coordinates do not
+  // cancel
   constexpr double kStep = 1e-4;
   for (const double step : {kStep, -kStep}) {
     Pose<double> moved = pose;

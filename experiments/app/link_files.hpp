@@ -1,4 +1,5 @@
-// The options --stl, --dxf and --vtk, files of a mechanism's links at one pose, and those of model_files.hpp.
+// The options --stl, --dxf and --vtk, which write a mechanism's links at one pose to files, and those of
+// model_files.hpp.
 #pragma once
 
 #include <string>
@@ -20,8 +21,8 @@ struct LinkFiles {
 void add_link_files(CLI::App& command, LinkFiles& files,
                     const std::vector<std::pair<std::string, std::string*>>& more = {});
 
-/// Writes the requested files; none if the pose does not assemble. For a mechanism without multibody model, the URDF
-/// file contains its links with fixed joints. Throws ConfigError.
+/// Writes the requested files; none if the mechanism cannot be assembled at the pose. For a mechanism without a
+/// multibody model, the URDF file contains its links with fixed joints. Throws ConfigError.
 void write_links(const Target& target, const std::string& mode, const Pose<double>& pose, const LinkFiles& files,
                  Printout& out);
 

@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-/// By input: the value of --input, where it is given.
+/// For each input, the value given by --input, if any.
 std::vector<std::optional<double>> given_inputs(const Mechanism& mechanism, const InputArguments& arguments) {
   const MechanismInfo& info = mechanism.info();
   if (info.inputs.empty() && !arguments.inputs.empty())

@@ -1,4 +1,4 @@
-// The inputs of a mechanism besides the pose, and the quantities that depend on them and on the motion.
+// The inputs of a mechanism in addition to the pose, and the quantities that depend on them and on the motion.
 #pragma once
 
 #include <string>
@@ -15,10 +15,11 @@ struct InputArguments {
 /// Declares --input.
 void add_input_option(CLI::App& command, InputArguments& arguments);
 
-/// Sets the values of a sample's inputs: those of --input, else the defaults. Throws ConfigError for unknown names.
+/// Sets the inputs of a sample to the values given by --input, otherwise to the defaults. Throws ConfigError for
+/// unknown names.
 void set_inputs(const Mechanism& mechanism, const InputArguments& arguments, MotionSample& at);
 
-/// A motion whose inputs have constant values where --input gives them; else they are those of the motion.
+/// A motion in which the inputs given by --input are constant; all other inputs are those of the original motion.
 std::shared_ptr<const Motion> with_given_inputs(const Mechanism& mechanism, std::shared_ptr<const Motion> motion,
                                                 const InputArguments& arguments);
 

@@ -10,10 +10,10 @@
 
 namespace pkm {
 
-/// Reports for each motor, mounted at every joint, the smallest reserve (capacity / demand) and the joint and quantity
+/// Reports for each motor, mounted at every joint: the minimum reserve (capacity / demand), the joint and the rating
 /// that limit it, the mean coupling index, and whether all samples of the motion are feasible. A motor is sufficient if
 /// its reserve is at least 1.
-/// @param trajectory  with forces at all samples; the mechanism has drive trains
+/// @param trajectory  has forces at all samples; the mechanism must have drive trains
 void report_motor_check(const Target& target, const std::string& mode, const Trajectory& trajectory,
                         const std::vector<Motor>& motors, Printout& out);
 

@@ -70,7 +70,8 @@ formula = "l_b - l_a"                      # satisfied if >= 0
 unit    = "m"
 )toml";
 
-/// Restricts the name of a mechanism to characters that are safe in file names, which contain it. Throws ConfigError.
+/// Throws ConfigError unless the name of a mechanism, which becomes part of file names, has only characters that are
+/// safe there.
 void check_name(const std::string& name) {
   const auto allowed = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
@@ -162,8 +163,9 @@ std::string study_text(const Catalogues& catalogues, const NewArguments& argumen
   return text + "\n[[stage]]" + comment("a genetic algorithm") + "optimiser = \"ga\"\ngenerations = 50\n";
 }
 
-/// Selects as variables the first candidates that influence the objective: at one of the bounds it differs from that of
-/// the default design. If no candidate does, for example because the workspace is empty, the first candidates.
+/// Selects as variables the first candidates that influence the objective: changing only this parameter of the default
+/// design to one of the variable's bounds changes the objective. If there is no such candidate, for example because the
+/// workspace is empty, selects the first candidates.
 std::vector<const Parameter*> influential_variables(const DesignProblem& problem, const Mechanism& mechanism) {
   const MechanismInfo& info = mechanism.info();
   std::vector<double> design;
@@ -186,8 +188,8 @@ std::vector<const Parameter*> influential_variables(const DesignProblem& problem
   return some.empty() ? first_few(all) : some;
 }
 
-/// The text of the study. As a check, it has been read back, and designs of it have been evaluated. Throws ConfigError
-/// if that fails, for example because the mechanism has no search box.
+/// The text of a study. The text is checked by reading it back and evaluating designs; throws ConfigError if that
+/// fails, for example because the mechanism has no search box.
 std::string default_study(const Catalogues& catalogues, const NewArguments& arguments) {
   const auto mechanism = find_mechanism(catalogues, arguments.name);
   const std::string text =

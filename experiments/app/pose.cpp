@@ -119,7 +119,7 @@ void pose_table(const Target& target, const TableJob& job, int threads, const st
     return target.mechanism->inspect(target.parameters, pose_of(row), mode, target.limits);
   });
 
-  std::vector<std::size_t> quantities;  // those of poses
+  std::vector<std::size_t> quantities;  // indices of the quantities of poses
   std::vector<std::string> columns, margins;
   for (const AxisInfo& coordinate : info.coordinates)
     columns.push_back(column_header(coordinate.name, coordinate.unit));
@@ -132,7 +132,7 @@ void pose_table(const Target& target, const TableJob& job, int threads, const st
     quantities.push_back(i);
     columns.push_back(column_header(quantity.name, quantity.unit));
   }
-  for (const PoseReport& report : reports)  // a pose that does not assemble lacks some
+  for (const PoseReport& report : reports)  // a pose that cannot be assembled lacks some margins
     for (const auto& [name, value] : report.margins)
       if (!contains(margins, name)) margins.push_back(name);
   for (const std::string& margin : margins) columns.push_back("margin " + margin);

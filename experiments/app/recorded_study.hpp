@@ -11,9 +11,9 @@
 
 namespace pkm {
 
-/// Rebuilds the study from `contents`, the contents of `file`. Prints a warning if recorded values differ from those
-/// that the study's text gives; the recorded values are used. Throws StorageError if text and records cannot belong to
-/// one study, ConfigError if this program cannot read the text.
+/// Rebuilds the study from `contents`, the contents of `file`. If recorded values differ from those given by the
+/// study's text, prints a warning and uses the recorded values. Throws StorageError if text and records cannot belong
+/// to one study, and ConfigError if this program cannot read the text.
 Study recorded_study(const StudyContents& contents, const std::string& file, const Session& session,
                      const StudyChanges& changes = {});
 

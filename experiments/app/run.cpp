@@ -55,7 +55,7 @@ Unsupported refuse_different_study(const StudyContents& contents, const Study& s
   return {};
 }
 
-/// The study with designs of the study file `file` as starting points of its first stage.
+/// The study, with its first stage starting from designs of the study file `file`.
 Study with_starts(const Study& study, const std::string& file, const RunArguments& arguments, const Session& session) {
   expect_study_file(file, "run", session);
   const StudyContents other = read_study(file);

@@ -22,7 +22,7 @@ struct RunArguments {
 /// The files that a study was read from, which no output may overwrite.
 std::vector<std::string> input_files(const Study& study);
 
-/// Whether the file exists; an error counts as no, and is reported later by the attempt to open the file.
+/// Whether the file exists. Returns false on an error, which is reported later by the attempt to open the file.
 bool exists(const std::string& file);
 
 /// Runs a study and writes its file, or with --resume continues the file if it exists. Throws StorageError.
@@ -34,7 +34,7 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
 void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
                Session& session);
 
-/// Prints an upper estimate of the time for the evaluations and the final steps.
+/// Prints an upper estimate of the time for all evaluations and the final steps.
 void print_estimate(const Study& study, const RunCost& cost, int seeds, int threads_of_rank);
 
 }  // namespace pkm

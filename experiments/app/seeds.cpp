@@ -19,7 +19,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxCompared = 4;  // studies in the suggested report
+constexpr std::size_t kMaxCompared = 4;  // maximum number of studies in the suggested report
 
 std::string seed_file(const std::string& output, std::uint64_t seed) {
   const std::filesystem::path path(output);
@@ -50,8 +50,8 @@ struct SeedTable {
   int feasible_seeds = 0;
   std::vector<Row> rows = {{"seed", pareto ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
-  std::string note = {};                    ///< of the first seed that has one
-  std::optional<Diagnosis> diagnosis = {};  ///< of the first seed that found nothing
+  std::string note = {};                    ///< note of the first seed that has one
+  std::optional<Diagnosis> diagnosis = {};  ///< diagnosis of the first seed that found no feasible design
   std::vector<std::string> errors = {};     ///< exact volumes that contradict their certified bounds
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
@@ -97,7 +97,7 @@ struct SeedTable {
   }
 };
 
-/// Throws if a file of a seed would overwrite a file that it must not overwrite.
+/// Throws if the file of a seed would overwrite a file that must not be overwritten.
 void check_files(const std::vector<std::string>& files, const Study& study, const RunArguments& arguments) {
   for (const std::string& file : files) {
     check_outputs({file}, input_files(study), Existing::replaced);

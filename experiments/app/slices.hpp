@@ -1,4 +1,4 @@
-// The options --held and --cut, which fix coordinates of a workspace at a value.
+// The options --fixed and --cut, which fix coordinates of a workspace at given values.
 #pragma once
 
 #include <array>
@@ -19,17 +19,17 @@ namespace pkm {
 /// @return the slices
 Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists);
 
-/// Adds the slices that --cut names, of coordinates that the plan sweeps. Throws ConfigError.
+/// Adds the slices that --cut defines, for coordinates that the plan sweeps. Throws ConfigError.
 void add_cuts(Slices& slices, const WorkspacePlan& plan, const MechanismInfo& info,
               const std::vector<std::string>& lists);
 
 /// The swept coordinates that are not sliced.
 Axes swept_axes(const WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
 
-/// Replaces the range of each sliced coordinate by one thin cell; a box that is not specified encloses the reachable
+/// Reduces the range of each sliced coordinate to one thin cell. If no box is specified, it encloses the reachable
 /// poses. Throws ConfigError.
-/// @param plan          of voxels
-/// @param ranges_given  by swept coordinate, see set_grid(); reset for slices
+/// @param plan          a plan with voxels
+/// @param ranges_given  for each swept coordinate, see set_grid(); becomes false for slices
 void apply_slices(WorkspacePlan& plan, const Target& target, const Slices& slices, std::array<bool, 3>& ranges_given);
 
 }  // namespace pkm

@@ -11,8 +11,9 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxStarts = 12, kMaxStartsOnFront = 20;  // rows of a table
-/// Relative to the largest sensitivity of the same unit: a smaller one is 0 up to the convergence of the solver.
+constexpr std::size_t kMaxStarts = 12, kMaxStartsOnFront = 20;  // maximum numbers of rows of the tables
+/// Relative to the largest sensitivity of the same unit. Smaller sensitivities are regarded as zero: they are due to
+/// the solver's incomplete convergence.
 constexpr double kZeroSensitivity = 1e-6;
 
 /// Cells with the objective of a start at its first and last design; if there are several objectives, a cell for each.
@@ -36,7 +37,7 @@ Row objective_cells(const StageRecord& stage, const StartOutcome& start) {
 /// Groups records by unit, in the order in which the units appear, and sorts each group by decreasing |value(record)|.
 template <class Record, class Value>
 std::vector<Record> sorted_within_units(std::vector<Record> records, const Value& value) {
-  std::map<std::string, std::size_t> group;  // of a unit
+  std::map<std::string, std::size_t> group;  // index of the group of each unit
   for (const Record& r : records) group.try_emplace(r.unit, group.size());
   const auto key = [&](const Record& r) { return std::pair(group[r.unit], -std::fabs(value(r))); };
   std::ranges::stable_sort(records, std::less(), key);
@@ -45,8 +46,8 @@ std::vector<Record> sorted_within_units(std::vector<Record> records, const Value
 
 double influence(const SensitivityRecord& s) { return std::fmax(std::fabs(s.as_built), std::fabs(s.reoptimised)); }
 
-/// Removes parameters without influence, and sets derivatives to 0 that are negligible compared with the largest of the
-/// same unit: at an optimum they vanish only up to the convergence of the solver.
+/// Removes parameters without influence, and sets derivatives to 0 that are negligible compared with the largest one of
+/// the same unit: derivatives that vanish at the exact optimum are not exactly 0 where the solver stopped.
 std::vector<SensitivityRecord> without_residuals(std::vector<SensitivityRecord> all) {
   std::erase_if(all, [](const SensitivityRecord& s) { return influence(s) == 0; });
   std::map<std::string, double> largest;

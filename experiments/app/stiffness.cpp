@@ -23,11 +23,11 @@ const std::vector<std::string> kComponents = {"x", "y", "z", "about x", "about y
 /// Eigenvalues, in ascending order.
 VectorXd eigenvalues(const MatrixXd& A) { return Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues(); }
 
-/// Elasticity by the wrenches that the mechanism carries: the columns of S.
+/// Compliance C of the platform in the basis S, whose columns are the wrenches that the mechanism can balance.
 struct Elastic {
   MatrixXd S, C;
 
-  /// Compliance by pure forces (first = 0) or pure moments (3), as far as they are carried.
+  /// Compliance for pure forces (first = 0) or pure moments (first = 3), restricted to those that can be balanced.
   MatrixXd pure(Index first) const {
     if (S.cols() == 0) return {};
     const MatrixXd others = S.middleRows(3 - first, 3);
@@ -39,7 +39,7 @@ struct Elastic {
   }
 };
 
-/// Minimum stiffness for pure forces or moments: the reciprocal of the greatest compliance.
+/// Minimum stiffness for pure forces or moments, i.e. the reciprocal of the maximum compliance.
 std::string least_stiffness(const MatrixXd& C, const char* unit, const char* key, Json& json) {
   json[key] = nullptr;
   if (C.rows() == 0) return "no direction is supported";
@@ -49,14 +49,15 @@ std::string least_stiffness(const MatrixXd& C, const char* unit, const char* key
   return number(1 / greatest, unit);
 }
 
-/// Whether no direction is rigid. The components are scaled, so that the result does not depend on units.
+/// Whether no direction is rigid. The matrix is scaled, so that the result does not depend on units.
 bool is_invertible(const MatrixXd& C) {
   if (C.diagonal().minCoeff() <= 0) return false;
   const VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
   return eigenvalues(scale.asDiagonal() * C * scale.asDiagonal())[0] > 1e-12;
 }
 
-/// Natural frequencies [Hz], ascending: of the coordinates, whose compliance is that of the twists that they move.
+/// Natural frequencies [Hz] of small vibrations in the pose coordinates, in ascending order; empty if the mechanism has
+/// no masses or cannot balance every generalised force.
 std::vector<double> natural_frequencies(const Target& target, const std::string& mode, const Pose<double>& pose,
                                         const Elastic& elastic, const MatrixXd& T) {
   const Dynamics* const dynamics = target.mechanism->dynamics();
@@ -64,7 +65,7 @@ std::vector<double> natural_frequencies(const Target& target, const std::string&
   const MotionState<double> at_rest{pose, AxisVector<double>(pose.size())};
   PoseDynamics<double> found;
   dynamics->equations(std::span<const double>(target.parameters), mode, {&at_rest, 1}, {&found, 1});
-  // the wrenches of unit generalised forces, of which all have to be carried
+  // wrenches of unit generalised forces; the mechanism must be able to balance all of them
   const MatrixXd wrenches = T.completeOrthogonalDecomposition().pseudoInverse().transpose(),
                  carried = elastic.S.transpose() * wrenches;
   if ((elastic.S * carried - wrenches).norm() > 1e-9 * wrenches.norm()) return {};

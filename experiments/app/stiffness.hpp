@@ -10,8 +10,8 @@ namespace pkm {
 
 /// Reports the compliance matrix of the platform, its smallest stiffnesses and the natural frequencies, and the
 /// deflection under a wrench. Throws ConfigError if the mechanism has no elasticity.
-/// @param report  of the pose
-/// @param wrench  of --wrench: forces and moments at the origin of the platform's frame; empty: no deflection
+/// @param report  report of this pose
+/// @param wrench  values of --wrench: forces and moments at the origin of the platform's frame; empty: no deflection
 void report_stiffness(const Target& target, const std::string& mode, const Pose<double>& pose, const PoseReport& report,
                       const std::vector<std::string>& wrench, Printout& out);
 

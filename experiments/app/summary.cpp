@@ -40,7 +40,7 @@ std::string violation(const StudyContents& contents, const DesignRecord& best) {
          contents.problem.margins[*worst].unit;
 }
 
-/// Why the rounded design should not be used, for the end of a sentence; "" if nothing is wrong with it.
+/// Why the rounded design should not be used, as the end of a sentence; "" if it can be used.
 std::string rounded_remarks(const StudyContents& contents, const DesignRecord& rounded) {
   std::vector<std::string> remarks;
   for (const std::string& remark : {rounded.reason, violation(contents, rounded)})

@@ -17,7 +17,8 @@ struct TableJob : TableOutput {
   std::string input;
 };
 
-/// Throws ConfigError if a file for results is given, but no table. @param option  of the input: "--designs"
+/// Throws ConfigError if an output file is given without an input table. @param option  option of the input:
+/// "--designs"
 void expect_table(const TableJob& job, const std::string& option);
 
 /// Reads the table. Prints a note that names columns which are not read. Throws ConfigError if it has no rows or none
@@ -26,7 +27,7 @@ void expect_table(const TableJob& job, const std::string& option);
 CsvColumns read_table(const TableJob& job, const std::vector<Assignable>& known, bool needs_all,
                       const std::string& program);
 
-/// compute(row) for all rows, on `threads` threads; Ctrl-C ends it.
+/// Calls compute(row) for all rows on `threads` threads, and returns the results. Ctrl-C stops the computation.
 template <class Result, class Compute>
 std::vector<Result> computed_rows(std::size_t rows, int threads, const Compute& compute) {
   const StopRequest request;

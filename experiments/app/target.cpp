@@ -40,7 +40,7 @@ Target study_target(Study study) {
 }
 
 /// Finds a built-in mechanism by name, or reads a mechanism or a study from a file.
-/// @param files  kinds of files that are expected, for the message
+/// @param files  kinds of files that are accepted, for the message
 MechanismOrStudy find_by_name(const Catalogues& catalogues, const std::string& name, const std::string& files,
                               const StudyChanges& changes = {}) {
   std::vector<std::string> known;

@@ -1,4 +1,4 @@
-// Selection of the design that a command works on, from MECHANISM|FILE.toml or --from F.h5, --set and further options;
+// Selection of the design that a command works on, by MECHANISM|FILE.toml or --from F.h5, --set and further options;
 // and other options that several commands share.
 #pragma once
 
@@ -18,7 +18,7 @@ struct DesignArguments {
   std::string target;            ///< name of a mechanism, or path of a mechanism file or a study
   std::vector<std::string> set;  ///< lists of name=value
   StudyChanges changes;          ///< limits, and for some commands cells
-  std::string masses;            ///< mass model; "": that of the study, else the mechanism's default
+  std::string masses;            ///< mass model; "": that of the study, otherwise the mechanism's default
   std::string from;              ///< a study file, instead of `target`
   DesignChoice choice;           ///< which design of the study file
   bool json = false;
@@ -70,8 +70,8 @@ const Capability& require_capability(const Capability* capability, const std::st
 double parse_gap(const std::string& text, const std::string& option);
 
 /// The design that a command works on, with its mechanism and study. Its parameters are those of the selected design of
-/// a study file; for a study in TOML those of its baseline, else of the study; for a mechanism the default values.
-/// --set overrides them.
+/// a study file; for a study in TOML, those of its baseline or, without a baseline, of the study itself; for a
+/// mechanism, the default values. --set overrides them.
 struct Target : ChosenDesign {
   std::shared_ptr<const Mechanism> mechanism;
   std::optional<Study> study;      ///< std::nullopt: a mechanism without a study
@@ -79,7 +79,8 @@ struct Target : ChosenDesign {
   std::vector<std::string> files;  ///< files that were read, which no output may overwrite
 
   const MechanismInfo& info() const { return mechanism->info(); }
-  /// Plan of the workspace analysis under these limits: the study's, else columns over the whole reach of the design.
+  /// The study's plan of the workspace analysis or, without a study, columns over the whole reach of the design; in
+  /// both cases under `limits`.
   WorkspacePlan plan() const;
 };
 

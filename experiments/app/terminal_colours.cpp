@@ -22,7 +22,7 @@ std::string styled(Text style, Text text) {
   return "\x1b[" + std::string(style) + 'm' + std::string(text) + "\x1b[0m";
 }
 
-/// A word with which a line begins, before a colon: its style and that of the rest of the line.
+/// A word with which a line begins, followed by a colon; the style of this label and of the rest of the line.
 struct Label {
   Text word, style, rest_style;
 };
@@ -63,8 +63,8 @@ std::vector<TableCell> cells_of(Text line) {
 
 bool is_number(const TableCell& cell) { return decimal_point_index(cell.text).has_value(); }
 
-/// @return true if the line seems to be the header of the row below: it has no numbers, and it either begins further to
-/// the right or has more than two cells while the row below has numbers
+/// @return true if the line seems to be the header of the row below: it contains no numbers, and either it is indented
+/// further than the row, or it has more than two cells and the row contains numbers
 bool is_header(const std::vector<TableCell>& line, const std::vector<TableCell>& next) {
   if (next.empty() || next[0].gap.empty() || std::ranges::any_of(line, is_number)) return false;
   return line[0].gap.size() > next[0].gap.size() || (line.size() > 2 && std::ranges::any_of(next, is_number));

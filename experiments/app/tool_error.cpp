@@ -34,8 +34,8 @@ std::optional<Pose<double>> pose_of_joints(const Target& target, const std::stri
   return {};
 }
 
-/// The greatest errors at the corners of the box of joint errors, by coordinate and of the position; std::nullopt if
-/// the pose of a corner was not found.
+/// The largest errors of each coordinate and of the position over all corners of the box of joint errors; std::nullopt
+/// if the pose of a corner was not found.
 std::optional<std::vector<double>> worst_corner(const Target& target, const std::string& mode, const Pose<double>& pose,
                                                 const AxisMatrix<double>& inverse, const std::vector<double>& errors) {
   const MechanismInfo& info = target.info();

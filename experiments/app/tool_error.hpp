@@ -8,14 +8,13 @@
 
 namespace pkm {
 
-/// Reports the largest first-order pose errors of the platform for joint errors within the given bounds +-q_i: of each
+/// Reports the largest first-order pose errors of the platform for joint errors within the bounds +-q_i: of each
 /// coordinate, of the position of the platform's origin and of the orientation. Throws ConfigError if the mechanism has
-/// no influence coefficients or not as many joints as coordinates.
+/// no influence coefficients, or not as many joints as coordinates.
 /// @param T      maps coordinate rates to the platform's twist (PoseReport::T); std::nullopt: unspecified
-/// @param lists  of --joint-error: one bound for all joints, or bounds by name
-/// @param exact  also finds the poses of all corners of the box of joint errors, by Newton's method from the
-/// first-order
-///               poses, and reports the greatest errors among them
+/// @param lists  values of --joint-error: one bound for all joints, or bounds by name
+/// @param exact  also computes the poses at all corners of the box of joint errors, by Newton's method from the
+///               first-order poses, and reports the largest errors among them
 void report_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
                        const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists, bool exact,
                        Printout& out);

@@ -58,7 +58,7 @@ bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges
   return false;
 }
 
-/// Throws ConfigError if a requested output is not possible for these swept coordinates.
+/// Throws ConfigError if a requested output is not available for these swept coordinates.
 void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
   const std::vector<std::string> names = names_of(swept);
   if (const std::string option = arguments.picture(); !option.empty() && names.size() != 2)
