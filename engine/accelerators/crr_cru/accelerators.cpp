@@ -37,8 +37,8 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
   bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest& request) const override {
     return serves(plan) && stores_poses(request);
   }
-  /// Whether the samples of the closed form include the requested poses. A sample of the conditioning has no pose,
-  /// because it represents a whole slice, in which the conditioning is constant.
+  /// Whether the samples of the closed form include poses, if they are requested. Without inertia they do not: a sample
+  /// of the conditioning represents a whole slice, in which the conditioning is constant.
   static bool stores_poses(const FieldRequest& request) { return !request.poses || request.needs_inertia(); }
   static bool serves(const WorkspacePlan& plan) {
     const int fixed = fixed_coordinate(plan);

@@ -1,4 +1,5 @@
-// (3CRR/R)&CRU and Quadrupteron: settings that workspace analyses by columns and by voxels share, and their evaluators.
+// (3CRR/R)&CRU and Quadrupteron: settings shared by the workspace analyses by columns and by voxels, and their
+// evaluators.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// (3CRR/R)&CRU and Quadrupteron: feasible cells of parallel lines as bit masks, one row of words per line: the cells in
-// an annulus, kLanes lines in one SIMD batch, and the number of cells in intersections of rows.
+// (3CRR/R)&CRU and Quadrupteron: feasible cells of parallel lines as bit masks, with one row of words for each line.
+// Finds the cells in an annulus, kLanes lines per SIMD batch, and counts the cells in intersections of rows.
 #pragma once
 
 #include <cstddef>

@@ -12,8 +12,8 @@ struct CellRange {
 };
 
 /// The cells of each line that pass a test against the circle of squared radius `limit2`. Rounding is monotonic, so
-/// they are contiguous. The endpoints of the chord give the first and the last cell up to rounding, and the test itself
-/// decides for the cells next to them.
+/// these cells are contiguous. The endpoints of the chord give the first and the last cell up to rounding errors; the
+/// cells next to the endpoints are decided by the test itself.
 template <class L, class Passes>
 [[gnu::always_inline]] inline CellRange<L> cells_that_pass(const AnnulusLines& lines, const L& away2, double limit2,
                                                            const Passes& passes) {
@@ -39,7 +39,7 @@ struct Words {
   Part part[kLanes / W];
 };
 
-/// A word for the cells [start, start + 64) with the bits of those from `cell` on.
+/// A word for the cells [start, start + 64) in which the bits of all cells with an index >= `cell` are set.
 template <int W>
 [[gnu::always_inline]] inline Words<W> bits_from(const Lanes<W>& cell, double start) {
   constexpr double kShift = 0x1p52;  // adding it to an integer below 2^52 places the integer in the lowest bits

@@ -22,7 +22,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
         box_(pose_box(settings_.fixed, columns.box)),
         tolerance_(columns.tolerance),
         has_fixed_rules_(columns.nodes[0] > 0) {
-    // Numbers of nodes are given in the order of the swept coordinates, of which phi is the last.
+    // The numbers of nodes are in the order of the swept coordinates; phi is the last of them.
     const std::size_t outer = slice_axes(settings_.fixed).outer_is_phi ? 1 : 0;
     const int usual = settings_.request.needs_inertia() ? kInertiaNodes : kSampleNodes;
     outer_rule_ = gauss_legendre(has_fixed_rules_ ? columns.nodes[outer] : usual);
@@ -99,7 +99,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   SlicedDesign<S> sliced(std::span<const S> parameters) const {
     return sliced_design(design(geometry(settings_.platform, parameters), settings_.limits, box_), settings_.fixed);
   }
-  /// The sliced design with its numbers as constants of another scalar type.
+  /// The sliced design converted to constants of another scalar type.
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(std::span<const To>(constants<To, kParameters>(parameters)));

@@ -1,8 +1,8 @@
 // (3CRR/R)&CRU and Quadrupteron: exact volumes and weighted samples, by quadrature of the closed-form areas of slices
 // over the outer coordinate.
 //
-// If phi is fixed, slices are normal to x, which is the outer coordinate; otherwise they are on the plane of the fixed
-// position, and phi is the outer coordinate.
+// If phi is fixed, slices are normal to x, which is the outer coordinate. Otherwise a position is fixed: slices are in
+// the plane normal to it, and phi is the outer coordinate.
 #pragma once
 
 #include <type_traits>
@@ -21,8 +21,8 @@ struct ColumnScratch {
   Decomposition decomposition;
 };
 
-/// A critical value found by bisection, with its derivatives: those of the implicit function at which two critical
-/// points of a slice coincide (README.md), or 0 if no column or gap vanishes.
+/// A critical value found by bisection, with its derivatives. They are obtained by the implicit function theorem from
+/// the condition that two critical points of a slice coincide (README.md), and are 0 if no column or gap vanishes.
 /// @param plain     the design in double precision
 /// @param by_outer  the design as constants, for derivatives with respect to the outer coordinate
 /// @param range     length of the range of the outer coordinate
@@ -68,7 +68,8 @@ S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plai
 template <class S>
 void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
                           const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {
-  // In x, only triple intersections of circles have no closed form; in phi, most critical values have none.
+  // Triple intersections of circles are the only critical values of x without a closed form. Most critical values of
+  // phi have none.
   const int samples = s.axes.outer_is_phi ? 192 : 48;
   auto& values = scratch.critical_values;
   values.clear();
@@ -113,7 +114,7 @@ template <class S>
 double roundoff(const SlicedDesign<S>& s, const std::vector<Subinterval<S>>& intervals) {
   if (intervals.empty()) return 0;
   const auto& out2 = s.design.out2;
-  const double size =  // of the terms that cancel in the area
+  const double size =  // magnitude of the terms that cancel in the area
       value_of(s.design.g.L) + std::sqrt(value_of(max(max(out2[0], out2[1]), max(out2[2], out2[3]))));
   return 4e-16 * size * size * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }

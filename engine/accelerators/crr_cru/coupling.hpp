@@ -11,8 +11,8 @@
 
 namespace pkm::crr_cru {
 
-/// The part of M_q that depends on phi alone. NaN, which makes every row of M_q NaN, if J is singular to working
-/// precision: J, too, depends on phi alone.
+/// The part of M_q that depends on phi alone. If J, which also depends on phi alone, is singular to working precision,
+/// it is NaN, and so is every row of M_q.
 template <class S>
 YawInertia<S> yaw_inertia(const Geometry<S>& g, const Masses<S>& b, const S& phi) {
   const auto [sin, cos] = sincos(phi);

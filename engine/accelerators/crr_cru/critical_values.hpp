@@ -61,10 +61,11 @@ void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<CriticalVa
   if (s.axes.normal == 1) add(g.l, S(-quarter));
 }
 
-/// Adds the bounds of x and its critical values at given phi. At given x, endpoints of u = y are on circles of limb 3,
-/// endpoints of v = z on circles of limbs 2 and 4. Critical values of x are the turning points of these circles and the
-/// points where they intersect each other, the bounds of y and z, or a line y or z = constant through the centre of
-/// limb 1's annulus, its turning points or its intersections with the bounds.
+/// Adds the bounds of x and its critical values at given phi. In the slice at x, endpoints of u = y are on circles of
+/// limb 3, and endpoints of v = z are on circles of limbs 2 and 4. The critical values of x are the turning points of
+/// these circles, their intersections with each other, and their intersections with certain lines y or z = constant:
+/// the bounds of y and z, and the lines through the centre of limb 1's annulus, through the turning points of its
+/// circles, and through the intersections of its circles with the bounds.
 template <class S>
 void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<CriticalValue<S>>& values) {
   const Design<S>& d = s.design;
@@ -79,8 +80,8 @@ void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<CriticalValu
     S at;
     bool tangent;  ///< true: tangent to a circle of limb 1
   };
-  // Calls visit(value along one axis, whether the area has a square-root singularity there) for the turning points of
-  // the circles of a limb and their intersections with lines across the other axis.
+  // For the turning points of the circles of a limb, and for their intersections with lines across the other axis,
+  // calls visit(value along the first axis, whether the area has a square-root singularity there).
   const auto visit_circles = [&](std::size_t limb, std::size_t along, std::size_t across, std::span<const Line> lines,
                                  const auto& visit) {
     const Vector3<S>& center = s.positions.center[limb];

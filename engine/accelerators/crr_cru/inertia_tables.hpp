@@ -1,7 +1,8 @@
 // (3CRR/R)&CRU and Quadrupteron: tables of the inertia of the limbs over the cells of a voxel grid.
 //
-// The inertia of a limb depends on the two coordinates of its plane (and on phi), so for a grid of n^3 cells it has n^2
-// values. They are stored along the rows of the grid, so that coupling indices can be computed in SIMD batches.
+// The inertia of a limb depends on the two coordinates of its plane (and on phi), so it takes only n^2 different values
+// on a grid of n^3 cells. The values are stored along the rows of the grid, so that coupling indices can be computed in
+// SIMD batches.
 #pragma once
 
 #include <vector>

@@ -1,8 +1,8 @@
 // (3CRR/R)&CRU and Quadrupteron: masses and inertias, given as parameters or derived from the geometry.
 //
-// Source: the table of the paper (model.hpp), in which the inertias of limbs 1 and 3 are in each other's rows;
-// corrected here. The centre of mass of a rod is its midpoint; that of the moving platform is on the arm D-C_4 at the
-// distance c from D, that of the middle platform is N.
+// Source: the table of the paper (model.hpp), which interchanges the inertias of limbs 1 and 3; this is corrected here.
+// The centre of mass of a rod is its midpoint, that of the moving platform is on the arm D-C_4 at the distance c from
+// D, and that of the middle platform is N.
 //
 // Derived from the geometry (MassModel::geometry), with constants fitted to the paper's eight rods by least squares and
 // to its platforms:
@@ -21,7 +21,7 @@ namespace pkm::crr_cru {
 
 enum class MassModel { table, geometry };
 
-/// Order of the parameters after the lengths: those of every mass model, then those of one mass model.
+/// Order of the parameters after the lengths: first those of every mass model, then those of the selected one.
 enum ExtraIndex { kSlideMass = kParameters, kPayload, kPayloadOffset, kRadii, kFirstOfModel = kRadii + 3 };
 enum TableIndex {
   kRodMass = kFirstOfModel,    ///< m_11, m_12, m_21, .. m_42

@@ -17,8 +17,8 @@ namespace pkm::crr_cru {
 template <class S>
 using Pose = SchoenfliesPose<S>;
 
-/// Whether the circle of C_1..C_3 belongs to a separate middle platform, jointed to the moving one at D, or to the
-/// moving platform itself.
+/// Whether the circle of C_1..C_3 belongs to a separate middle platform, which is jointed to the moving platform at D,
+/// or to the moving platform itself.
 enum class Platform { jointed, rigid };  // (3CRR/R)&CRU, Quadrupteron
 
 /// Order of the parameters.

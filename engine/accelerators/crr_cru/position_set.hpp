@@ -60,7 +60,7 @@ struct Interval {
   EndpointLabel lower_label, upper_label;
 };
 
-/// Intersects an interval with [lower, upper]; where an endpoint moves, it gets the new label.
+/// Intersects an interval with [lower, upper]. An endpoint that is moved gets the new label.
 template <class S>
 void intersect(Interval<S>& interval, const S& lower, const S& upper, EndpointLabel lower_label,
                EndpointLabel upper_label) {
@@ -107,8 +107,8 @@ PositionSet<S> position_set(const Design<S>& d, const S& phi) {
   return set;
 }
 
-/// Value of the fixed coordinate. By default phi = 0, and for a position the one at which the slides of limbs 1, 2, 3,
-/// without the offset by the circle, are at half stroke.
+/// Value of the fixed coordinate. By default, phi is 0, and a position is the one at which the slide along its axis is
+/// at half stroke, apart from the offset due to the circle of C_1..C_3.
 template <class S>
 S fixed_value(const Geometry<S>& g, const FixedCoordinate& fixed) {
   if (fixed.kind != FixedCoordinate::Kind::default_value) return S(fixed.value);

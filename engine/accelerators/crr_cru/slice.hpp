@@ -12,8 +12,8 @@
 
 namespace pkm::crr_cru {
 
-/// Disjoint intervals in ascending order. The hole of an annulus divides at most one of them, so with four limbs there
-/// are at most five.
+/// Disjoint intervals in ascending order. The hole of an annulus divides at most one of them in two, so with four limbs
+/// there are at most five.
 template <class S>
 struct IntervalSet {
   static constexpr std::size_t kMaxSize = 5;
@@ -89,9 +89,9 @@ Slice<S> slice(const Design<S>& d, const PositionSet<S>& set, const SliceAxes& a
 struct CriticalPoint {
   enum class Kind : std::uint8_t { end_of_u, turning_point, intersection_with_v, intersection_of_circles };
   Kind kind = Kind::end_of_u;
-  std::uint8_t first = 0;   ///< endpoint of u, or circle: 2 annulus + (0 inner, 1 outer)
-  std::uint8_t second = 0;  ///< endpoint of v, or circle of the other annulus
-  std::int8_t sign = 1;     ///< which of two solutions
+  std::uint8_t first = 0;   ///< index of an endpoint of u, or of a circle: 2 annulus + (0 inner, 1 outer)
+  std::uint8_t second = 0;  ///< index of an endpoint of v, or of a circle of the other annulus
+  std::int8_t sign = 1;     ///< selects one of two solutions
 
   static CriticalPoint end_of_u(std::size_t end) { return {.first = static_cast<std::uint8_t>(end)}; }
 };

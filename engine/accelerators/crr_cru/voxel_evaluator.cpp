@@ -156,7 +156,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 
   AnalysisSettings settings_;
   VoxelOptions voxels_;
-  bool beyond_coupling_;  ///< other fields of the inertia than coupling indices are requested
+  bool beyond_coupling_;  ///< true if fields of the inertia other than coupling indices are requested
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ Box default_box(const Design<double>& d, const FixedCoordinate& fixed) {
   const auto arm = arms(g, s, c);
   std::array<std::array<double, 2>, 4> range;
   for (std::size_t k = 0; k < 3; ++k) {
-    const bool rotates = fixed.coordinate != 3 && arm[k].rotates && k < 2;  // by any angle: shifts of -r to r
+    const bool rotates = fixed.coordinate != 3 && arm[k].rotates && k < 2;  // by any angle: the shift is in [-r, r]
     const double shift = rotates ? 0 : arm[k].to_joint[k], reach = rotates ? g.r : 0;
     range[k] = {g.rho_min - shift - reach, g.rho_max - shift + reach};
   }

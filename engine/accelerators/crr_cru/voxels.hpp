@@ -1,6 +1,6 @@
-// (3CRR/R)&CRU and Quadrupteron: feasible voxels of a slice from three tables of bits (README.md). The cells are those
-// that a test of every pose finds: rows follow from the endpoints of chords (bit_rows.hpp), and the test itself decides
-// for the cells next to an endpoint.
+// (3CRR/R)&CRU and Quadrupteron: feasible voxels of a slice from three tables of bits (README.md). The result is the
+// same as that of testing every pose: rows are determined from the endpoints of chords (bit_rows.hpp), and the cells
+// next to an endpoint are decided by the test itself.
 #pragma once
 
 #include <cstdint>
@@ -65,7 +65,8 @@ class SliceCells {
   };
   static void fill_axis(Axis& axis, const VoxelGrid& grid, std::size_t which);
 
-  /// Fills the table of coordinate b at each a from the ranges of a and b and the annuli in their plane.
+  /// Fills, for each cell of coordinate a, the row of feasible cells of coordinate b, from the ranges of both and the
+  /// annuli in their plane.
   /// @return false if the table is empty
   bool fill_table(const Design<double>& d, const PositionSet<double>& set, std::size_t a, const Axis& across,
                   std::size_t b, const Axis& along, BitTable& table);

@@ -34,7 +34,7 @@ S parallel_index(const Yaw<S>& y, const S& sin_phi, const S& cos_phi) {
   return (y.a_s * cos_phi - y.a_c * sin_phi) / y.R;
 }
 
-/// Default of the length by which the phi column of J is divided: l, or l + r [m].
+/// Default characteristic length, by which the phi column of J is divided: l, or l + r [m].
 template <class S>
 S characteristic_length(const Geometry<S>& g) {
   return g.platform == Platform::jointed ? g.l : S(g.l + g.r);

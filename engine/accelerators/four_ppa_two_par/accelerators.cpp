@@ -10,7 +10,7 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-constexpr int kY = 1;  ///< number of the coordinate y, which is fixed
+constexpr int kY = 1;  ///< index of the coordinate y, which is fixed
 
 /// The y coordinate of the plane of an analysis [m]; by default the middle of the range of y.
 template <class S>
@@ -78,7 +78,8 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     }
     const Subinterval<S> half{l.h_min, g.L0 * 0.5, true, false};
     if (!(value_of(half.upper) > value_of(half.lower))) return;
-    // With y, every node represents eight poses. If they are separate samples, a coarser rule is sufficient.
+    // If y is integrated over, every node represents eight poses. If these are separate samples, a coarser rule is
+    // sufficient.
     static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);
     const GaussRule &inner = wanted.distinguishes_images() ? coarse : inner_rule_,
                     &outer = wanted.distinguishes_images() ? coarse : theta_rule_;
@@ -174,7 +175,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   }
   /// Whether only the number of cells is needed.
   bool counts(const GriddedPlanes& planes) const { return !planes.test && !request_.needs_samples(); }
-  /// The part of a plane to search. A pose can represent its mirror images, because conditioning is the same for all.
+  /// The part of a plane to search. A pose can represent its mirror images, because they all have the same
+  /// conditioning.
   GridPart representative_part(const GriddedPlanes& planes, const VoxelPlane& at) const {
     return planes.test || planes.wanted.distinguishes_images() ? counter_.whole() : counter_.representative_part(at);
   }
@@ -252,7 +254,7 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
 
  private:
   static bool serves(const WorkspacePlan& plan, const FieldRequest& request) {
-    // Samples represent mirror images, in which the two sliders of a rail are exchanged.
+    // Samples also represent mirror images, in which the two sliders of a rail are exchanged.
     const std::vector<double>& rotors = request.rotors;
     const bool unequal = !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]);
     return sweeps(plan, {0, 2, 3}) && (request.mode.empty() || request.mode == "lower,lower") &&

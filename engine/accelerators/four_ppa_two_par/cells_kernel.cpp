@@ -57,7 +57,7 @@ struct ColumnLimits {
   [[gnu::always_inline]] Cells operator[](std::int64_t i) const {
     const L x_1 = x_0 + static_cast<double>(i) * x_step, x_2 = w - x_1;
     const L sigma_1 = sqrt_or_zero(l_d2 - x_1 * x_1), sigma_2 = sqrt_or_zero(l_d2 - x_2 * x_2);
-    // in cells: from the first centre not below the lower end to the last centre not above the upper end
+    // in cells: from the first centre at or above the lower end to the last centre at or below the upper end
     const L low = offset - (bottom + lesser(sigma_1, sigma_2)) * per_cell;
     const L high = offset - greater(top_1 + sigma_1, top_2 + sigma_2) * per_cell;
     const L first = ceil(lesser(greater(low, L(0.0)), L(cells)));

@@ -55,7 +55,7 @@ Slice<double> slice_of(const SlicedDesign<double>& d, double theta, bool over_y)
   const auto [s, c] = sincos(theta);
   if (!over_y) return slice(d, s, c);
   Slice<double> t = slice_range(d, s, c);
-  t.depth = {d.z_low - d.z_high, d.z_low - d.z_high};  // without the stroke, which limits y instead
+  t.depth = {d.z_low - d.z_high, d.z_low - d.z_high};  // not limited by the stroke, which limits y instead
   return t;
 }
 
@@ -83,14 +83,16 @@ Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const Clear
 
 Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch) {
-  constexpr double kInnerTolerance = 0.02;  // relative to the outer one: errors look like kinks to the outer rule
+  constexpr double kInnerTolerance = 0.02;  // relative to the outer one; larger errors look like kinks to the outer
+                                            // rule
   const Quadrature outer{.regularity = Regularity::kinks}, inner{.regularity = Regularity::kinks, .depth = 12};
   static const GaussRule coarse = gauss_legendre(5);
   const Integral<double> guess = clear_volume_by_rule(d, test, over_y, coarse, coarse, scratch);  // finds the intervals
   double range = 0;
   for (const Subinterval<double>& interval : scratch.intervals) range += interval.upper - interval.lower;
   const double aim = std::fmax(tolerance, kFinestClearTolerance);
-  // Accepted absolute error of a slice, at least a negligible area or volume in relation to the links.
+  // Accepted absolute error of a slice; at least an area or volume that is negligible relative to the size of the
+  // links.
   const double negligible = 1e-9 * d.g.l_d * d.g.l_u * (over_y ? d.g.L0 : 1);
   const double inner_error = std::fmax(negligible, kInnerTolerance * aim * guess.value / (2 * range));
   double worst = 0;  // maximum error of a slice

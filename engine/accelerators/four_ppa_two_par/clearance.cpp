@@ -5,8 +5,8 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Whether the links of a group are suspended from C_j. Sliders, upper bars and the connector's side are not: they are
-/// in the plane of the rail.
+/// Whether a group consists of lower bars or a lower connector. The other groups of a limb are in the plane of its
+/// rail.
 bool is_lower(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kLowerBars || kind == kLowerConnector);
@@ -24,7 +24,8 @@ double radius(const Geometry<double>& g, int group) {
   return group % kGroupsPerLimb == kSliders ? g.R_s : g.R_u;
 }
 
-/// Whether a pair has the same distance at every pose, namely its lower bound. If it is too small, no pose is clear.
+/// Whether the distance of a pair is the same at every pose, namely its lower bound. If that is too small, no pose is
+/// clear.
 bool is_constant(const Geometry<double>& g, const GroupPair& pair) {
   if (pair.first == kPlatform) return is_lower(pair.second) && g.d_d <= g.d;
   return pair.first == group_of(0, kLowerConnector) && pair.second == group_of(1, kLowerConnector);

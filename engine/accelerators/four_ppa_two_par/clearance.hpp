@@ -1,9 +1,9 @@
 // 4PPa-2PaR: a clearance limit of one design, reduced to as few tests as possible for analyses of the mode lower,lower.
 //
-// Most pairs of links have a bound that is independent of the pose (README.md, Clearance). If the bound keeps the
-// clearance, the pair is not tested; if it is a condition on h or beta, it becomes a limit. The other pairs are tested
-// pose by pose, first by bounding boxes. The mutual distances of the links suspended from C_j (all except sliders and
-// upper bars) do not change when z alone changes.
+// Most pairs of links have a lower bound of their distance that is independent of the pose (README.md, Clearance). If
+// the bound satisfies the clearance, the pair is not tested. If the bound becomes a condition on h or beta, this
+// condition is added to the limits. All other pairs are tested at each pose, first by bounding boxes. The mutual
+// distances of the links suspended from C_j (all except sliders and upper bars) do not change if only z changes.
 #pragma once
 
 #include <vector>
@@ -63,8 +63,8 @@ class ClearanceTest {
   std::vector<GroupPair> moving_pairs_;     ///< pairs whose distance depends on z
 };
 
-/// Removes the clearance limit from `l`: conditions on h and beta become l.h_min and l.sin_beta_min, the other ones a
-/// test; std::nullopt if nothing is left to test.
+/// Replaces the clearance limit of `l`: conditions on h and beta become l.h_min and l.sin_beta_min, and all others are
+/// combined in a test of poses; std::nullopt if no test is needed.
 std::optional<ClearanceTest> reduce_clearance(const Geometry<double>& g, Limits<double>& l);
 
 }  // namespace pkm::four_ppa_two_par

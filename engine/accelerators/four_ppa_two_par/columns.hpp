@@ -45,10 +45,10 @@ Integral<S> plane_volume(const SlicedDesign<S>& d, double tolerance, ColumnScrat
 }
 
 /// Integral over y in [0, L0/2] of the areas of slices at one theta >= 0 [m^3]. The area depends on y only through the
-/// two depths, so its critical values in y have a closed form: the stroke of a limb begins to limit z, its depth or the
-/// difference of both depths equals a bound of delta, or the nearer end of the rail changes. With r_j = Z_low -
-/// Delta_j, the points (H_j, r_j) are on a circle of radius l_u; if both strokes limit z, a given difference r_1 - r_2
-/// is a chord of it.
+/// two depths. Its critical values in y therefore have a closed form; they are the y at which the stroke of a limb
+/// begins to limit z, the depth of a limb or the difference of both depths equals a bound of delta, or the nearer end
+/// of the rail changes. With r_j = Z_low - Delta_j, the points (H_j, r_j) are on a circle of radius l_u; if both
+/// strokes limit z, a given difference r_1 - r_2 defines a chord of this circle.
 template <class S>
 S area_over_y(const SlicedDesign<S>& d, Slice<S> t, const GaussRule& rule) {
   const Geometry<S>& g = d.g;
@@ -119,9 +119,9 @@ Integral<S> volume_over_y(const Geometry<S>& g, const Limits<S>& l, double toler
   return result;
 }
 
-/// Finds the intervals of delta in a half slice on which the length of columns is smooth: below and above the knee,
-/// without the parts that a clearance limit excludes.
-/// @param scratch  receives them in `deltas`
+/// Finds the intervals of delta in a half slice on which the length of columns is smooth. They lie below and above the
+/// knee, and exclude the parts in which a clearance limit is violated.
+/// @param scratch  receives the intervals in `deltas`
 template <class S>
 void find_delta_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>& h, std::size_t leaning,
                           const ClearanceTest* test, ColumnScratch<S>& scratch) {
@@ -204,13 +204,15 @@ void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S
 /// Which planes are sampled: y (near), L0 - y (far) or both, where y <= L0/2 is the plane of the design.
 enum class Planes { near, far, both };
 
-/// Adds weighted samples of one plane or both: the nodes of a Gauss rule in theta, delta and z on every interval on
-/// which the integrand is smooth. The sum of the weights approximates `weight` times the volume of the planes.
+/// Adds weighted samples of one plane or of both planes: the nodes of a Gauss rule in theta, delta and z on every
+/// interval on which the integrand is smooth. The sum of the weights approximates `weight` times the volume of the
+/// planes.
 ///
-/// A node represents its mirror images. The slice at -theta is the mirror image in x = b/2 of the slice at theta; if
-/// both limbs have the same depth, each slice is symmetric; and the slice of the plane L0 - y at -theta is that of the
-/// plane y at theta. Since conditioning is the same for all images, one sample with their total weight is sufficient.
-/// Inertia is permuted among the joints, and poses differ: then every image is a separate sample.
+/// A node represents its mirror images. The slice at -theta is the mirror image in x = b/2 of the slice at theta. If
+/// both limbs have the same depth, each slice is symmetric. The slice of the plane L0 - y at -theta is that of the
+/// plane y at theta. All images have the same conditioning, so one sample with their total weight is sufficient. If
+/// inertia or poses are requested, every image is a separate sample, because the inertia is permuted among the joints,
+/// and the poses differ.
 /// @param test  clearance test of poses, or null
 template <class S>
 void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes planes, const S& weight,

@@ -39,7 +39,7 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<do
   static constexpr const char* kNames[2][2] = {{"below,below", "below,above"}, {"above,below", "above,above"}};
   for (int up1 = 0; up1 < 2; ++up1)
     for (int up2 = 0; up2 < 2; ++up2) {
-      if ((up1 && z_c[0] == 0) || (up2 && z_c[1] == 0)) continue;  // above and below coincide
+      if ((up1 && z_c[0] == 0) || (up2 && z_c[1] == 0)) continue;  // above and below are the same pose
       for (const double angle : {theta, kPi - theta}) {
         intersect(angle, up1 ? -z_c[0] : z_c[0], up2 ? -z_c[1] : z_c[1], kNames[up1][up2]);
         if (kPi - theta == theta) break;

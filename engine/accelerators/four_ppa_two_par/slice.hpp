@@ -143,7 +143,7 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_theta)
 template <class S>
 struct HalfSlice {
   S flat, slope;
-  S low, knee, end;  ///< knee: up to here the length is `flat`
+  S low, knee, end;  ///< knee: up to this delta, the length is `flat`
   bool empty = true;
 };
 
@@ -184,7 +184,7 @@ struct Column {
   S derivative;               ///< du / d(delta)
   std::size_t leaning;
 
-  /// z_c of limb j at a height above the lower end of the interval, where that of the leaning limb is -Z_low.
+  /// z_c of limb j at a height above the lower end of the interval, at which the z_c of the leaning limb is -Z_low.
   S z_c(const SlicedDesign<S>& d, const S& rise, std::size_t j) const {
     const S lean = rise - d.z_low;
     return j == leaning ? lean : S(lean + (sigma[j] - sigma[leaning]));

@@ -1,11 +1,11 @@
 // 4PPa-2PaR: the intervals of theta on which the area of the slice is smooth.
 //
-// The area changes its formula at critical values of theta: the active limit at a bound of delta changes, the stroke
-// begins to limit z or leaves a limb no z, sin_par_min begins to exclude poses at x = b/2, or the depth Delta equals a
-// bound of delta. All but the last have a closed form in cos theta or sin theta; the last has one while the stroke is
-// inactive and is otherwise the root of a switching function. Critical values in closed form are dual numbers; roots
-// get their derivatives by the implicit function theorem. The area is continuous at all critical values. Everything is
-// even in theta, so only theta >= 0 is considered.
+// The formula of the area changes at critical values of theta: where another limit becomes active at a bound of delta,
+// where the stroke begins to limit z or leaves a limb no feasible z, where sin_par_min begins to exclude poses at x =
+// b/2, and where the depth Delta equals a bound of delta. All but the last have a closed form in cos theta or sin
+// theta. The last has a closed form while the stroke is inactive, and is otherwise the root of a switching function.
+// Critical values in closed form are dual numbers; roots get their derivatives by the implicit function theorem. The
+// area is continuous at all critical values. Everything is even in theta, so only theta >= 0 is considered.
 #pragma once
 
 #include <algorithm>
@@ -68,7 +68,7 @@ struct Crossing {
 Crossing find_crossing(const SlicedDesign<double>& d, double low, const Signature& at_low, double high,
                        const Signature& at_high);
 
-/// The design with its numbers as constants of another scalar type.
+/// The design converted to constants of another scalar type.
 template <class To, class From>
 SlicedDesign<To> constant_design(const SlicedDesign<From>& d) {
   return sliced_design(constant<To>(d.g), constant<To>(d.l), To(value_of(d.y)));
@@ -81,7 +81,7 @@ S lift_crossing(const SlicedDesign<S>& d, const Crossing& crossing) {
     const S value = switching_function(d, crossing.function, S(crossing.theta));
     const auto by_theta = Dual<1>::variable(crossing.theta, 0);
     const double derivative = switching_function(constant_design<Dual<1>>(d), crossing.function, by_theta).v[0];
-    // if it is 0: a double root, with an interval of length 0
+    // A zero derivative means a double root, which belongs to an interval of length 0.
     return implicit_root(crossing.theta, value, derivative);
   } else {
     return crossing.theta;
@@ -142,8 +142,8 @@ void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<Criti
 }
 
 /// Calls split(critical value, signature below it) at the roots of the switching functions between two critical values
-/// with a closed form. All changes of the formula have a closed form, so a sample whose formula differs from that in
-/// the middle is within rounding of an endpoint and is skipped.
+/// with a closed form. The formula changes only at critical values with a closed form; a sample whose formula differs
+/// from that in the middle is therefore at an endpoint, up to rounding, and is skipped.
 /// @return the signature above the last root
 template <class S, class Split>
 Signature split_at_crossings(const SlicedDesign<S>& d, const SlicedDesign<double>& plain, double low, double high,

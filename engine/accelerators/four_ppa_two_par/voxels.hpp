@@ -1,4 +1,4 @@
-// 4PPa-2PaR: feasible voxels, column by column. The cells are those that a test of every pose finds.
+// 4PPa-2PaR: feasible voxels, column by column. The result is the same as that of testing every pose.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct VoxelPlane {
 };
 
 /// The part of a grid that represents all cells by symmetry. On the middle plane both limbs have the same stroke, so
-/// that the workspace is symmetric in theta and in x; the grid may be as well.
+/// that the workspace is symmetric in theta and in x; the grid need not be.
 struct GridPart {
   std::int64_t xs, thetas;  ///< number of x and theta, from the first
   bool mirrored_x = false, mirrored_theta = false;

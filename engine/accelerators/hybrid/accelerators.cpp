@@ -11,7 +11,7 @@
 namespace pkm::hybrid {
 namespace {
 
-constexpr int kY = 1;  ///< number of the coordinate y, which is fixed
+constexpr int kY = 1;  ///< index of the coordinate y, which is fixed
 
 struct AnalysisSettings {
   WorkingMode signs;
@@ -20,8 +20,8 @@ struct AnalysisSettings {
   FieldRequest request;
 };
 
-/// Factor by which y multiplies a volume of (x, z, beta): the stroke of the carriage [m] if y is integrated over,
-/// otherwise 1, or 0 outside the stroke.
+/// Factor by which a volume of (x, z, beta) is multiplied to include y: the stroke of the carriage [m] if y is
+/// integrated over; otherwise 1, or 0 if y is outside the stroke.
 template <class S>
 S stroke_factor(const Limits<S>& l, const WorkspacePlan& plan) {
   const FixedCoordinate y = how_fixed(plan, kY);
@@ -30,8 +30,8 @@ S stroke_factor(const Limits<S>& l, const WorkspacePlan& plan) {
   return S(y.value >= value_of(l.s_min[1]) && y.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
 }
 
-/// Adds columns along x, on which conditioning does not depend, as samples. Without derivatives, conditioning is
-/// computed at the end, in SIMD batches.
+/// Adds columns along x as samples; the conditioning does not depend on x. Without derivatives, the conditioning of all
+/// samples is computed at the end, in SIMD batches.
 template <class S>
 class ColumnSamples {
  public:
@@ -130,7 +130,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     samples.finish();
   }
 
-  /// The design with its numbers as constants of another scalar type.
+  /// The design converted to constants of another scalar type.
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(settings_, std::span<const To>(constants<To, kParameters>(parameters)));

@@ -27,8 +27,8 @@ struct CellRuns {
 };
 
 struct CellTally {
-  double cells;  ///< their number
-  bool touches;  ///< one of them is the first or last of its column
+  double cells;  ///< number of feasible cells
+  bool touches;  ///< true if a feasible cell is the first or the last of its column
 };
 
 /// Computes the runs for indices of z [first_z, end_z), and for some more up to a multiple of kLanes.

@@ -30,7 +30,8 @@ struct ConditioningDesign {
   S length;                     ///< characteristic length [m]
 };
 
-/// Inverse condition number; 0 if the pose does not assemble or is serially singular. S is Lanes or that of the design.
+/// Inverse condition number; 0 if the mechanism cannot be assembled at the pose or is serially singular there. S is
+/// Lanes or the scalar of the design.
 template <class S, class T>
 [[gnu::always_inline]] inline S conditioning(const ConditioningDesign<T>& g, const S& z, const S& sin_b,
                                              const S& cos_b) {

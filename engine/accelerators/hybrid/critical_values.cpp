@@ -58,8 +58,8 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
           return Degeneracy{.kind = Degeneracy::Kind::edges, .first = at, .left = edge[j], .right = edge[i]};
       }
   }
-  // The shortest strip that does not exist on the other side, preferably one whose two edges bound no strip there;
-  // other strips may only have different bounds.
+  // Otherwise, a strip vanishes. Take the shortest strip that exists on one side only. Prefer strips whose pair of
+  // edges bounds no strip on the other side: all others may exist on both sides with different bounds.
   std::optional<Degeneracy> found;
   double shortest = std::numeric_limits<double>::infinity();
   const auto find_vanishing = [&](const Decomposition& here, const Decomposition& there, const auto& same) {
@@ -80,7 +80,8 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
   return found;
 }
 
-/// Whether the heights of a degeneracy are those of a sample: intersections are those of its strips.
+/// Whether the heights of a degeneracy belong to a sample, i.e. whether each intersection is a bound of one of its
+/// strips.
 bool has_heights(const SampledSlice& sample, const Degeneracy& degeneracy) {
   const auto has = [&](const StripBound& end) {
     return end.kind != StripBound::Kind::intersection ||
@@ -90,7 +91,8 @@ bool has_heights(const SampledSlice& sample, const Degeneracy& degeneracy) {
   return degeneracy.kind == Degeneracy::Kind::edges || (has(degeneracy.first) && has(degeneracy.second));
 }
 
-/// x of an edge and its first two derivatives with respect to z, the first two with derivatives with respect to beta.
+/// x of an edge and its first two derivatives with respect to z. x and the first derivative also have derivatives with
+/// respect to beta.
 struct EdgeDerivatives {
   Dual<1> x, derivative;
   double curvature;
@@ -103,7 +105,8 @@ EdgeDerivatives edge_derivatives(const Slice<Dual<1>>& s, const Edge& edge, doub
           sign * (value_of(c.curvature()) - derivative.a * derivative.a) / root.a};
 }
 
-/// The height of a bound after one Newton step if it is an intersection, with its derivative with respect to beta.
+/// The height of a bound and its derivative with respect to beta. For an intersection, the height results from one
+/// Newton step.
 Dual<1> newton_height(const Slice<Dual<1>>& s, const StripBound& end) {
   if (end.kind != StripBound::Kind::intersection) return height(s, end);
   const EdgeDerivatives first = edge_derivatives(s, end.first, end.z), second = edge_derivatives(s, end.second, end.z);

@@ -1,9 +1,9 @@
 // Hybrid robot: the intervals of beta, between critical values, on which slices have one combinatorial type.
 //
-// Slices are decomposed at samples of beta. If two adjacent samples differ in type, the degeneracy that changes the one
-// type into the other is identified, and Newton's method solves for it, in beta and in the heights of intersections
-// simultaneously. Decompositions slightly below and above the solution show whether further critical values exist
-// between the samples, which are then searched for recursively.
+// Slices are decomposed at samples of beta. If two adjacent samples differ in type, the degeneracy that separates the
+// types is identified, and Newton's method solves for it, simultaneously in beta and in the heights of intersections.
+// Decompositions slightly below and above the solution show whether there are further critical values between the
+// samples; these are then searched for recursively.
 #pragma once
 
 #include <deque>

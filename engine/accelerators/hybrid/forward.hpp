@@ -9,8 +9,8 @@ namespace pkm::hybrid {
 
 struct Forward {
   ForwardStatus status;
-  /// (+,+), (+,-), (-,+), (-,-): signs of z and N2, as far as these modes exist and differ. The signs of n1, n2, n3 are
-  /// the working mode, with "0" for a sign that is 0.
+  /// Named by the signs of z and N2: (+,+), (+,-), (-,+), (-,-); only modes that exist and differ from each other. The
+  /// signs of n1, n2, n3 are the working mode, with "0" for a sign that is 0.
   std::vector<AssemblyMode> modes;
 };
 

@@ -35,8 +35,8 @@ Gap gap(const Slice<double>& s, const Edge& first, const Edge& second, double z)
   return Gap{a.value - b.value, a.derivative - b.derivative, a.second + b.second};
 }
 
-/// Intersection of two circular edges between two heights, the one closest to z; kNoIntersection if there is none, if
-/// an edge is not circular, or if the circles are tangent to working precision.
+/// Intersection of two circular edges between two heights; if there are two, the one closer to z. kNoIntersection if
+/// there is none, if an edge is not circular, or if the circles are tangent to working precision.
 double circle_intersection(const Slice<double>& s, const Edge& first, const Edge& second, double z, double low,
                            double high) {
   const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };

@@ -2,7 +2,8 @@
 // for z and x.
 //
 // z is in one interval [max of lower bounds, min of upper bounds]. For each z, x is between the maximum of its lower
-// and the minimum of its upper bounds, which are the curves in Slice::curve, except for a hole. Derivation: README.md.
+// and the minimum of its upper bounds, except for a hole. The bounds of x are the curves in Slice::curve. Derivation:
+// README.md.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ struct SlicedDesign {
   S sine_s, cot_c;          ///< sqrt(1 - tau_s^2), sqrt(1 - tau_c^2) / tau_c
   S tan_phi, cot_phi;
   S z_low, z_high;    ///< range of z allowed by the limits that depend on z only [m]
-  bool empty = true;  ///< that range is empty, or the branch is N2 < 0
+  bool empty = true;  ///< the range of z is empty, or the branch is N2 < 0
 };
 
 /// Computes the members z_low, z_high and empty.

@@ -29,14 +29,14 @@ double x_at(const Slice<double>& s, const Edge& e, const Node& n) {
 }
 
 /// Tests whether the edge `above` can intersect the edge `below` between two heights, at both of which `above` is not
-/// below `below`. A convex function is above its tangents, a concave one above its chord, which gives a piecewise
-/// linear lower bound of the difference.
+/// below `below`. A convex function is above its tangents, and a concave one is above its chord; this gives a piecewise
+/// linear lower bound of the distance between the edges.
 /// @return a height at which this bound is negative; kNoIntersection if there is none
 double possible_intersection(const Slice<double>& s, const Edge& above, const Edge& below, const Node& p,
                              const Node& q) {
   if (are_bounds_of_chain(above, below)) return kNoIntersection;
   const double high = s.sign(above), low = s.sign(below);
-  const bool above_is_convex = high<0, below_is_concave = low> 0;  // convex, and the other concave
+  const bool above_is_convex = high<0, below_is_concave = low> 0;  // otherwise concave and convex, respectively
   const double width = q.z - p.z, gap_p = x_at(s, above, p) - x_at(s, below, p),
                gap_q = x_at(s, above, q) - x_at(s, below, q);
   if (!above_is_convex && !below_is_concave) return kNoIntersection;
@@ -131,11 +131,11 @@ StripBound intersection_at(double z, const Edge& first, const Edge& second) {
   return {.z = z, .kind = StripBound::Kind::intersection, .first = first, .second = second};
 }
 
-/// A candidate for a bound of a strip, with the curves there.
+/// A candidate for a bound of a strip, with the values of the curves there.
 struct Candidate {
   StripBound end;
   Node node;
-  bool positive;  ///< x of `right` is not below that of `left`
+  bool positive;  ///< true if x of `right` is not below that of `left`
 };
 
 /// Appends the strips between p and q on which `right` is not below `left`.
@@ -224,7 +224,7 @@ void subtract(const std::vector<Strip>& outer, const std::vector<Strip>& inner, 
   }
 }
 
-/// Numbers of the active lower and upper bound of z.
+/// Indices of the active lower and upper bound of z.
 std::array<std::size_t, 2> active_ends(const Slice<double>& s) {
   const auto low = std::max_element(s.lower.begin(), s.lower.end()),
              high = std::min_element(s.upper.begin(), s.upper.end());

@@ -1,11 +1,11 @@
 // Hybrid robot: decomposition of a slice into strips, intervals of z over which x is between two curves.
 //
-// The active lower bound of x is the upper envelope of curves, the active upper bound a lower envelope, and x is
-// feasible between them if the one is below the other. Every curve is the sum of a constant and, with either sign, a
-// root that is concave in z. Therefore tangents and chords prove that two curves do not intersect between two heights;
-// if they do not prove it, the interval is bisected. Intersections of active curves are the bounds of strips.
+// The active lower bound of x is the upper envelope of curves, and the active upper bound is a lower envelope; x is
+// feasible between them where the former is below the latter. Every curve is a constant plus or minus a root that is
+// concave in z. Tangents and chords can therefore prove that two curves do not intersect between two heights; without
+// such a proof, the interval is bisected. The intersections of active curves are the bounds of strips.
 //
-// The hole (-H, H) is excluded as a difference of two decompositions, one of them with H among the curves.
+// The hole (-H, H) is excluded by subtracting two decompositions, one of which has H among its curves.
 #pragma once
 
 #include <algorithm>
@@ -41,8 +41,8 @@ inline bool same_type(const Strip& p, const Strip& q) {
 }
 
 struct Decomposition {
-  std::vector<Strip> strips;         ///< non-empty ones in ascending z; beside a hole, two over the same interval
-  std::size_t lower = 0, upper = 0;  ///< numbers of the active bounds of z
+  std::vector<Strip> strips;         ///< non-empty, in ascending z; two over the same interval beside a hole
+  std::size_t lower = 0, upper = 0;  ///< indices of the active bounds of z
   enum class Hole { none, below, all } hole = Hole::none;  ///< part of the z range in which x has a hole
 };
 inline bool same_type(const Decomposition& p, const Decomposition& q) {
