@@ -96,10 +96,10 @@ struct MechanismDraft {
   limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
-  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: ranges of x, y, z
+  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< for each limb, ranges of x, y, z
   std::vector<SignChoice> sign_choices;                                           ///< in the order of the inputs
 
-  std::vector<std::optional<limbs::Term>> drive_stiffness;  ///< by joint [N/m or N m/rad]; std::nullopt: rigid
+  std::vector<std::optional<limbs::Term>> drive_stiffness;  ///< for each joint [N/m or N m/rad]; std::nullopt: rigid
   std::vector<OwnParameter> own;
   std::optional<ConfigValue> masses;  ///< the selected alternative of [masses]
   std::vector<ConfigValue> let;       ///< [let], and the `let` of the masses

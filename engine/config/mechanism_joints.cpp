@@ -342,7 +342,7 @@ class JointReader {
   std::vector<SolidNodes> solids_;
   std::vector<JointNodes> joints_;
   std::map<std::string, std::vector<std::size_t>>
-      made_of_;  ///< by name of a body of the model: indices of the solids made from it
+      made_of_;  ///< for each body of the model, by its name: indices of the solids made from it
 };
 
 }  // namespace

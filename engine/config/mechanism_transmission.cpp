@@ -85,7 +85,7 @@ void add_transmission(const ConfigValue& root, const ConfigValue* study, Mechani
   expression::Graph& graph = model.graph;
   const std::size_t n = draft.limbs.size();
   std::vector<LimbForce> all;
-  std::vector<std::vector<Vector3>> velocities(n);  // by limb and coordinate
+  std::vector<std::vector<Vector3>> velocities(n);  // for each limb and coordinate
   TermMatrix powers(graph, n, n);
   for (std::size_t i = 0; i < n; ++i) {
     all.push_back(single_force_of(draft.limbs[i]));

@@ -83,7 +83,7 @@ struct Study {
   std::vector<StudyEntry> objectives, constraints, outputs;
   std::vector<std::string> limit_origins;  ///< for each limit of the mechanism, where its threshold is set; "": nowhere
 
-  /// `output`, else the study file's stem + ".h5" in the current folder.
+  /// `output`; by default, the stem of the study file + ".h5" in the current folder.
   std::string output_file() const;
 };
 

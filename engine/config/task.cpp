@@ -20,7 +20,7 @@ namespace {
 using Kind = TomlValue::Kind;
 using Names = std::vector<std::string>;
 
-constexpr std::int64_t kCells = 16;  // of a region along each axis, if the task does not set them
+constexpr std::int64_t kCells = 16;  // cells of a region along each axis, if the task does not set them
 
 /// Sets the value of a key of a table.
 void set(TomlValue& table, const std::string& key, TomlValue value) {

@@ -74,7 +74,7 @@ inline constexpr double kRankTolerance = 1e-10;  ///< relative to the largest pi
 /// Solves the equations by complete orthogonal decomposition.
 MinNormSolution min_norm_solution(const NewtonEuler& system);
 
-/// Forces of the actuators in a solution, by index of their joints [N, N m].
+/// Forces of the actuators in a solution, ordered by the indices of their joints [N, N m].
 AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution);
 
 /// A force component is determined if unit vectors of the null space change it by less than this tolerance.

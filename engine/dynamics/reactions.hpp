@@ -24,7 +24,7 @@ struct JointReaction {
 /// Solution of the Newton-Euler equations of all bodies (newton_euler.hpp).
 struct Reactions {
   std::vector<JointReaction> joints;  ///< empty if the forces are not determined
-  AxisVector<double> drive_forces;    ///< of the actuators, from the same equations [N, N m]
+  AxisVector<double> drive_forces;    ///< forces of the actuators, from the same equations [N, N m]
   int equations = 0, unknowns = 0, rank = 0;
   std::string reason;  ///< one sentence why the forces are not determined; "" if they are
 };

@@ -39,7 +39,7 @@ struct FieldRegion {
 struct FieldMap {
   FieldRegion defined;               ///< where the field is defined; without contour lines
   FieldRegion undefined;             ///< the rest of the mesh; without contour lines
-  std::vector<FieldRegion> regions;  ///< by threshold, ascending; each region contains the following ones
+  std::vector<FieldRegion> regions;  ///< for each threshold, ascending; each region contains the following ones
 };
 
 /// @param values  one per vertex of the mesh

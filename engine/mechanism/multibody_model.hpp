@@ -25,7 +25,7 @@ struct MultibodyModel {
   struct Body {
     std::string name;
     double mass = 0;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< of mass
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< centre of mass
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass; 0 along the line of a thin part
     std::vector<Shape> shapes{};
   };
@@ -35,7 +35,7 @@ struct MultibodyModel {
     double position;                               ///< position of the joint at the reference pose [m or rad]
     std::optional<std::array<double, 2>> range{};  ///< range of the position
     std::optional<double> peak_force{};            ///< [N or N m]
-    double inertia = 0;                            ///< of the drive train, reflected to the joint [kg or kg m^2]
+    double inertia = 0;                            ///< inertia of the drive train at the joint [kg or kg m^2]
     double viscous = 0, coulomb = 0;               ///< friction at the joint [N s/m or N m s/rad, N or N m]
   };
   /// The joint coordinate is positive if the child has moved relative to the parent in the positive sense along or

@@ -87,7 +87,7 @@ struct FieldRequest {
   bool every_pose = false;                      ///< voxels: store the pose of each cell, also of symmetric images
   std::optional<double> characteristic_length;  ///< for fields that need a Jacobian [m]; std::nullopt: the mechanism's
   std::string mode;                             ///< working mode for fields of inertia; "": the mechanism's default
-  std::vector<double> rotors;                   ///< by joint: reflected inertia of drive trains; empty: none
+  std::vector<double> rotors;                   ///< reflected inertia of the drive train of each joint; empty: none
 
   bool has(const PoseQuantity& quantity) const { return std::ranges::find(fields, &quantity) != fields.end(); }
   void add(const PoseQuantity& quantity) {

@@ -13,7 +13,7 @@ namespace {
 /// Possible values of an option or of an argument: words, files, or both.
 struct PossibleValues {
   std::vector<std::string> words;
-  std::string extension;  ///< of files, for example "h5"; "*": any file; "": no files
+  std::string extension;  ///< extension of the files, for example "h5"; "*": any file; "": no files
 };
 
 PossibleValues values_of(const std::string& command, const std::string& type, const Session& session) {

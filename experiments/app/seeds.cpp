@@ -133,8 +133,8 @@ void print_next_step(const std::string& output, std::uint64_t first, const std::
 
 void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
                Session& session) {
-  const StopRequest listen;  // for all seeds together, so that a signal between two of them is not lost
-  const std::optional<double> time_limit = options.time_limit;  // of all seeds together
+  const StopRequest listen;  // one object for all seeds, so that a signal between two of them is not lost
+  const std::optional<double> time_limit = options.time_limit;  // limit of the total time of all seeds
   double seconds = 0;
   const std::uint64_t first = study.seed;
   if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(arguments.seeds))

@@ -75,7 +75,7 @@ double parse_gap(const std::string& text, const std::string& option);
 struct Target : ChosenDesign {
   std::shared_ptr<const Mechanism> mechanism;
   std::optional<Study> study;      ///< std::nullopt: a mechanism without a study
-  LimitSpec limits;                ///< those of the study; none without a study
+  LimitSpec limits;                ///< limits of the study; without a study, no limits
   std::vector<std::string> files;  ///< files that were read, which no output may overwrite
 
   const MechanismInfo& info() const { return mechanism->info(); }

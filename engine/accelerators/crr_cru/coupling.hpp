@@ -21,7 +21,7 @@ YawInertia<S> yaw_inertia(const Geometry<S>& g, const Masses<S>& b, const S& phi
   for (std::size_t i = 0; i < 4; ++i) by_phi[i] = yaw_velocity(arm[i]);
   const S j1 = by_phi[0][0], j2 = by_phi[1][1], j4 = by_phi[3][1];
   const Matrix<double, 3, 3> J = {
-      {1, 0, value_of(j1), 0, 1, value_of(j2), 0, 1, value_of(j4)}};  // of x, y, phi; z is a separate block
+      {1, 0, value_of(j1), 0, 1, value_of(j2), 0, 1, value_of(j4)}};  // columns x, y, phi; z is separate
   const S w = is_singular(J) ? S(std::numeric_limits<double>::quiet_NaN()) : S(S(1.0) / (j4 - j2));
   const Vector<S, 4> X = {{j1 * w * -1.0, j2 * w * -1.0, S(0.0), w}};  // velocity per rate of rho_4
 

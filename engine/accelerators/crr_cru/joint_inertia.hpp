@@ -63,7 +63,7 @@ struct InertiaRow {
 };
 
 /// Computes the coupling indices of voxels [first, end) of a row, and of some more up to a multiple of kLanes; they are
-/// meaningless for voxels that do not assemble.
+/// meaningless for voxels at which the mechanism cannot be assembled.
 template <InstructionSet set>
 void coupling_of_row(const YawInertia<double>& inertia, const std::array<InertiaRow, 4>& limbs, std::size_t first,
                      std::size_t end, const std::array<double*, 4>& index);

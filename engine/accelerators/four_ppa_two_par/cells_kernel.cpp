@@ -11,7 +11,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 template <class L>
 struct ColumnLimits {
   double l_d2, x_min, x_max, parallel, bottom;  ///< bottom: maximum of -z_c; parallel: l_d^2 sin_par_min
-  double x_step, cells, per_cell, offset;       ///< of z; offset: z = -d in cells, relative to the first centre
+  double x_step, cells, per_cell, offset;       ///< along z; offset: z = -d in cells, relative to the first centre
   L x_0, w;                                     ///< x_1 of the first column; x_1 + x_2
   L top_1, top_2;                               ///< minimum of -z_c of each limb; infinite if the theta has no poses
   std::int64_t x_begin, x_end;                  ///< columns outside have no cells at any theta

@@ -20,7 +20,7 @@ template <class S>
 struct ColumnPoses {
   S l_u, gamma;  ///< gamma = a / (2 L_c)
   S sin_theta, cos_theta;
-  std::array<S, 2> x, sigma;  ///< of the two limbs [m], lower branch
+  std::array<S, 2> x, sigma;  ///< x_j and sigma_j of both limbs [m], lower branch
 };
 
 /// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length; 0 if J_q or G is

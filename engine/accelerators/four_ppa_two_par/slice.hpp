@@ -179,7 +179,7 @@ Chord<S> chord(const SlicedDesign<S>& d, const Slice<S>& t, const S& delta) {
 /// The feasible z at one x of a half slice.
 template <class S>
 struct Column {
-  std::array<S, 2> x, sigma;  ///< of the two limbs [m]
+  std::array<S, 2> x, sigma;  ///< x_j and sigma_j of both limbs [m]
   S length;                   ///< length of the z interval [m]
   S derivative;               ///< du / d(delta)
   std::size_t leaning;

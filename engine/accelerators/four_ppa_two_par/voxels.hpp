@@ -101,7 +101,7 @@ class VoxelCounter {
   ColumnsAtThetas columns(const VoxelPlane& plane, std::int64_t k_block, const GridPart& part) const;
 
   std::array<std::int64_t, 3> cells_;
-  std::vector<double> sin_, cos_;  ///< of every theta, padded to a whole block
+  std::vector<double> sin_, cos_;  ///< sine and cosine of every theta, padded to a whole block
   bool even_;                      ///< the theta grid is symmetric about 0
 };
 

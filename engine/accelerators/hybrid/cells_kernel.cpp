@@ -27,7 +27,7 @@ CellTally fill(const ColumnsAtBeta& at, CellRuns& runs) {
     const L last = floor_and_one(lesser(lesser(L::load(at.right + j), at.hi_C + n3), chain));
     const L end = select(z <= at.z_high, greater(first, last), first);
     L hole = end, after = end;
-    if (at.z[j] < at.hole_end) {  // for at least one of the lanes
+    if (at.z[j] < at.hole_end) {  // true for at least one of the lanes
       const L half = sqrt_or_zero(square(at.H, z));
       const L from = greater(floor_and_one(-half), first), to = lesser(ceiling(half), end);
       const auto there = (z < at.hole_end) & (from < to);

@@ -30,8 +30,8 @@ enum ParameterIndex {
   kH1,
   kH2,
   kTheta0,
-  kSMin,              ///< of s1 to s4
-  kSMax = kSMin + 4,  ///< of s1 to s4
+  kSMin,              ///< first of the minimum strokes of s1 to s4
+  kSMax = kSMin + 4,  ///< first of the maximum strokes of s1 to s4
   kZClear = kSMax + 4,
   kBetaMin,
   kBetaMax,

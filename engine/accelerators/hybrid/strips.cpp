@@ -243,7 +243,7 @@ bool track(const Slice<double>& s, Decomposition& decomposition) {
   if (lower != decomposition.lower || upper != decomposition.upper || hole_of(s, low, high) != decomposition.hole)
     return false;
   if (decomposition.strips.empty()) return false;  // a gap with unknown critical values: strips can exist beside it
-  StripBound from, to;                             // of the previous strip, before its update
+  StripBound from, to;                             // bounds of the previous strip, before its update
   const Strip* before = nullptr;
   const auto follow = [&](StripBound& end) {
     const auto was = [&end](const StripBound& other) { return same_type(end, other) && end.z == other.z; };

@@ -22,7 +22,7 @@ struct BoundsOptions {
 
 struct VolumeBounds {
   double lower = 0, upper = 0;
-  int innermost = 0;         ///< column coordinate, by index of MechanismInfo::coordinates
+  int innermost = 0;         ///< index of the coordinate along columns, among MechanismInfo::coordinates
   std::size_t boxes = 0;     ///< number of boxes whose bounds are summed
   std::size_t examined = 0;  ///< number of boxes examined, including bisected ones
   bool stopped = false;
