@@ -31,15 +31,6 @@ bool is_kinematic(Load load) {
   return load == Load::motor_speed || load == Load::joint_speed || load == Load::joint_acceleration;
 }
 
-Wrench<double> wrench_of(const Options& options) {
-  Wrench<double> wrench;
-  if (!options.has("wrench")) return wrench;
-  const NamedNumbers& given = options.numbers("wrench");
-  for (std::size_t i = 0; i < wrench_names().size(); ++i)
-    if (const auto at = given.find(wrench_names()[i]); at != given.end()) wrench[i] = at->second;
-  return wrench;
-}
-
 /// Scratch memory for the loads of all samples, also if several threads compute them in batches.
 template <class S>
 struct LoadScratch {
@@ -58,7 +49,7 @@ class PeakLoad final : public Quantity {
       : name_(motion_of(context).name),
         samples_(samples_of(context)),
         mode_(mode_of(context)),
-        wrench_(wrench_of(context.options)),
+        wrench_(wrench_of(context)),
         joint_(context.options.word("joint")),
         sharpness_(context.options.number("sharpness")),
         load_(load),
@@ -203,8 +194,6 @@ class PeakLoad final : public Quantity {
 /// @param joints  words that the option `joint` accepts besides joint numbers; the first is the default
 /// @param forces  whether the load depends on a wrench on the platform
 std::vector<OptionSpec> load_options(const std::vector<std::string>& joints, bool forces = true) {
-  std::vector<std::pair<std::string, std::string>> wrench;
-  for (std::size_t i = 0; i < wrench_names().size(); ++i) wrench.emplace_back(wrench_names()[i], i < 3 ? "N" : "N m");
   std::vector<OptionSpec> options = {
       motion_option(),
       {.name = "joint",
@@ -215,10 +204,7 @@ std::vector<OptionSpec> load_options(const std::vector<std::string>& joints, boo
                   std::string(joints.size() > 1 ? "; total: the sum over the joints" : "")},
       samples_option(),
       mode_option(),
-      {.name = "wrench",
-       .kind = OptionKind::named_numbers,
-       .meaning = "constant force and moment on the platform; default: none",
-       .fields = wrench},
+      wrench_option(),
       {.name = "sharpness",
        .initial = 200.0,
        .lower = 1,

@@ -113,7 +113,7 @@ void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& war
 StudyAdditions additions_of(const ConfigValue& root, const StudyDraft& draft) {
   const auto changes_quantities = [](const ConfigValue& train) {
     return train.has("stiffness") || train.has("peak_force") || train.has("rotor_inertia") ||
-           train.has("shaft_inertia");
+           train.has("shaft_inertia") || train.has("motor");
   };
   if (!root.has("quantity") && !root.has("accuracy") && !limits_of_quantities(root) &&
       std::ranges::none_of(root.tables("drive_train"), changes_quantities))

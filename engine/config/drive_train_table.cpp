@@ -1,9 +1,12 @@
 // Reader of [[drive_train]].
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/config/motor_table.hpp"
 #include "engine/config/study_draft.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
 
 namespace pkm {
@@ -12,20 +15,46 @@ namespace {
 /// Refuses keys that affect forces only, if the mechanism has no dynamics.
 void expect_forces(const ConfigValue& table, const Unsupported& no_forces) {
   if (!no_forces) return;
-  for (const char* const key : {"rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"})
+  for (const char* const key :
+       {"rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed", "motor"})
     if (const auto given = table.find(key))
       throw given->refusal("inertias and losses of drive trains need dynamics, but " + *no_forces +
                            "; gear and lead need none");
 }
 
-/// Whether the table has only keys that pose quantities need: stiffness and peak_force.
-bool is_for_quantities(const ConfigValue& table) {
+/// Whether the table has only keys that need no transmission: stiffness and limits of the joint.
+bool needs_no_transmission(const ConfigValue& table) {
   return table.keys().size() > 1 && std::ranges::all_of(table.keys(), [](const std::string& key) {
-           return key == "joint" || key == "stiffness" || key == "peak_force";
+           return key == "joint" || key == "stiffness" || key == "peak_force" || key == "peak_speed" ||
+                  key == "peak_acceleration";
          });
 }
 
-DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
+/// @param motors  the [[motor]]s of the study
+JointLimits read_limits(const ConfigValue& table, const AxisInfo& joint, const std::vector<Motor>& motors) {
+  const bool turns = joint.turns();
+  JointLimits limits;
+  if (const auto speed = table.find("peak_speed")) limits.speed = speed->positive(turns ? "rad/s" : "m/s");
+  if (const auto most = table.find("peak_acceleration"))
+    limits.acceleration = most->positive(turns ? "rad/s^2" : "m/s^2");
+  if (const auto force = table.find("peak_force")) {
+    const std::string unit = turns ? "N m" : "N";
+    // A formula of the parameters is known to the mechanism only: NaN.
+    limits.force =
+        !force->is_text() ? force->positive(unit) : parse_quantity(force->text("text"), unit).value_or(std::nan(""));
+  }
+  if (const auto name = table.find("motor")) {
+    if (motors.empty())
+      throw name->refusal("the study has no [[motor]]; add one with name = \"" + name->text("the name of a [[motor]]") +
+                          "\"");
+    limits.motor = *find_named(motors, name->word(names_of(motors)));
+    if (const auto rotor = table.find("rotor_inertia"))
+      throw rotor->refusal("the motor gives the inertia of the rotor, too; give one of them");
+  }
+  return limits;
+}
+
+DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint, const JointLimits& limits) {
   const bool turns = joint.turns();
   DriveTrain train;
   train.ratio = table.number_at("gear");
@@ -37,7 +66,7 @@ DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
         table.at("lead", "the travel of " + joint.name + " per revolution of its screw, such as \"10 mm\"");
     train.ratio *= 2 * kPi / way.number();
   }
-  train.rotor = table.number_at("rotor_inertia");
+  train.rotor = limits.motor ? limits.motor->rotor : table.number_at("rotor_inertia");
   train.shaft = table.number_at("shaft_inertia");
   train.efficiency = table.number_at("efficiency");
   train.coulomb = table.find_number("coulomb", turns ? "N m" : "N", 0).value_or(0);
@@ -50,34 +79,35 @@ DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
 
 void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
   const std::vector<ConfigValue> tables = root.tables("drive_train");
+  const std::vector<Motor> motors = read_motors(root);
   if (tables.empty()) return;
   const auto& joints = draft.info().joints;
   const Unsupported no_forces = why_no_joint_forces(*draft.parts.mechanism);
   std::vector<std::string> names = {"all"};
   for (const AxisInfo& joint : joints) names.push_back(joint.name);
-  std::vector<std::optional<DriveTrain>> trains(joints.size());
-  if (std::ranges::all_of(tables, is_for_quantities)) {
-    for (const ConfigValue& table : tables) table.at("joint", "a joint, or \"all\"").word(names);
-    return;  // stiffness and peak_force are read with the quantities of the mechanism
-  }
+  std::vector<std::optional<JointLimits>> limits(joints.size());
+  DriveTrains trains(joints.size());
+  const bool are_trains = !std::ranges::all_of(tables, needs_no_transmission);
   for (const ConfigValue& table : tables) {
-    expect_forces(table, no_forces);
+    if (are_trains) expect_forces(table, no_forces);
     const ConfigValue value = table.at("joint", "a joint, or \"all\"");
     const std::string& joint = value.word(names);
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (joint != "all" && joint != joints[i].name) continue;
-      if (trains[i]) throw value.refusal("the joint " + joints[i].name + " has a drive train already");
-      trains[i] = read_train(table, joints[i]);
+      if (limits[i] && are_trains) throw value.refusal("the joint " + joints[i].name + " has a drive train already");
+      limits[i] = read_limits(table, joints[i], motors);
+      if (are_trains) trains[i] = read_train(table, joints[i], *limits[i]);
     }
   }
-  DriveTrains all;
+  std::vector<JointLimits> all;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (!trains[i])
+    if (!limits[i] && are_trains)
       throw tables.front().refusal("the joint " + joints[i].name +
                                    " has no drive train; give one for every joint, or none");
-    all.push_back(*trains[i]);
+    all.push_back(limits[i].value_or(JointLimits()));
   }
-  draft.parts.mechanism = with_drive_trains(draft.parts.mechanism, std::move(all));
+  draft.parts.mechanism =
+      with_drive_trains(draft.parts.mechanism, are_trains ? std::move(trains) : DriveTrains(), std::move(all));
 }
 
 }  // namespace pkm

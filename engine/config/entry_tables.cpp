@@ -199,7 +199,7 @@ void add_motion_constraints(StudyDraft& draft) {
   const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, kMotionConstraint);
   if (!entry || draft.implied == ImpliedConstraints::left_out) return;
   struct Use {
-    std::int64_t samples = 0;  ///< maximum over the entries
+    std::int64_t samples = 0;  ///< maximum over the entries; 0: none of them has samples
     std::vector<std::string> names;
   };
   Study& study = draft.study;
@@ -212,7 +212,7 @@ void add_motion_constraints(StudyDraft& draft) {
         is_stated = is_stated || user.type == kMotionConstraint;
         const std::string mode = user.options.has("mode") ? user.options.word("mode") : draft.info().modes.front();
         Use& use = by_mode[mode];
-        use.samples = std::max(use.samples, user.options.integer("samples"));
+        if (user.options.has("samples")) use.samples = std::max(use.samples, user.options.integer("samples"));
         if (!contains(use.names, user.name)) use.names.push_back(user.name);
       }
     if (is_stated) continue;
@@ -220,7 +220,7 @@ void add_motion_constraints(StudyDraft& draft) {
       auto specs = entry->options(draft.info());
       Options options = default_options(specs);
       options.set("motion", named.name);
-      options.set("samples", use.samples);
+      if (use.samples > 0) options.set("samples", use.samples);
       if (mode != draft.info().modes.front()) options.set("mode", mode);
       const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions, study.motions};
       NamedQuantity made{.name = implied_name(named.name, study.constraints),

@@ -86,16 +86,22 @@ class Performance {
     const auto gears = by_joint("gear"), leads = by_joint("lead");
     std::vector<double> inertia(joints_, 0.0);
     bool has_inertia = false;
+    const auto add_inertia = [&](std::size_t joint, const ConfigValue& given) {
+      double ratio = gears[joint] ? gears[joint]->number() : 1;
+      if (leads[joint]) ratio *= 2 * std::numbers::pi / leads[joint]->number();
+      inertia[joint] += given.number() * ratio * ratio;
+      has_inertia = has_inertia || inertia[joint] > 0;
+    };
     for (const char* const key : {"rotor_inertia", "shaft_inertia"}) {
       const auto given = by_joint(key);
-      for (std::size_t joint = 0; joint < joints_; ++joint) {
-        if (!given[joint]) continue;
-        double ratio = gears[joint] ? gears[joint]->number() : 1;
-        if (leads[joint]) ratio *= 2 * std::numbers::pi / leads[joint]->number();
-        inertia[joint] += given[joint]->number() * ratio * ratio;
-        has_inertia = has_inertia || inertia[joint] > 0;
-      }
+      for (std::size_t joint = 0; joint < joints_; ++joint)
+        if (given[joint]) add_inertia(joint, *given[joint]);
     }
+    const auto motors = by_joint("motor");
+    for (std::size_t joint = 0; joint < joints_; ++joint)
+      for (const ConfigValue& motor : motors[joint] ? study_->tables("motor") : std::vector<ConfigValue>())
+        if (motor.at("name").text("a name") == motors[joint]->text("the name of a [[motor]]"))
+          add_inertia(joint, motor.at("rotor_inertia"));
     if (!has_inertia) return;
     const TermMatrix& J = at_.J;
     TermMatrix weighted = J;

@@ -128,29 +128,39 @@ const TableSpec& motion_file_keys() {
   return spec;
 }
 
-const TableSpec& motor_file_keys() {
-  static const TableSpec motor = {
-      .header = "[[motor]]",
-      .meaning = "a motor of a catalogue",
-      .keys = {{.name = "name", .kind = OptionKind::word, .required = true, .meaning = "name of the motor"},
-               {.name = "continuous_torque",
-                .unit = "N m",
-                .required = true,
-                .meaning = "torque that the motor can supply continuously",
-                .positive = true},
-               {.name = "peak_torque",
-                .unit = "N m",
-                .required = true,
-                .meaning = "torque for short times, at least `continuous_torque`",
-                .positive = true},
-               {.name = "speed", .unit = "rad/s", .required = true, .meaning = "maximum speed", .positive = true},
-               {.name = "rotor_inertia",
-                .unit = "kg m^2",
-                .required = true,
-                .lower = 0,
-                .meaning = "inertia of the rotor"}}};
+const TableSpec& motor_keys() {
+  static const TableSpec point = {
+      .meaning = "a point of the curve of the peak torque",
+      .keys = {{.name = "speed", .unit = "rad/s", .required = true, .lower = 0, .meaning = "speed of the motor"},
+               {.name = "torque", .unit = "N m", .required = true, .lower = 0, .meaning = "peak torque there"}},
+      .noun = "key"};
   static const TableSpec spec = {
-      .header = "", .meaning = "motors", .keys = {required(tables_key("motor", motor))}, .noun = "table"};
+      .header = "[[motor]]",
+      .meaning = "a motor, in a motor file or a study",
+      .keys = {
+          {.name = "name", .kind = OptionKind::word, .required = true, .meaning = "name of the motor"},
+          {.name = "continuous_torque",
+           .unit = "N m",
+           .required = true,
+           .meaning = "torque that the motor can supply continuously",
+           .positive = true},
+          {.name = "peak_torque",
+           .unit = "N m",
+           .required = true,
+           .meaning = "torque for short times, at least `continuous_torque`",
+           .positive = true},
+          {.name = "speed", .unit = "rad/s", .required = true, .meaning = "maximum speed", .positive = true},
+          {.name = "rotor_inertia", .unit = "kg m^2", .required = true, .lower = 0, .meaning = "inertia of the rotor"},
+          {.name = "curve",
+           .kind = OptionKind::list,
+           .meaning = "peak torque over the speed, linear between the points; default: constant",
+           .parts = {{.kind = OptionKind::table, .table = &point}}}}};
+  return spec;
+}
+
+const TableSpec& motor_file_keys() {
+  static const TableSpec spec = {
+      .header = "", .meaning = "motors", .keys = {required(tables_key("motor", motor_keys()))}, .noun = "table"};
   return spec;
 }
 
@@ -197,8 +207,22 @@ const TableSpec& drive_train_keys() {
           formula_key("stiffness", kUnitOfEntry,
                       "stiffness after the gear [N/m or N m/rad], for the quantity `stiffness`; instead of the limb's "
                       "drive_stiffness"),
-          formula_key("peak_force", kUnitOfEntry,
-                      "maximum force or torque after the gear [N or N m], for the quantity `acceleration`")}};
+          formula_key(
+              "peak_force", kUnitOfEntry,
+              "maximum force or torque after the gear [N or N m], for the quantity `acceleration` and for fastest "
+              "motions"),
+          {.name = "peak_speed",
+           .unit = kUnitOfEntry,
+           .meaning = "maximum speed of the joint [m/s or rad/s], for fastest motions",
+           .positive = true},
+          {.name = "peak_acceleration",
+           .unit = kUnitOfEntry,
+           .meaning = "maximum acceleration of the joint [m/s^2 or rad/s^2], for fastest motions",
+           .positive = true},
+          {.name = "motor",
+           .kind = OptionKind::word,
+           .meaning =
+               "name of a [[motor]] of the study: the inertia of its rotor, and its limits for fastest motions"}}};
   return spec;
 }
 

@@ -254,20 +254,29 @@ const TableSpec& override_table() {
 }  // namespace
 
 const TableSpec& study_keys() {
-  static const TableSpec spec = {
-      .header = "",
-      .meaning = "study of pkmopt",
-      .keys = {table_key("study", study_table()), required(table_key("mechanism", mechanism_table())),
-               table_key("variables", variables_table()), table_key("baseline", baseline_table()),
-               table_key("workspace", workspace_keys()), tables_key("region", region_keys()),
-               tables_key("motion", motion_keys()), tables_key("objective", objective_table()),
-               tables_key("constraint", constraint_table()), tables_key("output", output_table()),
-               tables_key("reference", reference_table()), tables_key("drive_train", drive_train_keys()),
-               tables_key("obstacle", obstacle_table()), tables_key("quantity", quantity_keys()),
-               table_key("accuracy", accuracy_keys()), required(tables_key("stage", stage_table())),
-               table_key("checkpoint", checkpoint_table()), table_key("final", final_table()),
-               tables_key("override", override_table())},
-      .noun = "table"};
+  static const TableSpec spec = {.header = "",
+                                 .meaning = "study of pkmopt",
+                                 .keys = {table_key("study", study_table()),
+                                          required(table_key("mechanism", mechanism_table())),
+                                          table_key("variables", variables_table()),
+                                          table_key("baseline", baseline_table()),
+                                          table_key("workspace", workspace_keys()),
+                                          tables_key("region", region_keys()),
+                                          tables_key("motion", motion_keys()),
+                                          tables_key("objective", objective_table()),
+                                          tables_key("constraint", constraint_table()),
+                                          tables_key("output", output_table()),
+                                          tables_key("reference", reference_table()),
+                                          tables_key("drive_train", drive_train_keys()),
+                                          tables_key("motor", motor_keys()),
+                                          tables_key("obstacle", obstacle_table()),
+                                          tables_key("quantity", quantity_keys()),
+                                          table_key("accuracy", accuracy_keys()),
+                                          required(tables_key("stage", stage_table())),
+                                          table_key("checkpoint", checkpoint_table()),
+                                          table_key("final", final_table()),
+                                          tables_key("override", override_table())},
+                                 .noun = "table"};
   return spec;
 }
 

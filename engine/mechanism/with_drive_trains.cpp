@@ -11,12 +11,17 @@ namespace {
 
 class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, DynamicsDispatch<MechanismWithDriveTrains> {
  public:
-  MechanismWithDriveTrains(std::shared_ptr<const Mechanism> bare, DriveTrains trains)
-      : bare_(std::move(bare)), trains_(std::move(trains)), rotors_(reflected(trains_)) {
-    PKM_EXPECTS(trains_.size() == bare_->info().joints.size());
+  MechanismWithDriveTrains(std::shared_ptr<const Mechanism> bare, DriveTrains trains, std::vector<JointLimits> limits)
+      : bare_(std::move(bare)),
+        trains_(std::move(trains)),
+        limits_(std::move(limits)),
+        rotors_(trains_.empty() ? std::vector<double>(bare_->info().joints.size()) : reflected(trains_)) {
+    PKM_EXPECTS(rotors_.size() == bare_->info().joints.size());
+    PKM_EXPECTS(limits_.empty() || limits_.size() == rotors_.size());
   }
 
   const Mechanism& bare() const { return *bare_; }
+  const std::vector<JointLimits>& limits() const { return limits_; }
 
   const MechanismInfo& info() const override { return bare_->info(); }
   Unsupported refuse(std::span<const double> parameters) const override { return bare_->refuse(parameters); }
@@ -63,7 +68,7 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
   std::string why_no_reactions() const override { return bare_->why_no_reactions(); }
   const Elasticity* elasticity() const override { return bare_->elasticity(); }
   std::string why_no_elasticity() const override { return bare_->why_no_elasticity(); }
-  const DriveTrains* drive_trains() const override { return &trains_; }
+  const DriveTrains* drive_trains() const override { return trains_.empty() ? nullptr : &trains_; }
 
  private:
   friend DynamicsDispatch<MechanismWithDriveTrains>;
@@ -97,7 +102,7 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
   const std::string& mass_model() const override { return bare_->dynamics()->mass_model(); }
   std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
     auto other = bare_->dynamics()->with_masses(model);
-    return other ? with_drive_trains(std::move(other), trains_) : nullptr;
+    return other ? with_drive_trains(std::move(other), trains_, limits_) : nullptr;
   }
 
   /// The kinetic energy of a rotor of inertia I at gear ratio g is I (g qdot)^2 / 2. With D = diag(I g^2) and
@@ -119,13 +124,20 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
 
   std::shared_ptr<const Mechanism> bare_;
   DriveTrains trains_;
+  std::vector<JointLimits> limits_;
   std::vector<double> rotors_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains) {
-  return std::make_shared<MechanismWithDriveTrains>(std::move(mechanism), std::move(trains));
+std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains,
+                                                   std::vector<JointLimits> limits) {
+  return std::make_shared<MechanismWithDriveTrains>(std::move(mechanism), std::move(trains), std::move(limits));
+}
+
+std::vector<JointLimits> joint_limits(const Mechanism& mechanism) {
+  const auto* const decorated = dynamic_cast<const MechanismWithDriveTrains*>(&mechanism);
+  return decorated ? decorated->limits() : std::vector<JointLimits>();
 }
 
 const Mechanism& without_drive_trains(const Mechanism& mechanism) {

@@ -26,6 +26,25 @@ inline OptionSpec samples_option() {
           .meaning = "number of poses along the motion, equally spaced in time, including both ends"};
 }
 
+inline OptionSpec wrench_option() {
+  OptionSpec option = {.name = "wrench",
+                       .kind = OptionKind::named_numbers,
+                       .meaning = "constant force and moment on the platform; default: none"};
+  for (std::size_t i = 0; i < wrench_names().size(); ++i)
+    option.fields.emplace_back(wrench_names()[i], i < 3 ? "N" : "N m");
+  return option;
+}
+
+/// The wrench in the options; components that are not given are 0.
+inline Wrench<double> wrench_of(const EntryContext& context) {
+  Wrench<double> wrench;
+  if (!context.options.has("wrench")) return wrench;
+  const NamedNumbers& given = context.options.numbers("wrench");
+  for (std::size_t i = 0; i < wrench_names().size(); ++i)
+    if (const auto at = given.find(wrench_names()[i]); at != given.end()) wrench[i] = at->second;
+  return wrench;
+}
+
 /// The motion named in the options. Throws std::invalid_argument if the study has none of that name.
 inline const NamedMotion& motion_of(const EntryContext& context) {
   const std::string& name = context.options.word("motion");

@@ -9,6 +9,7 @@
 #include "engine/math/rounding.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/fastest.hpp"
 #include "experiments/app/joint_forces.hpp"
 #include "experiments/app/motion_inputs.hpp"
 #include "experiments/app/motion_samples.hpp"
@@ -18,7 +19,12 @@
 namespace pkm {
 namespace {
 
-struct TrajectoryArguments : DesignArguments, ModeArguments, InputArguments, ReactionArguments, TableOutput {
+struct TrajectoryArguments : DesignArguments,
+                             ModeArguments,
+                             InputArguments,
+                             ReactionArguments,
+                             FastestArguments,
+                             TableOutput {
   std::string motion;
   std::size_t samples = 201;
   std::string motors;
@@ -86,29 +92,39 @@ void report_summary(const Mechanism& mechanism, const Trajectory& trajectory, Pr
   out.text += missing_peaks(mechanism, trajectory);
 }
 
-std::string trajectory(const Target& target, const TrajectoryArguments& arguments, Printout& out) {
+std::string trajectory(const Target& given, const TrajectoryArguments& arguments, Printout& out) {
+  Target target = given;
   std::vector<std::string> inputs = target.files;
   for (const std::string& file : {arguments.motion, arguments.motors})
     if (!file.empty()) inputs.push_back(file);
-  const Mechanism& mechanism = *target.mechanism;
-  const MechanismInfo& info = target.info();
-  const std::string mode = parse_mode(info, arguments);
+  expect_fastest(arguments);
+  const std::string mode = parse_mode(target.info(), arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
-  const Unsupported no_forces = why_no_joint_forces(mechanism);
+  const Unsupported no_forces = why_no_joint_forces(*target.mechanism);
   if (!arguments.wrench.empty() && no_forces)
     throw ConfigError({"", 0, "--wrench"}, *no_forces + ", so a wrench has no effect");
-  if (!arguments.motors.empty() && !mechanism.drive_trains())
+  if (!arguments.motors.empty() && !target.mechanism->drive_trains())
     throw ConfigError({"", 0, "--motors"}, "no drive trains", "a study with [[drive_train]]");
-  if (const Unsupported reason = why_no_joint_forces(mechanism); reason && !arguments.motors.empty())
-    throw ConfigError({"", 0, "--motors"}, *reason + ", so motor torques cannot be computed");
-  expect_reactions(mechanism, arguments);
+  if (no_forces && !arguments.motors.empty())
+    throw ConfigError({"", 0, "--motors"}, *no_forces + ", so motor torques cannot be computed");
+  expect_reactions(*target.mechanism, arguments);
   if (arguments.any() && no_forces)
     throw ConfigError({"", 0, arguments.reactions ? "--reactions" : "--joint"},
                       *no_forces + ", so forces in its joints cannot be computed");
-  const auto motion = with_given_inputs(mechanism, find_motion(target, arguments.motion), arguments);
+  auto motion = with_given_inputs(*target.mechanism, find_motion(target, arguments.motion), arguments);
   std::vector<Motor> motors;
   if (!arguments.motors.empty()) motors = load_motors_toml(arguments.motors);
+  const MotionLimits limits = parse_limits(*target.mechanism, arguments, motors);
+  target.mechanism = with_motor(target.mechanism, arguments, limits);
+  const Mechanism& mechanism = *target.mechanism;
+  const MechanismInfo& info = target.info();
   check_outputs({arguments.csv}, inputs, if_forced(arguments.force));
+  std::optional<FastestMotion> fastest;
+  if (arguments.fastest) {
+    fastest =
+        fastest_motion({mechanism, target.parameters, mode, limits, wrench}, motion, arguments, arguments.samples);
+    motion = fastest->motion;
+  }
   Trajectory found =
       compute_trajectory(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench);
   if (arguments.any()) {
@@ -122,6 +138,7 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   out.add("mode", mode);
   out.add("motion", arguments.motion, arguments.motion + (found.periodic ? " (periodic)" : ""));
   out.add("duration", found.duration, number(found.duration, "s"));
+  if (fastest) report_fastest(info, *fastest, arguments, out);
   out.json["periodic"] = found.periodic;
   out.head.push_back({"samples", all});
   out.head.push_back({"feasible", found.summary.infeasible == 0 ? "yes" : "not at " + infeasible + " samples"});
@@ -159,6 +176,7 @@ void add_trajectory(CLI::App& app, Session& session) {
   add_input_option(command, arguments);
   add_option(command, "--motors MOTORS.toml", arguments.motors,
              "Check which motors of this table can perform the motion with the study's drive trains");
+  add_fastest_options(command, arguments);
   add_reaction_options(command, arguments);
   add_table_output(command, arguments, "Write all samples to this file, in SI units");
   command.add_flag("--allow-infeasible", arguments.allow_infeasible, "Exit code 0 also with infeasible samples");

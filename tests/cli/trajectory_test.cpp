@@ -66,6 +66,54 @@ TEST(CliTrajectory, RedundantDrivesFollowNoMotionThroughSingularPoses) {
   for (const json& sample : found.json()["samples"]) EXPECT_EQ(sample["feasible"], double(sample["time"]) != 0.5);
 }
 
+TEST(CliTrajectory, FastestMotionOfAStudyKeepsTheLimitsOfItsMotors) {
+  const std::string study = PKM_EXPERIMENTS "/mechanisms/motors/fastest-delta.toml";
+  for (const std::string law : {"optimal", "own"}) {
+    const auto result = pkmopt({"trajectory", study, "--motion", "cycle", "--fastest", "--law", law, "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json found = result.json();
+    EXPECT_EQ(found["fastest"]["moves"].size(), 6u);
+    EXPECT_EQ(found["fastest"]["bounded_by"][0]["limit"], "continuous torque");
+    for (const auto& [joint, torque] : found["summary"]["peak_motor_torque"].items()) EXPECT_LE(torque, 1.91 + 1e-9);
+    double rms = 0;
+    for (const auto& [joint, torque] : found["summary"]["rms_motor_torque"].items())
+      rms = std::max(rms, torque.get<double>());
+    EXPECT_LE(rms, 0.64 * (1 + 1e-9));
+    EXPECT_GE(rms, 0.64 * 0.97);
+    EXPECT_EQ(found["duration"], found["samples"].back()["time"]);
+  }
+}
+
+TEST(CliTrajectory, FastestMotionAcceptsLimitsOfTheCommandLine) {
+  const std::string delta = PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml";
+  const StudyFolder folder;
+  folder.write("m.toml", "type = \"points\"\ntime = 1\npoints = [{ x = -0.1, y = 0, z = -0.5 }, { x = 0.1 }]\n");
+  const auto fastest = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"trajectory", delta, "--motion", "m.toml", "--fastest", "--json"});
+    return pkmopt(more, folder.path());
+  };
+  EXPECT_NEAR(fastest({"--tool-acceleration", "20"}).json()["duration"], 2 * std::sqrt(0.2 / 20), 1e-9);
+  EXPECT_NEAR(fastest({"--tool-acceleration", "20", "--tool-speed", "0.5"}).json()["duration"], 0.2 / 0.5 + 0.5 / 20,
+              1e-4);
+  const json both = fastest({"--peak-speed", "all=2", "--peak-acceleration", "all=50,arm2=20"}).json();
+  for (const auto& [joint, speed] : both["summary"]["peak_speed"].items()) EXPECT_LE(speed, 2 + 1e-9) << joint;
+  double peak = 0;
+  for (const json& sample : both["samples"])
+    peak = std::max(peak, std::fabs(sample["accelerations"]["arm2"].get<double>()));
+  EXPECT_NEAR(peak, 20, 0.1);
+  const json forces = fastest({"--peak-force", "all=3"}).json();
+  for (const auto& [joint, force] : forces["summary"]["peak_force"].items()) EXPECT_LE(force, 3 + 1e-9) << joint;
+
+  const auto complaint = [&](const std::vector<std::string>& more) { return fastest(more).err; };
+  EXPECT_THAT(complaint({}), HasSubstr("no limit of acceleration, force or torque bounds the motion"));
+  EXPECT_THAT(complaint({"--peak-speed", "arm7=2"}), HasSubstr("arm7"));
+  EXPECT_THAT(complaint({"--tool-speed", "-1"}), HasSubstr("a number > 0 m/s"));
+  EXPECT_THAT(complaint({"--tool-acceleration", "5", "--nodes", "7"}), HasSubstr("an even number"));
+  EXPECT_THAT(complaint({"--motor", "200 W"}), HasSubstr("--motors"));
+  const auto slow = pkmopt({"trajectory", delta, "--motion", "m.toml", "--tool-speed", "1"}, folder.path());
+  EXPECT_THAT(slow.err, HasSubstr("--tool-speed: this option needs --fastest"));
+}
+
 TEST(CliTrajectory, OscillationAgreesWithGoldenData) {
   const StudyFolder folder;
   folder.write("m.toml", kOscillation);

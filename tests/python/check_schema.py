@@ -30,11 +30,9 @@ def run(*arguments):
 def kind_of(document):
     if "platform" in document:
         return "mechanism"
-    if "motor" in document:
-        return "motors"
-    if "task" in document:
-        return "task"
-    return "study" if "mechanism" in document or "stage" in document else "motion"
+    if "mechanism" in document or "stage" in document:
+        return "study"
+    return "motors" if "motor" in document else "motion"
 
 
 VALIDATORS = {}

@@ -1,0 +1,19 @@
+// Limits of actuated joints and their motors, within which motions are made as fast as possible.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "engine/dynamics/motor.hpp"
+
+namespace pkm {
+
+/// Limits of one joint, > 0; infinite: unlimited.
+struct JointLimits {
+  double speed = std::numeric_limits<double>::infinity();         ///< maximum |qdot| [m/s, rad/s]
+  double acceleration = std::numeric_limits<double>::infinity();  ///< maximum |qddot| [m/s^2, rad/s^2]
+  double force = std::numeric_limits<double>::infinity();         ///< maximum |tau| [N, N m]
+  std::optional<Motor> motor = {};                                ///< limits of the motor, if there is a drive train
+};
+
+}  // namespace pkm

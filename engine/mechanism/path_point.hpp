@@ -1,0 +1,103 @@
+// State and forces of the joints at a point of a path, as functions of the squared path speed y = sdot^2 and of the
+// path acceleration u = sddot:
+//
+//   qdot = q' sqrt(y),   qddot = q' u + q'' y,   tau = A u + B y + C
+//
+// q' and q'' are derivatives by the path parameter; A = J^-T M_X X', B = J^-T (M_X X'' + h_X(X')), C = J^-T (G_X -
+// W_X). A motion with its own time law is the special case s = t: y = 1 and u = 0; slowed down by the factor k: y =
+// 1/k^2.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/mechanism/inverse_dynamics.hpp"
+
+namespace pkm {
+
+template <class S>
+struct PathPoint {
+  AxisVector<S> q1, q2;                       ///< q' and q''
+  AxisVector<S> A, B, C;                      ///< empty without masses; with the reflected inertia of drive trains
+  double tool11 = 0, tool12 = 0, tool22 = 0;  ///< X'.X', X'.X'' and X''.X'' of the coordinates that are lengths
+};
+
+/// The same point, with another scalar type for its constants.
+template <class T>
+PathPoint<T> constant_point(const PathPoint<double>& p) {
+  const auto convert = [](const AxisVector<double>& x) {
+    AxisVector<T> y(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) y[i] = T(x[i]);
+    return y;
+  };
+  return {convert(p.q1), convert(p.q2), convert(p.A), convert(p.B), convert(p.C), p.tool11, p.tool12, p.tool22};
+}
+
+/// Torque of a joint's motor [N m]. @param p  a point with forces
+template <class S>
+S motor_torque(const PathPoint<S>& p, std::size_t joint, const S& y, const S& u, const DriveTrain& train) {
+  const S speed = p.q1[joint] * sqrt_or_zero(y), acceleration = p.q1[joint] * u + p.q2[joint] * y;
+  const S force = p.A[joint] * u + p.B[joint] * y + p.C[joint];
+  return train.torque(S(force - acceleration * train.reflected()), speed, acceleration);
+}
+
+/// Computes the points of a path up to the first at which the mechanism does not assemble or its Jacobian is singular.
+/// @param samples  pose, and its first and second derivatives by the path parameter as velocity and acceleration
+/// @return         number of computed points
+template <class S>
+std::size_t path_points(const Mechanism& mechanism, std::span<const S> parameters, const std::string& mode,
+                        std::span<const MotionSample> samples, const Wrench<double>& wrench,
+                        std::vector<PathPoint<S>>& points) {
+  points.clear();
+  const auto is_finite = [](const AxisVector<S>& values) {
+    return std::ranges::all_of(values, [](const S& value) { return std::isfinite(value_of(value)); });
+  };
+  const auto append = [&](const MotionSample& at, PathPoint<S> p) {
+    const auto& coordinates = mechanism.info().coordinates;
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+      if (coordinates[i].turns()) continue;
+      p.tool11 += at.velocity[i] * at.velocity[i];
+      p.tool12 += at.velocity[i] * at.acceleration[i];
+      p.tool22 += at.acceleration[i] * at.acceleration[i];
+    }
+    if (!is_finite(p.q1) || !is_finite(p.q2) || !is_finite(p.A) || !is_finite(p.B) || !is_finite(p.C)) return false;
+    points.push_back(std::move(p));
+    return true;
+  };
+  if (why_no_joint_forces(mechanism)) {
+    if constexpr (std::is_same_v<S, double>)
+      for (const MotionSample& at : samples) {
+        const auto joints = mechanism.velocities()->influence(parameters, at.pose, mode);
+        if (!joints ||
+            !append(at, {.q1 = joints->G * at.velocity, .q2 = accelerations(*joints, at.velocity, at.acceleration)}))
+          break;
+      }
+    return points.size();
+  }
+  Wrench<S> load;
+  for (std::size_t i = 0; i < 6; ++i) load[i] = S(wrench[i]);
+  std::vector<MotionState<S>> states(kInverseDynamicsBatch);
+  std::vector<PoseDynamics<S>> dynamics(kInverseDynamicsBatch);
+  for (std::size_t first = 0; first < samples.size(); first += kInverseDynamicsBatch) {
+    const std::size_t count = std::min(kInverseDynamicsBatch, samples.size() - first);
+    for (std::size_t k = 0; k < count; ++k) states[k] = {samples[first + k].pose, samples[first + k].velocity};
+    mechanism.dynamics()->equations(parameters, mode, std::span<const MotionState<S>>(states.data(), count),
+                                    std::span<PoseDynamics<S>>(dynamics.data(), count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const PoseDynamics<S>& d = dynamics[k];
+      if (!d.assembles) return points.size();
+      const AxisVector<S> tangent = samples[first + k].velocity, curvature = samples[first + k].acceleration;
+      if (!append(samples[first + k], {.q1 = d.J * tangent,
+                                       .q2 = d.J * curvature + d.J_rate_X,
+                                       .A = at_joints<S>(d, d.M_X * tangent),
+                                       .B = at_joints<S>(d, d.M_X * curvature + d.h_X),
+                                       .C = at_joints<S>(d, d.G_X - transpose(d.J_wrench) * load)}))
+        return points.size();
+    }
+  }
+  return points.size();
+}
+
+}  // namespace pkm

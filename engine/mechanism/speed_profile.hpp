@@ -1,0 +1,65 @@
+// Time-optimal path parametrisation by reachability analysis (TOPP-RA): the fastest motion along a given path, from
+// rest to rest, within limits that are evaluated at points of the path.
+//
+// With x_i = sdot^2 and u_i = sddot at point i, x_(i+1) = x_i + 2 D_i u_i. Backwards from the end, the set of squared
+// speeds [0, c_i] is computed from which the end can be reached (the controllable set); then, forwards from the start,
+// the largest u_i that stays in these sets. Zero-inertia points need no special treatment. The robot must be able to
+// hold every pose at rest, so that the controllable sets begin at 0.
+//
+// Unlike the original, which solves linear programs in (u, x), the interval of u is computed in closed form for each x,
+// and c_i by root finding in x: so friction and the curve of the torque over the speed need not be linear in x.
+//
+// Reference: H. Pham, Q.-C. Pham, "A new approach to time-optimal path parameterization based on reachability
+// analysis", IEEE Transactions on Robotics 34 (3), 2018, 645-659.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/mechanism/path_limits.hpp"
+
+namespace pkm {
+
+/// How a value of the profile is determined: which limit is active.
+struct ActiveBound {
+  enum class By { speed, acceleration, deceleration, next, floor } by = By::floor;
+  int number = -1;  ///< of the limit (with `floor`, of the one below), in the order of visit_speed_bounds() or
+                    ///< visit_linear_limits()
+};
+
+struct SpeedProfile {
+  std::vector<double> steps;          ///< D_i: distances of the points
+  std::vector<double> squares;        ///< x_0 .. x_N [1/s^2 times the squared unit of the path]; x_0 = x_N = 0
+  std::vector<double> accelerations;  ///< u_0 .. u_(N-1)
+  double duration = 0;                ///< sum of 2 D_i / (sqrt x_i + sqrt x_(i+1)) [s]
+  std::vector<double> controllable;   ///< c_0 .. c_N
+  /// What determines c_i: the upper and the lower end of u, or a speed bound (then `lower` is unused).
+  struct Backward {
+    ActiveBound upper, lower;
+  };
+  std::vector<Backward> backward;    ///< of c_0 .. c_(N-1)
+  std::vector<ActiveBound> forward;  ///< what determines u_i
+};
+
+/// @param points  N + 1 >= 3 points
+/// @param steps   distances of the points in the path parameter
+/// @param scales  factors of the limits of acceleration, force and torque at the points; empty: 1
+/// Throws DesignError if a pose cannot be held at rest or no limit bounds the motion. `where(i)` describes point i.
+SpeedProfile fastest_profile(std::span<const PathPoint<double>> points, std::vector<double> steps,
+                             const MotionLimits& limits, const DriveTrains* trains,
+                             const std::function<std::string(std::size_t)>& where, std::span<const double> scales = {});
+
+/// The squared speeds and the accelerations of a profile with their derivatives, by implicit differentiation of the
+/// active limits: the derivatives of the optimum wherever the active limits do not change.
+/// @param points       the points of the profile
+/// @param derivatives  the same points, with derivatives
+struct ProfileWithDerivatives {
+  std::vector<Dual4> squares, accelerations;
+};
+ProfileWithDerivatives differentiate(const SpeedProfile& profile, std::span<const PathPoint<double>> points,
+                                     std::span<const PathPoint<Dual4>> derivatives, const MotionLimits& limits,
+                                     const DriveTrains* trains);
+
+}  // namespace pkm
