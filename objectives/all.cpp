@@ -13,6 +13,7 @@ const std::vector<ObjectiveEntry>& all_objectives() {
     std::ranges::copy(pose_objectives(), std::back_inserter(all));
     all.push_back(quantity_objective());
     std::ranges::copy(peak_objectives(), std::back_inserter(all));
+    all.push_back(energy());
     all.push_back(cycle_time());
     std::ranges::copy(size_objectives(), std::back_inserter(all));
     all.push_back(expression_objective());

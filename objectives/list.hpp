@@ -10,6 +10,7 @@ ObjectiveEntry workspace_ratio();
 std::vector<ObjectiveEntry> pose_objectives();  ///< statistics of the built-in pose quantities
 ObjectiveEntry quantity_objective();            ///< any statistic of any pose quantity
 std::vector<ObjectiveEntry> peak_objectives();  ///< maximum forces, power, speeds, .. along a motion
+ObjectiveEntry energy();                        ///< energy of the drives over a motion
 ObjectiveEntry cycle_time();                    ///< shortest time of a motion within limits
 std::vector<ObjectiveEntry> size_objectives();  ///< mass, and box of the links
 ObjectiveEntry expression_objective();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/mechanism/trajectory.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
 #include "tests/unit/config/real_studies.hpp"
 #include "tests/unit/generic/files.hpp"
@@ -105,6 +106,34 @@ TEST(CycleTimeOfAStudy, DependsOnItsLimits) {
   const double both = outputs_of(delta_study(slow + kCycleTime + "tool_acceleration = 165\n"))[0];
   EXPECT_GE(both, std::max(tool, accelerations) * (1 - 1e-12));
   EXPECT_LE(both, tool + accelerations);
+}
+
+TEST(EnergyOfAStudy, IsThatOfTheTrajectory) {
+  const auto energy = [](bool recuperation) {
+    return std::string("[[output]]\ntype = \"energy\"\nmotion = \"cycle\"\nrecuperation = ") +
+           (recuperation ? "true\nname = \"net\"\n" : "false\n");
+  };
+  const Study bare = delta_study(energy(false) + energy(true));
+  const auto along = [](const Study& study) {
+    const ProblemParts& parts = study.problem->parts();
+    return compute_trajectory(*parts.mechanism, parts.parameters, parts.mechanism->info().modes.front(),
+                              parts.plan.limits, *study.motions[0].motion, 201);
+  };
+  const TrajectorySummary summary = along(bare).summary;
+  EXPECT_NEAR(outputs_of(bare)[0], summary.energy_drawn, 1e-12);
+  EXPECT_NEAR(outputs_of(bare)[1], summary.energy, 1e-12);
+
+  const Study geared = delta_study(kGearTable + "efficiency = 0.8\ncoulomb = 0.4\n" + energy(false));
+  double drawn = 0;
+  const Trajectory trajectory = along(geared);
+  for (std::size_t k = 1; k < trajectory.points.size(); ++k)
+    for (const std::size_t end : {k - 1, k}) {
+      const TrajectoryPoint& point = trajectory.points[end];
+      for (std::size_t i = 0; i < 3; ++i)
+        drawn += std::max((*point.torques)[i] * (*point.motor_speeds)[i], 0.0) * 0.5 * trajectory.duration / 200;
+    }
+  EXPECT_NEAR(outputs_of(geared)[0], drawn, 1e-12);
+  EXPECT_GT(drawn, summary.energy_drawn);
 }
 
 }  // namespace

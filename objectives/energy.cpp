@@ -1,0 +1,98 @@
+// Energy of the drives over a motion, by the trapezoidal rule over its samples: of the joints (force times speed), or
+// of the motors (torque times speed) if there are drive trains. With recuperation the integral of the total power,
+// without it that of the positive powers of the single drives.
+//
+// The value depends on the design only. If the mechanism does not assemble at a sample, the value is NaN and the design
+// `failed`, unless the constraint `motion` has rejected it.
+#include <cmath>
+#include <limits>
+
+#include "engine/core/unit.hpp"
+#include "engine/mechanism/inverse_dynamics.hpp"
+#include "engine/problem/motion_options.hpp"
+#include "engine/problem/pose_options.hpp"
+#include "objectives/list.hpp"
+
+namespace pkm {
+namespace {
+
+class Energy final : public Quantity {
+ public:
+  explicit Energy(const EntryContext& context)
+      : name_(motion_of(context).name),
+        samples_(samples_of(context)),
+        mode_(mode_of(context)),
+        wrench_(wrench_of(context)),
+        recuperates_(context.options.flag("recuperation")) {}
+
+  double value(const DesignView<double>& design) const override { return integral(design).energy; }
+  Dual4 smooth(const DesignView<Dual4>& design) const override { return integral(design).energy; }
+  std::string why_undefined(const DesignView<double>& design) const override {
+    const Integral<double> found = integral(design);
+    if (std::isfinite(found.energy)) return {};
+    if (found.samples == samples_.size()) return "the motion " + name_ + " passes through a singularity";
+    return "the motion " + name_ +
+           " leaves the reach of the mechanism at t = " + with_unit(samples_[found.samples].time, "s");
+  }
+
+ private:
+  template <class S>
+  struct Integral {
+    S energy;
+    std::size_t samples;  ///< number of samples before the first that does not assemble
+  };
+
+  template <class S>
+  Integral<S> integral(const DesignView<S>& design) const {
+    Integral<S> found{S(0.0), 0};
+    const DriveTrains* const trains = design.mechanism.drive_trains();
+    const double step = samples_.back().time / static_cast<double>(samples_.size() - 1);
+    found.samples = inverse_dynamics_along<S>(
+        *design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
+        design.scratch.template get<InverseDynamicsScratch<S>>(), [&](std::size_t k, const ActuatorState<S>& drive) {
+          const double weight = k == 0 || k + 1 == samples_.size() ? 0.5 * step : step;
+          for (std::size_t i = 0; i < drive.speeds.size(); ++i) {
+            const S power =
+                trains ? S(drive.torque((*trains)[i], i) * drive.speeds[i] * (*trains)[i].ratio) : drive.power(i);
+            if (recuperates_ || !(value_of(power) < 0)) found.energy += power * weight;
+          }
+        });
+    if (found.samples < samples_.size()) found.energy = S(std::numeric_limits<double>::quiet_NaN());
+    return found;
+  }
+
+  std::string name_;
+  std::vector<MotionSample> samples_;
+  std::string mode_;
+  Wrench<double> wrench_;
+  bool recuperates_;
+};
+
+}  // namespace
+
+ObjectiveEntry energy() {
+  return {
+      .name = "energy",
+      .meaning = "energy of the drives over a motion: of the motors with drive trains, otherwise of the joints",
+      .direction = Direction::minimise,
+      .options = {motion_option(),
+                  {.name = "recuperation",
+                   .kind = OptionKind::flag,
+                   .initial = false,
+                   .meaning = "true: drives that brake return their energy; false: it is lost"},
+                  samples_option(),
+                  mode_option(),
+                  wrench_option()},
+      .unit = [](const EntryContext&) { return std::string("J"); },
+      .refusal = [](const Mechanism& mechanism) { return check_dynamics("energy", mechanism); },
+      .make = [](const EntryContext& context) { return std::make_unique<Energy>(context); },
+      .detail =
+          [](const EntryContext& context) {
+            return "energy of the drives over the motion " + context.options.word("motion") +
+                   (context.options.flag("recuperation") ? ", with recuperation" : "");
+          },
+      .uses_workspace = false,
+  };
+}
+
+}  // namespace pkm
