@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/config/csv_columns.hpp"
 #include "engine/config/study_draft.hpp"
 #include "engine/config/study_keys.hpp"
 #include "engine/config/text_file.hpp"
@@ -210,7 +211,31 @@ std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const st
   return read_motion(motion_described_by(motion_file_keys(), ConfigValue(document, file_name, ""), names), names);
 }
 
-std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const MotionNames& names) {
+std::shared_ptr<const Motion> read_motion_csv(const std::string& text, const std::string& file_name,
+                                              const MotionNames& names) {
+  constexpr std::size_t kFewestRows = 4;
+  std::vector<Assignable> known = {{.name = "time", .unit = "s", .lower = 0, .upper = kLongestMotion}};
+  for (const AxisInfo& axis : names.coordinates) known.push_back({.name = axis.name, .unit = axis.unit});
+  const CsvColumns table = read_csv_columns(text, file_name, known);
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (!table.values[i])
+      throw ConfigError({file_name, 1, ""}, "no column " + known[i].name, "time, " + join(names_of(names.coordinates)));
+  if (table.rows < kFewestRows)
+    throw ConfigError({file_name, 0, ""}, std::to_string(table.rows) + " rows",
+                      "at least " + std::to_string(kFewestRows));
+  const std::vector<double>& times = *table.values[0];
+  if (times[0] != 0) throw ConfigError({file_name, 2, "time"}, shortest(times[0]) + " s", "0 s in the first row");
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (!(times[k] > times[k - 1]))
+      throw ConfigError({file_name, static_cast<int>(k) + 2, "time"}, shortest(times[k]) + " s",
+                        "more than that of the previous row, " + shortest(times[k - 1]) + " s");
+  std::vector<std::vector<double>> coordinates;
+  for (std::size_t i = 1; i < known.size(); ++i) coordinates.push_back(*table.values[i]);
+  return motion_from_table(times, coordinates);
+}
+
+std::shared_ptr<const Motion> load_motion(const std::string& path, const MotionNames& names) {
+  if (path.ends_with(".csv")) return read_motion_csv(read_text_file(path, "a motion in CSV"), path, names);
   return read_motion_toml(read_text_file(path, "a motion in TOML"), path, names);
 }
 

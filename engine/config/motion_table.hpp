@@ -21,7 +21,12 @@ MotionNames motion_names(const Mechanism& mechanism);
 std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const std::string& file_name,
                                                const MotionNames& names);
 
-/// Reads one motion from the file at `path`. Throws ConfigError, also when the file cannot be read.
-std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const MotionNames& names);
+/// Reads a table of comma-separated values (csv_columns.hpp): the columns `time`, which starts at 0 and increases, and
+/// one for each coordinate. Throws ConfigError.
+std::shared_ptr<const Motion> read_motion_csv(const std::string& text, const std::string& file_name,
+                                              const MotionNames& names);
+
+/// Reads the motion at `path`: a table if its name ends in ".csv", otherwise TOML. Throws ConfigError.
+std::shared_ptr<const Motion> load_motion(const std::string& path, const MotionNames& names);
 
 }  // namespace pkm

@@ -73,6 +73,13 @@ std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);
 /// values are NaN in the samples.
 std::shared_ptr<const Motion> motion_from_formulas(const std::vector<Formula>& coordinates, double duration);
 
+/// A motion through a table of poses: a cubic spline for each coordinate. It has no expression graph: Motion::write()
+/// throws std::invalid_argument.
+/// @param times        strictly increasing from 0, at least four [s]
+/// @param coordinates  for each coordinate its values at these times
+std::shared_ptr<const Motion> motion_from_table(const std::vector<double>& times,
+                                                const std::vector<std::vector<double>>& coordinates);
+
 /// A copy of a motion with the mechanism's inputs (MechanismInfo::inputs, in their order, SI units) as formulas of the
 /// time.
 std::shared_ptr<const Motion> with_inputs(std::shared_ptr<const Motion> motion, const std::vector<Formula>& inputs);

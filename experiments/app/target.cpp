@@ -175,7 +175,7 @@ std::shared_ptr<const Motion> find_motion(const Target& target, const std::strin
                         "one of " + join(names_of(motions)) + ", or a motion in TOML",
                         nearest_name(name, names_of(motions)));
   }
-  return load_motion_toml(name, motion_names(*target.mechanism));
+  return load_motion(name, motion_names(*target.mechanism));
 }
 
 std::string parse_mode(const MechanismInfo& info, const ModeArguments& arguments) {

@@ -166,7 +166,7 @@ void add_trajectory(CLI::App& app, Session& session) {
       "Example: pkmopt trajectory 3crr-r-cru --motion experiments/3crr-r-cru/motions/pick-and-place.toml --csv f.csv",
       trajectory);
   add_option(command, "--motion MOTION.toml", arguments.motion,
-             "A motion in TOML, or the name of a [[motion]] of the study")
+             "A motion in TOML, a table of times and poses in CSV, or the name of a [[motion]] of the study")
       ->required();
   add_integer(command, "--samples N", arguments.samples, 2, 10'000'000,
               "Number of samples, equally spaced in time, both ends included")

@@ -114,6 +114,37 @@ TEST(CliTrajectory, FastestMotionAcceptsLimitsOfTheCommandLine) {
   EXPECT_THAT(slow.err, HasSubstr("--tool-speed: this option needs --fastest"));
 }
 
+TEST(CliTrajectory, ReadsTheTableThatItWrites) {
+  const StudyFolder folder;
+  const std::string delta = PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml";
+  folder.write("m.toml",
+               "type = \"pick-and-place\"\nx = -0.15\ny = 0\nz = -0.5\nlift = 0.05\nreach = 0.3\n"
+               "lift_time = 0.2\nreach_time = 0.4\noverlap = 0.1\n");
+  const json given =
+      pkmopt({"trajectory", delta, "--motion", "m.toml", "--samples", "401", "--csv", "m.csv", "--json"}, folder.path())
+          .json();
+  const auto again = pkmopt({"trajectory", delta, "--motion", "m.csv", "--samples", "41", "--json"}, folder.path());
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const json read = again.json();
+  for (std::size_t k = 0; k <= 40; ++k)
+    for (const std::string axis : {"x", "y", "z"}) {
+      const json &expected = given["samples"][10 * k], &found = read["samples"][k];
+      EXPECT_NEAR(found["pose"][axis], expected["pose"][axis], 1e-12);
+      EXPECT_NEAR(found["velocity"][axis], expected["velocity"][axis], 1e-5);
+      EXPECT_NEAR(found["acceleration"][axis], expected["acceleration"][axis], 0.05);
+    }
+  const auto complaint = [&](const std::string& rows) {
+    folder.write("bad.csv", rows);
+    return pkmopt({"trajectory", delta, "--motion", "bad.csv"}, folder.path()).err;
+  };
+  EXPECT_THAT(complaint("time,x,y\n0,0,0\n"), HasSubstr("no column z"));
+  EXPECT_THAT(complaint("time,x,y,z\n0,0,0,-0.5\n"), HasSubstr("found 1 rows; expected at least 4"));
+  EXPECT_THAT(complaint("time,x,y,z\n1,0,0,-0.5\n2,0,0,-0.5\n3,0,0,-0.5\n4,0,0,-0.5\n"),
+              HasSubstr("bad.csv:2: time: found 1 s; expected 0 s in the first row"));
+  EXPECT_THAT(complaint("time,x,y,z\n0,0,0,-0.5\n2,0,0,-0.5\n2,0,0,-0.5\n4,0,0,-0.5\n"),
+              HasSubstr("bad.csv:4: time: found 2 s; expected more than that of the previous row, 2 s"));
+}
+
 TEST(CliTrajectory, OscillationAgreesWithGoldenData) {
   const StudyFolder folder;
   folder.write("m.toml", kOscillation);

@@ -182,7 +182,7 @@ TEST(MotionSection, AMotionEnds) {
 
 TEST(MotionSection, FilesThatCannotBeRead) {
   try {
-    load_motion_toml("/no/such/motion.toml", kNames);
+    load_motion("/no/such/motion.toml", kNames);
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(),
