@@ -26,8 +26,8 @@ OptionSpec law_key() {
   return {.name = "law",
           .kind = OptionKind::word,
           .initial = "quintic",
-          .choices = {"quintic", "cycloid"},
-          .meaning = "time law of a move: polynomial of degree 5, or cycloid"};
+          .choices = {"quintic", "cycloid", "trapezoid"},
+          .meaning = "time law of a move: polynomial of degree 5, cycloid, or trapezoidal speed in thirds of the time"};
 }
 
 std::vector<TableVariant> motion_variants() {

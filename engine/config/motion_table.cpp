@@ -19,7 +19,9 @@ using Names = std::vector<std::string>;
 constexpr double kLongestMotion = 1e9;  // [s], about 30 years
 
 TimeLaw law_of(const ConfigValue& table) {
-  return table.word_at("law") == "cycloid" ? TimeLaw::cycloid : TimeLaw::quintic;
+  const std::string law = table.word_at("law");
+  if (law == "trapezoid") return TimeLaw::trapezoid;
+  return law == "cycloid" ? TimeLaw::cycloid : TimeLaw::quintic;
 }
 
 /// Descriptions of the coordinates of a point.

@@ -3,8 +3,10 @@
 //
 //   quintic  s = 10 u^3 - 15 u^4 + 6 u^5          peak speed 1.875 S/T   peak acceleration 10/sqrt(3) S/T^2
 //   cycloid  s = u - sin(2 pi u)/(2 pi)            peak speed 2 S/T       peak acceleration 2 pi S/T^2
+//   trapezoid  s = 9/4 u^2, 3/2 u - 1/4, 1 - 9/4 (1 - u)^2 in thirds of T
+//                                                  peak speed 1.5 S/T     peak acceleration 4.5 S/T^2
 //
-// where S is the length of the path. Both start and end with zero speed and acceleration.
+// where S is the length of the path. All start and end with zero speed, the first two also with zero acceleration.
 //
 // Reference: Biagiotti, Melchiorri, "Trajectory Planning for Automatic Machines and Robots", Springer 2008, chapter 2.
 #pragma once
@@ -13,7 +15,7 @@
 
 namespace pkm {
 
-enum class TimeLaw { quintic, cycloid };
+enum class TimeLaw { quintic, cycloid, trapezoid };
 
 /// Travelled distance along a move, and its time derivatives.
 struct PathState {

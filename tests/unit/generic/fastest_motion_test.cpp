@@ -76,10 +76,11 @@ TEST(FastestMotion, ReachesTheClosedFormsForALimitOfTheToolsAcceleration) {
     EXPECT_EQ(found.active.front().limit, (LimitOfMotion{LimitKind::tool_acceleration}));
     return found.duration;
   };
-  for (const TimeLaw law : {TimeLaw::quintic, TimeLaw::cycloid})
+  for (const TimeLaw law : {TimeLaw::quintic, TimeLaw::cycloid, TimeLaw::trapezoid})
     EXPECT_NEAR(time(FastestLaw::optimal, law), closed_form(4), 1e-9);
   EXPECT_NEAR(time(FastestLaw::own, TimeLaw::quintic), closed_form(10 / std::sqrt(3.0)), 1e-9);
   EXPECT_NEAR(time(FastestLaw::own, TimeLaw::cycloid), closed_form(2 * kPi), 1e-9);
+  EXPECT_NEAR(time(FastestLaw::own, TimeLaw::trapezoid), closed_form(4.5), 1e-9);
 }
 
 /// The shortest time of a straight move by dynamic programming: the minimum over all sequences of speeds on a grid,
