@@ -11,13 +11,14 @@
 #include "engine/generic/inertia_batch.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/sample_formulas.hpp"
+#include "engine/mechanism/proven_volume.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "engine/workspace/with_gradients.hpp"
 
 namespace pkm::generic {
 namespace {
 
-class GenericColumns final : public WithGradients<GenericColumns> {
+class GenericColumns final : public WithGradients<GenericColumns>, public VolumeProver {
  public:
   GenericColumns(const Evaluation& evaluation, const WorkspacePlan& plan, const ColumnOptions& columns,
                  const FieldRequest& request)
@@ -36,6 +37,12 @@ class GenericColumns final : public WithGradients<GenericColumns> {
     if (request.has(kConditioning)) conditioning_.emplace(evaluation, swept, mode_);
     if (request.needs_inertia()) inertia_.emplace(evaluation, swept, mode_, request.rotors);
     if (request.has_formulas()) formulas_.emplace(evaluation, request.fields, swept, mode_);
+  }
+
+  std::optional<Interval> proven_volume(std::span<const double> parameters) const override {
+    DesignScratch scratch;
+    e_.fill_inputs<double>(parameters, plan_, mode_, scratch.inputs);
+    return volume_.prove(scratch.inputs, scratch.volume);
   }
 
  private:

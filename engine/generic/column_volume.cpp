@@ -182,6 +182,11 @@ Integral<double> ColumnVolume::measure(std::vector<double>& inputs, std::span<do
   return has_outermost() ? outermost_.measure(inputs, by_input, inner) : inner(inputs, by_input);
 }
 
+std::optional<Interval> ColumnVolume::prove(std::span<const double> inputs, Scratch& scratch) const {
+  if (!edges_ || has_outermost()) return {};
+  return edges_->prove(inputs, scratch.edges);
+}
+
 /// The volume over the coordinates inside the outermost quadrature, at most three.
 Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, std::span<double> by_input,
                                               Scratch& scratch) const {

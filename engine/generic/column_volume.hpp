@@ -37,6 +37,10 @@ class ColumnVolume {
   /// @param by_input  if not empty, the derivatives of the volume are added
   Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, Scratch& scratch) const;
 
+  /// Proven bounds of the volume, including rounding errors; std::nullopt if there are none, because the workspace is
+  /// no solid of planes, spheres and cylinders over three coordinates.
+  std::optional<Interval> prove(std::span<const double> inputs, Scratch& scratch) const;
+
   /// The quadrature over slices. It is chosen at the first use, because that can take longer than many volumes from
   /// edges.
   const NestedIntegral& slices() const;

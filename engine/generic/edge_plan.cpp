@@ -87,7 +87,7 @@ double extent(const Body& body, const Vector3& direction) {
   const double centre = dot(body.centre, direction);
   switch (body.kind) {
     case Body::Kind::plane:
-      return cosine > 1 - kParallel ? body.radius : kInfinity;
+      return norm(body.axis - direction) < kParallel ? body.radius : kInfinity;
     case Body::Kind::sphere:
       return body.side > 0 ? centre + body.radius : kInfinity;
     case Body::Kind::cylinder:
@@ -189,6 +189,7 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
   design.solid.bodies.clear();
   design.sources.clear();
   design.is_empty = false;
+  design.omitted = 0;
   program_.run_all<double>(inputs, design.registers);
   for (const std::uint32_t output : program_.outputs()) design.outputs.push_back(design.registers[output]);
   const double* const values = design.outputs.data();
@@ -203,10 +204,13 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
     design.is_empty = design.is_empty || !(low < high);
   }
   design.solid.bound = norm(half);
-  const double margin = 1e-12 * design.solid.bound;
+  design.margin = 1e-12 * design.solid.bound;
   const auto add = [&](const Body& body, const Source& source) {
-    const auto is_within = [&](const Body& other) { return extent(other, body.axis) <= body.radius + margin; };
-    if (body.kind == Body::Kind::plane && std::ranges::any_of(design.solid.bodies, is_within)) return;
+    const auto is_within = [&](const Body& other) { return extent(other, body.axis) <= body.radius + design.margin; };
+    if (body.kind == Body::Kind::plane && std::ranges::any_of(design.solid.bodies, is_within)) {
+      ++design.omitted;
+      return;
+    }
     design.solid.bodies.push_back(body);
     design.sources.push_back(source);
   };
@@ -273,6 +277,111 @@ std::optional<Integral<double>> EdgePlan::measure(std::span<const double> inputs
   if (!found.is_supported || !found.is_closed) return {};
   if (!by_input.empty()) add_gradient(scratch, by_input);
   return Integral<double>{found.value, found.error, found.nodes};
+}
+
+std::optional<Interval> EdgePlan::prove(std::span<const double> inputs, Scratch& scratch) const {
+  Design& design = scratch.design;
+  if (!build(inputs, design) || design.is_empty) return {};
+  const std::vector<Interval> numbers(inputs.begin(), inputs.end());
+  std::vector<Interval> registers, values;
+  program_.run_all<Interval>(numbers, registers);
+  for (const std::uint32_t output : program_.outputs()) values.push_back(registers[output]);
+  for (std::size_t i = constants_; i < values.size(); ++i)
+    if (!values[i].is_certified_satisfied()) return {};
+  if (!are_others_superfluous(design, values)) return {};
+  std::vector<IntervalBody> bodies;
+  for (std::size_t i = 0; i < design.solid.bodies.size(); ++i) {
+    const auto body = enclose(design.solid.bodies[i], design.sources[i], design.origin, values);
+    if (!body) return {};
+    bodies.push_back(*body);
+  }
+  const double bound = (1 + 1e-12) * design.solid.bound;
+  const auto found = proven_volume(bodies, bound);
+  if (!found) return {};
+  // The solid reaches beyond an omitted plane by the margin and the rounding errors of its extent at most.
+  const double layer = 2 * design.margin * (2 * bound) * (2 * bound) * static_cast<double>(design.omitted);
+  return *found - Interval(0, layer);
+}
+
+std::optional<IntervalBody> EdgePlan::enclose(const Body& body, const Source& source, const Vector3& origin,
+                                              std::span<const Interval> values) {
+  IntervalBody made{.kind = body.kind, .side = body.side, .is_first_root = body.is_first_root};
+  const std::span<const Interval> f = values.subspan(source.output);
+  const auto vector = [&](std::size_t at) { return IntervalVector{{f[at], f[at + 1], f[at + 2]}}; };
+  IntervalVector middle;
+  for (std::size_t i = 0; i < 3; ++i) middle[i] = origin[i];
+  switch (source.kind) {
+    case Source::Kind::box:
+      made.axis = {};
+      for (std::size_t i = 0; i < 3; ++i) made.axis[i] = body.axis[i];
+      made.radius = (f[0] - dot(middle, made.axis) * Interval(source.side)) * Interval(source.side);
+      return made;
+    case Source::Kind::rod:
+      made.centre = (vector(0) + middle) * Interval(-1);
+      made.axis = vector(3);
+      made.radius = f[9];
+      if (body.kind == Body::Kind::crank) {
+        made.zero = vector(6);
+        made.crank = f[10];
+      }
+      made.from = f[11];
+      made.to = f[12];
+      return made;
+    case Source::Kind::quadric:
+      break;
+  }
+  // k + b . p + p . A p
+  const auto is_number = [](const Interval& x, double number) { return x.lower == number && x.upper == number; };
+  const IntervalVector b = vector(1), squares = vector(4), products = vector(7);
+  if (!std::ranges::all_of(products, [&](const Interval& x) { return is_number(x, 0); })) return {};
+  if (body.kind == Body::Kind::plane) {
+    if (!std::ranges::all_of(squares, [&](const Interval& x) { return is_number(x, 0); })) return {};
+    const Interval length = sqrt(square(b[0]) + square(b[1]) + square(b[2]));
+    made.axis = b * (Interval(-1) / length);
+    made.radius = f[0] / length - dot(made.axis, middle);
+    return made;
+  }
+  // A sphere, or a cylinder along a coordinate axis: the same number for two or three squares.
+  const double factor = squares[squares[0].lower != 0 ? 0 : 1].lower;
+  IntervalVector centre = b * (Interval(-0.5) / Interval(factor));
+  int along = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (is_number(squares[i], factor)) continue;
+    if (!is_number(squares[i], 0) || !is_number(b[i], 0)) return {};
+    made.axis[i] = 1;
+    centre[i] = 0;
+    ++along;
+  }
+  if (along != (body.kind == Body::Kind::cylinder ? 1 : 0)) return {};
+  made.radius = sqrt(dot(centre, centre) - f[0] / Interval(factor));
+  made.centre = centre - middle;
+  return made;
+}
+
+bool EdgePlan::are_others_superfluous(const Design& design, std::span<const Interval> values) const {
+  const Interval* const box = values.data() + box_;
+  const std::array<Interval, 3> p{Interval(box[0].lower, box[1].upper), Interval(box[2].lower, box[3].upper),
+                                  Interval(box[4].lower, box[5].upper)};
+  const auto over_box = [&](std::size_t at) {
+    const Interval* const f = values.data() + at;
+    return f[0] + f[1] * p[0] + f[2] * p[1] + f[3] * p[2] + f[4] * square(p[0]) + f[5] * square(p[1]) +
+           f[6] * square(p[2]) + f[7] * p[0] * p[1] + f[8] * p[0] * p[2] + f[9] * p[1] * p[2];
+  };
+  return std::ranges::all_of(clauses_, [&](const Clause& clause) {
+    if (std::ranges::any_of(clause, [&](std::size_t at) { return over_box(at).is_certified_satisfied(); })) return true;
+    // at most one quadric of the disjunction is a body, and the others hold nowhere
+    std::size_t bodies = 0;
+    for (const std::size_t at : clause) {
+      Body body;
+      const QuadricKind kind =
+          classify(QuadricCoefficients(design.outputs.data() + at, kCoefficients), design.reach(), body);
+      if (kind == QuadricKind::body)
+        ++bodies;
+      else if (!over_box(at).is_certified_violated())
+        return false;
+    }
+    return bodies == 1;
+  });
 }
 
 void EdgePlan::add_gradient(Scratch& scratch, std::span<double> by_input) const {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/expression/program.hpp"
-#include "engine/generic/edges/solid.hpp"
+#include "engine/generic/edges/proven_volume.hpp"
 #include "engine/generic/evaluation.hpp"
 #include "engine/math/quadrature.hpp"
 
@@ -32,6 +32,9 @@ class EdgePlan {
   /// @param by_input  if not empty, the derivatives of the volume are added
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch,
                                           std::span<double> by_input = {}) const;
+  /// Proven bounds of the volume of a design, if why_not() is empty. The inputs are exactly the given numbers; all
+  /// rounding errors are included. std::nullopt if no bounds can be proven.
+  std::optional<Interval> prove(std::span<const double> inputs, Scratch& scratch) const;
 
  private:
   /// A disjunction of quadric constraints: at least one of the quadrics is >= 0. Each element is the index of an output
@@ -55,12 +58,19 @@ class EdgePlan {
     Solid solid;
     std::vector<Source> sources;  ///< source of each body
     bool is_empty = false;
+    std::size_t omitted = 0;  ///< number of planes beyond which the other bodies do not reach farther than `margin`
+    double margin = 0;
 
     /// Bound on the distance of the solid from the origin of the coordinates.
     double reach() const { return solid.bound + norm(origin); }
   };
   /// Builds the solid of a design. @return false if a quadric is no plane, sphere or cylinder
   bool build(std::span<const double> inputs, Design& design) const;
+  /// The same body with the rounding errors of its numbers.
+  static std::optional<IntervalBody> enclose(const Body& body, const Source& source, const Vector3& origin,
+                                             std::span<const Interval> values);
+  /// Whether every constraint that is no body of the solid has no effect, by proof.
+  bool are_others_superfluous(const Design& design, std::span<const Interval> values) const;
   void add_gradient(Scratch& scratch, std::span<double> by_input) const;
 
   expression::Program program_;

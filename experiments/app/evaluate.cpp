@@ -5,6 +5,7 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/core/team.hpp"
+#include "engine/mechanism/proven_volume.hpp"
 #include "engine/problem/volume_check.hpp"
 #include "engine/runner/run_study.hpp"
 #include "engine/runner/stop_request.hpp"
@@ -89,10 +90,30 @@ ProblemOfMechanism default_problem(const Target& target, const Catalogues& catal
   return made;
 }
 
+/// The relative error of an exact volume, by proven bounds of the volume; std::nullopt if there are no such bounds.
+/// Sets the status of `report` to failed if its volume contradicts them.
+std::optional<double> proven_error(const DesignProblem& problem, DesignReport& report) {
+  const WorkspaceResult<double>& survey = report.workspace;
+  if (!problem.parts().plan.columns() || survey.is_sampled || !(survey.volume > 0)) return {};
+  const auto evaluator = prepare_workspace(*problem.parts().mechanism, problem.parts().plan, {});
+  const auto* const prover = dynamic_cast<const VolumeProver*>(evaluator.get());
+  const auto bounds = prover ? prover->proven_volume(report.parameters) : std::nullopt;
+  if (!bounds) return {};
+  const double error = survey.volume * (survey.error + problem.parts().plan.columns()->tolerance);
+  if (survey.volume + error < bounds->lower || survey.volume - error > bounds->upper) {
+    report.status = Status::failed;
+    report.reason = "its volume " + number(survey.volume) + " lies outside of the proven bounds " +
+                    number(bounds->lower) + " and " + number(bounds->upper);
+    return {};
+  }
+  return std::max(survey.volume - bounds->lower, bounds->upper - survey.volume) / survey.volume;
+}
+
 /// Adds the measure of the workspace to the output.
+/// @param proven  the proven relative error of an exact volume, if any
 /// @param note  on the method; may be empty
-void report_workspace(const DesignProblem& problem, const WorkspaceResult<double>& survey, const std::string& note,
-                      Printout& out) {
+void report_workspace(const DesignProblem& problem, const WorkspaceResult<double>& survey,
+                      const std::optional<double>& proven, const std::string& note, Printout& out) {
   const WorkspacePlan& plan = problem.parts().plan;
   const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
   const std::string method = plan.voxels() ? "voxels" : "columns";
@@ -112,9 +133,14 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
   } else {
     const bool estimated = plan.columns()->nodes[0] == 0;  // fixed nodes give no error estimate
     json["columns"] = survey.columns;
-    json["relative_error"] = estimated ? Json(survey.error) : Json();
+    const double tolerance = plan.columns()->tolerance;
+    const bool certified = estimated && proven && *proven <= tolerance;
+    json["relative_error"] = certified ? Json(*proven) : estimated ? Json(survey.error) : Json();
+    json["certified"] = certified;
     rows.push_back({"columns", std::to_string(survey.columns)});
-    if (estimated)
+    if (certified)
+      rows.push_back({"relative error", number(*proven) + ", certified to " + number(tolerance)});
+    else if (estimated)
       rows.push_back(
           {"relative error", number(survey.error) + (survey.is_sampled ? ", as far as sampled" : ", estimated")});
   }
@@ -246,8 +272,10 @@ std::string evaluate(const Session& session, const Target& target, const Evaluat
   }
   DesignReport report;
   std::optional<VolumeBounds> bounds;
+  std::optional<double> proven;
   with_team(arguments.threads, [&] {
     report = problem->report(target.parameters);
+    if (report.status != Status::failed) proven = proven_error(*problem, report);
     if (gap && report.status != Status::failed) bounds = certified_bounds(*problem, report, *gap);
   });
   const bool failed = report.status == Status::failed, surveyed = !failed || bounds;
@@ -270,7 +298,7 @@ std::string evaluate(const Session& session, const Target& target, const Evaluat
   out.head.push_back({"feasible", feasibility_text(*problem, report)});
   report_values("parameters", "parameters", target.info().parameters, report.parameters, no_remark);
   out.json["workspace"] = nullptr;
-  if (surveyed) report_workspace(*problem, report.workspace, found.why_voxels, out);
+  if (surveyed) report_workspace(*problem, report.workspace, proven, found.why_voxels, out);
   if (bounds) report_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
   report_values(
       "objectives", "objectives", problem->objectives(), report.objectives,

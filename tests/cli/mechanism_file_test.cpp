@@ -294,9 +294,10 @@ TEST_F(MechanismFile, WhoseColumnsTakeTooLongIsEvaluatedByVoxels) {
 }
 
 TEST_F(MechanismFile, SaysWhetherItsVolumeDependsOnSamples) {
-  const auto edges = run({"evaluate", "delta.toml"}),
+  const auto edges = run({"evaluate", "delta.toml"}), closed = run({"evaluate", "4ppa-2par"}),
              slices = run({"evaluate", PKM_TEST_DATA "/mechanisms/linear-delta-joint-angle.toml"});
-  EXPECT_THAT(edges.out, HasSubstr(", estimated"));
+  EXPECT_THAT(edges.out, HasSubstr(", certified to 1e-08"));
+  EXPECT_THAT(closed.out, HasSubstr(", estimated"));
   EXPECT_THAT(slices.out, HasSubstr(", as far as sampled"));
 }
 
