@@ -189,7 +189,7 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
   design.solid.bodies.clear();
   design.sources.clear();
   design.is_empty = false;
-  design.omitted = 0;
+  design.beyond = 0;
   program_.run_all<double>(inputs, design.registers);
   for (const std::uint32_t output : program_.outputs()) design.outputs.push_back(design.registers[output]);
   const double* const values = design.outputs.data();
@@ -204,12 +204,15 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
     design.is_empty = design.is_empty || !(low < high);
   }
   design.solid.bound = norm(half);
-  design.margin = 1e-12 * design.solid.bound;
+  const double margin = 1e-12 * design.solid.bound;
   const auto add = [&](const Body& body, const Source& source) {
-    const auto is_within = [&](const Body& other) { return extent(other, body.axis) <= body.radius + design.margin; };
-    if (body.kind == Body::Kind::plane && std::ranges::any_of(design.solid.bodies, is_within)) {
-      ++design.omitted;
-      return;
+    if (body.kind == Body::Kind::plane) {
+      double reach = std::numeric_limits<double>::infinity();
+      for (const Body& other : design.solid.bodies) reach = std::min(reach, extent(other, body.axis));
+      if (reach <= body.radius + margin) {
+        design.beyond += std::max(reach - body.radius, 0.0) + 0.1 * margin;  // more than the rounding error of extent()
+        return;
+      }
     }
     design.solid.bodies.push_back(body);
     design.sources.push_back(source);
@@ -298,9 +301,7 @@ std::optional<Interval> EdgePlan::prove(std::span<const double> inputs, Scratch&
   const double bound = (1 + 1e-12) * design.solid.bound;
   const auto found = proven_volume(bodies, bound);
   if (!found) return {};
-  // The solid reaches beyond an omitted plane by the margin and the rounding errors of its extent at most.
-  const double layer = 2 * design.margin * (2 * bound) * (2 * bound) * static_cast<double>(design.omitted);
-  return *found - Interval(0, layer);
+  return *found - Interval(0, design.beyond * 4 * bound * bound);
 }
 
 std::optional<IntervalBody> EdgePlan::enclose(const Body& body, const Source& source, const Vector3& origin,

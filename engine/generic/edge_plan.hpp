@@ -58,8 +58,7 @@ class EdgePlan {
     Solid solid;
     std::vector<Source> sources;  ///< source of each body
     bool is_empty = false;
-    std::size_t omitted = 0;  ///< number of planes beyond which the other bodies do not reach farther than `margin`
-    double margin = 0;
+    double beyond = 0;  ///< how far, in total, the other bodies reach beyond planes that are omitted
 
     /// Bound on the distance of the solid from the origin of the coordinates.
     double reach() const { return solid.bound + norm(origin); }
