@@ -23,6 +23,8 @@ const TableSpec& drive_train_keys();
 /// Keys of a [[motion]] of a study, and of a motion file, which has neither `name` nor `follow`.
 const TableSpec& motion_keys();
 const TableSpec& motion_file_keys();
+/// The tables of a task file.
+const TableSpec& task_keys();
 /// Keys of a [[motor]], and the tables of a motor file.
 const TableSpec& motor_keys();
 const TableSpec& motor_file_keys();

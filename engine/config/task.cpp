@@ -72,7 +72,7 @@ class TaskOfRobot {
 
   /// The document of a study of the robot with the regions, motions and limits of the task.
   TomlValue document() const {
-    static const Names kept = {"mechanism", "drive_train", "obstacle", "quantity", "accuracy", "override"};
+    static const Names kept = {"mechanism", "motor", "drive_train", "obstacle", "quantity", "accuracy", "override"};
     TomlValue study = filtered(robot_.study, [](const std::string& key) { return contains(kept, key); });
     if (const TomlValue* const overrides = study.find("override")) {
       TomlValue lists = *overrides;

@@ -32,6 +32,8 @@ def kind_of(document):
         return "mechanism"
     if "mechanism" in document or "stage" in document:
         return "study"
+    if "task" in document:
+        return "task"
     return "motors" if "motor" in document else "motion"
 
 
