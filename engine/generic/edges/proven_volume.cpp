@@ -54,7 +54,8 @@ class Proof : public ProvenCurves {
       bool is_sharp = false;
       const SignSets possible = possible_signs(rule, [&](std::size_t k) {
         const IntervalSeries<1> f = function(body, k, wide);
-        if (sign_of(f.c[0]) != 0) return sign_of(f.c[0]);
+        // Without a point of the arc at the centre, the mean value theorem does not apply.
+        if (sign_of(f.c[0]) != 0 || !exists) return sign_of(f.c[0]);
         const Interval at_centre = function(body, k, centre).c[0], change = f.c[1] * shift;
         const int sign = sign_of(at_centre + change);
         // Shorter intervals help unless the value at a single point is as uncertain.
@@ -132,6 +133,7 @@ class Proof : public ProvenCurves {
   /// 1 if the first face is on the left of the direction of increasing u, -1 if the second one is: the same on the
   /// whole arc, because the surfaces do not touch. [-1, 1] if that is not known in a range that may not be active.
   Interval orientation(const ProvenArc& arc, const ProvenRange& range) const {
+    if (arc.is_on_torus && !range.is_certain) return {-1, 1};  // perhaps the arc has no point there
     const auto p = point(arc, IntervalSeries<1>::variable(0.5 * (range.from + range.to)));
     IntervalVector at, dp;
     for (std::size_t i = 0; i < 3; ++i) {

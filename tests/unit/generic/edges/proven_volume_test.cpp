@@ -145,6 +145,25 @@ TEST(ProvenVolume, OfCranksContainsTheVolumeFromEdges) {
   }
 }
 
+/// Edges leave boxes of the angles of the cranks at other places for each range.
+TEST(ProvenVolume, OfCranksWithDifferentRangesContainsTheVolumeFromEdges) {
+  for (const double to : {1.7997, 1.8097, 1.8207, 1.8297}) {
+    Solid solid{.bodies = {half_space_of({{0, 0, 1}}, 0)}, .bound = 0.8};
+    for (int i = 0; i < 3; ++i) {
+      const auto [s, c] = portable::sincos(2 * kPi * i / 3);
+      solid.bodies.push_back({.kind = Kind::crank,
+                              .centre = {{0.13259 * c, 0.13259 * s, 0}},
+                              .axis = {{-s, c, 0}},
+                              .zero = {{c, s, 0}},
+                              .radius = 0.54209,
+                              .crank = 0.20229,
+                              .from = -0.698,
+                              .to = to});
+    }
+    expect_bounds(solid, volume_from_edges(solid), 1e-9);
+  }
+}
+
 TEST(ProvenVolume, OfRandomSolidsContainsTheVolumeFromEdges) {
   Stream random(5, 0, 0, Stream::Use::start);
   const auto between = [&](double low, double high) { return low + (high - low) * random.u01(); };
