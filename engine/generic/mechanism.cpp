@@ -19,6 +19,7 @@
 #include "engine/generic/pose_sides.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/voxels.hpp"
+#include "engine/mechanism/ordered_margins.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
 #include "engine/mechanism/total_mass.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
@@ -29,6 +30,7 @@ namespace {
 /// Offers the capabilities that the file has data for: links, masses, joints, columns.
 class GenericMechanism final : public Mechanism,
                                public TotalMass,
+                               public OrderedMargins,
                                public std::enable_shared_from_this<GenericMechanism>,
                                Voxels,
                                Columns,
@@ -123,6 +125,19 @@ class GenericMechanism final : public Mechanism,
   void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,
                     std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) const {
     append_margins(e_, parameters, mode_index(info(), mode), limits, poses, scratch, margins);
+  }
+  std::vector<std::string> margin_names(const LimitSpec& limits) const override {
+    return ordered_margin_names(e_.model, limits);
+  }
+  void append_ordered(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
+                      std::span<const Pose<double>> poses, Scratch& scratch,
+                      std::vector<double>& margins) const override {
+    append_ordered_margins(e_, parameters, mode_index(info(), mode), limits, poses, scratch, margins);
+  }
+  void append_ordered(std::span<const Dual4> parameters, const std::string& mode, const LimitSpec& limits,
+                      std::span<const Pose<Dual4>> poses, Scratch& scratch,
+                      std::vector<Dual4>& margins) const override {
+    append_ordered_margins(e_, parameters, mode_index(info(), mode), limits, poses, scratch, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,

@@ -13,4 +13,14 @@ void append_margins(const Evaluation& evaluation, std::span<const S> parameters,
                     const LimitSpec& limits, std::span<const Pose<double>> poses, Scratch& scratch,
                     std::vector<S>& margins);
 
+/// Names of the margins of append_ordered_margins().
+std::vector<std::string> ordered_margin_names(const Model& model, const LimitSpec& limits);
+
+/// Appends the margins of each pose in a fixed order, NaN where one does not exist: domains, margins, clearance, and
+/// limits of quantities without a formula, which are always NaN if S has derivatives.
+template <class S>
+void append_ordered_margins(const Evaluation& evaluation, std::span<const S> parameters, std::size_t mode,
+                            const LimitSpec& limits, std::span<const Pose<S>> poses, Scratch& scratch,
+                            std::vector<S>& margins);
+
 }  // namespace pkm::generic
