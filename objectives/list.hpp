@@ -7,12 +7,11 @@ namespace pkm {
 
 ObjectiveEntry workspace_volume();
 ObjectiveEntry workspace_ratio();
-std::vector<ObjectiveEntry> pose_objectives();  ///< statistics of the built-in pose quantities
-ObjectiveEntry quantity_objective();            ///< any statistic of any pose quantity
-std::vector<ObjectiveEntry> peak_objectives();  ///< maximum forces, power, speeds, .. along a motion
-ObjectiveEntry energy();                        ///< energy of the drives over a motion
-ObjectiveEntry cycle_time();                    ///< shortest time of a motion within limits
-std::vector<ObjectiveEntry> size_objectives();  ///< mass, and box of the links
+std::vector<ObjectiveEntry> pose_objectives();           ///< statistics of the built-in pose quantities
+ObjectiveEntry quantity_objective();                     ///< any statistic of any pose quantity
+std::vector<ObjectiveEntry> peak_objectives();           ///< maximum forces, power, speeds, .. along a motion
+std::vector<ObjectiveEntry> size_objectives();           ///< mass, and box of the links
+std::vector<ObjectiveEntry> largest_solid_objectives();  ///< largest box, cylinder and sphere in the workspace
 ObjectiveEntry expression_objective();
 ObjectiveEntry python_objective();
 

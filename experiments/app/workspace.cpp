@@ -18,7 +18,7 @@
 #include "experiments/app/axes.hpp"
 #include "experiments/app/component_list.hpp"
 #include "experiments/app/grid.hpp"
-#include "experiments/app/largest_cube.hpp"
+#include "experiments/app/largest_solid.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/slices.hpp"
 #include "experiments/app/version.hpp"
@@ -27,8 +27,8 @@
 namespace pkm {
 namespace {
 
-struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, CubeArguments {
-  std::vector<std::string> fixed, cut, fields, home;
+struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, SolidArguments {
+  std::vector<std::string> fixed, cut, fields;
   std::string csv, html, svg, png;
   int threads = 0;
 
@@ -65,7 +65,6 @@ void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
     throw ConfigError({"", 0, option}, "a workspace over " + join(names),
                       names.size() > 2 ? "a slice of it, such as that of --cut " + names.back() + "=0"
                                        : "a workspace over two coordinates");
-  expect_length_axes(swept, arguments);
   expect_surface(arguments, names);
 }
 
@@ -237,6 +236,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     auto ranges_given = set_grid(plan, target, arguments, kPictureCells, kMaxFieldCells);
     expect_axes(swept_axes(plan, target.info(), slices), arguments);
     apply_slices(plan, target, slices, ranges_given);
+    const std::vector<RequestedSolid> solids = requested_solids(arguments, target, plan, slices);
     const std::string mode = parse_mode(target.info(), arguments);
     expect_drawn_fields(target, arguments, mode);
     check_outputs(files, target.files, existing);
@@ -244,7 +244,6 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     add_exact_fields(target, arguments, found);
     found.touches_box = touches(found, ranges_given);
     remove_sliced_axes(found, target.info(), slices);
-    expect_known_fields(found, target.info(), arguments);
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {
@@ -254,8 +253,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
     report_workspace(target, found, out);
-    if (slices.empty()) report_components(target, plan, out);
-    report_largest_cube(found, arguments, out);
+    report_solids(solids, target, out);
     if (arguments.picture().empty()) return;
     if (plan.home) out.head.push_back({"note", "the picture shows all components of the workspace"});
     const std::vector<Picture> pictures = slice_pictures(target, found, arguments, mode, out);
@@ -303,7 +301,7 @@ void add_workspace(CLI::App& app, Session& session) {
                                     {".stl", &arguments.stl},
                                     {".svg", &arguments.svg},
                                     {".vtkhdf", &arguments.vtk}});
-  add_cube_options(command, arguments);
+  add_solid_options(command, arguments);
   add_threads(command, arguments.threads);
 }
 

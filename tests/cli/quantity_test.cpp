@@ -38,7 +38,7 @@ double transmission(double x, double y, double z) {
 TEST(Quantity, IsAFieldOfTheWorkspace) {
   const StudyFolder folder;
   const std::string csv = folder.path() + "/w.csv";
-  const auto found = pkmopt({"workspace", kExample, "--cells", "12", "--csv", csv, "--json", "--cube", "--least",
+  const auto found = pkmopt({"workspace", kExample, "--cells", "12", "--csv", csv, "--json", "--largest-box", "--least",
                              "transmission=0.9", "--vtk", folder.path() + "/w.vtkhdf"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
   const json fields = found.json()["fields"];
@@ -47,14 +47,14 @@ TEST(Quantity, IsAFieldOfTheWorkspace) {
   EXPECT_LE(fields["pressure_angle"]["greatest"], kLimit);
   EXPECT_NEAR(fields["transmission"]["least"].get<double>(),
               std::cos(fields["pressure_angle"]["greatest"].get<double>()), 1e-12);
-  EXPECT_FALSE(found.json()["cube"].is_null());
+  EXPECT_FALSE(found.json()["largest"]["box"].is_null());
   EXPECT_THAT(text_of(csv), HasSubstr(",sine_squared,transmission,pressure_angle [rad],"));
   EXPECT_THAT(text_of(folder.path() + "/w.vtkhdf"), HasSubstr("pressure_angle"));
 
   const auto plain = pkmopt({"workspace", kExample, "--cells", "12"});
   EXPECT_THAT(plain.out, HasSubstr("largest angle between a rod and its slide"));
   EXPECT_THAT(plain.out, HasSubstr("deg)")) << "people read degrees";
-  const auto wrong = pkmopt({"workspace", kExample, "--cells", "4", "--cube", "--least", "transmision=0.9"});
+  const auto wrong = pkmopt({"workspace", kExample, "--cells", "4", "--largest-box", "--least", "transmision=0.9"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'transmission'?"));
 }

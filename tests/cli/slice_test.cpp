@@ -192,7 +192,7 @@ TEST_F(CliSlice, OutputsAreCheckedBeforeTheEvaluation) {
       "pkmopt: --png: found a workspace over x, z, theta; expected a slice of it, such as that of --cut theta=0\n");
   EXPECT_EQ(first_refusal({"4ppa-2par", "--cut", "theta=0", "-o", "f.stl"}),
             "pkmopt: --stl: a surface needs three swept coordinates; this workspace sweeps x, z\n");
-  EXPECT_THAT(first_refusal({"4ppa-2par", "--cube"}), HasSubstr("--cube: found a workspace over x, z, theta"));
+  EXPECT_THAT(first_refusal({"4ppa-2par", "--largest-box"}), HasSubstr("the workspace is over theta, an angle"));
 }
 
 }  // namespace

@@ -80,9 +80,10 @@ TEST_F(UndefinedConditioning, IsAbsentFromPosesAndWorkspaces) {
   const auto field = workspace.json()["fields"]["conditioning"];
   EXPECT_TRUE(field["least"].is_null() && field["greatest"].is_null());
   EXPECT_THAT(field["unavailable"], HasSubstr(kRadius));
-  const auto cube = run({"workspace", "crank-and-slide.toml", "--cells", "8", "--cube", "--least", "conditioning=0.1"});
-  EXPECT_EQ(cube.exit_code, 2) << cube.out;
-  EXPECT_THAT(cube.err, HasSubstr("--least: the conditioning of mechanism mix is undefined"));
+  const auto box =
+      run({"workspace", "crank-and-slide.toml", "--cells", "8", "--largest-box", "--least", "conditioning=0.1"});
+  EXPECT_EQ(box.exit_code, 2) << box.out;
+  EXPECT_THAT(box.err, HasSubstr("--least: the conditioning of mechanism mix is undefined"));
 
   const auto check = run({"check", "crank-and-slide.toml"});
   EXPECT_THAT(check.out.substr(check.out.find("not available, and why")), HasSubstr(kRadius));

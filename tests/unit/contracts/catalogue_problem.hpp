@@ -83,6 +83,7 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
       // The standard deviation of a constant has no derivative, and the conditioning of some mechanisms is constant.
       if (entry.name == "quantity" && options.word("statistic") == "std") continue;
       const EntryContext context{*mechanism, plan, options};
+      if (!entry.reads(context)) continue;
       FieldRequest request = parts.request;
       entry.request(context, request);
       if (of == Of::volume && request.needs_jacobian()) continue;

@@ -86,10 +86,12 @@ Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
                       shortest(info.parameters[0].nominal) + " - " + info.parameters[0].name);
 }
 
-/// All objectives but those of other programs, whose values are not those of pkmopt.
+/// All objectives but those of other programs, whose values are not those of pkmopt, and the largest solids, which need
+/// a workspace over lengths only (tests/cli/largest_solid_test.cpp).
 std::vector<ObjectiveEntry> own_objectives() {
   std::vector<ObjectiveEntry> all = all_objectives();
-  std::erase_if(all, [](const ObjectiveEntry& entry) { return entry.name == "python"; });
+  std::erase_if(
+      all, [](const ObjectiveEntry& entry) { return entry.name == "python" || entry.name.starts_with("largest-"); });
   return all;
 }
 

@@ -1,0 +1,58 @@
+#include "engine/math/quadratic_program.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace pkm {
+namespace {
+
+/// Largest step in (0, 1] along `change` that keeps `value` nonnegative.
+double max_step(const Eigen::VectorXd& value, const Eigen::VectorXd& change) {
+  double step = 1;
+  for (Eigen::Index i = 0; i < value.size(); ++i)
+    if (change[i] < 0) step = std::min(step, -value[i] / change[i]);
+  return step;
+}
+
+}  // namespace
+
+QuadraticSolution solve(const QuadraticProgram& program) {
+  constexpr int kMaxIterations = 60;
+  constexpr double kGap = 1e-17, kResidual = 1e-14;  // at the end; most programs need 10 to 25 iterations
+  const auto& [B, c, A, b] = program;
+  const Eigen::Index n = c.size(), m = b.size();
+  if (m == 0) return {B.ldlt().solve(-c), {}};
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n), slack = (-b).cwiseMax(1), multipliers = Eigen::VectorXd::Ones(m);
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    const Eigen::VectorXd dual = B * x + c - A.transpose() * multipliers, primal = A * x - slack - b;
+    const double gap = slack.dot(multipliers) / static_cast<double>(m);
+    if (gap < kGap && dual.lpNorm<Eigen::Infinity>() < kResidual && primal.lpNorm<Eigen::Infinity>() < kResidual) break;
+    const Eigen::VectorXd ratio = multipliers.cwiseQuotient(slack);
+    const Eigen::LDLT<Eigen::MatrixXd> matrix((B + A.transpose() * ratio.asDiagonal() * A).eval());
+    Eigen::VectorXd dx, dslack, dmultipliers;
+    const auto step_for = [&](const Eigen::VectorXd& complementarity) {
+      dx = matrix.solve(-dual - A.transpose() *
+                                    (complementarity + multipliers.cwiseProduct(primal)).cwiseQuotient(slack).eval());
+      dslack = A * dx + primal;
+      dmultipliers = -(complementarity + multipliers.cwiseProduct(dslack)).cwiseQuotient(slack);
+    };
+    const Eigen::VectorXd product = slack.cwiseProduct(multipliers);
+    step_for(product);
+    const double predicted = std::min(max_step(slack, dslack), max_step(multipliers, dmultipliers));
+    const double gap_after =
+        (slack + predicted * dslack).dot(multipliers + predicted * dmultipliers) / static_cast<double>(m);
+    const double centring = std::pow(gap_after / gap, 3);
+    step_for(product + dslack.cwiseProduct(dmultipliers) - Eigen::VectorXd::Constant(m, centring * gap));
+    if (!dx.allFinite() || !dmultipliers.allFinite()) break;
+    constexpr double kFraction = 0.995;  // of the step to the boundary
+    const double step = kFraction * std::min(max_step(slack, dslack), max_step(multipliers, dmultipliers));
+    x += step * dx;
+    slack += step * dslack;
+    multipliers += step * dmultipliers;
+  }
+  return {x, multipliers};
+}
+
+}  // namespace pkm

@@ -1,0 +1,22 @@
+// Options of the largest box, cylinder or sphere in the workspace.
+#pragma once
+
+#include "engine/problem/quantity.hpp"
+#include "engine/workspace/largest_solid.hpp"
+
+namespace pkm {
+
+std::vector<OptionSpec> largest_solid_options(SolidKind kind);
+
+/// Whether the value is the first dimension, not the volume. @param options  values of largest_solid_options()
+bool measures_size(const Options& options);
+
+/// Requirements on a solid in a workspace of this plan. Throws std::invalid_argument with one sentence if the options
+/// do not fit the plan.
+/// @param options  values of largest_solid_options()
+SolidSpec solid_spec(SolidKind kind, const MechanismInfo& info, const WorkspacePlan& plan, const Options& options);
+
+/// The finder for the options and the plan of an entry. Throws like solid_spec() and LargestSolidFinder.
+LargestSolidFinder solid_finder(SolidKind kind, const EntryContext& context);
+
+}  // namespace pkm

@@ -1,0 +1,73 @@
+// The largest box, cylinder or sphere in the workspace of a design. It is found on a voxel grid, then refined to the
+// tolerance: a semi-infinite program, solved by exchange of the critical points of its boundary with sequential
+// quadratic programming (R. Hettich, K. O. Kortanek, "Semi-infinite programming", SIAM Review 35, 1993; J. Nocedal,
+// S. J. Wright, "Numerical Optimization", 2nd edition, chapter 18).
+//
+// The result is a local maximum near the best solid on the grid. As far as sampled, no margin is negative in it:
+// margins are tested at samples of the whole solid and at the local minima that start from them.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/workspace/solid_margins.hpp"
+#include "engine/workspace/solid_on_grid.hpp"
+
+namespace pkm {
+
+/// A point where the boundary of the solid touches that of the workspace.
+struct Contact {
+  std::string constraint;  ///< "limb1 reaches", or "box, x max": a face of the search box
+  Pose<double> pose;
+  double multiplier = 0;   ///< derivative of log(volume) by the constraint's value; 0: redundant here
+  std::size_t margin = 0;  ///< index of the constraint
+  UnitPoint unit{};        ///< of a face of the search box: the point of the unit solid
+};
+
+struct LargestSolid {
+  Solid solid;
+  double volume = 0;  ///< 0: there is none
+  std::vector<Contact> contacts;
+  double residual = 0;      ///< of the last step, relative to the size: accuracy of the dimensions
+  double determinant = 0;   ///< if det(G) = 0 is a constraint: the factor of its margin
+  std::size_t samples = 0;  ///< number of poses at which the constraints were tested at the end
+  bool is_regular = true;   ///< det(G) does not change its sign in the solid, as far as sampled; true if undefined
+};
+
+/// Immutable and thread-safe.
+class LargestSolidFinder {
+ public:
+  /// Throws std::invalid_argument with one sentence if the solid cannot be found in workspaces of this plan.
+  /// @param mechanism   must outlive this object
+  /// @param is_regular  the solid must not contain parallel singularities (det(G) = 0), where det(G) is defined
+  /// @param reported    margins beside those of the mechanism's limits
+  LargestSolidFinder(const Mechanism& mechanism, const WorkspacePlan& plan, SolidSpec spec, bool is_regular,
+                     std::vector<ReportMargin> reported = {});
+
+  LargestSolid find(std::span<const double> parameters) const;
+  /// The volume with derivatives by the envelope theorem, if one constraint decides each size: constraints that are
+  /// limits of quantities without a formula, det(G) and faces of a search box that depends on the design are
+  /// differentiated by central differences.
+  /// @param found  find() of the same parameters
+  Dual4 volume(std::span<const Dual4> parameters, const LargestSolid& found) const;
+
+  const SolidSpec& spec() const { return spec_; }
+  const Sweep& sweep() const { return sweep_; }
+  const WorkspacePlan& plan() const { return plan_; }
+  std::vector<std::string> dimension_names() const;
+
+ private:
+  std::vector<Pose<double>> orientations(std::span<const double> parameters) const;
+  /// @param determinant  0: det(G) is no constraint
+  SolidMargins margins(std::span<const double> parameters, double determinant) const;
+  LargestSolid find(std::span<const double> parameters, const VoxelMap& map, bool is_regular) const;
+
+  const Mechanism& mechanism_;
+  WorkspacePlan plan_;  ///< with voxels; fixed coordinates as given
+  SolidSpec spec_;
+  bool is_regular_;
+  std::vector<ReportMargin> reported_;
+  const Sweep& sweep_;
+  std::unique_ptr<const VoxelEvaluator> voxels_;
+  SolidSamples samples_, dense_samples_;
+};
+
+}  // namespace pkm

@@ -1,0 +1,27 @@
+// The largest solid in a voxel map, judged by cell centres.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/workspace/solid.hpp"
+#include "engine/workspace/voxel_grid.hpp"
+
+namespace pkm {
+
+/// Requirements on a solid beside its kind.
+struct SolidSpec {
+  SolidShape shape;
+  std::vector<double> ratio;                         ///< of the dimensions; empty: free
+  std::array<std::optional<double>, 3> centre = {};  ///< by axis; std::nullopt: free
+};
+
+/// The largest solid with its centre at a cell's centre such that all cells with their centres in it are good. Among
+/// several of this size, the one closest to the mean of their positions. If the proportions are free, those in which
+/// dimensions differ by powers of 2 are tried.
+/// @param good  whether each cell is good, by index
+/// @return std::nullopt if no cell is good
+std::optional<Solid> largest_solid_on_grid(const VoxelGrid& grid, const std::vector<std::uint8_t>& good,
+                                           const SolidSpec& spec);
+
+}  // namespace pkm
