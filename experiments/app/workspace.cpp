@@ -16,7 +16,7 @@
 #include "engine/storage/safe_file.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/component_list.hpp"
+#include "experiments/app/coordinate_ranges.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/largest_solid.hpp"
 #include "experiments/app/running.hpp"
@@ -27,7 +27,12 @@
 namespace pkm {
 namespace {
 
-struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, SolidArguments {
+struct WorkspaceArguments : DesignArguments,
+                            ModeArguments,
+                            GridArguments,
+                            WorkspaceOutputs,
+                            SolidArguments,
+                            RangeArguments {
   std::vector<std::string> fixed, cut, fields;
   std::string csv, html, svg, png;
   int threads = 0;
@@ -254,6 +259,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     }
     report_workspace(target, found, out);
     report_solids(solids, target, out);
+    report_ranges(arguments, target, mode, out);
     if (arguments.picture().empty()) return;
     if (plan.home) out.head.push_back({"note", "the picture shows all components of the workspace"});
     const std::vector<Picture> pictures = slice_pictures(target, found, arguments, mode, out);
@@ -302,6 +308,7 @@ void add_workspace(CLI::App& app, Session& session) {
                                     {".svg", &arguments.svg},
                                     {".vtkhdf", &arguments.vtk}});
   add_solid_options(command, arguments);
+  add_range_options(command, arguments);
   add_threads(command, arguments.threads);
 }
 

@@ -241,5 +241,17 @@ TEST_F(CliLargestSolid, IsNullWithoutFeasibleCellsAndReportsWrongOptions) {
             "pkmopt: --ratio: found no solid; expected --largest-box, --largest-cylinder or --largest-sphere\n");
 }
 
+TEST_F(CliLargestSolid, RangesOfCoordinatesFromAHomePose) {
+  const auto result = pkmopt({"workspace", kFiles + "five-bar.toml", "--json", "--cells", "8", "--ranges", "--home",
+                              "x=0,y=300mm", "--set", "d=0.1375,l_a=0.23,l_b=0.23"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json ranges = result.json()["ranges"];
+  // At y = 0.3 a limb is stretched at the distance l_a + l_b of the point from its pivot.
+  const double reach = std::sqrt(0.46 * 0.46 - 0.3 * 0.3) - 0.1375;
+  EXPECT_NEAR(ranges["x"]["upper"], reach, 1e-12);
+  EXPECT_NEAR(ranges["x"]["lower"], -reach, 1e-12);
+  EXPECT_NEAR(ranges["y"]["upper"], std::sqrt(0.46 * 0.46 - 0.1375 * 0.1375), 1e-12);
+}
+
 }  // namespace
 }  // namespace pkm::testing
