@@ -12,6 +12,8 @@ ObjectiveEntry quantity_objective();                     ///< any statistic of a
 std::vector<ObjectiveEntry> peak_objectives();           ///< maximum forces, power, speeds, .. along a motion
 std::vector<ObjectiveEntry> size_objectives();           ///< mass, and box of the links
 std::vector<ObjectiveEntry> largest_solid_objectives();  ///< largest box, cylinder and sphere in the workspace
+ObjectiveEntry energy();                                 ///< energy of the drives over a motion
+ObjectiveEntry cycle_time();                             ///< shortest time of a motion within limits
 ObjectiveEntry expression_objective();
 ObjectiveEntry python_objective();
 

@@ -16,6 +16,7 @@
 #include "engine/storage/safe_file.hpp"
 #include "engine/workspace/pose_quantities.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/component_list.hpp"
 #include "experiments/app/coordinate_ranges.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/largest_solid.hpp"
@@ -33,7 +34,7 @@ struct WorkspaceArguments : DesignArguments,
                             WorkspaceOutputs,
                             SolidArguments,
                             RangeArguments {
-  std::vector<std::string> fixed, cut, fields;
+  std::vector<std::string> fixed, cut, fields, home;
   std::string csv, html, svg, png;
   int threads = 0;
 
@@ -258,6 +259,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
     report_workspace(target, found, out);
+    if (slices.empty()) report_components(target, plan, out);
     report_solids(solids, target, out);
     report_ranges(arguments, target, mode, out);
     if (arguments.picture().empty()) return;
