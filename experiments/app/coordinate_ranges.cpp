@@ -4,24 +4,24 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/math/roots.hpp"
-#include "engine/mechanism/central_pose.hpp"
+#include "engine/mechanism/sampled_poses.hpp"
 #include "experiments/app/axes.hpp"
 
 namespace pkm {
 namespace {
 
 /// The coordinates of --home; those that are not given are 0. Without --home: a pose in the middle of the workspace.
-Pose<double> home_pose(const RangeArguments& arguments, const Target& target, const std::string& mode) {
+Pose<double> home_pose(const std::vector<std::string>& given, const Target& target, const std::string& mode) {
   const MechanismInfo& info = target.info();
   const SourceLocation place{"", 0, "--home"};
-  if (arguments.home.empty()) {
+  if (given.empty()) {
     const auto pose = central_pose(*target.mechanism, target.parameters, target.limits, mode);
     if (!pose) throw ConfigError({"", 0, "--ranges"}, "no feasible pose was found", "--home with a feasible pose");
     return *pose;
   }
   std::vector<Assignable> known;
   for (const AxisInfo& axis : info.coordinates) known.push_back({axis.name, axis.unit});
-  const Pose<double> pose = axis_vector(parse_some_assignments(arguments.home, "--home", known));
+  const Pose<double> pose = axis_vector(parse_some_assignments(given, "--home", known));
   if (const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
       !report.feasible)
     throw ConfigError(place, "an infeasible pose: " + report.reason, "a feasible one");
@@ -59,18 +59,10 @@ RangeEnd end_of_range(const Target& target, const std::string& mode, Pose<double
 
 }  // namespace
 
-void add_range_options(CLI::App& command, RangeArguments& arguments) {
-  CLI::Option* const ranges =
-      command.add_flag("--ranges", arguments.ranges, "Print the range of each coordinate alone, from the pose --home");
-  add_list_option(command, "--home", arguments.home,
-                  "Home pose of --ranges (0 for coordinates not given); default: a pose in the middle")
-      ->needs(ranges);
-}
-
-void report_ranges(const RangeArguments& arguments, const Target& target, const std::string& mode, Printout& out) {
-  if (!arguments.ranges) return;
+void report_ranges(const std::vector<std::string>& home_given, const Target& target, const std::string& mode,
+                   Printout& out) {
   const MechanismInfo& info = target.info();
-  const Pose<double> home = home_pose(arguments, target, mode);
+  const Pose<double> home = home_pose(home_given, target, mode);
   const auto searched = target.mechanism->ranges(target.parameters);
   out.json["home"] = axes_json(info.coordinates, home);
   out.json["ranges"] = Json::object();

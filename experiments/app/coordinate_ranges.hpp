@@ -4,21 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "experiments/app/commands.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
 
-struct RangeArguments {
-  bool ranges = false;
-  std::vector<std::string> home;
-};
-/// Declares --ranges and --home.
-void add_range_options(CLI::App& command, RangeArguments& arguments);
-
-/// If requested, adds to the output the interval of each coordinate about the home pose, with the other coordinates
-/// fixed, in which all poses are feasible, and the constraints at its ends. Throws ConfigError if the home pose is
-/// unknown or infeasible.
-void report_ranges(const RangeArguments& arguments, const Target& target, const std::string& mode, Printout& out);
+/// Adds to the output the interval of each coordinate about the home pose, with the other coordinates fixed, in which
+/// all poses are feasible, and the constraints at its ends. Throws ConfigError if the home pose is unknown or
+/// infeasible.
+/// @param home_given  values of --home; empty: a pose in the middle of the workspace
+void report_ranges(const std::vector<std::string>& home_given, const Target& target, const std::string& mode,
+                   Printout& out);
 
 }  // namespace pkm

@@ -28,12 +28,8 @@
 namespace pkm {
 namespace {
 
-struct WorkspaceArguments : DesignArguments,
-                            ModeArguments,
-                            GridArguments,
-                            WorkspaceOutputs,
-                            SolidArguments,
-                            RangeArguments {
+struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, SolidArguments {
+  bool ranges = false;
   std::vector<std::string> fixed, cut, fields, home;
   std::string csv, html, svg, png;
   int threads = 0;
@@ -233,7 +229,8 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     add_cuts(slices, plan, target.info(), arguments.cut);
     if (!slices.empty() && !arguments.html.empty())
       throw ConfigError({"", 0, "--html"}, "a slice of a workspace", "a full workspace; --svg and --png draw slices");
-    if (!arguments.home.empty()) plan.home = parse_home(arguments.home, target.info(), sweep_of(target.info(), plan));
+    if (!arguments.home.empty() && !arguments.ranges)
+      plan.home = parse_home(arguments.home, target.info(), sweep_of(target.info(), plan));
     if (plan.home && !slices.empty()) {
       if (!arguments.home.empty()) throw ConfigError({"", 0, "--home"}, "a slice of a workspace", "a full workspace");
       plan.home.reset();
@@ -261,7 +258,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     report_workspace(target, found, out);
     if (slices.empty()) report_components(target, plan, out);
     report_solids(solids, target, out);
-    report_ranges(arguments, target, mode, out);
+    if (arguments.ranges) report_ranges(arguments.home, target, mode, out);
     if (arguments.picture().empty()) return;
     if (plan.home) out.head.push_back({"note", "the picture shows all components of the workspace"});
     const std::vector<Picture> pictures = slice_pictures(target, found, arguments, mode, out);
@@ -288,7 +285,10 @@ void add_workspace(CLI::App& app, Session& session) {
                   "Coordinates to fix at a value; default: those of the study, else at the design's default");
   add_list_option(command, "--cut", arguments.cut, "Values of swept coordinates at which the workspace is sliced");
   add_list_option(command, "--home", arguments.home,
-                  "A pose: count only the component of the workspace that holds it; default: that of the study");
+                  "A pose: count only the component of the workspace that holds it (default: that of the study); with "
+                  "--ranges, the pose from which the coordinates move");
+  command.add_flag("--ranges", arguments.ranges,
+                   "Print the range of each coordinate alone, from the pose --home (default: a pose in the middle)");
   add_option(command, "--mode MODE", arguments.mode, "Working mode of the coupling indices; default: the first");
   add_workspace_outputs(command, arguments);
   add_option(command, "--csv FILE", arguments.csv, "Write a row per cell to this file");
@@ -310,7 +310,6 @@ void add_workspace(CLI::App& app, Session& session) {
                                     {".svg", &arguments.svg},
                                     {".vtkhdf", &arguments.vtk}});
   add_solid_options(command, arguments);
-  add_range_options(command, arguments);
   add_threads(command, arguments.threads);
 }
 
