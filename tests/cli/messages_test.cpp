@@ -34,12 +34,12 @@ std::string fault_of(const std::vector<std::string>& arguments, const std::strin
 }
 
 #ifndef PKM_SANITIZED  // sanitized runs take ten times as long
-/// Selects two of five messages, so that each of the three, six or seven kinds that alternate is tested. If the
+/// Selects one of five messages, so that each of the three, six or seven kinds that alternate is tested. If the
 /// environment variable PKM_EVERY_MESSAGE is set, all messages are selected.
 bool is_chosen() {
   static const bool are_all = std::getenv("PKM_EVERY_MESSAGE") != nullptr;
   static unsigned count = 0;
-  return are_all || count++ % 5 < 2;
+  return are_all || count++ % 5 == 0;
 }
 
 std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
