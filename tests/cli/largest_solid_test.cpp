@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kFiles = PKM_EXPERIMENTS "/mechanisms/";
+const std::string kSolidRobots = PKM_EXPERIMENTS "/mechanisms/";
 const std::string kCylinders = PKM_TEST_DATA "/generic/three-cylinders.toml";
 
 class CliLargestSolid : public ::testing::Test {
@@ -59,7 +59,7 @@ TEST_F(CliLargestSolid, CircleOfFiveBar) {
     const double column = std::sqrt(r1 * r1 - std::pow(r2 - r3, 2)), S = r1 + r2 + column;
     const double y = (S * S - r3 * r3) / (2 * S);
     const json circle =
-        largest("circle", {kFiles + "five-bar.toml", "--set",
+        largest("circle", {kSolidRobots + "five-bar.toml", "--set",
                            "d=" + std::to_string(r3) + ",l_a=" + std::to_string(r1) + ",l_b=" + std::to_string(r2)});
     EXPECT_NEAR(circle["dimensions"]["diameter"], 2 * (y - column), kTolerance);
     EXPECT_NEAR(circle["centre"]["y"], y, kTolerance);
@@ -69,7 +69,8 @@ TEST_F(CliLargestSolid, CircleOfFiveBar) {
 }
 
 TEST_F(CliLargestSolid, CylinderOfLinearDelta) {
-  const std::vector<std::string> design = {kFiles + "linear-delta.toml", "--set", "R=0.26,r=0.06,l=0.5,q_max=0.6"};
+  const std::vector<std::string> design = {kSolidRobots + "linear-delta.toml", "--set",
+                                           "R=0.26,r=0.06,l=0.5,q_max=0.6"};
   const json cylinder = largest("cylinder", design);
   EXPECT_NEAR(cylinder["volume"], 0.062862258, 1e-9);  // reference values: maximum of pi rho^2 h(rho)
   const double R = 0.2, L = 0.5, s = 0.6, rho = double(cylinder["dimensions"]["diameter"]) / 2;
@@ -80,7 +81,8 @@ TEST_F(CliLargestSolid, CylinderOfLinearDelta) {
 
 /// Velocity factors between 1/2 and 2: Chablat and Wenger, IEEE Trans. Robotics and Automation 19 (2003).
 TEST_F(CliLargestSolid, CubeOfOrthoglide) {
-  const std::string study = folder_.write("orthoglide.toml", "[mechanism]\nfile = \"" + kFiles + R"(orthoglide.toml"
+  const std::string study =
+      folder_.write("orthoglide.toml", "[mechanism]\nfile = \"" + kSolidRobots + R"(orthoglide.toml"
 [variables]
 L = { min = 0.3, max = 0.32 }
 [workspace]
@@ -129,10 +131,10 @@ TEST_F(CliLargestSolid, CubeOfRandomDeltasAgreesWithAFineGrid) {
                             ",l_a=" + std::to_string(0.2 + 0.1 * share(random)) +
                             ",l_b=" + std::to_string(0.45 + 0.1 * share(random));
     SCOPED_TRACE(set);
-    const auto result = pkmopt(
-        {"workspace", kFiles + "rotary-delta.toml", "--set", set, "--json", "--csv", "cells.csv", "--force", "--cells",
-         std::to_string(kCells), "--box", "x=-0.6:0.6,y=-0.6:0.6,z=-1.2:0", "--largest-box", "--ratio", "1:1:1"},
-        folder_.path());
+    const auto result = pkmopt({"workspace", kSolidRobots + "rotary-delta.toml", "--set", set, "--json", "--csv",
+                                "cells.csv", "--force", "--cells", std::to_string(kCells), "--box",
+                                "x=-0.6:0.6,y=-0.6:0.6,z=-1.2:0", "--largest-box", "--ratio", "1:1:1"},
+                               folder_.path());
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json cube = result.json()["largest"]["box"];
     std::ifstream in(folder_.path() + "/cells.csv");
@@ -162,7 +164,7 @@ TEST_F(CliLargestSolid, CubeOfRandomDeltasAgreesWithAFineGrid) {
 }
 
 TEST_F(CliLargestSolid, HasAGivenCentreAndIsReachableInListedOrientations) {
-  const std::string cylinder = kFiles + "linear-delta.toml";
+  const std::string cylinder = kSolidRobots + "linear-delta.toml";
   const json given = largest("cylinder", {cylinder, "--ratio", "2:1", "--centre", "x=0.02,z=-50mm"});
   EXPECT_EQ(given["centre"]["x"], 0.02);
   EXPECT_EQ(given["centre"]["z"], -0.05);
@@ -171,7 +173,7 @@ TEST_F(CliLargestSolid, HasAGivenCentreAndIsReachableInListedOrientations) {
   EXPECT_GT(free["volume"], given["volume"]);
   // 3-RRR: a circle that is reachable at both angles is at most as large as at each of them.
   const auto circle = [this](const std::string& phi) {
-    const std::string study = folder_.write("rrr.toml", "[mechanism]\nfile = \"" + kFiles + R"(3-rrr.toml"
+    const std::string study = folder_.write("rrr.toml", "[mechanism]\nfile = \"" + kSolidRobots + R"(3-rrr.toml"
 [variables]
 l_a = { min = 0.15, max = 0.2 }
 [[region]]
@@ -196,7 +198,8 @@ optimiser = "ga"
 }
 
 TEST_F(CliLargestSolid, HasDerivativesAsAnObjective) {
-  const std::string study = folder_.write("derivatives.toml", "[mechanism]\nfile = \"" + kFiles + R"(rotary-delta.toml"
+  const std::string study =
+      folder_.write("derivatives.toml", "[mechanism]\nfile = \"" + kSolidRobots + R"(rotary-delta.toml"
 [variables]
 R = { min = 0.15, max = 0.25 }
 l_b = { min = 0.45, max = 0.6 }
@@ -221,7 +224,7 @@ algorithm = "slsqp"
 }
 
 TEST_F(CliLargestSolid, IsNullWithoutFeasibleCellsAndReportsWrongOptions) {
-  const std::string robot = kFiles + "rotary-delta.toml";
+  const std::string robot = kSolidRobots + "rotary-delta.toml";
   EXPECT_EQ(largest("box", {robot, "--least", "conditioning=1"}), nullptr);
   const auto error_of = [](std::vector<std::string> words) {
     words.insert(words.begin(), "workspace");
@@ -234,7 +237,8 @@ TEST_F(CliLargestSolid, IsNullWithoutFeasibleCellsAndReportsWrongOptions) {
   EXPECT_THAT(error_of({robot, "--largest-box", "--ratio", "1:2"}),
               HasSubstr("ratio: found '1:2'; expected 3 positive numbers separated by colons, of x:y:z"));
   EXPECT_THAT(error_of({robot, "--largest-cylinder", "--axis", "w"}), HasSubstr("axis: found 'w'"));
-  EXPECT_THAT(error_of({kFiles + "five-bar.toml", "--largest-cylinder"}), HasSubstr("a cylinder needs three lengths"));
+  EXPECT_THAT(error_of({kSolidRobots + "five-bar.toml", "--largest-cylinder"}),
+              HasSubstr("a cylinder needs three lengths"));
   EXPECT_THAT(error_of({robot, "--largest-box", "--least", "conditionin=1"}),
               HasSubstr("--least: found the unknown name 'conditionin'"));
   EXPECT_EQ(error_of({robot, "--ratio", "1:1:1"}),
@@ -242,8 +246,8 @@ TEST_F(CliLargestSolid, IsNullWithoutFeasibleCellsAndReportsWrongOptions) {
 }
 
 TEST_F(CliLargestSolid, RangesOfCoordinatesFromAHomePose) {
-  const auto result = pkmopt({"workspace", kFiles + "five-bar.toml", "--json", "--cells", "8", "--ranges", "--home",
-                              "x=0,y=300mm", "--set", "d=0.1375,l_a=0.23,l_b=0.23"});
+  const auto result = pkmopt({"workspace", kSolidRobots + "five-bar.toml", "--json", "--cells", "8", "--ranges",
+                              "--home", "x=0,y=300mm", "--set", "d=0.1375,l_a=0.23,l_b=0.23"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json ranges = result.json()["ranges"];
   // At y = 0.3 a limb is stretched at the distance l_a + l_b of the point from its pivot.
