@@ -87,15 +87,20 @@ class Ranks : public StudyProgram {
     head.erase(head.find(", step = 0.001"), 14);
     return head.substr(0, head.find("[[constraint]]"));
   }
-  /// Process ids of the ranks whose command line contains `word`.
-  static std::vector<pid_t> find_ranks(const std::string& word) {
+  /// Process ids of the ranks that have the argument `word` and run in the folder of this test. Other tests, which run
+  /// at the same time, use files of the same name.
+  std::vector<pid_t> find_ranks(const std::string& word) const {
     std::vector<pid_t> found;
     for (const auto& entry : fs::directory_iterator("/proc")) {
       const std::string name = entry.path().filename();
       if (name.find_first_not_of("0123456789") != std::string::npos) continue;
       std::ifstream file(entry.path() / "cmdline");
       const std::string line{std::istreambuf_iterator<char>(file), {}};
-      if (line.starts_with(PKM_PROGRAM) && line.find(word) != std::string::npos) found.push_back(std::stoi(name));
+      std::error_code ended;
+      const fs::path folder = fs::read_symlink(entry.path() / "cwd", ended);
+      if (line.starts_with(PKM_PROGRAM) && folder == fs::canonical(folder_, ended) &&
+          line.find('\0' + word + '\0') != std::string::npos)
+        found.push_back(std::stoi(name));
     }
     return found;
   }

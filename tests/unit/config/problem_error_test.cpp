@@ -20,6 +20,7 @@ TEST(ProblemErrors, Workspace) {
            "s.toml:4: workspace.method: found \"voxel\"; expected one of columns, voxels; did you mean 'voxels'?"},
           {"metod = \"voxels\"",
            "s.toml:4: workspace.metod: found an unknown key; expected one of method, tolerance, nodes, cells, box, "
+           "home, "
            "sweep, limits, certified, exact, y; did you mean 'method'?"},
           {"tolerance = 1", "s.toml:4: workspace.tolerance: found 1; expected a number in [1e-13, 0.1]"},
           {"tolerance = \"1e-8 m\"",

@@ -33,7 +33,8 @@ TEST(StudyErrors, Document) {
            "expected a study in TOML"},
           {"[mechansim]\ntype = \"slider\"\n",
            "s.toml:1: mechansim: found an unknown table; expected one of study, mechanism, variables, baseline, "
-           "workspace, region, motion, objective, constraint, output, reference, drive_train, obstacle, quantity, "
+           "workspace, region, motion, objective, constraint, output, reference, drive_train, motor, obstacle, "
+           "quantity, "
            "accuracy, "
            "stage, "
            "checkpoint, "

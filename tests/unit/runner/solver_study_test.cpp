@@ -186,6 +186,7 @@ TEST_F(SolverStudy, BasinsAreDesignsWithoutABetterOneNearby) {
   const Study study =
       study_of_text(wide(kGa + kSlsqp + "start = \"best-of-basins\"\nstarts = 3\nbasin_radius = 0.2\n"));
   StudyContents contents;
+  contents.problem = problem_record(study);
   StageRecord& stage = contents.stages.emplace_back();
   stage.table = EvaluationTable(study.problem->shape());
   const auto add = [&](double unit, double objective, Status status = Status::feasible) {
