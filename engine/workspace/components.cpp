@@ -415,8 +415,7 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
       if (turns != 0) angle += 2 * std::numbers::pi * turns;
     }
   const auto equal = [](const Pose<double>& a, const Pose<double>& b) { return std::ranges::equal(a, b); };
-  const auto repeated = std::ranges::unique(found.cells, equal);
-  found.cells.erase(repeated.begin(), repeated.end());
+  found.cells.erase(std::unique(found.cells.begin(), found.cells.end(), equal), found.cells.end());
   // Straight lines to the farthest point that they reach.
   found.corners.push_back(found.cells.front());
   for (std::size_t i = 0; i + 1 < found.cells.size();) {
