@@ -21,7 +21,8 @@ double max_step(const Eigen::VectorXd& value, const Eigen::VectorXd& change) {
 QuadraticSolution solve(const QuadraticProgram& program) {
   constexpr int kMaxIterations = 60;
   constexpr double kGap = 1e-17, kResidual = 1e-14;  // at the end; most programs need 10 to 25 iterations
-  const auto& [B, c, A, b] = program;
+  const Eigen::MatrixXd &B = program.B, &A = program.A;
+  const Eigen::VectorXd &c = program.c, &b = program.b;
   const Eigen::Index n = c.size(), m = b.size();
   if (m == 0) return {B.ldlt().solve(-c), {}};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n), slack = (-b).cwiseMax(1), multipliers = Eigen::VectorXd::Ones(m);
