@@ -20,7 +20,7 @@ const std::string kExample = PKM_EXPERIMENTS "/mechanisms/quantities/orthoglide.
 const double kLimit = std::acos(-1) / 4;  // largest pressure angle that the study allows
 const std::string kPose = "--at=x=0.02,y=-0.03,z=0.01";
 
-std::string text_of(const std::string& file) {
+std::string contents_of(const std::string& file) {
   std::ifstream in(file);
   std::stringstream text;
   text << in.rdbuf();
@@ -48,8 +48,8 @@ TEST(Quantity, IsAFieldOfTheWorkspace) {
   EXPECT_NEAR(fields["transmission"]["least"].get<double>(),
               std::cos(fields["pressure_angle"]["greatest"].get<double>()), 1e-12);
   EXPECT_FALSE(found.json()["largest"]["box"].is_null());
-  EXPECT_THAT(text_of(csv), HasSubstr(",sine_squared,transmission,pressure_angle [rad],"));
-  EXPECT_THAT(text_of(folder.path() + "/w.vtkhdf"), HasSubstr("pressure_angle"));
+  EXPECT_THAT(contents_of(csv), HasSubstr(",sine_squared,transmission,pressure_angle [rad],"));
+  EXPECT_THAT(contents_of(folder.path() + "/w.vtkhdf"), HasSubstr("pressure_angle"));
 
   const auto plain = pkmopt({"workspace", kExample, "--cells", "12"});
   EXPECT_THAT(plain.out, HasSubstr("largest angle between a rod and its slide"));
@@ -73,7 +73,7 @@ TEST(Quantity, IsPrintedWithPosesAndMotions) {
   const std::string csv = folder.path() + "/t.csv";
   const auto found = pkmopt({"trajectory", kExample, "--motion", motion, "--samples", "3", "--csv", csv});
   ASSERT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_THAT(text_of(csv), HasSubstr(",sine_squared,transmission,pressure_angle"));
+  EXPECT_THAT(contents_of(csv), HasSubstr(",sine_squared,transmission,pressure_angle"));
 }
 
 TEST(Quantity, LimitsAreThresholdsOfTheCommandLine) {
