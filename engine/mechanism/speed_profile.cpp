@@ -8,13 +8,13 @@
 namespace pkm {
 namespace {
 
-using By = ActiveBound::By;
+using By = BindingLimit::By;
 constexpr double kUnboundedSquare = 1e30;
 
 /// The path accelerations that are allowed at one point for which x_(i+1) is in [0, next].
 struct AllowedAccelerations {
   double lower, upper;
-  ActiveBound at_lower, at_upper;
+  BindingLimit at_lower, at_upper;
   double width() const { return upper - lower; }
 };
 
@@ -132,8 +132,8 @@ ProfileWithDerivatives differentiate(const SpeedProfile& profile, std::span<cons
   const std::size_t n = points.size() - 1;
   std::vector<Dual4> reachable(n + 1, Dual4(0.0));
   for (std::size_t i = n; i-- > 0;) {
-    const ActiveBound& upper = profile.backward[i].upper;
-    ActiveBound lower = profile.backward[i].lower;
+    const BindingLimit& upper = profile.backward[i].upper;
+    BindingLimit lower = profile.backward[i].lower;
     // If x_(i+1) has to be 0, both bounds coincide below the root, which the limit of the deceleration determines.
     if (upper.by == By::next && lower.by == By::floor) lower.by = By::deceleration;
     const double x = profile.controllable[i], step2 = 2 * profile.steps[i];
@@ -145,12 +145,12 @@ ProfileWithDerivatives differentiate(const SpeedProfile& profile, std::span<cons
       continue;
     }
     // c_i is the root of upper(x) - lower(x)
-    const auto value = [&](const ActiveBound& bound) {
+    const auto value = [&](const BindingLimit& bound) {
       if (bound.by == By::next) return (reachable[i + 1] - x) / step2;
       if (bound.by == By::floor) return Dual4(-x / step2);
       return end_of_interval(derivatives[i], Dual4(x), limits, trains, bound.number);
     };
-    const auto slope = [&](const ActiveBound& bound) {
+    const auto slope = [&](const BindingLimit& bound) {
       if (bound.by == By::next || bound.by == By::floor) return -1 / step2;
       return end_slope(points[i], x, limits, trains, bound.number);
     };

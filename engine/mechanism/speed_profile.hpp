@@ -23,7 +23,7 @@
 namespace pkm {
 
 /// How a value of the profile is determined: which limit is active.
-struct ActiveBound {
+struct BindingLimit {
   enum class By { speed, acceleration, deceleration, next, floor } by = By::floor;
   int number = -1;  ///< of the limit (with `floor`, of the one below), in the order of visit_speed_bounds() or
                     ///< visit_linear_limits()
@@ -37,10 +37,10 @@ struct SpeedProfile {
   std::vector<double> controllable;   ///< c_0 .. c_N
   /// What determines c_i: the upper and the lower end of u, or a speed bound (then `lower` is unused).
   struct Backward {
-    ActiveBound upper, lower;
+    BindingLimit upper, lower;
   };
-  std::vector<Backward> backward;    ///< of c_0 .. c_(N-1)
-  std::vector<ActiveBound> forward;  ///< what determines u_i
+  std::vector<Backward> backward;     ///< of c_0 .. c_(N-1)
+  std::vector<BindingLimit> forward;  ///< what determines u_i
 };
 
 /// @param points  N + 1 >= 3 points
