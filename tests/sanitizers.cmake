@@ -6,7 +6,7 @@ set(PKM_FILES_OF_RELEASE
   cli/generate cli/table_input generic/bounded_columns accelerators/agreement accelerators/golden_grids generic/sample_slopes
   four_ppa_two_par/derivatives hybrid/breaks storage/h5py cli/changed_study cli/crr_cru cli/mechanism_file_study
   cli/expression cli/extension cli/golden cli/hybrid cli/messages cli/next_step cli/corrupted_file cli/outputs
-  cli/sensitivity cli/stop cli/tool_error cli/diagnosis)
+  cli/compare cli/sensitivity cli/stop cli/tool_error cli/diagnosis)
 set(PKM_TESTS_OF_RELEASE
   CrrCruColumns CountsFromRows ColumnsAgree NoPoseIsNearer TakenApart VirtualWorkIsNewtonEuler
   DerivativesOfTheSmoothPeak IsEstimatedHonestly ALargerClearance DerivativesOfStatistics DerivativesOfMeans
