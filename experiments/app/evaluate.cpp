@@ -95,7 +95,9 @@ ProblemOfMechanism default_problem(const Target& target, const Catalogues& catal
 std::optional<double> proven_error(const DesignProblem& problem, DesignReport& report) {
   const WorkspaceResult<double>& survey = report.workspace;
   if (!problem.parts().plan.columns() || survey.is_sampled || !(survey.volume > 0)) return {};
-  const auto evaluator = prepare_workspace(*problem.parts().mechanism, problem.parts().plan, {});
+  // The working mode is that of the problem's own analysis.
+  const auto evaluator =
+      prepare_workspace(*problem.parts().mechanism, problem.parts().plan, {.mode = problem.parts().request.mode});
   const auto* const prover = dynamic_cast<const VolumeProver*>(evaluator.get());
   const auto bounds = prover ? prover->proven_volume(report.parameters) : std::nullopt;
   if (!bounds) return {};
