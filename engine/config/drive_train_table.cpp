@@ -31,9 +31,10 @@ bool needs_no_transmission(const ConfigValue& table) {
 }
 
 /// @param motors  the [[motor]]s of the study
-JointLimits read_limits(const ConfigValue& table, const AxisInfo& joint, const std::vector<Motor>& motors) {
+/// @param limits  those that earlier tables give for the joint
+JointLimits read_limits(const ConfigValue& table, const AxisInfo& joint, const std::vector<Motor>& motors,
+                        JointLimits limits) {
   const bool turns = joint.turns();
-  JointLimits limits;
   if (const auto speed = table.find("peak_speed")) limits.speed = speed->positive(turns ? "rad/s" : "m/s");
   if (const auto most = table.find("peak_acceleration"))
     limits.acceleration = most->positive(turns ? "rad/s^2" : "m/s^2");
@@ -95,7 +96,7 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (joint != "all" && joint != joints[i].name) continue;
       if (limits[i] && are_trains) throw value.refusal("the joint " + joints[i].name + " has a drive train already");
-      limits[i] = read_limits(table, joints[i], motors);
+      limits[i] = read_limits(table, joints[i], motors, limits[i].value_or(JointLimits()));
       if (are_trains) trains[i] = read_train(table, joints[i], *limits[i]);
     }
   }

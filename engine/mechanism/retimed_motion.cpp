@@ -202,9 +202,10 @@ class SampledLimits {
     };
     const double at_once = reserve(1);
     if (at_once >= 0) return false;
-    double low = 0.5;
-    while (reserve(low) < 0 && low > kSlowest) low *= 0.5;
-    factors_ = scaled(refine_root(reserve, low, reserve(low), 1, at_once, 1e-12) * (1 - 1e-11));
+    double low = 0.5, at_low = reserve(low);
+    for (; at_low < 0 && low > kSlowest; at_low = reserve(low)) low *= 0.5;
+    if (at_low < 0) throw DesignError("the continuous torque of a motor is exceeded at any speed of the motion");
+    factors_ = scaled(refine_root(reserve, low, at_low, 1, at_once, 1e-12) * (1 - 1e-11));
     return true;
   }
 

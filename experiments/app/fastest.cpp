@@ -87,6 +87,7 @@ void expect_fastest(const FastestArguments& arguments) {
   }
   const std::pair<const char*, bool> given[] = {{"--law", arguments.law != "optimal"},
                                                 {"--motor", !arguments.motor.empty()},
+                                                {"--nodes", arguments.nodes != FastestArguments().nodes},
                                                 {"--peak-speed", !arguments.peak_speed.empty()},
                                                 {"--peak-acceleration", !arguments.peak_acceleration.empty()},
                                                 {"--peak-force", !arguments.peak_force.empty()},

@@ -136,5 +136,15 @@ TEST(EnergyOfAStudy, IsThatOfTheTrajectory) {
   EXPECT_GT(drawn, summary.energy_drawn);
 }
 
+// A second table of the joint adds to the limits of the first.
+TEST(FastestStudy, TablesOfOneJointAddTheirLimits) {
+  const std::string speed = "[[drive_train]]\njoint = \"all\"\npeak_speed = 5\n";
+  const std::string stiffness = "[[drive_train]]\njoint = \"arm1\"\nstiffness = 1e6\n";
+  const std::string acceleration = "[[drive_train]]\njoint = \"all\"\npeak_acceleration = 100\n";
+  EXPECT_EQ(outputs_of(delta_study(speed + stiffness + acceleration + kCycleTime)),
+            outputs_of(delta_study("[[drive_train]]\njoint = \"all\"\npeak_speed = 5\npeak_acceleration = 100\n" +
+                                   kCycleTime)));
+}
+
 }  // namespace
 }  // namespace pkm
