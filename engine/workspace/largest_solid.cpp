@@ -469,12 +469,14 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
     }
     found.contacts.push_back(std::move(contact));
   }
-  if (sign == 0 && is_regular_) {
-    double reference = 0;
-    for (const UnitPoint& unit : samples_.points) {
-      const double determinant = determinant_of(tests.report(tests.pose(found.solid.at(spec_.shape, unit), 0)));
-      if (reference == 0 && std::isfinite(determinant)) reference = determinant;
-      if (determinant * reference < 0) found.is_regular = false;
+  if (sign == 0) {
+    for (std::size_t k = 0; k < count; ++k) {
+      double reference = 0;
+      for (const UnitPoint& unit : samples_.points) {
+        const double determinant = determinant_of(tests.report(tests.pose(found.solid.at(spec_.shape, unit), k)));
+        if (reference == 0 && std::isfinite(determinant)) reference = determinant;
+        if (determinant * reference < 0) found.is_regular = false;
+      }
     }
   }
   return found;

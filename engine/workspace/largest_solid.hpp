@@ -51,7 +51,6 @@ class LargestSolidFinder {
 
   const SolidSpec& spec() const { return spec_; }
   const Sweep& sweep() const { return sweep_; }
-  const WorkspacePlan& plan() const { return plan_; }
   std::vector<std::string> dimension_names() const;
 
  private:

@@ -65,6 +65,11 @@ TEST_F(CliLargestSolid, CircleOfFiveBar) {
     EXPECT_NEAR(circle["centre"]["y"], y, kTolerance);
     EXPECT_NEAR(circle["centre"]["x"], 0, kTolerance);
     EXPECT_TRUE(circle["regular"]);
+    const json singular =
+        largest("circle", {kSolidRobots + "five-bar.toml", "--singular", "--set",
+                           "d=" + std::to_string(r3) + ",l_a=" + std::to_string(r1) + ",l_b=" + std::to_string(r2)});
+    EXPECT_GT(singular["dimensions"]["diameter"], circle["dimensions"]["diameter"]);
+    EXPECT_FALSE(singular["regular"]);
   }
 }
 
