@@ -60,8 +60,8 @@ TomlValue value_or(const TomlValue& table, const std::string& key, TomlValue oth
 /// Writes a task as a study of one robot, in the coordinates of this robot.
 class TaskOfRobot {
  public:
-  TaskOfRobot(const Task& task, const TaskRobot& robot, const Names& coordinates)
-      : task_(task), robot_(robot), coordinates_(coordinates) {
+  TaskOfRobot(const Task& task, const TaskRobot& robot, const Names& coordinates, const Catalogues& catalogues)
+      : task_(task), robot_(robot), coordinates_(coordinates), constraints_(catalogues.constraints) {
     const TomlValue* const origins = task.document.find("origin");
     if (const TomlValue* const own = origins ? origins->find(robot.name) : nullptr)
       for (const AxisInfo& axis : robot.mechanism->info().coordinates)
@@ -82,13 +82,8 @@ class TaskOfRobot {
     }
     set(study, "workspace", workspace());
     set(study, "constraint", pose_constraints());
-    for (const char* const key : {"region", "motion"}) {
-      TomlValue tables = list_value();
-      if (const TomlValue* const all = task_.document.find(key))
-        for (const TomlValue& table : all->items)
-          tables.items.push_back(key == std::string("region") ? region(table) : motion(table));
-      set(study, key, tables);
-    }
+    set(study, "region", tables_of_robot("region", &TaskOfRobot::region));
+    set(study, "motion", tables_of_robot("motion", &TaskOfRobot::motion));
     set(study, "output", list_value());
     return study;
   }
@@ -122,10 +117,22 @@ class TaskOfRobot {
     }
   }
 
-  /// A copy of the table without the coordinates that only other robots have; the values of this robot's coordinates
-  /// are converted to its frame.
+  /// A list of the task's tables under `key`, each written for the robot.
+  TomlValue tables_of_robot(const std::string& key, TomlValue (TaskOfRobot::*written)(const TomlValue&) const) const {
+    TomlValue tables = list_value();
+    if (const TomlValue* const all = task_.document.find(key))
+      for (const TomlValue& table : all->items) tables.items.push_back((this->*written)(table));
+    return tables;
+  }
+
+  /// A copy of the table without the coordinates that only other robots have.
+  TomlValue without_other_coordinates(const TomlValue& table) const {
+    return filtered(table, [this](const std::string& key) { return !is_other_robots(key); });
+  }
+
+  /// The same, with the values of this robot's coordinates converted to its frame.
   TomlValue in_robot_frame(const TomlValue& table) const {
-    TomlValue own = filtered(table, [this](const std::string& key) { return !is_other_robots(key); });
+    TomlValue own = without_other_coordinates(table);
     for (std::size_t i = 0; i < own.keys.size(); ++i)
       if (has(own.keys[i])) own.items[i] = moved(own.keys[i], own.items[i]);
     return own;
@@ -143,24 +150,20 @@ class TaskOfRobot {
 
   TomlValue region(const TomlValue& table) const {
     TomlValue own = in_robot_frame(table);
+    if (const TomlValue* const cells = own.find("cells")) set(own, "cells", without_other_coordinates(*cells));
+    const TomlValue box = in_robot_frame(value_or(own, "box", {}));
+    if (box.keys.empty()) return own;
+    set(own, "box", box);
     TomlValue axes = list_value(), cells;
-    for (const char* const key : {"box", "cells"})
-      if (const TomlValue* const given = own.find(key))
-        set(own, key,
-            key == std::string("box") ? in_robot_frame(*given) : filtered(*given, [this](const std::string& name) {
-              return !is_other_robots(name);
-            }));
-    if (const TomlValue* const box = own.find("box"))
-      for (const std::string& name : box->keys) {
-        axes.items.push_back(text_value(name));
-        set(cells, name, {.kind = Kind::integer, .integer = kCells});
-      }
-    if (!own.find("sweep") && !axes.items.empty()) {
+    for (const std::string& name : box.keys) {
+      axes.items.push_back(text_value(name));
+      set(cells, name, {.kind = Kind::integer, .integer = kCells});
+    }
+    if (!own.find("sweep")) {
       set(own, "sweep", axes);
-      const TomlValue box = *own.find("box");
       add_default_values(box, own);
     }
-    if (!own.find("method") && !axes.items.empty()) {
+    if (!own.find("method")) {
       set(own, "method", text_value("voxels"));
       if (!own.find("cells")) set(own, "cells", cells);
     }
@@ -195,11 +198,11 @@ class TaskOfRobot {
 
   /// The constraints of the robot's study that limit poses.
   TomlValue pose_constraints() const {
-    static const Names types = {"interference", "singularity-margin", "clearance"};
     TomlValue list = list_value();
     if (const TomlValue* const all = robot_.study.find("constraint"))
       for (const TomlValue& each : all->items)
-        if (const TomlValue* const type = each.find("type"); type && contains(types, type->text))
+        if (const ConstraintEntry* const entry = find_named(constraints_, value_or(each, "type", {}).text);
+            entry && entry->pose_level())
           list.items.push_back(each);
     return list;
   }
@@ -207,6 +210,7 @@ class TaskOfRobot {
   const Task& task_;
   const TaskRobot& robot_;
   const Names& coordinates_;
+  const std::vector<ConstraintEntry>& constraints_;
   std::vector<std::pair<std::string, double>> origin_;
 };
 
@@ -304,26 +308,18 @@ Task load_task_toml(const std::string& path) {
 
 std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot, const Names& coordinates,
                                      const Catalogues& catalogues) {
-  const TomlValue base = TaskOfRobot(task, robot, coordinates).document();
+  TomlValue document = TaskOfRobot(task, robot, coordinates, catalogues).document();
   StudyChanges changes;
   for (std::size_t i = 0; i < robot.parameters.size(); ++i) {
     const std::string& name = robot.mechanism->info().parameters[i].name;
     changes.recorded_parameters.emplace_back(name, robot.parameters[i]);
     if (name.find('.') != std::string::npos) changes.limb_parameters.push_back(name);
   }
-  const auto read = [&](const TomlValue& document) {
-    return read_study_document(document, task.file_name, catalogues, robot.description, changes);
+  const auto read = [&](const TomlValue& study) {
+    return read_study_document(study, task.file_name, catalogues, robot.description, changes);
   };
-  read(base);  // throws for a mistake in the task
+  Study study = read(document);  // throws for a mistake in the task
 
-  TomlValue all = base;
-  const auto append = [](TomlValue& document, const Line& line, const std::string& name) {
-    const char* const key = line.is_margin ? "constraint" : "output";
-    TomlValue entry = line.entry, entries = *document.find(key);
-    set(entry, "name", text_value(name));
-    entries.items.push_back(entry);
-    set(document, key, entries);
-  };
   std::vector<TaskValue> values;
   Names names;
   for (const Line& line : lines_of(task)) {
@@ -332,17 +328,21 @@ std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot, c
     value.name = line.name;
     value.is_margin = line.is_margin;
     value.value = std::numeric_limits<double>::quiet_NaN();
-    TomlValue single = base;
-    append(single, line, names.back());
+    TomlValue entry = line.entry, longer = document;
+    set(entry, "name", text_value(names.back()));
+    const char* const key = line.is_margin ? "constraint" : "output";
+    TomlValue entries = *document.find(key);
+    entries.items.push_back(entry);
+    set(longer, key, entries);
     try {
-      read(single);
-      append(all, line, names.back());
+      study = read(longer);
+      document = std::move(longer);
     } catch (const ConfigError& error) {
       value.reason = sentence_of(error);
       value.is_mistake = line.is_users;
     }
   }
-  evaluate(robot, read(all), names, values);
+  evaluate(robot, study, names, values);
   return values;
 }
 

@@ -132,7 +132,7 @@ void print_table(const std::vector<TaskRobot>& robots, const std::vector<std::ve
   out.add_table("not available", reasons);
 }
 
-std::string compare(const CompareArguments& arguments, const Session& session, Printout& out) {
+void compare(const CompareArguments& arguments, const Session& session, Printout& out) {
   const Task task = load_task_toml(arguments.task);
   const std::vector<TaskRobot> robots = find_robots(session, arguments.robots);
   const auto lines = compared(task, robots, session.catalogues);
@@ -147,7 +147,6 @@ std::string compare(const CompareArguments& arguments, const Session& session, P
         {{"name", robots[r].name}, {"does_task", is_asked ? Json(!violated(lines[r])) : Json()}, {"values", values}});
   }
   print_table(robots, lines, out);
-  return "";
 }
 
 }  // namespace
