@@ -19,9 +19,7 @@ Pose<double> home_pose(const std::vector<std::string>& given, const Target& targ
     if (!pose) throw ConfigError({"", 0, "--ranges"}, "no feasible pose was found", "--home with a feasible pose");
     return *pose;
   }
-  std::vector<Assignable> known;
-  for (const AxisInfo& axis : info.coordinates) known.push_back({axis.name, axis.unit});
-  const Pose<double> pose = axis_vector(parse_some_assignments(given, "--home", known));
+  const Pose<double> pose = axis_vector(parse_some_assignments(given, "--home", assignable_axes(info.coordinates)));
   if (const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
       !report.feasible)
     throw ConfigError(place, "an infeasible pose: " + report.reason, "a feasible one");

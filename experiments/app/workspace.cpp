@@ -83,6 +83,7 @@ std::vector<WorkspaceField> exact_fields(const Target& target, const WorkspaceAr
 
 /// Adds exact_fields() to the fields of a workspace; NaN at infeasible cells.
 void add_exact_fields(const Target& target, const WorkspaceArguments& arguments, WorkspaceFields& workspace) {
+  if (arguments.fields.empty()) return;
   const std::vector<std::size_t> cells = workspace.feasible_cells();
   std::vector<Pose<double>> poses;
   for (const std::size_t cell : cells) poses.push_back(workspace.pose(cell));

@@ -89,7 +89,7 @@ TEST_F(Connect, HomePoseNeedsVoxels) {
     return run({"check", "study.toml"}).err;
   };
   EXPECT_THAT(error_of("home = { x = 0, y = 0.3 }\n"), HasSubstr("set method = \"voxels\""));
-  EXPECT_THAT(error_of("method = \"voxels\"\nhome = { x = 0 }\n"), HasSubstr("y"));
+  EXPECT_THAT(error_of("method = \"voxels\"\nhome = { x = 0 }\n"), HasSubstr("home.y"));
   EXPECT_THAT(error_of("method = \"voxels\"\nhome = { x = 0, y = 0.3, q = 1 }\n"), HasSubstr("home.q"));
   EXPECT_THAT(error_of("method = \"voxels\"\nexact = true\nhome = { x = 0, y = 0.3 }\n"), HasSubstr("exact values"));
   EXPECT_EQ(error_of("method = \"voxels\"\nhome = { x = 0, y = \"300 mm\" }\n"), "");

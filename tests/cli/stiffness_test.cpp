@@ -56,10 +56,8 @@ TEST(CliStiffness, OfATranslatorWithUniversalJoints) {
 }
 
 /// `pose --stiffness` of a mechanism file.
-json stiffness_of(const std::string& file, const std::string& at, const std::string& design = "") {
-  std::vector<std::string> words = {"pose", file, "--at", at, "--stiffness", "--json"};
-  if (!design.empty()) words.insert(words.end(), {"--set", design});
-  return pkmopt(words).json()["stiffness"];
+json stiffness_of(const std::string& file, const std::string& at) {
+  return pkmopt({"pose", file, "--at", at, "--stiffness", "--json"}).json()["stiffness"];
 }
 
 void expect_frequencies(const json& found, const std::vector<double>& expected) {

@@ -281,7 +281,9 @@ class ProvenSolid {
              (P - axis * dot(P, axis)) * (Interval(2) * l_2);
     }
     return (face.surface == Surface::sphere ? P : P - axis * dot(P, axis)) * Interval(face.side);
-  }  /// The integrand of the volume, of one order less than p.
+  }
+
+  /// The integrand of the volume, of one order less than p.
   template <std::size_t N>
   IntervalSeries<N - 1> integrand(const ProvenArc& arc, const SeriesVector<N>& p) const {
     SeriesVector<N - 1> at, dp;

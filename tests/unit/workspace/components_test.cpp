@@ -59,6 +59,7 @@ TEST(Components, OfTwoTelescopesHaveTheReferenceAreas) {
     EXPECT_EQ(counted.field(kConditioning).size(), counted.weight.size());
     EXPECT_TRUE(counted.pose.empty());
     const WorkspaceResult<double> with_poses = test::survey(*mechanism, design, upper, {.poses = true});
+    EXPECT_EQ(with_poses.pose.size(), static_cast<std::size_t>(with_poses.feasible_cells));
     for (const Pose<double>& pose : with_poses.pose) EXPECT_GT(pose[1], 0);
   }
 }
