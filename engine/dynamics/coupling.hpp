@@ -2,9 +2,11 @@
 // number.
 #pragma once
 
+#include <array>
 #include <cmath>
-
-#include <Eigen/Eigenvalues>
+#include <cstddef>
+#include <optional>
+#include <span>
 
 #include "engine/dynamics/coupling_indices.hpp"
 #include "engine/math/dual.hpp"
@@ -36,30 +38,35 @@ Matrix<S, 4, 4> matrix_of(const JointInertia<S>& elements) {
   return M;
 }
 
+/// Unit eigenvectors of the smallest and of the largest eigenvalue of a symmetric matrix; undefined if an element is
+/// not finite.
+struct ExtremeEigenvectors {
+  static constexpr std::size_t kMax = 8;  ///< rows
+  std::array<double, kMax> smallest{}, largest{};
+};
+/// @param elements n x n, row-major; n at most ExtremeEigenvectors::kMax
+std::optional<ExtremeEigenvectors> extreme_eigenvectors(std::span<const double> elements, std::size_t n);
+
 /// Inverse condition number of M_q: minimum over maximum eigenvalue, in [0, 1]; 1: all joints have the same inertia and
 /// are decoupled; 0: M_q is singular or not finite. Derivatives of an eigenvalue: d lambda = v^T dM v.
 template <SmallMatrix M>
 typename M::Scalar inertia_condition(const M& M_q) {
   using S = typename M::Scalar;
-  if constexpr (!M::kFixed)
-    if (M_q.rows() == 4) return inertia_condition(fixed<4, 4>(M_q));  // the same bits as with the fixed size
-  constexpr int kMax = static_cast<int>(M::kRows), kSize = M::kFixed ? kMax : Eigen::Dynamic;
-  using Values = Eigen::Matrix<double, kSize, kSize, 0, kMax, kMax>;
-  const auto n = static_cast<int>(M_q.rows());
-  const auto element = [&](int i, int j) { return M_q(static_cast<std::size_t>(i), static_cast<std::size_t>(j)); };
-  Values values(n, n);
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) values(i, j) = value_of(element(i, j));
-  if (!values.allFinite()) return S(0.0);
-  const Eigen::SelfAdjointEigenSolver<Values> eigen(values);
-  const auto eigenvalue = [&](int which) {  // v^T M v, whose derivatives are those of the eigenvalue
+  constexpr std::size_t kMax = ExtremeEigenvectors::kMax;
+  static_assert(M::kRows <= kMax);
+  const std::size_t n = M_q.rows();
+  std::array<double, kMax * kMax> values{};
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) values[i * n + j] = value_of(M_q(i, j));
+  const auto vectors = extreme_eigenvectors(std::span(values).first(n * n), n);
+  if (!vectors) return S(0.0);
+  const auto eigenvalue = [&](const std::array<double, kMax>& v) {  // v^T M v, with its derivatives
     S sum(0.0);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        sum += element(i, j) * (eigen.eigenvectors()(i, which) * eigen.eigenvectors()(j, which));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) sum += M_q(i, j) * (v[i] * v[j]);
     return sum;
   };
-  const S smallest = eigenvalue(0), largest = eigenvalue(n - 1);
+  const S smallest = eigenvalue(vectors->smallest), largest = eigenvalue(vectors->largest);
   return value_of(largest) > 0 && value_of(smallest) > 0 ? S(smallest / largest) : S(0.0);
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/generic/eigen_matrix.hpp"
 #include "engine/generic/newton_euler.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -214,7 +215,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
   if (N.cols() > 0) {
     // smaller eigenvalues are rounding errors: redundant forces that load rigid bodies only, and have no energy
     constexpr double kNoEnergy = 1e-13;  // relative to the largest element of the energy
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> of_energy(N.transpose() * scaled_Q * N);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> of_energy(MatrixXd(N.transpose() * scaled_Q * N));
     const double threshold = kNoEnergy * scaled_Q.diagonal().maxCoeff();
     for (Index k = 0; k < N.cols(); ++k) {
       const double eigenvalue = of_energy.eigenvalues()[k];

@@ -14,7 +14,8 @@
 #include <map>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm::generic {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm {
 namespace {

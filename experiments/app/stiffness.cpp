@@ -9,6 +9,7 @@
 #include "engine/config/assignments.hpp"
 #include "engine/dynamics/pose_dynamics.hpp"
 #include "engine/generic/eigen_matrix.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/motion_inputs.hpp"
 

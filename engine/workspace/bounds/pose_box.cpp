@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "engine/core/team.hpp"
 #include "engine/geometry/singular.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "engine/math/roots.hpp"
 
 namespace pkm::bounds {

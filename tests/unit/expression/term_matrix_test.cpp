@@ -8,6 +8,7 @@
 #include "engine/expression/derivative.hpp"
 #include "engine/expression/program.hpp"
 #include "engine/expression/term_matrix.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm::expression {
 namespace {

@@ -1,12 +1,12 @@
 // What intervals say of described mechanisms, beside volumes proven otherwise.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <Eigen/SVD>
 
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/geometry/singular.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "engine/math/random.hpp"
 #include "engine/motion/motion_factories.hpp"
 #include "engine/workspace/prepare_workspace.hpp"

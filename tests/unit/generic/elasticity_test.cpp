@@ -1,6 +1,7 @@
 // Stiffness with elastic slides, rods and drives, against cantilevers by hand and against the direct stiffness method.
 #include <numbers>
 
+#include "engine/math/eigen_solvers.hpp"
 #include "tests/unit/generic/performance_fixtures.hpp"
 
 namespace pkm::test {

@@ -4,6 +4,7 @@
 
 #include "engine/dynamics/pose_dynamics.hpp"
 #include "engine/generic/exact_accuracy.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "tests/unit/generic/performance_fixtures.hpp"
 
 namespace pkm::test {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/math/eigen_solvers.hpp"
 #include "tests/unit/generic/performance_fixtures.hpp"
 
 namespace pkm::test {

@@ -1,0 +1,10 @@
+// Decompositions of dense matrices of any size by Eigen, compiled only once, in eigen_solvers.cpp: each takes seconds.
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+extern template class Eigen::JacobiSVD<Eigen::MatrixXd>;
+extern template class Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+extern template Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>::compute(
+    const Eigen::EigenBase<Eigen::MatrixXd>&, int);
