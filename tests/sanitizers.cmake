@@ -63,6 +63,11 @@ set(PKM_TESTS_OF_RELEASE
   AreOfSecondOrderWhereALimit HybridKinematics.ReportsAgree MarginsHaveDerivatives EdgeVolumeGradient
   ExpressionNamesAreDistinctAndHaveTheRightValues/3crr ExpressionNamesAreDistinctAndHaveTheRightValues/2t1r
   LeavesOtherQuadricsToTheCylindrical HaveTheDerivativesOfDifferences FinalDesignsAreCertifiedBetween
+  SampledPoses.ACentralPose Components.Of FastestMotion.OfThe FastestMotion.IsThatOf FastestMotion.KeepsThe
+  CycleTime.HasTheDerivatives ProvenVolume.Of ObjectiveContract.IsDefinedOrExplained Transmission.IsAField
+  PerformanceNumeric RunStudy.OutOfMemory CliLargestSolid.C CliLargestSolid.HasDerivatives CompareProgram.ValuesAre
+  CompareProgram.RobotsMay CliTrajectory.FastestMotion ReportProgram.WorkspaceWrites ExportProgram.ModelsForSimulation
+  DrawsTheExactError CliTrajectory.ReadsTheTable FollowsCurvedPathsWithin
   Connect.HomePoseSelectsOneSide NanIsFailedAndNeverBest/ipopt RespectsBounds/ipopt CatalogueMdIsUpToDate NumberOfThreadsFromEnvironment)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.

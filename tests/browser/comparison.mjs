@@ -60,6 +60,7 @@ const design = await Page.open(one, { scheme: "dark" });
 assert.deepEqual(await design.panels(), ["design", "workspace", "mechanism", "coupling"]);
 await design.draw();
 assert.ok((await design.moveSliders("mechanism")) === 4);
+assert.ok((await design.moveSliders("coupling")) > 0);
 await design.page.click("#design summary");
 assert.match(await design.text("#design"), /\bl\s+50 mm/);
 await design.screenshots(folder, "one-design-dark");

@@ -36,7 +36,7 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
     const char* const text = std::getenv(name);
     return text ? static_cast<unsigned>(std::atoi(text)) : otherwise;
   };
-  const unsigned designs = number("PKM_CORNER_DESIGNS", 8), first = number("PKM_CORNER_FIRST", 0);
+  const unsigned designs = number("PKM_CORNER_DESIGNS", 5), first = number("PKM_CORNER_FIRST", 0);
   const Mechanism& mechanism = *test::described(GetParam());
   unsigned compared = 0, different = 0, uncertain = 0;
   double largest = 0;

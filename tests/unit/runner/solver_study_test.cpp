@@ -90,7 +90,7 @@ TEST_F(SolverStudy, ResumedAtAnyEvaluationEqualsTheUninterruptedRun) {
   const auto reference = run_study(study, path("reference.h5"), false, {}, silent);
   const auto reports =
       static_cast<int>(reference.contents.stages[1].table.size() + reference.contents.stages[2].table.size()) + 6;
-  for (int stop = 5; stop < reports; stop += 61) {
+  for (int stop = 5; stop < reports; stop += 122) {
     const std::string file = path("s" + std::to_string(stop) + ".h5");
     StopAt at(stop);
     run_study(study, file, false, {}, at);
