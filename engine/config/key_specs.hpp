@@ -42,22 +42,27 @@ inline OptionSpec formulas_key(const std::string& name, const std::string& unit,
           .parts = {{.kind = OptionKind::formula, .unit = unit}}};
 }
 
+/// The description of a vector: three formulas [x, y, z], or a formula whose value is a vector.
+inline OptionSpec vector_key(const std::string& name, const std::string& unit, const std::string& meaning) {
+  return {.name = name,
+          .kind = OptionKind::any_of,
+          .unit = unit,
+          .meaning = meaning,
+          .parts = {formulas_key("", unit, 3, ""), formula_key("", unit, "")}};
+}
+
 inline OptionSpec point_key(const std::string& name, const std::string& meaning) {
-  return formulas_key(name, "m", 3, meaning);
+  return vector_key(name, "m", meaning);
 }
 
 inline OptionSpec direction_key(const std::string& name, const std::string& meaning) {
-  return formulas_key(name, "1", 3, meaning);
+  return vector_key(name, "1", meaning);
 }
 
-/// The description of a point: [x, y, z], or the name of a point of a limb, "arm1.C".
+/// The description of a point in the base's frame, which may be a point of a limb.
 inline OptionSpec place_key(const std::string& name, const std::string& meaning) {
-  return {.name = name,
-          .kind = OptionKind::any_of,
-          .unit = "m",
-          .required = true,
-          .meaning = meaning + ": [x, y, z] in the base's frame, or the point of a limb (\"arm1.C\")",
-          .parts = {point_key("", ""), {.kind = OptionKind::word}}};
+  return required(point_key(
+      name, meaning + ": [x, y, z] in the base's frame, or a formula such as the point \"arm1.C\" of a limb"));
 }
 
 inline OptionSpec text_key(const std::string& name, const std::string& meaning) {

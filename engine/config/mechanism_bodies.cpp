@@ -232,7 +232,7 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
   for (const LimbPart& part : turning) names.push_back(part.name);
   for (const ConfigValue& table : root.tables("body")) {
     const std::string name = new_name(table, "body", draft.model.bodies, "the body's name");
-    const Vector3 centre = read_point(table.at("centre", "a point"), name, draft);
+    const Vector3 centre = draft.scope.point(table.at("centre", "a point"), name);
     const Term mass = checked(draft, draft.scope.positive(table.at("mass", "the body's mass"), "kg", name, true),
                               "the mass of " + name, "kg", true);
     BodyNodes body = body_at(centre, mass, name);

@@ -92,6 +92,7 @@ struct MechanismDraft {
   generic::Model model;
   MechanismScope scope{model};
   limbs::Vector3 origin{zero(), zero(), zero()};  ///< origin of the platform's frame
+  bool has_origin = false;                        ///< whether `origin` has been read
   /// Rotation of the platform's frame.
   limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<NamedLimb> limbs;
@@ -193,7 +194,4 @@ void read_platform_body(const ConfigValue& platform, MechanismDraft& draft);
 void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft);
 /// Reads the tables [[joint]], and adds the joints of the limbs, to compute the forces in joints.
 void add_joints(const ConfigValue& root, MechanismDraft& draft);
-/// Reads [x, y, z] or the name of a limb's point, "arm1.C".
-limbs::Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft);
-
 }  // namespace pkm

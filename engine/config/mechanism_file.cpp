@@ -137,15 +137,32 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
   }
 }
 
-void read_let(const ConfigValue& root, MechanismDraft& draft) {
+/// Reads the origin of the platform's frame, which may depend on formulas of [let], and adds the frame to the names of
+/// formulas. Called again, it does nothing.
+void read_origin(const ConfigValue& platform, MechanismDraft& draft) {
+  if (draft.has_origin) return;
+  draft.has_origin = true;
+  if (const auto origin = platform.find("origin")) draft.origin = draft.scope.point(*origin, "origin");
+  draft.scope.add_predefined("platform", expression::Frame{draft.origin, draft.turn});
+}
+
+/// Whether a formula contains the word "platform".
+bool mentions_platform(const ConfigValue& value) {
+  return value.is_text() && value.text("a formula").find("platform") != std::string::npos;
+}
+
+void read_let(const ConfigValue& root, const ConfigValue& platform, MechanismDraft& draft) {
+  draft.scope.add_predefined("R", draft.turn);
   for (const auto& all : {root.find_table("let"), draft.masses ? draft.masses->find_table("let") : std::nullopt}) {
     if (!all) continue;
     draft.let.push_back(*all);
     for (const std::string& name : all->keys()) {
       const ConfigValue value = *all->find(name);
-      draft.scope.add(value, name, draft.scope.formula(value, "1", name).node());
+      if (mentions_platform(value)) read_origin(platform, draft);
+      draft.scope.add(value, name, draft.scope.formula_of_any_kind(value, "1", name));
     }
   }
+  read_origin(platform, draft);
 }
 
 /// Selects one of the mass models in [masses], which can have their own parameters and formulas. @param chosen  name of
@@ -166,7 +183,6 @@ void choose_masses(const ConfigValue& root, const std::string& chosen, Mechanism
 
 void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   generic::Model& model = draft.model;
-  if (const auto origin = platform.find("origin")) draft.origin = draft.scope.point(*origin, "origin");
   model.origin = nodes(draft.origin);
   for (std::size_t row = 0; row < 3; ++row) model.rotation[row] = nodes(draft.turn[row]);
   if (const auto length = platform.find("characteristic_length")) {
@@ -253,7 +269,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   read_modes(root, draft);
   read_inputs(root, draft);
   draft.scope.allow_motion(true);
-  read_let(root, draft);
+  read_let(root, platform, draft);
   draft.scope.allow_motion(false);
   read_platform(platform, draft);
   read_limbs(root, draft);

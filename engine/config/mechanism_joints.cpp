@@ -243,7 +243,7 @@ class JointReader {
     if (about && along) throw along->refusal("give either `about` or `along`, not both");
     if (along && !drive) throw along->refusal("a joint with `along`, a slide, needs `drive`");
     const ConfigValue given = along ? *along : table.at("about", "the axis [x, y, z] in the base's frame");
-    const Vector3 axis = draft_.scope.direction(given, name), at = read_point(table.at("at", "a point"), name, draft_);
+    const Vector3 axis = draft_.scope.direction(given, name), at = draft_.scope.point(table.at("at", "a point"), name);
     if (!drive) {
       joints_.push_back(joint(name, at, *first, second, JointNodes::Couples::all_but_about, {axis}));
       return;

@@ -34,7 +34,7 @@ void replace_closures(const ConfigValue& list, const std::vector<JointVariable>&
   const std::string expected = "a list of as many formulas as the limb has joints, " + std::to_string(joints.size());
   const auto closures = list.elements(expected);
   if (closures.size() != joints.size()) throw list.error(expected);
-  const std::vector<expression::Node> usual = draft.scope.meanings();
+  const auto usual = draft.scope.meanings();
   for (const JointVariable& joint : joints) draft.scope.replace(joint.name, joint.q.node());
   std::vector<expression::Node>& all = draft.model.closures;
   all.resize(all.size() - joints.size());

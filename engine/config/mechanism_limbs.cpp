@@ -216,6 +216,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);
   draft.limbs.push_back(named(copy, at, limb));
+  for (const auto& [point, place] : draft.limbs.back().points) draft.scope.add_point(copy.name + "." + point, place);
   read_elasticity(copy.table, draft.limbs.back(), draft);
   for (const LimbPart& part : draft.limbs.back().parts) add_part_body(copy.table, copy.name, part, draft);
   add_limb_links(copy, at, limb);

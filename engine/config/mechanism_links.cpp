@@ -9,24 +9,12 @@ namespace pkm {
 
 using limbs::Term, limbs::Vector3;
 
-Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft) {
-  if (!value.is_text()) return draft.scope.point(value, what);
-  const std::string& text = value.text("a point");
-  std::vector<std::string> known;
-  for (const NamedLimb& limb : draft.limbs)
-    for (const auto& [point, place] : limb.points) {
-      known.push_back(limb.name + "." + point);
-      if (known.back() == text) return place;
-    }
-  throw value.error("[x, y, z] or the point of a limb: " + join(known), nearest_name(text, known));
-}
-
 std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft) {
   std::vector<LimbPart> links;
   for (const ConfigValue& table : root.tables("link")) {
     const std::string& name = table.at("name", "the link's name").text("the link's name");
-    const Vector3 from = read_point(table.at("from", "a point"), name, draft),
-                  to = read_point(table.at("to", "a point"), name, draft);
+    const Vector3 from = draft.scope.point(table.at("from", "a point"), name),
+                  to = draft.scope.point(table.at("to", "a point"), name);
     const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
     std::string part = kFramePart;
     std::vector<std::string> in, copies;  // names of groups; the name of a limb with copies refers to all of its copies

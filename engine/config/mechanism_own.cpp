@@ -25,7 +25,7 @@ void add_own_parameter(const LimbParameter& own, const Parameter& parameter, Mec
 }
 
 void read_as_limb(const std::string& limb, const std::function<void()>& read, MechanismDraft& draft) {
-  const std::vector<expression::Node> usual = draft.scope.meanings();
+  const auto usual = draft.scope.meanings();
   bool any = false;
   for (const OwnParameter& own : draft.own)
     if (own.limb == limb) {
@@ -34,7 +34,7 @@ void read_as_limb(const std::string& limb, const std::function<void()>& read, Me
     }
   for (const ConfigValue& let : draft.let)
     for (const std::string& name : let.keys())
-      if (any) draft.scope.replace(name, draft.scope.formula(*let.find(name), "1", name + " of " + limb).node());
+      if (any) draft.scope.replace(name, draft.scope.formula_of_any_kind(*let.find(name), "1", name + " of " + limb));
   read();
   draft.scope.restore(usual);
 }

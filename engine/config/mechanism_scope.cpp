@@ -12,44 +12,89 @@ namespace pkm {
 
 using expression::Node, limbs::Term, limbs::Vector3;
 
-void MechanismScope::add(const ConfigValue& at, const std::string& name, Node node) {
+void MechanismScope::add(const ConfigValue& at, const std::string& name, const Value& value) {
   if (!expression::may_be_name(name))
     throw at.refusal(
         "'" + name +
         "' is not a valid name in formulas; expected letters, digits and '_', not beginning with a digit, and no "
         "function or pi");
-  if (const auto known = names_.find(name))
-    throw at.refusal("'" + name + "' is already the name of " + origins_[*known]);
+  const std::string origin = at.place().key + " (" + at.line() + ")";
+  if (const auto known = names_.find(name)) {
+    if (!origins_[*known].empty()) throw at.refusal("'" + name + "' is already the name of " + origins_[*known]);
+    origins_[*known] = origin;
+    return replace(name, value);
+  }
   names_.add(name);
-  origins_.push_back(at.place().key + " (" + at.line() + ")");
-  nodes_.push_back(node);
+  origins_.push_back(origin);
+  values_.push_back(value);
 }
 
-void MechanismScope::replace(const std::string& name, Node node) { nodes_[names_.find(name).value()] = node; }
+void MechanismScope::add_predefined(const std::string& name, const Value& value) {
+  if (names_.find(name)) return;
+  names_.add(name, expression::Names::Listing::never);
+  origins_.emplace_back();
+  values_.push_back(value);
+}
 
-bool MechanismScope::knows(const std::string& name) const { return names_.find(name).has_value(); }
+void MechanismScope::add_point(const std::string& name, const Vector3& point) {
+  names_.add(name);
+  origins_.emplace_back();
+  values_.emplace_back(point);
+}
 
-Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, const std::string& what) {
+void MechanismScope::replace(const std::string& name, const Value& value) {
+  values_[names_.find(name).value()] = value;
+}
+
+bool MechanismScope::knows(const std::string& name) const {
+  const auto index = names_.find(name);
+  return index && !origins_[*index].empty();
+}
+
+MechanismScope::Value MechanismScope::formula_of_any_kind(const ConfigValue& value, const std::string& unit,
+                                                          const std::string& what) {
   value.expect_formula(unit);
   if (!value.is_text()) return model_.term(model_.graph.number(value.number(unit)));
   const std::string& text = value.text("a number or a formula");
   if (const auto number = parse_quantity(text, unit)) return model_.term(model_.graph.number(*number));
   if (const std::string kind = kind_of_quantity(text); !kind.empty())
     throw value.error_of('"' + text + "\", " + kind, kind_of_unit(unit) + ", or a formula: " + quantity_hint(unit));
-  const Node node = value.explained([&] { return expression::read_formula(model_.graph, text, names_, nodes_); });
-  if (!motion_allowed_ && (model_.graph[node].groups & (generic::Inputs::kExtras | generic::Inputs::kRates)) != 0)
-    throw value.refusal("only the formula of a [[quantity]] may depend on [inputs] or rates");
-  register_partial_operations(node, what);
-  return model_.term(node);
+  const auto [parsed, norms] = value.explained([&] {
+    return expression::parse_formula(model_.graph, text, names_, [this](std::size_t i) { return values_[i]; });
+  });
+  for (const Node norm : norms) {
+    const expression::Entry root = model_.graph[norm];
+    for (const Node argument : root.operands()) register_partial_operations(argument, what);
+    visited_.insert(norm);
+  }
+  for (const Term& term : expression::elements(parsed)) {
+    if (!motion_allowed_ &&
+        (model_.graph[term.node()].groups & (generic::Inputs::kExtras | generic::Inputs::kRates)) != 0)
+      throw value.refusal("only the formula of a [[quantity]] may depend on [inputs] or rates");
+    register_partial_operations(term.node(), what);
+  }
+  return parsed;
+}
+
+Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, const std::string& what) {
+  const Value found = formula_of_any_kind(value, unit, what);
+  if (const Term* const term = std::get_if<Term>(&found)) return *term;
+  throw value.error_of(expression::kind_of(found) + ", the value of this formula", "a scalar");
+}
+
+void MechanismScope::refuse_pose(const ConfigValue& value, std::span<const Term> terms) const {
+  std::vector<std::string> moving;
+  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)
+    if (std::ranges::any_of(terms, [&](const Term& term) {
+          return model_.graph[term.node()].groups & generic::Inputs::coordinate_group(i);
+        }))
+      moving.push_back("'" + model_.info.coordinates[i].name + "'");
+  if (!moving.empty()) throw value.error("a formula of parameters only, which does not depend on " + join(moving));
 }
 
 Term MechanismScope::of_design(const ConfigValue& value, const std::string& unit, const std::string& what) {
   const Term term = formula(value, unit, what);
-  std::vector<std::string> moving;
-  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)
-    if (model_.graph[term.node()].groups & generic::Inputs::coordinate_group(i))
-      moving.push_back("'" + model_.info.coordinates[i].name + "'");
-  if (!moving.empty()) throw value.error("a formula of parameters only, which does not depend on " + join(moving));
+  refuse_pose(value, {&term, 1});
   return term;
 }
 
@@ -64,29 +109,38 @@ Term MechanismScope::positive(const ConfigValue& value, const std::string& unit,
 
 namespace {
 
-constexpr const char* kPoint = "three numbers or formulas [x, y, z]";
-constexpr const char* kDirection = "a direction, three numbers or formulas [x, y, z] that are not all 0";
-
-/// Reads [x, y, z], each element by `read`.
-template <class Read>
-Vector3 three(const ConfigValue& value, const char* expected, const Read& read) {
-  const std::vector<ConfigValue> elements = value.elements(expected);
-  if (elements.size() != 3) throw value.error(expected);
-  return {read(elements[0]), read(elements[1]), read(elements[2])};
-}
+constexpr const char* kPoint = "three numbers or formulas [x, y, z], or a formula whose value is a vector";
+constexpr const char* kDirection =
+    "a direction, three numbers or formulas [x, y, z] that are not all 0, or a formula whose value is a vector";
 
 }  // namespace
 
+Vector3 MechanismScope::vector(const ConfigValue& value, const std::string& unit, const std::string& what,
+                               const char* expected) {
+  if (value.is_text()) {
+    const Value found = formula_of_any_kind(value, unit, what);
+    if (const Vector3* const v = std::get_if<Vector3>(&found)) return *v;
+    throw value.error_of(expression::kind_of(found) + ", the value of this formula", expected);
+  }
+  const std::vector<ConfigValue> elements = value.elements(expected);
+  if (elements.size() != 3) throw value.error(expected);
+  const auto element = [&](std::size_t i) { return formula(elements[i], unit, what); };
+  return {element(0), element(1), element(2)};
+}
+
 Vector3 MechanismScope::point(const ConfigValue& value, const std::string& what) {
-  return three(value, kPoint, [&](const ConfigValue& each) { return formula(each, "m", what); });
+  return vector(value, "m", what, kPoint);
 }
 
 Vector3 MechanismScope::point_of_design(const ConfigValue& value, const std::string& what) {
-  return three(value, kPoint, [&](const ConfigValue& each) { return of_design(each, "m", what); });
+  const Vector3 point = vector(value, "m", what, kPoint);
+  refuse_pose(value, point);
+  return point;
 }
 
 Vector3 MechanismScope::direction(const ConfigValue& value, const std::string& what) {
-  const Vector3 v = three(value, kDirection, [&](const ConfigValue& each) { return of_design(each, "1", what); });
+  const Vector3 v = vector(value, "1", what, kDirection);
+  refuse_pose(value, v);
   const Term length = limbs::length(v);
   if (!(at_default(length) > 0)) throw value.error(kDirection);
   mark_as_defined(length.node());

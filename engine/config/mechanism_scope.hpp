@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <unordered_set>
 #include <vector>
 
 #include "engine/config/config_value.hpp"
+#include "engine/expression/formula_value.hpp"
 #include "engine/expression/symbol_table.hpp"
 #include "engine/generic/model.hpp"
 
@@ -16,13 +18,21 @@ class MechanismScope {
  public:
   explicit MechanismScope(generic::Model& model) : model_(model) {}
 
+  using Value = expression::FormulaValue;
+
   /// Refuses a name that is invalid in formulas or in use.
-  void add(const ConfigValue& at, const std::string& name, expression::Node node);
-  /// Assigns another node to a name, for example a threshold in place of a parameter.
-  void replace(const std::string& name, expression::Node node);
-  /// The nodes of all names. Passing them to restore() resets these names, and keeps names that were added later.
-  const std::vector<expression::Node>& meanings() const { return nodes_; }
-  void restore(const std::vector<expression::Node>& meanings) { std::ranges::copy(meanings, nodes_.begin()); }
+  void add(const ConfigValue& at, const std::string& name, const Value& value);
+  void add(const ConfigValue& at, const std::string& name, expression::Node node) { add(at, name, model_.term(node)); }
+  /// Adds a name that every file may use, and may also give to something of its own: then it has this other meaning.
+  void add_predefined(const std::string& name, const Value& value);
+  /// Adds the name of a point of a limb, "arm1.C".
+  void add_point(const std::string& name, const limbs::Vector3& point);
+  /// Assigns another value to a name, for example a threshold in place of a parameter.
+  void replace(const std::string& name, const Value& value);
+  void replace(const std::string& name, expression::Node node) { replace(name, model_.term(node)); }
+  /// The values of all names. Passing them to restore() resets these names, and keeps names that were added later.
+  const std::vector<Value>& meanings() const { return values_; }
+  void restore(const std::vector<Value>& meanings) { std::ranges::copy(meanings, values_.begin()); }
   bool knows(const std::string& name) const;
   /// Sets whether formulas may depend on rates and on [inputs]. Only formulas of quantities may.
   void allow_motion(bool allowed) { motion_allowed_ = allowed; }
@@ -30,17 +40,19 @@ class MechanismScope {
   /// Reads a number, text with a unit of the dimension of `unit`, or a formula of the names defined so far. If the
   /// formula can be undefined, add_domains() adds the condition that it is defined, under the name `what`.
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
+  /// The same for a formula whose value may also be a vector, a rotation or a frame.
+  Value formula_of_any_kind(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// Reads a formula of parameters only.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// Reads a formula of parameters whose value has to be positive. Refuses a number that is not positive; a formula may
   /// be negative for some designs.
   limbs::Term positive(const ConfigValue& value, const std::string& unit, const std::string& what,
                        bool may_vanish = false);
-  /// Reads three formulas, [x, y, z].
+  /// Reads three formulas, [x, y, z], or a formula whose value is a vector.
   limbs::Vector3 point(const ConfigValue& value, const std::string& what);
-  /// Reads three formulas of parameters only.
+  /// Reads a point that depends on parameters only.
   limbs::Vector3 point_of_design(const ConfigValue& value, const std::string& what);
-  /// Reads a direction, three formulas of parameters only, and normalises it.
+  /// Reads a direction, which depends on parameters only, and normalises it.
   limbs::Vector3 direction(const ConfigValue& value, const std::string& what);
   /// Value of a formula for the default parameters at an arbitrary pose, to test equations that must hold at every
   /// pose.
@@ -57,6 +69,11 @@ class MechanismScope {
   void add_domains();
 
  private:
+  limbs::Vector3 vector(const ConfigValue& value, const std::string& unit, const std::string& what,
+                        const char* expected);
+  /// Refuses a value that depends on the pose.
+  void refuse_pose(const ConfigValue& value, std::span<const limbs::Term> terms) const;
+
   /// The nodes that `root` depends on and that have not been visited yet, in topological order.
   std::vector<expression::Node> unvisited_nodes(expression::Node root) const;
 
@@ -71,8 +88,8 @@ class MechanismScope {
 
   generic::Model& model_;
   expression::Names names_;
-  std::vector<expression::Node> nodes_;
-  std::vector<std::string> origins_;  ///< "parameters.a (line 7)"
+  std::vector<Value> values_;
+  std::vector<std::string> origins_;  ///< "parameters.a (line 7)"; "": predefined
   std::vector<PartialOperation> partial_operations_;
   std::unordered_set<expression::Node> visited_;
   bool motion_allowed_ = false;

@@ -15,6 +15,10 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
+/// Whether a value can have a part of this name; see part_of().
+bool is_part(const std::string& name) {
+  return name == "x" || name == "y" || name == "z" || name == "origin" || name == "R";
+}
 
 /// End of a message about an unknown name: "; expected one of a, b; did you mean 'a'?"
 std::string expected_names(const std::string& name, const std::vector<std::string>& known) {
@@ -34,14 +38,18 @@ class Lexer {
         i += tokens_.back().text.size();
       }
     if (tokens_.empty()) refuse(text_, "is empty");
-    if (!open_.empty()) refuse(text_, "does not close the " + quote("(", tokens_[open_.back().token].position));
+    if (!open_.empty()) {
+      const Token& open = tokens_[open_.back().token];
+      refuse(text_, "does not close the " + quote(open.text, open.position));
+    }
     return std::move(tokens_);
   }
 
  private:
-  struct Parenthesis {
+  /// An open parenthesis or bracket.
+  struct Open {
     std::size_t token;  ///< index of the token
-    bool calls;         ///< true: begins the arguments of a function; false: groups a term
+    bool is_list;       ///< true: the arguments of a function, or the elements of a vector; false: groups a term
     std::size_t commas = 0;
   };
 
@@ -49,17 +57,21 @@ class Lexer {
     const std::string_view rest = std::string_view(text_).substr(i);
     if (is_digit(rest[0]) || (rest[0] == '.' && rest.size() > 1 && is_digit(rest[1]))) return number_at(i);
     if (is_name_start(rest[0])) return name_at(i);
+    if (rest[0] == '.' && rest.size() > 1 && is_name_start(rest[1])) return part_at(i);
     std::size_t length = 1;
     for (const char* pair : {"<=", ">=", "==", "!=", "&&", "||"})
       if (rest.starts_with(pair)) length = 2;
     if (length == 2) return {.text = text_.substr(i, length), .position = i};
     if (rest[0] == '(') {
-      open_.push_back({tokens_.size(), !tokens_.empty() && tokens_.back().function});
-    } else if (rest[0] == ')') {
+      open_.push_back(
+          {tokens_.size(), !tokens_.empty() && (tokens_.back().function || tokens_.back().vector_function)});
+    } else if (rest[0] == '[') {
+      open_.push_back({tokens_.size(), true});
+    } else if (rest[0] == ')' || rest[0] == ']') {
       close(i);
     } else if (rest[0] == ',') {
       if (open_.empty()) refuse(text_, "has a " + quote(",", i) + "; a formula has one value");
-      if (!open_.back().calls) refuse(text_, "has a " + quote(",", i) + " outside of a function's arguments");
+      if (!open_.back().is_list) refuse(text_, "has a " + quote(",", i) + " outside of a function's arguments");
       ++open_.back().commas;
     } else if (rest[0] == '=') {
       refuse(text_, "has a " + quote("=", i) + "; formulas have no assignment, compare with '=='");
@@ -80,37 +92,79 @@ class Lexer {
     return {.text = word, .position = i, .number = number};
   }
 
+  /// The end of the name that begins at `begin`, without dots.
+  std::string::const_iterator end_of_word(std::string::const_iterator begin) const {
+    return std::find_if_not(begin, text_.end(), is_name_part);
+  }
+
+  Token part_at(std::size_t i) const {
+    const auto begin = text_.begin() + static_cast<std::ptrdiff_t>(i);
+    const std::string part(begin + 1, end_of_word(begin + 1));
+    return {.text = "." + part, .position = i, .part = part};
+  }
+
   Token name_at(std::size_t i) const {
     const auto begin = text_.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto end = std::find_if_not(begin, text_.end(), is_name_part);
+    auto end = end_of_word(begin);
     const auto next = std::find_if_not(end, text_.end(), is_blank);
     const bool calls = next != text_.end() && *next == '(';
 
-    const std::string word(begin, end);
-    const Operation* function = find_named(functions(), word);
-    const auto index = names_.find(word);
+    std::string word(begin, end);
+    const Operation* const function = find_named(functions(), word);
+    const VectorFunction* const vector_function = calls ? find_named(vector_functions(), word) : nullptr;
+    if (vector_function) return {.text = word, .position = i, .vector_function = vector_function};
+    auto index = names_.find(word);
     const bool known = index || word == kPiName;
     if (calls && known) refuse(text_, "calls " + quote(word, i) + ", which is not a function; multiply with '*'");
-    if (calls && !function)
-      refuse(text_, "calls the unknown function " + quote(word, i) + expected_names(word, names_of(functions())));
-    if (!calls && function) refuse(text_, "has no arguments in parentheses after the function " + quote(word, i));
-    if (!calls && !known) {
-      std::vector<std::string> names = names_.all();
-      names.emplace_back(kPiName);
-      refuse(text_, "has the unknown name " + quote(word, i) + expected_names(word, names));
+    if (calls && !function) {
+      std::vector<std::string> all = names_of(functions());
+      for (const VectorFunction& each : vector_functions()) all.push_back(each.name);
+      refuse(text_, "calls the unknown function " + quote(word, i) + expected_names(word, all));
     }
     if (calls) return {.text = word, .position = i, .function = function};
-    if (word == kPiName) return {.text = word, .position = i, .number = kPi};
+    if (function) refuse(text_, "has no arguments in parentheses after the function " + quote(word, i));
+    // The longest name: arm1.C rather than arm1. What follows it are parts of its value.
+    while (end + 1 < text_.end() && *end == '.' && is_name_start(end[1])) {
+      const auto longer = end_of_word(end + 1);
+      const auto longer_index = names_.find({begin, longer});
+      if (!longer_index && index && is_part(std::string(end + 1, longer))) break;
+      end = longer;
+      word.assign(begin, end);
+      index = longer_index;
+    }
+    if (!index && word != kPiName) refuse_unknown(word, i);
+    if (!index) return {.text = word, .position = i, .number = kPi};
     return {.text = word, .position = i, .name = index};
   }
 
+  /// Lists either the names with dots or those without, as the unknown name is.
+  [[noreturn]] void refuse_unknown(const std::string& word, std::size_t i) const {
+    const auto has_dot = [](const std::string& name) { return name.find('.') != std::string::npos; };
+    std::vector<std::string> names;
+    for (const std::string& name : names_.listed())
+      if (has_dot(name) == has_dot(word)) names.push_back(name);
+    if (!has_dot(word) || names.empty()) names.emplace_back(kPiName);
+    refuse(text_, "has the unknown name " + quote(word, i) + expected_names(word, names));
+  }
+
   void close(std::size_t i) {
-    if (open_.empty()) refuse(text_, "has a " + quote(")", i) + " without its '('");
-    const auto [token, calls, commas] = open_.back();
+    const std::string with = text_.substr(i, 1), opened_by = with == ")" ? "(" : "[";
+    if (open_.empty()) refuse(text_, "has a " + quote(with, i) + " without its '" + opened_by + "'");
+    const auto [token, is_list, commas] = open_.back();
+    const Token& open = tokens_[token];
+    if (open.text != opened_by)
+      refuse(text_, "closes the " + quote(open.text, open.position) + " by a " + quote(with, i));
     open_.pop_back();
-    if (!calls) return;
+    if (!is_list) return;
+    const std::size_t given = token + 1 == tokens_.size() ? 0 : commas + 1;
+    if (with == "]") {
+      if (given != 3)
+        refuse(text_, "has a vector of " + std::to_string(given) + (given == 1 ? " element" : " elements") + ", " +
+                          quote("[", open.position) + "; expected three: [x, y, z]");
+      return;
+    }
     const Token& call = tokens_[token - 1];
-    const std::size_t given = token + 1 == tokens_.size() ? 0 : commas + 1, wanted = call.function->arguments;
+    const std::size_t wanted = call.function ? call.function->arguments : call.vector_function->arguments.size();
     if (wanted == 0 ? given >= 2 : given == wanted) return;
     refuse(text_, "gives " + std::to_string(given) + (given == 1 ? " argument" : " arguments") + " to " +
                       quote(call.text, call.position) + ", which takes " +
@@ -120,7 +174,7 @@ class Lexer {
   const std::string& text_;
   const Names& names_;
   std::vector<Token> tokens_;
-  std::vector<Parenthesis> open_;
+  std::vector<Open> open_;
 };
 
 }  // namespace

@@ -1,9 +1,12 @@
 // Parser of formulas: converts text into nodes of an expression graph.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "engine/expression/formula_value.hpp"
 #include "engine/expression/graph.hpp"
 #include "engine/expression/symbol_table.hpp"
 
@@ -15,5 +18,14 @@ namespace pkm::expression {
 /// @param nodes  the node of each variable
 /// @return the node of the formula's value
 Node read_formula(Graph& graph, const std::string& text, const Names& names, std::span<const Node> nodes);
+
+struct ParsedFormula {
+  FormulaValue value;
+  std::vector<Node> norms;  ///< norms of vectors that it contains: square roots that always exist
+};
+/// Parses a formula of any kind whose names may have values of any kind. Throws as read_formula() does.
+/// @param value_of  the value of a name, by its index in `names`
+ParsedFormula parse_formula(Graph& graph, const std::string& text, const Names& names,
+                            const std::function<FormulaValue(std::size_t)>& value_of);
 
 }  // namespace pkm::expression

@@ -16,20 +16,22 @@ class Names {
     for (const std::string& name : names) add(name);
   }
 
+  /// Whether messages about unknown names list a name.
+  enum class Listing { always, never };
   /// Appends a name that is not in the table yet.
-  void add(const std::string& name) {
-    indices_.try_emplace(name, all_.size());
-    all_.push_back(name);
+  void add(const std::string& name, Listing listing = Listing::always) {
+    indices_.try_emplace(name, indices_.size());
+    if (listing == Listing::always) listed_.push_back(name);
   }
-  /// Index of a name in all(); std::nullopt if it is not in the table.
+  /// Position of a name in the order in which the names were added; std::nullopt if it is not in the table.
   std::optional<std::size_t> find(const std::string& name) const {
     const auto found = indices_.find(name);
     return found == indices_.end() ? std::nullopt : std::optional(found->second);
   }
-  const std::vector<std::string>& all() const { return all_; }
+  const std::vector<std::string>& listed() const { return listed_; }
 
  private:
-  std::vector<std::string> all_;
+  std::vector<std::string> listed_;
   std::unordered_map<std::string, std::size_t> indices_;
 };
 

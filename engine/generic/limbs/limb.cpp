@@ -15,16 +15,6 @@ Term rod_closure(const Vector3& v, const Term& length) { return (dot(v, v) - len
 
 }  // namespace
 
-Rotation rotation_about(std::size_t axis, const Term& sine, const Term& cosine) {
-  const Term zero(sine.graph(), 0.0), one(sine.graph(), 1.0);
-  Rotation R({one, zero, zero}, {zero, one, zero}, {zero, zero, one});
-  const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
-  R[i][i] = R[j][j] = cosine;
-  R[i][j] = -sine;
-  R[j][i] = sine;
-  return R;
-}
-
 Limb telescope(const Ends& ends, const Term& q) {
   const Vector3 v = projected(ends);
   return {.joint = length(v), .constraints = {}, .closure = rod_closure(v, q), .C = ends.A, .S = ends.A};

@@ -10,9 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/generic/limbs/vector3.hpp"
+#include "engine/expression/vector3.hpp"
 
 namespace pkm::limbs {
+
+using expression::length, expression::rotation_about;
+using expression::Rotation, expression::Term, expression::Vector3;
 
 /// A constraint margin >= 0.
 struct Constraint {

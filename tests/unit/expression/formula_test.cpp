@@ -211,7 +211,7 @@ std::string message_of(const std::string& text) {
 TEST(Formula, ErrorMessages) {
   const std::string functions =
       "expected one of sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, exp, log, log10, sqrt, abs, sign, "
-      "min, max";
+      "min, max, dot, cross, det, norm, unit, angle, rotation, transpose, point";
   const std::pair<std::string, std::string> cases[] = {
       {"", "is empty"},
       {" \n ", "is empty"},

@@ -5,9 +5,7 @@
 
 #include "engine/expression/graph.hpp"
 
-namespace pkm::limbs {
-
-using expression::Term;
+namespace pkm::expression {
 
 struct Vector3 : std::array<Term, 3> {
   Vector3(const Term& x, const Term& y, const Term& z) : std::array<Term, 3>{{x, y, z}} {}
@@ -40,5 +38,8 @@ inline Rotation operator*(const Rotation& A, const Rotation& B) {
 /// Rotation about a coordinate axis by an angle with this sine and cosine.
 /// @param axis  0 to 2
 Rotation rotation_about(std::size_t axis, const Term& sine, const Term& cosine);
+/// Rotation about a unit vector by an angle (Rodrigues' formula).
+Rotation rotation_about(const Vector3& axis, const Term& angle);
+Rotation transpose(const Rotation& R);
 
-}  // namespace pkm::limbs
+}  // namespace pkm::expression
