@@ -4,10 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "engine/expression/derivative.hpp"
-#include "engine/generic/clearance.hpp"
 #include "engine/generic/interval_constraints.hpp"
-#include "engine/generic/report_limits.hpp"
+#include "engine/generic/tolerances/interval_jacobians.hpp"
 #include "engine/workspace/bounds/pose_box.hpp"
 #include "engine/workspace/bounds/proof.hpp"
 #include "engine/workspace/bounds/separation.hpp"
@@ -16,13 +14,6 @@ namespace pkm::generic {
 namespace {
 
 using bounds::Ranges;
-
-void refuse_limits_of_boxes(const Model& model, const LimitSpec& limits) {
-  refuse_clearance(model, limits,
-                   "has no certified bounds with a clearance limit (clearance_min), because the distance of two links "
-                   "is not given by a formula; use voxels, or remove the limit");
-  refuse_report_limits(model, limits, "certified bounds");
-}
 
 /// The graph's inputs for a design and the fixed coordinates.
 std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
@@ -43,7 +34,7 @@ void require_bounds(const Model& model, const WorkspacePlan& plan) {
     throw std::invalid_argument(
         "certified bounds of a volume count all components of the workspace, and not only the one that holds the home "
         "pose; remove home");
-  refuse_limits_of_boxes(model, plan.limits);
+  refuse_limits_without_formula(model, plan.limits);
   for (const int coordinate : sweep_of(model.info, plan).fixed) {
     const FixedCoordinate fixed = how_fixed(plan, coordinate);
     const bool integrated = fixed.kind == FixedCoordinate::Kind::integrated;
@@ -130,67 +121,14 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
 
 namespace {
 
-/// Jacobians of the loop-closure equations by the coordinates (G) and by the joints (Jq), as functions of the pose.
-/// @param graph   receives the graph of the entries, in which inputs replace all constants
-/// @param inputs  the values of these inputs are appended
-std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std::vector<Interval>& inputs) {
-  const Inputs& at = model.inputs;
-  std::vector<Node> roots = model.closures;
-  roots.insert(roots.end(), model.joints.begin(), model.joints.end());
-  std::vector<double> numbers;
-  graph = expression::without_numbers(
-      model.graph, inputs.size(), [](std::size_t) { return Groups{1}; }, numbers, roots);
-  inputs.insert(inputs.end(), numbers.begin(), numbers.end());
-  const std::span<const Node> closures = std::span(roots).first(model.closures.size());
-  const std::string det_G = at.joints == at.coordinates ? "det G" : "det(G^T G)";
-  std::vector<bounds::NamedMatrix> matrices = {
-      {"the parallel singularity (" + det_G + " = 0)", at.joints, at.coordinates, {}},
-      {"the serial singularity (det Jq = 0)", at.joints, at.joints, {}}};
-  std::vector<Node> entries;
-  for (bounds::NamedMatrix& matrix : matrices)
-    for (const Node closure : closures)
-      for (std::size_t j = 0; j < matrix.columns; ++j) {
-        const bool by_pose = &matrix == &matrices.front();
-        const Node variable = graph.input(by_pose ? at.coordinate(j) : at.joint(j));
-        matrix.entries.push_back(expression::derivative(graph, closure, variable));
-        entries.push_back(matrix.entries.back());
-      }
-  // substitute the joint coordinates as functions of the pose
-  std::vector<std::optional<Node>> joints(at.count());
-  for (std::size_t i = 0; i < at.joints; ++i) joints[at.joint(i)] = roots[closures.size() + i];
-  graph = expression::substitute_nodes(graph, joints, entries);
-  auto entry = entries.begin();
-  for (bounds::NamedMatrix& matrix : matrices)
-    for (Node& node : matrix.entries) node = *entry++;
-  return matrices;
-}
-
 /// The graph's inputs for a design; coordinates are set to 0.
 std::vector<Interval> inputs_of(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
                                 std::size_t mode) {
-  refuse_limits_of_boxes(e.model, limits);
+  refuse_limits_without_formula(e.model, limits);
   const std::vector<Interval> design(parameters.begin(), parameters.end());
   std::vector<Interval> inputs(e.model.inputs.count());
   e.fill_inputs<Interval>(design, limits, mode, inputs);
   return inputs;
-}
-
-/// Substitutes the formulas of a motion for the coordinates. @return index of the time among the inputs
-std::size_t substitute_motion(const Motion& motion, const Inputs& at, Graph& graph, std::vector<Interval>& inputs,
-                              std::vector<Node>& roots) {
-  TimeGraph time(graph, inputs);
-  const std::vector<Node> pose = motion.write(time);
-  std::vector<std::optional<Node>> coordinates(at.coordinate(0) + pose.size());
-  std::ranges::copy(pose, coordinates.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
-  graph = expression::substitute_nodes(graph, coordinates, roots);
-  return time.position;
-}
-
-/// Why singularities are not examined; empty if they are.
-Unsupported refuse_jacobians(const Inputs& at) {
-  if (at.joints >= at.coordinates) return {};
-  return "the mechanism has fewer joints (" + std::to_string(at.joints) + ") than coordinates (" +
-         std::to_string(at.coordinates) + "), so that every pose is singular";
 }
 
 bounds::Matrices jacobians_along(const Motion& motion, const Model& model, std::vector<Interval> inputs) {

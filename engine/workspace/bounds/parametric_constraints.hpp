@@ -1,0 +1,78 @@
+// Constraints g >= 0 or g > 0 as functions of poses and of further variables, for example deviations of parameters:
+// values and first derivatives, in interval arithmetic over boxes and in double precision at points.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/expression/program.hpp"
+
+namespace pkm::bounds {
+
+struct ParametricConstraint {
+  std::string name;
+  expression::Node node;
+  bool is_strict = false;  ///< true: g > 0 is required
+};
+
+/// Immutable after add(), and thread-safe.
+class ParametricConstraints {
+ public:
+  struct Gradient {
+    Interval value;
+    std::vector<Interval> by_axis;
+    bool is_known = false;  ///< the constraint is continuous, and all partial derivatives are enclosed
+  };
+  /// Memory of one worker.
+  struct Scratch {
+    std::vector<std::vector<Interval>> inputs;  ///< by graph
+    std::vector<std::vector<double>> numbers;   ///< by graph: the same in double precision
+    std::vector<Interval> registers;
+    std::vector<double> number_registers;
+  };
+
+  /// Adds constraints of one graph; identical ones are added once.
+  /// @param axes    indices of the graph's inputs that are the axes, in the same order for all graphs
+  /// @param inputs  all inputs of the graph; those that are no axes keep these values
+  void add(expression::Graph graph, const std::vector<ParametricConstraint>& constraints,
+           const std::vector<std::size_t>& axes, std::vector<Interval> inputs);
+
+  std::size_t size() const { return all_.size(); }
+  std::size_t axes() const { return graphs_.empty() ? 0 : graphs_.front().axes.size(); }
+  const std::string& name(std::size_t k) const { return all_[k].name; }
+  Scratch make_scratch() const;
+
+  /// Whether an enclosure proves that constraint k is satisfied, or that it is violated, everywhere.
+  bool is_satisfied(std::size_t k, const Interval& value) const {
+    return value.is_certified_satisfied() && (!all_[k].is_strict || value.lower > 0);
+  }
+  bool is_violated(std::size_t k, const Interval& value) const {
+    return value.is_certified_violated() || (all_[k].is_strict && value.upper <= 0);
+  }
+  /// The same for a value in double precision; NaN is a violation.
+  bool is_violated(std::size_t k, double value) const { return !(all_[k].is_strict ? value > 0 : value >= 0); }
+
+  /// @param sides  by axis
+  Interval value(std::size_t k, std::span<const Interval> sides, Scratch& scratch) const;
+  void gradient(std::size_t k, std::span<const Interval> sides, Gradient& to, Scratch& scratch) const;
+  /// @return the value; `by_axis` receives the derivatives
+  double gradient(std::size_t k, std::span<const double> point, std::vector<double>& by_axis, Scratch& scratch) const;
+
+ private:
+  struct OfGraph {
+    std::vector<std::size_t> axes;
+    std::vector<Interval> inputs;
+  };
+  struct Constraint {
+    std::string name;
+    bool is_strict;
+    std::size_t graph;
+    expression::Program value, gradient;
+  };
+
+  std::vector<OfGraph> graphs_;
+  std::vector<Constraint> all_;
+};
+
+}  // namespace pkm::bounds
