@@ -27,6 +27,7 @@ JSON = [
     "workspace 3crr-r-cru --cells x=8,y=8,z=8",
     "certify experiments/mechanisms/orthoglide.toml --gap 0.2",
     "certify experiments/mechanisms/motors/rotary-delta.toml --motion cycle",
+    "tolerances experiments/mechanisms/five-bar.toml --box x=-50mm:50mm,y=300mm:400mm",
     "show study.h5",
 ]
 

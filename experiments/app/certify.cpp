@@ -47,21 +47,6 @@ std::string shortfall(const VolumeBounds& bounds, double requested_gap, std::int
   return "the requested gap cannot be reached: the remaining boxes cannot be decided in double precision";
 }
 
-/// The range of each coordinate: that of --box for swept coordinates, the fixed value for the others.
-std::vector<std::array<double, 2>> ranges_of(const Target& target, const WorkspacePlan& plan,
-                                             const std::vector<std::string>& box) {
-  const MechanismInfo& info = target.info();
-  const Sweep& sweep = sweep_of(info, plan);
-  const std::vector<Assignable> swept = assignable_coordinates(info, sweep);
-  const auto given = parse_ranges(box, "--box", swept);
-  std::vector<std::array<double, 2>> ranges(info.coordinates.size());
-  for (std::size_t i = 0; i < swept.size(); ++i) ranges[static_cast<std::size_t>(sweep.swept[i])] = given[i];
-  for (const int coordinate : sweep.fixed)
-    ranges[static_cast<std::size_t>(coordinate)].fill(
-        fixed_value(*target.mechanism, target.parameters, plan, coordinate));
-  return ranges;
-}
-
 /// A property to be proven for all poses of a box or a motion.
 struct PosesClaim {
   std::string key;       ///< in JSON and in the text
@@ -144,7 +129,7 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   try {
     with_team(arguments.threads, [&] {
       if (!arguments.box.empty()) {
-        const auto ranges = ranges_of(target, plan, arguments.box);
+        const auto ranges = parse_pose_box(target, plan, arguments.box);
         error = report_poses(info, bounds.box(target.parameters, plan, mode, ranges, options), "box", out);
         return;
       }

@@ -83,4 +83,18 @@ std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const Gr
   return given;
 }
 
+std::vector<std::array<double, 2>> parse_pose_box(const Target& target, const WorkspacePlan& plan,
+                                                  const std::vector<std::string>& box) {
+  const MechanismInfo& info = target.info();
+  const Sweep& sweep = sweep_of(info, plan);
+  const std::vector<Assignable> swept = assignable_coordinates(info, sweep);
+  const auto given = parse_ranges(box, "--box", swept);
+  std::vector<std::array<double, 2>> ranges(info.coordinates.size());
+  for (std::size_t i = 0; i < swept.size(); ++i) ranges[static_cast<std::size_t>(sweep.swept[i])] = given[i];
+  for (const int coordinate : sweep.fixed)
+    ranges[static_cast<std::size_t>(coordinate)].fill(
+        fixed_value(*target.mechanism, target.parameters, plan, coordinate));
+  return ranges;
+}
+
 }  // namespace pkm

@@ -20,6 +20,7 @@ TEST(CliOutputs, ShortAndLongOptionWriteTheSameFile) {
       {"simulate", "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3", "--forces", "rho3=8", "--duration", "10ms",
        "--step", "1ms", "--csv"},
       {"certify", PKM_EXPERIMENTS "/mechanisms/orthoglide.toml", "--gap", "0.5", "--proof"},
+      {"tolerances", PKM_EXPERIMENTS "/mechanisms/five-bar.toml", "--box", "x=0:1mm,y=300mm:301mm", "--csv"},
       {"workspace", "4ppa-2par", "--cells", "6", "--csv"},
   };
   const auto read = [&](const std::string& name) {
