@@ -45,7 +45,7 @@ class Command:
 
 def commands():
     robot = os.path.join(MECHANISMS, "rotary-delta.toml")
-    gough = os.path.join(MECHANISMS, "gough.toml")
+    gough, planar = os.path.join(MECHANISMS, "gough.toml"), os.path.join(MECHANISMS, "3-rrr.toml")
     listed = [Command("run " + name, ["run", name + ".toml", "--output", name + ".h5", "--threads", "2"],
                       study=name + ".h5") for name in campaign.STUDIES]
     listed += [Command("resume " + name, ["resume", name + "-begun.h5"], study=name + "-begun.h5")
@@ -60,6 +60,8 @@ def commands():
         Command("certify", ["certify", robot, "--gap", "1e-4", "--proof", "p.proof", "--force"], file="p.proof",
                 endless=True),
         Command("certify, box", ["certify", gough, "--box", "x=-0.2:0.2,y=-0.2:0.2,z=0.8:1.2"], endless=True),
+        Command("tolerances", ["tolerances", planar, "--box", "x=-0.01:0.01,y=-0.01:0.01", "--gap", "1e-4"],
+                endless=True),
         Command("workspace", ["workspace", gough, "--cells", "x=100,y=100,z=100"], endless=True),
         Command("forward", ["forward", gough, "--joints", GOUGH_LEGS]),
         Command("report", ["report", "file.h5", "--force", "--output", "page.html"], file="page.html"),

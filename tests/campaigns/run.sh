@@ -26,6 +26,7 @@ step env PKM_COMPONENT_DESIGNS=200 "$root/build/ci/tests/pkm_tests" --gtest_filt
 step env PKM_POWER_STATES=10000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*PowerOfTheDrives*'
 step ./disk.py "$program" "$disk"
 step ./soak.py "$program" --evaluations 10000000 --runs 200
+step ./tolerances.py "$program" --robots 100000 --poses 1000
 step ./proofs.py "$program" "$root/build/ci/bin/pkmopt-check-proof" --mutations 100000
 step ./fuzz.sh --runs "${1:-1000000}"
 exit $found
