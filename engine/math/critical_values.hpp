@@ -26,9 +26,9 @@ struct CriticalValue {
   bool root_above = false;  ///< the measure has one when `at` is approached from above
 };
 
-/// A root t(p) of f(p, t) = 0 with its derivatives with respect to the design p by the implicit function theorem:
-/// dt/dp = -(df/dp) / (df/dt).
-/// @param t     the root
+/// A root t(p) of f(p, t) = 0 with its derivatives with respect to the design parameters p, by the implicit function
+/// theorem: dt/dp = -(df/dp) / (df/dt).
+/// @param t     value of the root
 /// @param f     f with its derivatives df/dp at the root; its value is ignored
 /// @param by_t  df/dt at the root; if it is 0, the derivatives of the result are 0
 template <class S>
@@ -50,7 +50,7 @@ void find_subintervals(const std::vector<CriticalValue<S>>& values, double merge
                        const Changes& changes, std::vector<Subinterval<S>>& intervals) {
   intervals.clear();
   if (values.empty()) return;
-  Signature before{};  // signature of the previous subinterval
+  Signature before{};  // signature of the previous subinterval; default-constructed before the first one
   CriticalValue<S> from = values.front();
   const auto split = [&](const CriticalValue<S>& to, const Signature& now) {
     const bool joins = !intervals.empty() && now == before && value_of(intervals.back().upper) == value_of(from.at) &&

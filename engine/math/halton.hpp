@@ -7,8 +7,8 @@
 namespace pkm {
 
 /// Coordinate of a point of the sequence, in [0, 1): the radical inverse of its index in a prime base.
-/// @param index      from 1
-/// @param dimension  from 0; repeats after 12
+/// @param index      number of the point in the sequence, from 1
+/// @param dimension  number of the coordinate of the point, from 0; dimension k + 12 repeats dimension k
 inline double halton(std::size_t index, std::size_t dimension) {
   constexpr std::array<std::size_t, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
   const std::size_t base = kPrimes[dimension % kPrimes.size()];

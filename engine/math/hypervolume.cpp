@@ -38,7 +38,7 @@ std::vector<Point<N>> sorted_points(std::span<const double> points, const Point<
   return inside;
 }
 
-/// Sum of rectangles over the points in the order of x.
+/// Area dominated by points in a plane that are sorted by x, as a sum of rectangles.
 double area(const std::vector<Point<2>>& points, const Point<2>& reference) {
   double sum = 0, min_y = reference[1];
   for (const auto& [x, y] : points) {
@@ -58,14 +58,14 @@ class Staircase {
 
   double area() const { return area_; }
 
-  /// Adds a point. @return false if an earlier point is equal to it or dominates it
+  /// Adds a point. @return false if an earlier point equals it or dominates it; the area is then unchanged
   bool add(const Point<2>& point) {
     const auto [x, y] = point;
     const auto first =
         std::upper_bound(steps_.begin(), steps_.end(), x, [](double value, const Point<2>& s) { return value < s[0]; });
     double left = x, top = (*(first - 1))[1];
     if (top <= y) return false;
-    auto last = first;  // [first, last): the steps that the point dominates
+    auto last = first;  // [first, last): the steps that the new point dominates
     for (; (*last)[1] >= y; ++last) {
       area_ += ((*last)[0] - left) * (top - y);
       left = (*last)[0];
@@ -82,7 +82,8 @@ class Staircase {
   }
 
  private:
-  std::vector<Point<2>> steps_;  ///< x non-decreasing, y decreasing; first and last: sentinels at the reference
+  /// x non-decreasing, y decreasing; the first and the last are sentinels on the lines through the reference point.
+  std::vector<Point<2>> steps_;
   double area_ = 0;
 };
 

@@ -16,11 +16,13 @@ double igd_plus(std::span<const double> points, std::size_t objectives, std::spa
   if (front.empty()) throw std::invalid_argument("IGD+: the front is empty; expected at least one point");
   double sum = 0;
   for (std::size_t z = 0; z < front.size(); z += objectives) {
-    double minimum = std::numeric_limits<double>::infinity();  // squared distance
+    // square of the minimum of the modified distance of front point z from the points
+    double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t a = 0; a < points.size(); a += objectives) {
       double square = 0;
       for (std::size_t k = 0; k < objectives; ++k) {
-        const double excess = std::max(points[a + k] - front[z + k], 0.0) / extents[k];  // NaN is propagated
+        // a NaN stays NaN, so that the point is not the nearest one
+        const double excess = std::max(points[a + k] - front[z + k], 0.0) / extents[k];
         square += excess * excess;
       }
       if (square < minimum) minimum = square;

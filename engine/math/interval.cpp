@@ -43,13 +43,13 @@ using rounding::product_down, rounding::product_up, rounding::quotient_down, rou
     rounding::sum_up;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kArcError = 0x1p-48;          // absolute
-constexpr double kExponentialError = 0x1p-49;  // relative
+constexpr double kArcError = 0x1p-48;          // absolute error bound of asin, acos and atan2 [rad]
+constexpr double kExponentialError = 0x1p-49;  // relative error bound of exp and log
 
 // Enclosures of pi, 2 pi and pi/2: the double kPi is less than pi.
 const Interval kPiInterval{kPi, next_up(kPi)}, kTwoPi{2 * kPi, next_up(2 * kPi)}, kHalfPi{kPi / 2, next_up(kPi / 2)};
 
-/// The interval value +- error.
+/// The interval [value - error, value + error], rounded outward.
 Interval around(double value, double error) { return {sum_down(value, -error), sum_up(value, error)}; }
 
 // Enclosures of elementary functions at a single number.
@@ -68,7 +68,7 @@ Interval exponential_at(double x) {
   if (std::isinf(x)) return x < 0 ? Interval(0) : Interval(std::numeric_limits<double>::max(), kInfinity);
   const double e = portable::exp(x);
   if (e == kInfinity) return {std::numeric_limits<double>::max() / 2, kInfinity};
-  // A subnormal result is rounded again by ldexp: widen by one more number.
+  // If the result is subnormal, ldexp rounds it a second time: widen the interval by one more double on each side.
   return {std::max(0.0, next_down(product_down(e, 1 - kExponentialError))),
           next_up(product_up(e, 1 + kExponentialError))};
 }
@@ -206,7 +206,7 @@ Interval atan2(const Interval& y, const Interval& x) {
   const bool origin = x.holds(0) && y.holds(0), branch_cut = x.lower < 0 && y.lower < 0 && y.upper >= 0;
   const bool bounded = std::isfinite(x.width()) && std::isfinite(y.width());
   if (origin || branch_cut || !bounded) {
-    // Bounds by the quadrants that the arguments reach.
+    // Bound the angle by the quadrants that the box of (x, y) can reach.
     const double left = kPiInterval.upper, right = x.lower < 0 ? left : y.upper > 0 ? kHalfPi.upper : 0;
     const double from = y.lower >= 0 ? 0 : x.lower < 0 ? -left : -kHalfPi.upper;
     return {from, right, weaker(weaker(x, y), Decoration::defined)};

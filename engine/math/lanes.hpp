@@ -81,7 +81,7 @@ PKM_LANES LaneMask<W> operator&(const LaneMask<W>& x, const LaneMask<W>& y) {
   return r;
 }
 
-/// For templates that also accept dual numbers: lanes have no derivatives.
+/// The lanes themselves, because they have no derivatives; for templates that also accept dual numbers.
 PKM_LANES const Lanes<W>& value_of(const Lanes<W>& x) { return x; }
 
 /// x in the lanes where the mask is set, y in the others.

@@ -26,13 +26,14 @@ template <int W>
   return r;
 }
 
-/// e^x as portable::exp.
+/// e^x in each lane, bit-identical to portable::exp().
 template <int W>
 [[gnu::always_inline]] inline Lanes<W> exp(const Lanes<W>& argument) {
   using L = Lanes<W>;
   constexpr double kMin = -745.2, kMax = 709.782712893384, kNoFraction = 0x1.8p52;
   constexpr double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
-  const L x = lesser(greater(argument, L(kMin)), L(kMax));  // NaN becomes a bound; it is handled below
+  // a NaN becomes one of the two bounds here; it is restored below
+  const L x = lesser(greater(argument, L(kMin)), L(kMax));
   const L k = (x * 1.44269504088896340736 + kNoFraction) - kNoFraction;
   const L r = (x - k * ln2_high) - k * ln2_low;
   L sum = 1.0 / 6227020800.0;

@@ -5,10 +5,10 @@
 
 namespace pkm {
 
-/// A local minimum of f between low and high. The minimum value is accurate to rounding, the place to about the square
-/// root of it.
-/// @param width  absolute width of the final bracket
-/// @return the better of its inner points
+/// Position of a local minimum of f between low and high. The value of f there is accurate to rounding errors, the
+/// position only to about the square root of the relative rounding error.
+/// @param width  absolute width of the bracket at which the search stops
+/// @return the one of the two points inside the final bracket at which f is smaller
 template <class F>
 double golden_section(const F& f, double low, double high, double width) {
   constexpr double kGolden = 0.3819660112501051;  // (3 - sqrt 5) / 2

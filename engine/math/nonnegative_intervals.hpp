@@ -59,14 +59,14 @@ class NonNegativeIntervals {
   // kMaxWidth. Minima of |f| and roots of f are located to the two tolerances.
   static constexpr double kMaxWidth = 1.0 / 16, kMinimumTolerance = 1e-6, kRootTolerance = 1e-13;
 
-  /// A sample of the function.
+  /// A point x at which the function was evaluated, and its value there.
   struct Node {
     double x, value;
-    bool decided;  ///< the Lipschitz constant excludes a sign change since the previous node
+    bool decided;  ///< true: the Lipschitz constant excludes a sign change between the previous node and this one
     bool positive() const { return value >= 0; }
   };
 
-  /// Appends an interval, or extends the last one if they are adjacent.
+  /// Appends the interval [from, to] to `intervals`, or extends the last one if it ends at `from`.
   static void add(double from, double to, std::vector<ClosedInterval>& intervals) {
     if (!intervals.empty() && intervals.back().upper == from)
       intervals.back().upper = to;

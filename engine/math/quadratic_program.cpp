@@ -20,7 +20,9 @@ double max_step(const Eigen::VectorXd& value, const Eigen::VectorXd& change) {
 
 QuadraticSolution solve(const QuadraticProgram& program) {
   constexpr int kMaxIterations = 60;
-  constexpr double kGap = 1e-17, kResidual = 1e-14;  // at the end; most programs need 10 to 25 iterations
+  // upper limits of the mean complementarity product and of the residuals at the solution; most programs reach them in
+  // 10 to 25 iterations
+  constexpr double kGap = 1e-17, kResidual = 1e-14;
   const Eigen::MatrixXd &B = program.B, &A = program.A;
   const Eigen::VectorXd &c = program.c, &b = program.b;
   const Eigen::Index n = c.size(), m = b.size();
@@ -47,7 +49,7 @@ QuadraticSolution solve(const QuadraticProgram& program) {
     const double centring = std::pow(gap_after / gap, 3);
     step_for(product + dslack.cwiseProduct(dmultipliers) - Eigen::VectorXd::Constant(m, centring * gap));
     if (!dx.allFinite() || !dmultipliers.allFinite()) break;
-    constexpr double kFraction = 0.995;  // of the step to the boundary
+    constexpr double kFraction = 0.995;  // fraction of the step at which the first slack or multiplier would become 0
     const double step = kFraction * std::min(max_step(slack, dslack), max_step(multipliers, dmultipliers));
     x += step * dx;
     slack += step * dslack;

@@ -9,18 +9,18 @@
 namespace pkm {
 
 struct QuadraticProgram {
-  Eigen::MatrixXd B;  ///< n x n, symmetric and positive definite
+  Eigen::MatrixXd B;  ///< n x n matrix of the objective, symmetric and positive definite
   Eigen::VectorXd c;
-  Eigen::MatrixXd A;  ///< m x n
+  Eigen::MatrixXd A;  ///< m x n matrix: one row per constraint
   Eigen::VectorXd b;
 };
 
 struct QuadraticSolution {
   Eigen::VectorXd x;
-  Eigen::VectorXd multipliers;  ///< >= 0, one per constraint: B x + c = A' multipliers
+  Eigen::VectorXd multipliers;  ///< m values >= 0, one per constraint, with B x + c = A' multipliers at the solution
 };
 
-/// Solves a program that has a solution with A x > b; elements should be of the order of 1.
+/// Solves a program for which a point with A x > b exists. Elements should be of the order of 1: limits are absolute.
 QuadraticSolution solve(const QuadraticProgram& program);
 
 }  // namespace pkm

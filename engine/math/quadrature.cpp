@@ -12,7 +12,7 @@ GaussRule gauss_legendre(int n) {
     double x = -portable::cos(kPi * (i + 0.75) / (n + 0.5));  // starting value with an error of O(1/n^2)
     double derivative = 1;
     const auto newton_step = [&](double at) {
-      double previous = 1, value = at;  // P_0, P_1
+      double previous = 1, value = at;  // Legendre polynomials P_0 and P_1 at x
       for (int k = 2; k <= n; ++k) {
         const double next = ((2 * k - 1) * at * value - (k - 1) * previous) / k;
         previous = value;

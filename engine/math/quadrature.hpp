@@ -28,7 +28,7 @@ struct Subinterval {
 template <class S>
 struct MappedNode {
   S point;
-  S jacobian;  ///< d point / dt
+  S jacobian;  ///< derivative of the point with respect to t
 };
 
 /// Variable transformation from t in [0, 1] to a subinterval.
@@ -73,7 +73,8 @@ struct NestedRule {
   /// One rule of the sequence, which uses the first `nodes` nodes.
   struct Level {
     std::size_t nodes;
-    std::array<double, kNodes> weight, fewer;  ///< weights of the rule, and of the embedded rule with fewer nodes
+    /// Weights of this rule, and of the embedded rule with fewer nodes, by node.
+    std::array<double, kNodes> weight, fewer;
   };
   std::array<double, kNodes> node;  ///< nodes of all rules, in the order in which the rules add them
   std::vector<Level> level;
@@ -116,8 +117,9 @@ inline double quadpack_error(double difference, double spread) {
   return ratio > 0 ? spread * std::fmin(1.0, ratio * std::sqrt(ratio)) : 0;
 }
 
-/// quadpack_error() of one rule.
-/// @param term   integrand times Jacobian at the nodes
+/// Error estimate of one rule: the difference to its embedded rule if the integrand has kinks, otherwise
+/// quadpack_error().
+/// @param term   integrand times Jacobian, by node
 /// @param value  result of the rule: the sum of weight * term
 template <class S>
 double rule_error(const NestedRule::Level& level, const std::array<S, NestedRule::kNodes>& term, double value,
@@ -135,7 +137,7 @@ double rule_error(const NestedRule::Level& level, const std::array<S, NestedRule
 template <class S>
 struct QuadratureCell {
   Subinterval<S> interval;
-  std::size_t levels = 0;                  ///< number of rules applied so far
+  std::size_t levels = 0;                  ///< number of rules of the sequence applied so far
   std::array<S, NestedRule::kNodes> term;  ///< integrand times Jacobian at the nodes
   Integral<S> integral;
 };
@@ -145,7 +147,7 @@ struct QuadratureCell {
 struct Quadrature {
   const NestedRule& rule = kronrod_rule();
   Regularity regularity = Regularity::smooth;
-  int depth = 16;  ///< maximum number of successive bisections
+  int depth = 16;  ///< maximum number of successive bisections of a subinterval
 };
 
 /// Applies the next rule of the sequence to a subinterval.
@@ -176,8 +178,9 @@ std::array<Subinterval<S>, 2> halves(const Subinterval<S>& interval) {
 
 /// One step of globally adaptive quadrature (QUADPACK's QAG): replaces a cell by its halves. Its lower half takes its
 /// place, its upper half is appended.
-/// @param cells      have a member `interval`, a Subinterval
-/// @param integrate  computes the other members of a cell, whatever values they have
+/// @param cells      objects with a member `interval` of type Subinterval
+/// @param integrate  integrate(cell) computes all members of a cell except `interval`, and ignores their previous
+///                   values
 template <class Cell, class Integrate>
 void bisect_cell(std::vector<Cell>& cells, std::size_t index, const Integrate& integrate) {
   const auto [lower, upper] = halves(cells[index].interval);

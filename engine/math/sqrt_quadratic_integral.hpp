@@ -31,9 +31,9 @@ S root_integral_series(const S& y) {
 }
 
 /// Integral of sqrt(q_0 + q_1 x + q_2 x^2) over an interval.
-/// @param length           length of the interval
+/// @param length           length of the interval of integration
 /// @param at_from, at_to   values of the square root at its endpoints
-/// @param curvature        q_2
+/// @param curvature        q_2, the coefficient of x^2
 template <class S>
 S sqrt_quadratic_integral(const S& length, const S& at_from, const S& at_to, const S& curvature) {
   const S sum = at_from + at_to, difference = at_to - at_from;

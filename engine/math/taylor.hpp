@@ -30,7 +30,7 @@ struct Taylor {
   friend Taylor operator*(const Taylor& x, const Taylor& y) {
     return {x.a * y.a, x.d * y.a + x.a * y.d, x.dd * y.a + 2 * x.d * y.d + x.a * y.dd};
   }
-  friend Taylor operator/(const Taylor& x, const Taylor& y) {  // from x = q y
+  friend Taylor operator/(const Taylor& x, const Taylor& y) {  // derivatives of the quotient q from those of x = q y
     const double q = x.a / y.a, dq = (x.d - q * y.d) / y.a;
     return {q, dq, (x.dd - 2 * dq * y.d - q * y.dd) / y.a};
   }
