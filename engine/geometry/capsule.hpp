@@ -25,19 +25,20 @@
 
 namespace pkm {
 
+/// A point or a vector, by coordinate x, y, z [m].
 template <class S>
-using Point3 = std::array<S, 3>;  ///< [m]
+using Point3 = std::array<S, 3>;
 
 template <class S>
 struct Segment {
   Point3<S> from, to;
 };
 
-/// All points within `radius` of a segment.
+/// Capsule: all points whose distance from the segment `axis` is at most `radius`.
 template <class S>
 struct Capsule {
   Segment<S> axis;
-  S radius;  ///< [m]
+  S radius;  ///< distance of the surface from the axis [m]
 };
 
 template <class S>
@@ -91,10 +92,10 @@ S capsule_distance(const Capsule<S>& a, const Capsule<S>& b) {
   return segment_distance(a.axis, b.axis) - (a.radius + b.radius);
 }
 
-/// The closest pair of several bodies.
+/// The pair of bodies that have the minimum distance, by their indices.
 template <class S>
 struct ClosestPair {
-  S clearance;  ///< their distance [m], negative if they overlap
+  S clearance;  ///< distance of the two bodies [m], negative if they overlap; infinite if there is no pair
   std::size_t first = 0, second = 0;
 };
 

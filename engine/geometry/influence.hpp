@@ -19,12 +19,13 @@ namespace pkm {
 
 template <class S>
 struct Influence {
-  AxisMatrix<S> G;                            ///< joints x coordinates
-  std::array<AxisMatrix<S>, kMaxJoints> H{};  ///< one symmetric matrix per joint
+  AxisMatrix<S> G;  ///< joints x coordinates: dq_i/dX_j
+  /// For each joint i, the symmetric matrix of second derivatives d2q_i/(dX_j dX_k).
+  std::array<AxisMatrix<S>, kMaxJoints> H{};
 };
 
-/// Accelerations qddot of the joints.
-/// @param velocity, acceleration  Xdot and Xddot of the platform
+/// Accelerations qddot of the joints for a motion of the platform.
+/// @param velocity, acceleration  rates Xdot and accelerations Xddot of the pose coordinates
 template <class S>
 AxisVector<S> accelerations(const Influence<S>& influence, const AxisVector<S>& velocity,
                             const AxisVector<S>& acceleration) {
@@ -35,7 +36,7 @@ AxisVector<S> accelerations(const Influence<S>& influence, const AxisVector<S>& 
 
 /// The symmetric n x n matrices of several quadratic forms, from the values of the forms at the unit vectors and at
 /// sums of two unit vectors (polarisation).
-/// @param form  form(v): the values of the forms at v
+/// @param form  form(v): values at v of all forms; at most kMaxJoints
 template <class Form>
 std::array<AxisMatrix<double>, kMaxJoints> quadratic_form_matrices(std::size_t n, const Form& form) {
   std::array<AxisMatrix<double>, kMaxJoints> H;

@@ -8,7 +8,7 @@
 
 namespace pkm {
 
-/// True if some of the coordinates or joints are angles and some are lengths.
+/// True if at least one coordinate or joint is an angle and at least one is a length.
 inline bool mixes_units(const std::vector<AxisInfo>& axes) {
   const auto angles = std::ranges::count_if(axes, &AxisInfo::turns);
   return angles > 0 && angles < std::ssize(axes);

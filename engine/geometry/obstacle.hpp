@@ -22,7 +22,7 @@ namespace pkm {
 
 /// A box parallel to the axes of the base.
 struct SolidBox {
-  Point3<double> centre, half;  ///< centre and half sizes [m]
+  Point3<double> centre, half;  ///< centre of the box, and half of its length along each axis [m]
 
   Bounds<double> bounds() const {
     Bounds<double> box;
@@ -40,7 +40,8 @@ struct Obstacle {
 };
 using Obstacles = std::vector<Obstacle>;
 
-/// The parameter t in [0, 1] at which the point from + t way of a segment is closest to a box centred at the origin.
+/// The t in [0, 1] at which the point from + t way of a segment is closest to a box centred at the origin with half
+/// sizes `half`.
 inline double closest_to_box(const Point3<double>& from, const Point3<double>& way, const Point3<double>& half) {
   const auto derivative = [&](double t) {  // derivative of |e|^2 / 2
     double sum = 0;
@@ -50,7 +51,7 @@ inline double closest_to_box(const Point3<double>& from, const Point3<double>& w
     }
     return sum;
   };
-  std::array<double, 7> breakpoints{};  // ascending
+  std::array<double, 7> breakpoints{};  // values of t at which the segment crosses a face plane, in ascending order
   std::size_t count = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (const double face : {-half[i], half[i]})
@@ -129,7 +130,7 @@ S obstacle_distance(const Capsule<S>& link, const Obstacle& obstacle) {
 }
 
 /// The closest pair that consists of a moving link (`first`) and an obstacle (`second`).
-/// @param moves  indices of the moving links; the others may touch obstacles
+/// @param moves  indices of the links that are tested; all other links may touch obstacles
 template <class S, class Capsules, class Numbers>
 ClosestPair<S> nearest_obstacle(const Capsules& all, const Numbers& moves, const Obstacles& obstacles) {
   ClosestPair<S> nearest{S(std::numeric_limits<double>::infinity())};
@@ -141,7 +142,7 @@ ClosestPair<S> nearest_obstacle(const Capsules& all, const Numbers& moves, const
   return nearest;
 }
 
-/// True if the distance of every moving link from every obstacle is at least `minimum` [m].
+/// True if the distance of each link in `moves` from each obstacle is at least `minimum` [m].
 template <class Capsules, class Numbers>
 bool respects_obstacle_clearance(const Obstacles& obstacles, const Capsules& all, const Numbers& moves,
                                  double minimum) {

@@ -8,13 +8,14 @@
 
 namespace pkm {
 
-inline constexpr const char* kFramePart = "frame";        ///< part of links that do not move
-inline constexpr const char* kPlatformPart = "platform";  ///< part of links that move with the platform
-inline constexpr const char* kObstaclePart = "obstacle";  ///< part of obstacles
+inline constexpr const char* kFramePart = "frame";  ///< value of PlacedLink::part for links that do not move
+/// Value of PlacedLink::part for links that move with the platform.
+inline constexpr const char* kPlatformPart = "platform";
+inline constexpr const char* kObstaclePart = "obstacle";  ///< value of PlacedLink::part for obstacles
 
 /// One capsule in the world frame.
 struct PlacedLink {
-  std::string name;  ///< "rod 12"; capsules that form one body have the same name
+  std::string name;  ///< name of the body, such as "rod 12"; capsules that form one body have the same name
   std::string part;  ///< kFramePart, kPlatformPart, "limb 1", or a name defined by the mechanism ("carriage")
   Capsule<double> body;
 };

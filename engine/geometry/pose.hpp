@@ -14,8 +14,8 @@ namespace pkm {
 template <class S>
 using Pose = AxisVector<S>;
 
-/// The pose of a platform with three translations and one rotation (Schoenflies motion), with named coordinates; used
-/// by mechanisms with these degrees of freedom.
+/// The pose of a platform with three translations and one rotation (Schoenflies motion), with named coordinates.
+/// Mechanisms with these degrees of freedom use it.
 template <class S>
 struct SchoenfliesPose {
   S x{}, y{}, z{}, angle{};
@@ -29,7 +29,7 @@ SchoenfliesPose<S> schoenflies(const MatrixUpTo<S, kMaxJoints>& pose) {
 
 /// A coordinate of the pose or an actuated joint.
 struct AxisInfo {
-  std::string name;  ///< "x", "q1"
+  std::string name;  ///< such as "x" for a coordinate, "q1" for a joint
   std::string unit;  ///< "m" or "rad"
 
   bool turns() const { return unit == "rad"; }
@@ -40,36 +40,40 @@ using NamedValues = std::vector<std::pair<std::string, double>>;
 
 /// Kinematic analysis of one pose of one design. Values that do not exist are std::nullopt (printed as null).
 struct PoseReport {
-  bool assembles = false;                    ///< the inverse kinematics has a solution in the requested working mode
-  bool feasible = false;                     ///< assembles and every margin >= 0
-  std::string reason;                        ///< why it does not assemble, or the first violated margin; "" if feasible
-  std::optional<AxisVector<double>> joints;  ///< order of MechanismInfo::joints; NaN: no solution for this joint
-  std::optional<AxisMatrix<double>> Jq, G, J;  ///< Jq qdot = G V, J = Jq^-1 G (no J if Jq is singular)
+  bool assembles = false;  ///< the inverse kinematics has a solution in the requested working mode
+  bool feasible = false;   ///< assembles, and every margin is >= 0
+  std::string reason;      ///< why it does not assemble, or the first violated margin; "" if feasible
+  /// Joint positions in the order of MechanismInfo::joints; NaN if this joint has no solution.
+  std::optional<AxisVector<double>> joints;
+  /// Jacobians: Jq qdot = G V for joint rates qdot and coordinate rates V; J = Jq^-1 G, absent if Jq is singular.
+  std::optional<AxisMatrix<double>> Jq, G, J;
   /// 6 x coordinates: t = T V is the twist of the platform (velocity of its origin, then angular velocity, both in the
   /// base frame), where V are the rates of the coordinates.
   std::optional<AxisMatrix<double>> T;
   std::optional<double> det_Jq, det_G;
-  std::optional<double> conditioning;  ///< inverse condition number in [0, 1]
-  NamedValues indices;                 ///< singularity indices specific to the mechanism
-  NamedValues angles;                  ///< angles [rad] and lengths [m] specific to the mechanism
-  NamedValues margins;                 ///< pose-level constraint values; >= 0: satisfied
-  std::vector<double> quantities =
-      {};  ///< values of MechanismInfo::quantities with default inputs, at rest; NaN: undefined
+  std::optional<double> conditioning;  ///< inverse condition number of the Jacobian, in [0, 1]
+  NamedValues indices;                 ///< singularity indices that this mechanism defines
+  NamedValues angles;                  ///< further angles [rad] and lengths [m] that this mechanism defines
+  NamedValues margins;  ///< values of the pose-level constraints; a value >= 0 means that the constraint is satisfied
+  /// Values of MechanismInfo::quantities for the default inputs and a platform at rest; NaN if undefined.
+  std::vector<double> quantities = {};
 };
 
 /// One solution of the forward kinematics.
 struct AssemblyMode {
   Pose<double> pose;
-  std::string mode;               ///< the mechanism's name of this assembly mode
-  bool usual = true;              ///< listed by default; otherwise on request only
-  std::string working_mode = {};  ///< inverse kinematics in this mode reproduces the joints; "": in every mode
-  std::vector<std::string> double_roots = {};  ///< coordinates that are double roots: two assembly modes coincide
+  std::string mode;   ///< name of this assembly mode, defined by the mechanism
+  bool usual = true;  ///< true: always listed; false: listed on request only
+  /// Working mode in which the inverse kinematics reproduces the joint positions; "": every working mode.
+  std::string working_mode = {};
+  /// Names of the coordinates that are double roots, where two assembly modes coincide.
+  std::vector<std::string> double_roots = {};
 };
 
 /// Outcome of the forward kinematics.
 struct ForwardStatus {
-  std::string word = "OK";  ///< or "NO_POSE" or another status word
-  std::string reason;       ///< one sentence; "" if OK
+  std::string word = "OK";  ///< status: "OK", "NO_POSE" (no pose was found) or another word that the mechanism defines
+  std::string reason;       ///< explanation in one sentence; "" if the status is OK
 };
 
 }  // namespace pkm

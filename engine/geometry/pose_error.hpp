@@ -12,7 +12,7 @@
 
 namespace pkm {
 
-/// The maximum of |(E e)_i| over the box of joint errors, for each component i.
+/// The maximum of |(E e)_i| over the box |e_j| <= errors[j], for each component i.
 inline std::vector<double> max_components(const AxisMatrix<double>& E, std::span<const double> errors) {
   std::vector<double> max(E.rows(), 0);
   for (std::size_t i = 0; i < max.size(); ++i)

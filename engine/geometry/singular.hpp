@@ -22,7 +22,7 @@ inline constexpr double kSingularRcond = 1e-12;  ///< a matrix with a smaller rc
 /// Cheap sufficient test for rcond(J) > 10 kSingularRcond, from the LU factor U. With x = max 1 / |u_kk| and
 /// r = max |u_kj| / |u_kk|, no element of U^-1 exceeds x (1 + r)^(n - 1), and no element of L^-1 exceeds 2^(n - 1),
 /// because partial pivoting limits the elements of L to 1. Sums replace the maxima, because they propagate NaN.
-/// @param u  J or its transpose after eliminate()
+/// @param u  J or its transpose after eliminate(): its upper triangle is U
 template <SmallMatrix M>
 bool is_clearly_regular(const M& J, const M& u) {
   const std::size_t n = J.rows();
