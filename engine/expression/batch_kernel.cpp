@@ -62,7 +62,7 @@ void run_batch(std::span<const BatchStep> steps, const double* registers, double
       case Code::abs:
         unary([](const L& x) __attribute__((always_inline)) { return select(x < 0.0, -x, x); });
         break;
-      case Code::min:  // NaN if an argument is NaN
+      case Code::min:  // as in scalar evaluation, the result is NaN if an argument is NaN
         binary([](const L& x, const L& y)
                    __attribute__((always_inline)) { return select(y >= y, select(y < x, y, x), y); });
         break;

@@ -14,7 +14,7 @@
 
 namespace pkm::expression {
 
-inline constexpr std::size_t kRow = 64;  ///< batch size: numbers of a row, a multiple of kLanes
+inline constexpr std::size_t kRow = 64;  ///< batch size: count of numbers in a row, a multiple of kLanes
 
 /// Allocator that aligns to cache lines, so that no SIMD load or store crosses a line boundary: this saves a quarter of
 /// the time of a workspace analysis.
@@ -34,8 +34,8 @@ using Rows = std::vector<double, CacheLineAllocator<double>>;
 
 /// An operand of a step: a row of this stage, or a single number of an earlier stage.
 struct Operand {
-  std::uint32_t index = 0;  ///< slot of a row; register of a number
-  bool row = false;         ///< true: a row
+  std::uint32_t index = 0;  ///< of a row: its slot in `rows`; of a single number: its register
+  bool row = false;         ///< true: a row with one number per input value; false: a single number
 };
 
 /// A step of the stage. A plain struct, so that the kernels, which are compiled once per instruction set, share no
@@ -44,7 +44,7 @@ struct BatchStep {
   Code code;
   Rule<double> rule;
   std::uint8_t count;
-  std::uint32_t to;  ///< slot of the result
+  std::uint32_t to;  ///< slot of the row that receives the result
   Operand from[kMaxArguments];
 };
 
@@ -74,7 +74,7 @@ class BatchStage {
 
  private:
   std::vector<BatchStep> steps_;
-  std::vector<Operand> operands_;  ///< by register of the program
+  std::vector<Operand> operands_;  ///< location of each register of the program, by register
   std::vector<std::uint32_t> inputs_;
   std::size_t slots_ = 0;
 };

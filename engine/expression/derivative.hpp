@@ -29,7 +29,7 @@ class Rates {
   Term differentiate(Node node);
 
   Graph& graph_;
-  std::unordered_map<Node, Node> rates_;  ///< by node
+  std::unordered_map<Node, Node> rates_;  ///< rates of change that were set or computed, by node
 };
 
 /// The partial derivative of f with respect to one input. Evaluated with intervals over a box that contains a kink of

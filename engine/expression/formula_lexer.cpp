@@ -20,7 +20,7 @@ bool is_part(const std::string& name) {
   return name == "x" || name == "y" || name == "z" || name == "origin" || name == "R";
 }
 
-/// End of a message about an unknown name: "; expected one of a, b; did you mean 'a'?"
+/// Second half of a message about an unknown name, for example: "; expected one of a, b; did you mean 'a'?"
 std::string expected_names(const std::string& name, const std::vector<std::string>& known) {
   return "; expected one of " + join(known) + did_you_mean(name, known);
 }
@@ -76,14 +76,14 @@ class Lexer {
     } else if (rest[0] == '=') {
       refuse(text_, "has a " + quote("=", i) + "; formulas have no assignment, compare with '=='");
     } else if (std::string_view("+-*/^<>?:").find(rest[0]) == std::string_view::npos) {
-      // include the continuation bytes of a UTF-8 character
+      // if the character is not ASCII, include all bytes of its UTF-8 encoding
       while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0U) == 0x80U) ++length;
       refuse(text_, "has a " + quote(rest.substr(0, length), i) + ", which is not allowed in formulas");
     }
     return {.text = text_.substr(i, 1), .position = i};
   }
 
-  /// std::from_chars does not depend on the locale.
+  /// The number that begins at character i. std::from_chars is used because it does not depend on the locale.
   Token number_at(std::size_t i) const {
     double number = 0;
     const auto [end, error] = std::from_chars(text_.data() + i, text_.data() + text_.size(), number);
@@ -185,7 +185,7 @@ bool may_be_name(const std::string& name) {
 }
 
 void refuse(const std::string& text, const std::string& error) {
-  constexpr std::size_t kMaxShown = 60;  // characters of the formula
+  constexpr std::size_t kMaxShown = 60;  // maximum length of the formula's text in the message, in characters
   std::string shown = text.size() > kMaxShown ? text.substr(0, kMaxShown - 3) + "..." : text;
   std::ranges::replace_if(shown, is_blank, ' ');
   throw std::invalid_argument("the formula \"" + shown + "\" " + error);

@@ -28,7 +28,8 @@ bool may_be_name(const std::string& name);
 
 /// Throws std::invalid_argument with the formula's text and the predicate `error`: the formula "a +" ends where ...
 [[noreturn]] void refuse(const std::string& text, const std::string& error);
-/// "'x' at character 3". @param position  position of the first character, from 0; printed from 1
+/// A token with its position, for messages: "'x' at character 3". @param position  position of the first character,
+/// from 0; printed from 1
 std::string quote(std::string_view token, std::size_t position);
 
 /// Splits a formula into tokens. Throws std::invalid_argument on unknown names and functions, wrong numbers of

@@ -105,7 +105,8 @@ namespace {
 /// Copies the nodes of `order` into a new graph, whose constants and inputs are created by `leaf`, and replaces `roots`
 /// by their copies.
 /// @param order  nodes that include everything `roots` depend on, operands first
-/// @param leaf   leaf(new graph, contents of the old node, new nodes by index of the old ones)
+/// @param leaf   leaf(new graph, contents of an old constant or input, new nodes by index of the old ones): its new
+///               node
 template <class Leaf>
 Graph rebuild(const Graph& graph, const std::vector<Node>& order, std::vector<Node>& roots, const Leaf& leaf) {
   Graph made;
@@ -122,7 +123,7 @@ Graph rebuild(const Graph& graph, const std::vector<Node>& order, std::vector<No
   return made;
 }
 
-/// The replacement of a node; std::nullopt if it is not an input or is not to be replaced.
+/// The element of `by_input` for an input; std::nullopt if the node is no input, or if its input is not to be replaced.
 template <class T>
 std::optional<T> replacement(const Entry& entry, std::span<const std::optional<T>> by_input) {
   const auto input = static_cast<std::size_t>(entry.input);
@@ -158,7 +159,8 @@ Graph substitute_nodes(const Graph& graph, std::span<const std::optional<Node>> 
   std::vector<Node> wanted;
   for (const auto& node : nodes)
     if (node) wanted.push_back(*node);
-  std::vector<Node> order = graph.reachable(wanted);  // the replacements precede the nodes that use them
+  // in topological order: a replacement precedes the nodes that use it
+  std::vector<Node> order = graph.reachable(wanted);
   const std::vector<Node> others = graph.reachable(roots);
   order.insert(order.end(), others.begin(), others.end());
   return rebuild(graph, order, roots, [&](Graph& made, const Entry& entry, const std::vector<Node>& copies) {

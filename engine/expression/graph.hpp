@@ -28,14 +28,14 @@ enum class Node : std::uint32_t {};  ///< index of a node in its graph; operands
 
 using Groups = std::uint32_t;  ///< set of input groups, one bit each
 
-/// The contents of a node.
+/// The contents of a node: an operation with its arguments, an input, or a constant.
 struct Entry {
-  const Operation* operation = nullptr;  ///< null: a constant or an input
+  const Operation* operation = nullptr;  ///< the operation; null if the node is a constant or an input
   std::array<Node, kMaxArguments> arguments{};
   std::uint8_t count = 0;   ///< number of arguments
-  std::int32_t input = -1;  ///< index among the inputs; -1: not an input
-  double number = 0;        ///< value of a constant
-  Groups groups = 0;        ///< groups of the inputs that the node depends on
+  std::int32_t input = -1;  ///< index among the inputs of the graph; -1 if the node is no input
+  double number = 0;        ///< value, if the node is a constant
+  Groups groups = 0;        ///< groups of all inputs that the node depends on, directly or through its arguments
 
   bool is_number() const { return !operation && input < 0; }
   std::span<const Node> operands() const { return {arguments.data(), count}; }
@@ -69,7 +69,8 @@ class Graph {
   Node power(Node base, int exponent);
 
   std::vector<Entry> entries_;
-  std::unordered_map<Entry, Node, Hash, Equal> nodes_;  ///< hash-consing table
+  /// Index of the node for each contents that the graph has (hash-consing).
+  std::unordered_map<Entry, Node, Hash, Equal> nodes_;
 };
 
 /// Copies the subgraph of `roots` into a new graph in which constants replace some of the inputs (partial evaluation).

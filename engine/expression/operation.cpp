@@ -111,8 +111,8 @@ Interval left_fold(std::span<const Interval> x, const F& f) {
   return result;
 }
 
-/// The function object F as a Rule. If all arguments are constant, all derivatives of the result are 0, even where the
-/// operation is not differentiable (sqrt at 0).
+/// Evaluates the function object F as an entry of Operation::rules. If all arguments are constants, all derivatives of
+/// the result are 0, even where the operation is not differentiable (sqrt at 0).
 template <std::size_t arguments, class F, class S>
 S rule(const S* x, std::size_t count) {
   if constexpr (Derivative<S> && arguments <= 2)
@@ -126,7 +126,7 @@ S rule(const S* x, std::size_t count) {
   if constexpr (arguments == 3) return F()(x[0], x[1], x[2]);
 }
 
-/// An operation from its implementations: F for double and the differentiation scalars, Bounds for intervals.
+/// Makes an operation from two implementations: F for double and the differentiation scalars, Bounds for intervals.
 template <std::size_t arguments, class F, class Bounds>
 Operation make(std::string name, F, Bounds, int rank = 0, Code code = Code::other) {
   return {std::move(name),
@@ -136,13 +136,13 @@ Operation make(std::string name, F, Bounds, int rank = 0, Code code = Code::othe
           rank,
           code};
 }
-/// An operation with one generic implementation for all scalars, intervals included.
+/// Makes an operation from one generic implementation F, which serves all scalars, intervals included.
 template <std::size_t arguments, class F>
 Operation make(std::string name, F f, int rank = 0, Code code = Code::other) {
   return make<arguments>(std::move(name), f, f, rank, code);
 }
 
-/// A comparison or a logical operator: 1 if F holds, else 0; NaN if an argument is NaN.
+/// Makes a comparison or a logical operator: its value is 1 if F holds, otherwise 0; NaN if an argument is NaN.
 template <class F, class Bounds>
 Operation predicate(std::string name, F, Bounds bounds, int rank) {
   const auto truth = [](const auto& x, const auto& y) {

@@ -29,9 +29,9 @@ inline constexpr std::size_t kMaxArguments = 3;  ///< maximum number of argument
 
 struct Operation {
   std::string name;           ///< as written in formulas
-  std::size_t arguments = 1;  ///< 0: two or more (min, max), which a graph folds from the left
+  std::size_t arguments = 1;  ///< number of arguments; 0: two or more (min, max), which a graph nests from the left
   std::tuple<Rule<double>, Rule<Dual4>, Rule<Taylor>, Rule<Interval>> rules;
-  int rank = 0;  ///< precedence of an operator, a higher one binds more tightly; 0: function
+  int rank = 0;  ///< precedence of an operator, where a higher one binds more tightly; 0 for a function
   Code code = Code::other;
 
   bool operator==(const Operation& other) const { return this == &other; }

@@ -8,17 +8,18 @@
 namespace pkm::expression {
 namespace {
 
-constexpr std::size_t kMaxCoefficients = 5;  // limit for intermediate polynomials: squares of quadratics have 5
-// Limits of the nesting depth and of the number of nodes visited; beyond them a constraint is not converted.
+// maximum number of coefficients of intermediate polynomials: the square of a quadratic has 5
+constexpr std::size_t kMaxCoefficients = 5;
+// Maximum nesting depth, and maximum number of nodes visited; a constraint that exceeds one of them is not converted.
 constexpr int kMaxDepth = 500, kMaxSteps = 100'000;
 
 /// Coefficients of a polynomial in z, constant term first; empty: 0.
 using Coefficients = std::vector<Term>;
 
-/// A + B sqrt(Q).
+/// The radical form A + B sqrt(Q) of a node, where A, B and Q are polynomials in z.
 struct RadicalForm {
   Coefficients A, B;
-  Node radicand{};  ///< Q as a node; meaningful if B is not 0
+  Node radicand{};  ///< the node Q under the root; meaningful only if B is not 0
   Coefficients Q;
 };
 
@@ -50,8 +51,8 @@ class NormalForm {
   NormalForm(Graph& graph, Groups z, std::size_t degree, bool squares)
       : graph_(graph), z_(z), degree_(degree), squares_(squares) {}
 
-  /// The radical form of a node; std::nullopt if it has none. Depth-first with an explicit stack and a cache, because a
-  /// node may depend on 10^5 others, along several paths each.
+  /// The radical form of a node; std::nullopt if it has none. The graph is traversed depth-first with an explicit stack
+  /// and a cache, because a node may depend on 10^5 others, and on each of them in several ways.
   std::optional<RadicalForm> form(Node root) {
     std::vector<Node> stack = {root};
     while (!stack.empty()) {
@@ -68,7 +69,7 @@ class NormalForm {
     return forms_.at(root);
   }
 
-  /// The constraint node >= 0 in conjunctive normal form.
+  /// The constraint node >= 0 in conjunctive normal form; std::nullopt if it has no such form or exceeds the limits.
   std::optional<std::vector<Clause>> clauses(Node node) {
     if (depth_ > kMaxDepth || ++steps_ > kMaxSteps) return {};
     ++depth_;
@@ -148,9 +149,9 @@ class NormalForm {
       if (code == Code::max) return disjunction(clauses(entry.arguments[0]), clauses(entry.arguments[1]));
       if (code == Code::subtract) {
         const Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
-        if (const auto inner = inside_of_abs(y))  // x - |u|
+        if (const auto inner = inside_of_abs(y))  // x - |u| >= 0
           return conjunction(clauses((x - *inner).node()), clauses((x + *inner).node()));
-        if (const auto inner = inside_of_abs(x))  // |u| - y
+        if (const auto inner = inside_of_abs(x))  // |u| - y >= 0
           return disjunction(clauses((*inner - y).node()), clauses((-*inner - y).node()));
       }
     }
@@ -230,7 +231,7 @@ class NormalForm {
       return conjunction(clause({f->A}), clause({sum(*AA, negated(*BBQ))}));
     if (is_nonnegative(b.node())) return clause({f->A, sum(*BBQ, negated(*AA))});
     if (!squares_) return {};
-    // the sign of b is unknown: the two cases b >= 0 and b <= 0, in conjunctive normal form
+    // If the sign of b is unknown, combine the two cases b >= 0 and b <= 0 in conjunctive normal form.
     const Coefficients R = sum(*AA, negated(*BBQ));
     return conjunction(conjunction(clause({f->A, f->B}), clause({f->A, negated(R)})), clause({f->B, R}));
   }
@@ -254,7 +255,7 @@ class NormalForm {
   /// X + sqrt(P) or X - sqrt(P), where X does not depend on z.
   struct RootSum {
     Term X;
-    bool plus;  ///< the sign of the root
+    bool plus;  ///< true: X + sqrt(P); false: X - sqrt(P)
     Node P;
   };
   std::optional<RootSum> root_sum(Node node, int depth = 0) {
@@ -279,7 +280,7 @@ class NormalForm {
                  : std::nullopt;
   }
 
-  /// Converts |u| <= sqrt(Y) as two constraints linear in u.
+  /// Converts |u| <= sqrt(Y) to the two constraints sqrt(Y) - u >= 0 and sqrt(Y) + u >= 0, which are linear in u.
   Clauses abs_at_most(const Term& u, const Term& Y) {
     const Entry entry = graph_[Y.node()];
     const bool is_square =
@@ -287,7 +288,7 @@ class NormalForm {
     const Term root = is_square ? abs(Term(graph_, entry.arguments[0])) : sqrt(Y);
     return conjunction(clauses((root - u).node()), clauses((root + u).node()));
   }
-  /// Converts "|u| >= sqrt(Y), or Y <= 0".
+  /// Converts the disjunction "|u| >= sqrt(Y) or Y <= 0".
   Clauses abs_at_least(const Term& u, const Term& Y) {
     const Term root = sqrt(Y);
     return disjunction(clauses((-Y).node()), disjunction(clauses((u - root).node()), clauses((-u - root).node())));
@@ -300,7 +301,7 @@ class NormalForm {
     if (entry.operation == &operation("acos")) return std::vector<Clause>{};
     if (!entry.operation || entry.operation->code != Code::subtract) return {};
     Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
-    const bool is_lower = is_independent(y);  // c is a lower bound
+    const bool is_lower = is_independent(y);  // true: c is a lower bound of the other operand; false: an upper bound
     if (!is_lower && !is_independent(x)) return {};
     const Term c = is_lower ? y : x, value = is_lower ? x : y;
     const Entry of = graph_[value.node()];
@@ -385,8 +386,9 @@ class NormalForm {
   Groups z_;
   std::size_t degree_;
   bool squares_;
-  std::unordered_map<Node, std::optional<RadicalForm>> forms_;  ///< cache
-  int depth_ = 0, steps_ = 0;                                   ///< recursion depth and number of steps of clauses()
+  /// Radical forms computed so far, by node; std::nullopt: the node has none.
+  std::unordered_map<Node, std::optional<RadicalForm>> forms_;
+  int depth_ = 0, steps_ = 0;  ///< recursion depth and number of steps of clauses()
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
 
 namespace {
 
-/// Fast path: evaluates the four basic operations and negation without an indirect call.
+/// Evaluates one of the four basic operations or a negation without an indirect call, which is faster.
 /// @return false if the operation is another one, or if the value is not finite: then Operation::rules must be used,
 ///         which also set the derivatives of such a value
 template <class S>

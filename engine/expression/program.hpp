@@ -19,7 +19,8 @@
 
 namespace pkm::expression {
 
-/// Immutable and thread-safe: the registers belong to the caller. Every node in use has its own register.
+/// Immutable and thread-safe, because the registers belong to the caller. Every node that an output depends on has its
+/// own register.
 class Program {
  public:
   struct Step {
@@ -30,11 +31,11 @@ class Program {
     Code code;                                      ///< operation->code
   };
   struct Input {
-    std::uint32_t position;  ///< index among the graph's inputs
-    std::uint32_t to;        ///< register
+    std::uint32_t position;  ///< index among the inputs of the graph
+    std::uint32_t to;        ///< register that receives the value of the input
   };
   struct Stage {
-    std::vector<Input> inputs;  ///< provided by this stage
+    std::vector<Input> inputs;  ///< inputs whose values become available in this stage
     std::vector<Step> steps;
   };
 
@@ -46,11 +47,13 @@ class Program {
 
   std::size_t registers() const { return registers_; }
   const std::vector<Stage>& stages() const { return stages_; }
-  const std::vector<std::uint32_t>& outputs() const { return outputs_; }  ///< register of each output
-  const std::vector<int>& stage_of() const { return stage_of_; }          ///< by register; -1: constant
+  /// For each output, the register that holds its value.
+  const std::vector<std::uint32_t>& outputs() const { return outputs_; }
+  /// For each register, the stage that computes it; -1 if it holds a constant.
+  const std::vector<int>& stage_of() const { return stage_of_; }
 
   /// Writes the constants to their registers; running stages does not change them.
-  /// @param registers  size registers()
+  /// @param registers  scratch memory with registers() elements
   template <class S>
   void start(std::span<S> registers) const {
     for (const auto& [to, value] : numbers_) registers[to] = S(value);
@@ -79,7 +82,7 @@ class Program {
 
  private:
   std::vector<Stage> stages_;
-  std::vector<std::pair<std::uint32_t, double>> numbers_;  ///< register and value of each constant
+  std::vector<std::pair<std::uint32_t, double>> numbers_;  ///< for each constant, its register and its value
   std::vector<std::uint32_t> outputs_;
   std::vector<int> stage_of_;
   std::size_t registers_ = 0;

@@ -23,7 +23,8 @@ class Minors {
     if (const auto found = known_.find(columns); found != known_.end()) return found->second;
     const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
     Term sum(A_.graph(), 0.0);
-    bool is_negative = false;  // sign of the cofactor; positive for the last column of the submatrix, then alternating
+    // sign of the cofactor: positive for the last column of the submatrix, then alternating from right to left
+    bool is_negative = false;
     for (std::size_t j = A_.columns(); j-- > 0;) {
       if ((columns >> j & 1U) == 0) continue;
       const Term product = A_(row, j) * of(columns & ~(1U << j));
@@ -46,7 +47,7 @@ Term sum_of_squares(std::initializer_list<Term> terms) {
   return sum;
 }
 
-/// sqrt(square + (tiny scale)^2): keeps derivatives finite where the square vanishes.
+/// sqrt(square + (tiny scale)^2), whose derivatives are finite even where `square` vanishes.
 Term regular_root(const Term& square, const Term& scale) {
   constexpr double kTiny = 1e-20;
   const Term tiny = scale * kTiny;
