@@ -9,7 +9,8 @@
 
 namespace pkm {
 
-/// The cells from `first` up to, but excluding, index `end` along `axis`.
+/// The cells whose index along `axis` is at least first[axis] and less than `end`; their other indices are those of
+/// `first`.
 struct CellRun {
   Cell first;
   std::size_t axis;
@@ -18,8 +19,8 @@ struct CellRun {
   std::int64_t count() const { return end - first[axis]; }
 };
 
-/// Adds the cells of a run to a result.
-/// @param images  number of symmetric images of the run, including itself
+/// Adds the number of cells of a run, and its contact with the border of the grid, to a result.
+/// @param images  number of copies of the run by symmetry, including itself; all of them are counted
 inline void count_cells(const VoxelGrid& grid, const CellRun& run, WorkspaceResult<double>& to, int images = 1) {
   to.feasible_cells += run.count() * images;
   to.touches_box = to.touches_box || run.end == grid.cells[run.axis] || grid.is_outermost(run.first);
@@ -31,7 +32,7 @@ void for_each_cell(const CellRun& run, const Visit& visit) {
   for (Cell cell = run.first; cell[run.axis] < run.end; ++cell[run.axis]) visit(cell);
 }
 
-/// Splits a run: calls visit(run) for each maximal run of its cells that satisfy a predicate.
+/// Calls visit(part) for each part of a run that is a maximal run of cells that satisfy a predicate.
 template <class Predicate, class Visit>
 void filter_run(const CellRun& run, const Predicate& passes, const Visit& visit) {
   CellRun kept = run;

@@ -10,11 +10,11 @@
 namespace pkm {
 namespace {
 
-/// A design and its grids, whose blocks are the layers of the first axis.
+/// A design and its grids; each block of a grid is one layer of cells along the first axis.
 struct GriddedPoses : GriddedDesign {
   std::span<const double> parameters;
-  const std::vector<FixedCells>& fixed;  ///< coordinates that are integrated over
-  Pose<double> pose;                     ///< values of the other fixed coordinates
+  const std::vector<FixedCells>& fixed;  ///< cells of the coordinates that are integrated over
+  Pose<double> pose;                     ///< values of the fixed coordinates that are not integrated over
   const Sweep& sweep;
 
   Pose<double> pose_at(std::size_t number, const Cell& cell) const {
@@ -98,7 +98,8 @@ class CellwiseVoxels final : public GridEvaluator<CellwiseVoxels> {
   [[noreturn]] void throw_missing_ranges() const {
     throw DesignError("mechanism " + mechanism_.info().name + " has no default box; give a box");
   }
-  /// A box that contains the workspace: that of the mechanism's own voxels, otherwise its ranges.
+  /// A box that contains the workspace: that of the mechanism's own voxels if it has any, otherwise the ranges of the
+  /// coordinates.
   Box box_of(std::span<const double> parameters, const Sweep& sweep,
              const std::optional<std::vector<std::array<double, 2>>>& ranges) const {
     if (!ranges && !mechanism_.voxels()) throw_missing_ranges();
@@ -114,7 +115,7 @@ class CellwiseVoxels final : public GridEvaluator<CellwiseVoxels> {
     return box;
   }
 
-  /// Adds a sample if the pose is feasible. @return true if it is feasible
+  /// Counts a pose if it is feasible, and appends its sample if samples are requested. @return true if it is feasible
   bool add(std::span<const double> parameters, const Pose<double>& pose, double weight,
            WorkspaceResult<double>& result) const {
     const PoseReport report = mechanism_.inspect(parameters, pose, mode_, plan_.limits);

@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// Cells of a fixed coordinate in [lower, lower + cells * step].
+/// The cells of a coordinate that is integrated over: `cells` equal cells in [lower, lower + cells * step].
 struct FixedCells {
   std::size_t coordinate;
   double lower, step;
@@ -19,9 +19,9 @@ struct FixedCells {
 };
 
 /// Finds the cells of all coordinates that a plan integrates over.
-/// @param coordinates  fixed coordinates of the plan's sweep
+/// @param coordinates  indices of the fixed coordinates of the plan's sweep
 /// @param range_of     range_of(coordinate): the range that is divided into cells
-/// @param all          overwritten
+/// @param all          receives the cells of each integrated coordinate; previous contents are discarded
 template <class RangeOf>
 void find_fixed_cells(std::span<const int> coordinates, const WorkspacePlan& plan, const RangeOf& range_of,
                       std::vector<FixedCells>& all) {

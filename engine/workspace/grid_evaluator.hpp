@@ -13,12 +13,13 @@
 
 namespace pkm {
 
-/// A design and its grids.
+/// A design and its grids of equal size, one for each combination of cells of the coordinates that are integrated over.
 struct GriddedDesign {
   VoxelGrid grid;
-  std::size_t blocks;     ///< number of blocks of each grid
-  double cell_volume;     ///< including the steps of coordinates that are integrated over
-  std::size_t grids = 1;  ///< number of grids; they differ in the coordinates that are integrated over
+  std::size_t blocks;  ///< number of blocks of each grid
+  double cell_volume;  ///< volume of a cell, multiplied by the cell sizes of the coordinates that are integrated over
+  /// Number of grids, i.e. of combinations of cells of the coordinates that are integrated over.
+  std::size_t grids = 1;
 
   GriddedDesign(const VoxelGrid& voxels, std::size_t blocks_of_grid, std::span<const FixedCells> integrated = {})
       : grid(voxels), blocks(blocks_of_grid), cell_volume(voxels.cell_volume()) {
@@ -29,7 +30,7 @@ struct GriddedDesign {
   }
 };
 
-/// Scratch memory of an analysis: shared by all blocks, and one for each worker.
+/// Scratch memory of an analysis: one part that all blocks share, and one part for each worker thread.
 template <class Shared, class PerWorker>
 struct GridBuffers {
   Shared shared;

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// Removes the elements of a vector whose index is not in `kept`, which is ascending.
+/// Removes from a vector all elements whose index is not in `kept`, a list of indices in ascending order.
 template <class T>
 void keep(const std::vector<std::size_t>& kept, std::vector<T>& values) {
   if (values.empty()) return;
@@ -62,7 +62,7 @@ class HomeComponent final : public VoxelEvaluator {
   }
 
  private:
-  /// The cells of the component that holds the home pose.
+  /// Map in which only the cells of the component that contains the home pose are feasible.
   VoxelMap component(std::span<const double> parameters, Scratch& scratch) const {
     VoxelMap map = map_->map(parameters);
     const ConnectedComponents components = finder_.find(parameters, map, scratch);
@@ -81,7 +81,7 @@ class HomeComponent final : public VoxelEvaluator {
   ComponentFinder finder_;
   const Sweep& sweep_;
   std::array<double, 3> home_;
-  bool poses_;  ///< poses of samples are requested
+  bool poses_;  ///< true: the poses of the samples are requested
   std::unique_ptr<const VoxelEvaluator> map_, samples_;
 };
 

@@ -7,10 +7,12 @@
 
 namespace pkm {
 
-/// Counts only the cells of this component. A design whose home pose is infeasible, singular or outside of the grid
-/// throws DesignError. Throws std::invalid_argument if the plan is not supported, see ComponentFinder.
+/// Prepares an evaluator that counts only the cells of this component. A design whose home pose is infeasible, singular
+/// or outside of the grid throws DesignError. Throws std::invalid_argument if the plan is not supported, see
+/// ComponentFinder.
 /// @param map      evaluator of the same plan without a home pose, without samples
-/// @param samples  the same with the samples of the request and with FieldRequest::every_pose; null: none are requested
+/// @param samples  evaluator of the same plan with the samples of the request and with FieldRequest::every_pose; null
+///                 if no samples are requested
 std::unique_ptr<const VoxelEvaluator> prepare_home_component(const Mechanism& mechanism, const WorkspacePlan& plan,
                                                              const FieldRequest& request,
                                                              std::unique_ptr<const VoxelEvaluator> map,

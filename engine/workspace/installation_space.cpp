@@ -11,10 +11,10 @@
 namespace pkm {
 namespace {
 
-/// What one worker has found.
+/// Bounding box and link lengths over the poses that one worker thread has evaluated.
 struct Extents {
   std::optional<Bounds<double>> box;
-  std::vector<double> lengths;  ///< by link; 0: part of the frame
+  std::vector<double> lengths;  ///< maximum length of the axis of each link [m], by link; 0 for links of the frame
 
   void add(const std::vector<PlacedLink>& links) {
     lengths.resize(links.size());

@@ -13,13 +13,14 @@
 namespace pkm {
 
 struct InstallationSpace {
-  Bounds<double> box;        ///< [m], links of the frame included
-  double moving_length = 0;  ///< sum over the links that are not part of the frame of the largest length of their axes
+  Bounds<double> box;        ///< bounding box of all links at all poses [m], links of the frame included
+  double moving_length = 0;  ///< sum of the maximum lengths of the axes of all links that are not part of the frame [m]
 };
 
-/// The installation space, by all threads of the caller's team; it does not depend on their number. Links can extend
-/// farthest at any pose, not only on the boundary of a workspace: all poses are evaluated.
-/// @param mechanism  has links
+/// The installation space over all given poses. They are evaluated by the threads of the caller's team, and the result
+/// does not depend on their number. Poses inside a workspace count as well, because links can extend farthest at any
+/// pose, not only on the boundary.
+/// @param mechanism  a mechanism that provides its links
 /// @return std::nullopt if there are no poses, or one of them cannot be assembled
 std::optional<InstallationSpace> installation_space(const Mechanism& mechanism, std::span<const double> parameters,
                                                     const std::string& mode, std::span<const Pose<double>> poses);

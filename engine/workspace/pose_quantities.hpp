@@ -38,7 +38,7 @@ inline void add_report(const PoseReport& report, std::size_t joints, WorkspaceRe
 /// Computes all requested quantities of a joint-space inertia M_q, and calls visit(field, values) for each. A value is
 /// PoseQuantity::value_if_undefined if it is not finite, or if M_q is infinite or has a diagonal element <= 0 (at the
 /// workspace boundary, if no limit keeps a distance from singularities).
-/// @param except  a quantity to skip because it has been computed elsewhere; or null
+/// @param except  a quantity to skip because it has been computed elsewhere; null if there is none
 template <class S, SmallMatrix M, class Visit>
 void evaluate_inertia(const M& M_q, WorkspaceResult<S>& result, const PoseQuantity* except, const Visit& visit) {
   bool is_valid = true;

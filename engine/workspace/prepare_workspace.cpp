@@ -11,10 +11,10 @@
 namespace pkm {
 namespace {
 
-/// Average of several evaluators with equal weights.
+/// Evaluator whose result is the average, with equal weights, of the results of several evaluators.
 class AverageEvaluator final : public WithGradients<AverageEvaluator> {
  public:
-  /// @param serial_members  true if the members do not use the thread team themselves
+  /// @param serial_members  true if the averaged evaluators do not use the thread team themselves
   AverageEvaluator(std::vector<std::unique_ptr<const WorkspaceEvaluator>> members, const FieldRequest& request,
                    bool serial_members)
       : members_(std::move(members)), fields_(request.fields), serial_members_(serial_members) {}
@@ -64,8 +64,8 @@ class AverageEvaluator final : public WithGradients<AverageEvaluator> {
   bool serial_members_;
 };
 
-/// @return true if the mechanism has a voxel evaluator of its own that supports the plan; otherwise the generic one is
-/// used, which tests one cell after the other
+/// @return true if the mechanism has a voxel evaluator of its own that supports the plan; otherwise
+/// prepare_cellwise_voxels() is used, which tests one cell after the other
 bool has_voxels(const Mechanism& mechanism, const WorkspacePlan& plan) {
   const bool needs_obstacles = !plan.limits.obstacles.empty() && requires_clearance(mechanism.info(), plan);
   return mechanism.voxels() && (!needs_obstacles || mechanism.voxels()->supports_obstacles());

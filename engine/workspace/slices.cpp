@@ -3,7 +3,8 @@
 namespace pkm {
 namespace {
 
-constexpr double kHalfThickness = 0x1p-10;  // half the thickness of a layer of cells [m or rad]
+// half the thickness of the layer of cells around the value of a sliced coordinate [m or rad]
+constexpr double kHalfThickness = 0x1p-10;
 
 }  // namespace
 

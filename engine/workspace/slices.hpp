@@ -15,8 +15,8 @@ using Slices = std::map<int, double>;
 /// @param plan  a voxel plan with a box
 void set_thin_layers(WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
 
-/// Turns the sliced axes into fixed coordinates, and the volume into that over the remaining axes.
-/// @param workspace  result of a plan that set_thin_layers() has modified
+/// Converts the sliced axes to fixed coordinates, and the volume to the area or length over the remaining axes.
+/// @param workspace  fields of a plan that set_thin_layers() has modified
 void remove_sliced_axes(WorkspaceFields& workspace, const MechanismInfo& info, const Slices& slices);
 
 }  // namespace pkm

@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-/// Points of a unit ball of one, two or three dimensions, in shells.
+/// Points of a unit ball of one, two or three dimensions, on `density` concentric shells and at the centre.
 std::vector<std::vector<double>> ball_samples(std::size_t dimension, int density) {
   std::vector<std::vector<double>> points;
   if (dimension == 1) {
@@ -17,7 +17,8 @@ std::vector<std::vector<double>> ball_samples(std::size_t dimension, int density
   points.emplace_back(dimension, 0.0);
   for (int shell = 1; shell <= density; ++shell) {
     const double radius = static_cast<double>(shell) / density;
-    const int parallels = dimension == 2 ? 1 : 3 * shell;  // parallel circles between the poles, which are included
+    // number of intervals of latitude from pole to pole; in the plane a shell is a single circle
+    const int parallels = dimension == 2 ? 1 : 3 * shell;
     for (int i = dimension == 2 ? 1 : 0; i <= parallels; ++i) {
       const double latitude = dimension == 2 ? 0 : std::numbers::pi * i / parallels - std::numbers::pi / 2;
       const int count = std::max(1, static_cast<int>(std::lround(6 * shell * std::cos(latitude))));
@@ -86,7 +87,8 @@ SolidSamples SolidShape::samples(int density) const {
       }
     points = std::move(more);
   }
-  const double reach = 1.75 / density;  // of neighbours, diagonal ones included
+  // points at a smaller distance are neighbours; diagonal neighbours of a square lattice are included
+  const double reach = 1.75 / density;
   std::vector<std::vector<std::size_t>> neighbours(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {

@@ -12,10 +12,11 @@ namespace pkm {
 
 enum class SolidKind { box, cylinder, sphere };
 
-/// A point of the unit solid, the product of unit balls, by axis.
+/// A point of the unit solid (the product of unit balls), by coordinate axis, each component in [-1, 1].
 using UnitPoint = std::array<double, 3>;
 
-/// Points of the unit solid, inside and on the boundary, vertices and rims included, with the neighbours of each.
+/// Sample points of the unit solid, in the interior and on the boundary (vertices and rims included), and for each
+/// point the indices of its neighbours.
 struct SolidSamples {
   std::vector<UnitPoint> points;
   std::vector<std::vector<std::size_t>> neighbours;
@@ -29,8 +30,8 @@ class SolidShape {
   SolidShape(SolidKind kind, std::size_t axes, std::size_t cylinder_axis = 2);
 
   std::size_t axes() const { return ball_of_axis_.size(); }
-  /// Number of balls, and so of dimensions: the edges of a box by axis, diameter and height of a cylinder, or the
-  /// diameter of a sphere.
+  /// Number of balls of which the solid is the product. Each has one dimension: the edges of a box by axis, diameter
+  /// and height of a cylinder, or the diameter of a sphere.
   std::size_t balls() const { return axes_of_ball_.size(); }
   std::size_t ball_of(std::size_t axis) const { return ball_of_axis_[axis]; }
   const std::vector<std::size_t>& axes_of(std::size_t ball) const { return axes_of_ball_[ball]; }
@@ -38,10 +39,10 @@ class SolidShape {
   std::vector<std::string> dimension_names(const std::vector<std::string>& axis_names) const;
   /// "box", "rectangle", "cylinder", "sphere" or "circle".
   std::string name() const;
-  /// Volume, or area over two axes. @param dimensions  one per ball
+  /// Volume [product of the units of the axes]; the area if there are two axes. @param dimensions  one per ball
   double volume(const std::vector<double>& dimensions) const;
 
-  /// @param density  number of intervals per radius
+  /// @param density  number of sample intervals along a radius
   SolidSamples samples(int density) const;
 
  private:
@@ -50,12 +51,12 @@ class SolidShape {
   std::vector<std::vector<std::size_t>> axes_of_ball_;
 };
 
-/// A solid and its place.
+/// A solid with a given position and size.
 struct Solid {
-  std::array<double, 3> centre{};  ///< by axis
-  std::vector<double> dimensions;  ///< by ball
+  std::array<double, 3> centre{};  ///< coordinates of the centre, by axis
+  std::vector<double> dimensions;  ///< edge length or diameter of each ball
 
-  /// The point of the solid for a point of the unit solid.
+  /// The point of this solid that corresponds to a point of the unit solid.
   std::array<double, 3> at(const SolidShape& shape, const UnitPoint& unit) const {
     std::array<double, 3> point = centre;
     for (std::size_t i = 0; i < shape.axes(); ++i) point[i] += dimensions[shape.ball_of(i)] / 2 * unit[i];

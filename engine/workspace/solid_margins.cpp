@@ -13,7 +13,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double norm_of(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// Whether a pose is infeasible: a margin is negative or does not exist.
+/// Whether a pose is infeasible: at least one of its margins is negative or does not exist (NaN).
 bool is_infeasible(std::span<const double> margins) {
   return !std::ranges::all_of(margins, [](double margin) { return margin >= 0; });
 }
@@ -78,7 +78,7 @@ bool SolidMargins::is_feasible(const std::array<double, 3>& point) {
 }
 
 SolidMargins::Gradient SolidMargins::gradient(std::size_t margin, const Pose<double>& pose) {
-  if (!dual_pose_ || !(*dual_pose_ == pose)) {  // consecutive calls are often for margins of the same pose
+  if (!dual_pose_ || !(*dual_pose_ == pose)) {  // consecutive calls often need other margins of the same pose
     Pose<Dual4> seeded(pose.size());
     for (std::size_t i = 0; i < pose.size(); ++i) seeded[i] = Dual4(pose[i]);
     for (std::size_t axis = 0; axis < swept_.size(); ++axis)
@@ -94,7 +94,7 @@ SolidMargins::Gradient SolidMargins::gradient(std::size_t margin, const Pose<dou
       found.by_axis[axis] = duals_[margin].v[static_cast<int>(axis)];
     return found;
   }
-  // Central differences of order 4, for margins without derivatives.
+  // The margin has no derivatives: use central differences of order 4.
   found.value = value(parameters_, margin, pose);
   double size = 0;
   for (const int coordinate : swept_) size = std::max(size, std::fabs(pose[static_cast<std::size_t>(coordinate)]));
@@ -171,8 +171,9 @@ CriticalPoint SolidMargins::minimise(const Solid& solid, std::size_t margin, std
   Gradient at_unit = scaled_gradient(unit);
   for (int iteration = 0; iteration < kMaxIterations && std::isfinite(norm_of(at_unit.by_axis)); ++iteration) {
     std::vector<UnitPoint> directions;
-    std::vector<double> curvatures;           // by direction: outward derivative of its sphere, or 0
-    std::array<bool, 3> stays_on_boundary{};  // by ball
+    // curvatures[k]: for direction k, the outward derivative on the sphere that it is tangent to; 0 if it is free
+    std::vector<double> curvatures;
+    std::array<bool, 3> stays_on_boundary{};  // whether the point stays on the boundary of each ball, by ball
     for (std::size_t ball = 0; ball < shape_.balls(); ++ball) {
       double radius = 0, outward = 0;
       for (const std::size_t i : shape_.axes_of(ball)) {
@@ -184,7 +185,8 @@ CriticalPoint SolidMargins::minimise(const Solid& solid, std::size_t margin, std
       for (const std::size_t i : shape_.axes_of(ball)) {
         UnitPoint direction{};
         direction[i] = 1;
-        if (stays_on_boundary[ball])  // Gram-Schmidt: orthogonal to the radius and to the tangents so far
+        // Gram-Schmidt: make the direction orthogonal to the radius and to the previous tangents
+        if (stays_on_boundary[ball])
           for (std::size_t k = 0; k <= basis.size(); ++k) {
             UnitPoint other{};
             if (k < basis.size())
@@ -279,7 +281,8 @@ std::vector<CriticalPoint> SolidMargins::critical_points(const Solid& solid, dou
   std::vector<CriticalPoint> found;
   std::vector<Pose<double>> poses(all.points.size());
   std::vector<double> margins;
-  std::vector<double> equal(count_);  // differences that are rounding errors
+  // for each margin, the difference below which two values count as equal (rounding errors)
+  std::vector<double> equal(count_);
   for (std::size_t orientation = 0; orientation < orientations_.size(); ++orientation) {
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = pose(solid.at(shape_, all.points[i]), orientation);
     margins.clear();
@@ -301,12 +304,13 @@ std::vector<CriticalPoint> SolidMargins::critical_points(const Solid& solid, dou
       for (std::size_t margin = 0; margin < count_; ++margin) {
         const double value = of_pose[margin];
         if (!std::isfinite(value)) continue;
-        const auto is_larger = [&](std::size_t k) {  // of equal minima, such as along an edge, only the first counts
+        // among neighbouring samples of equal value, such as along an edge, only the first is a minimum
+        const auto is_larger = [&](std::size_t k) {
           const double excess = margin_at(k, margin) - value;
           return !(excess < -equal[margin]) && (!(excess <= equal[margin]) || k > i);
         };
         if (!std::ranges::all_of(all.neighbours[i], is_larger)) continue;
-        // A point whose first-order distance is far beyond the range cannot come near zero within the solid.
+        // If the first-order distance exceeds the range by far, the margin cannot come near zero within the solid.
         const Gradient first = gradient(margin, poses[i]);
         if (value > 4 * range * norm_of(first.by_axis)) continue;
         const CriticalPoint point = minimise(solid, margin, orientation, all.points[i]);

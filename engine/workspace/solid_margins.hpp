@@ -11,25 +11,29 @@ namespace pkm {
 /// A local minimum of a margin over a solid.
 struct CriticalPoint {
   std::size_t margin = 0, orientation = 0;
-  UnitPoint unit{};                ///< point of the unit solid
-  double distance = 0;             ///< margin divided by the norm of its gradient: signed distance from its zero [m]
-  std::array<double, 3> normal{};  ///< gradient by the swept coordinates, divided by its norm
-  double norm = 0;                 ///< of the gradient; 0: the margin does not exist here, and `distance` and `normal`
-                                   ///< are those of a plane across the ray from the centre
+  UnitPoint unit{};  ///< position of the minimum, as a point of the unit solid
+  /// Margin divided by the norm of its gradient: first-order signed distance from the zero of the margin [m].
+  double distance = 0;
+  std::array<double, 3> normal{};  ///< gradient with respect to the swept coordinates, divided by its norm
+  /// Norm of the gradient; 0 if the margin does not exist at this point: `distance` and `normal` then describe a plane
+  /// across the ray from the centre.
+  double norm = 0;
 };
 
 /// A margin that is computed from the report of a pose; it has no derivatives.
 struct ReportMargin {
   std::string name;
-  std::function<double(const PoseReport&)> value;  ///< NaN: undefined
+  /// value(report): the margin at a pose; NaN if it is undefined there.
+  std::function<double(const PoseReport&)> value;
 };
 
-/// The margins of one design over solids. Not thread-safe: holds scratch memory.
+/// The margins of one design over solids. Not thread-safe, because it contains scratch memory.
 class SolidMargins {
  public:
-  /// @param mechanism     with find_ordered_margins(); must outlive this object
-  /// @param orientations  poses whose fixed coordinates have the values at which the solid has to be reachable
-  /// @param reported      further margins
+  /// @param mechanism     a mechanism with find_ordered_margins(); must outlive this object
+  /// @param orientations  one pose per orientation: its fixed coordinates have the values at which the solid has to be
+  ///                      reachable
+  /// @param reported      further margins, appended to those of the mechanism
   SolidMargins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
                std::vector<int> swept, std::vector<Pose<double>> orientations, const SolidShape& shape,
                std::vector<ReportMargin> reported);
@@ -39,13 +43,13 @@ class SolidMargins {
   Pose<double> pose(const std::array<double, 3>& point, std::size_t orientation) const;
   /// All critical points with a distance below `range`, found from samples of the solid.
   std::vector<CriticalPoint> critical_points(const Solid& solid, double range, const SolidSamples& samples);
-  /// The local minimum of a margin that is found from a point of the solid.
+  /// The local minimum of a margin over the solid that Newton's method finds from a starting point.
   CriticalPoint minimise(const Solid& solid, std::size_t margin, std::size_t orientation, const UnitPoint& start);
-  /// A margin at a point of the solid, which need not be a local minimum.
+  /// Value and gradient of a margin at a point of the solid, which need not be a local minimum.
   CriticalPoint linearised(const Solid& solid, std::size_t margin, std::size_t orientation, const UnitPoint& unit);
-  /// @return true if all margins are >= 0 at a point, in all orientations
+  /// @return true if all margins are >= 0 at a point of the workspace, in all orientations
   bool is_feasible(const std::array<double, 3>& point);
-  /// Derivative of a margin by the design, along each component of the parameters' derivatives.
+  /// Derivatives of a margin with respect to the variables of the parameters' derivatives.
   Dual4 by_parameters(std::span<const Dual4> parameters, std::size_t margin, const Pose<double>& pose);
   PoseReport report(const Pose<double>& pose) const;
 
@@ -69,11 +73,11 @@ class SolidMargins {
   std::vector<Pose<double>> orientations_;
   SolidShape shape_;
   std::vector<ReportMargin> reported_;
-  std::size_t count_;  ///< number of margins
+  std::size_t count_;  ///< number of margins, those in `reported_` included
   Scratch scratch_;
   std::vector<double> values_;
   std::vector<Dual4> dual_parameters_, duals_;
-  std::optional<Pose<double>> dual_pose_;  ///< pose of `duals_`
+  std::optional<Pose<double>> dual_pose_;  ///< pose for which `duals_` holds the margins; std::nullopt if there is none
 };
 
 }  // namespace pkm

@@ -6,7 +6,8 @@
 namespace pkm {
 namespace {
 
-/// Ratios of the dimensions to try, the first being 1.
+/// Ratios of the dimensions to each other that are tried; in each list the first ratio is 1 unless the ratios are
+/// given.
 std::vector<std::vector<double>> proportions(const SolidSpec& spec) {
   if (!spec.ratio.empty()) return {spec.ratio};
   std::vector<std::vector<double>> all = {{1}};
@@ -22,7 +23,8 @@ std::vector<std::vector<double>> proportions(const SolidSpec& spec) {
   return all;
 }
 
-/// A row of cells along the last axis, relative to a central cell: offsets along the first two axes, half its length.
+/// Cells in a row along the last axis: cell indices i and j along the first two axes relative to the central cell, and
+/// along the last axis all offsets from -half to half.
 struct RowOfCells {
   std::int64_t i, j, half;
 };
@@ -46,7 +48,8 @@ class GridSearch {
     std::optional<Solid> best;
     double best_volume = 0;
     for (const std::vector<double>& ratio : proportions(spec_)) {
-      double step = std::numeric_limits<double>::infinity();  // of the scale, so that a dimension grows by two cells
+      // step of the scale factor at which one dimension grows by two cells
+      double step = std::numeric_limits<double>::infinity();
       for (std::size_t axis = 0; axis < spec_.shape.axes(); ++axis)
         step = std::min(step, 2 * grid_.step[axis] / ratio[spec_.shape.ball_of(axis)]);
       const auto scaled = [&](std::int64_t k) {
@@ -79,7 +82,8 @@ class GridSearch {
           if (good_[grid_.index(cell)]) visit(cell);
   }
 
-  /// The rows of cells of a solid, the outermost first: there most positions fail.
+  /// Computes the rows of cells of a solid with these dimensions, outermost rows first, because bad cells are most
+  /// likely there.
   void set_rows(const std::vector<double>& dimensions) {
     rows_.clear();
     const std::size_t axes = spec_.shape.axes();
@@ -89,7 +93,8 @@ class GridSearch {
     for (std::int64_t i = -half[0]; i <= half[0]; ++i)
       for (std::int64_t j = -half[1]; j <= half[1]; ++j) {
         const std::array<std::int64_t, 2> offset = {i, j};
-        std::array<double, 3> squares{};  // by ball: squared distance from its centre, in radii
+        // by ball: squared distance of the row from the centre of the ball, in units of its squared radius
+        std::array<double, 3> squares{};
         for (std::size_t axis = 0; axis < 2; ++axis) {
           const std::size_t ball = spec_.shape.ball_of(axis);
           squares[ball] += std::pow(static_cast<double>(offset[axis]) * grid_.step[axis] * 2 / dimensions[ball], 2);
@@ -103,7 +108,7 @@ class GridSearch {
                              [](const RowOfCells& row) { return row.i * row.i + row.j * row.j; });
   }
 
-  /// Whether all cells of the rows about a cell exist and are good.
+  /// Whether all cells of the rows around a central cell exist and are good.
   bool fits(const Cell& cell) const {
     return std::ranges::all_of(rows_, [&](const RowOfCells& row) {
       const Cell first = {cell[0] + row.i, cell[1] + row.j, cell[2] - row.half};
@@ -141,8 +146,9 @@ class GridSearch {
   const VoxelGrid& grid_;
   const std::vector<std::uint8_t>& good_;
   const SolidSpec& spec_;
-  std::vector<std::uint32_t> bad_before_;               ///< by cell: number of bad cells with a smaller index
-  std::array<std::array<std::int64_t, 2>, 3> range_{};  ///< of the indices of central cells
+  std::vector<std::uint32_t> bad_before_;  ///< bad_before_[k]: number of bad cells with an index less than k
+  /// For each axis, the range of indices that the central cell can have: first, end (excluded).
+  std::array<std::array<std::int64_t, 2>, 3> range_{};
   std::vector<RowOfCells> rows_;
 };
 

@@ -9,17 +9,18 @@
 
 namespace pkm {
 
-/// Requirements on a solid beside its kind.
+/// Kind of a solid, and requirements on its proportions and its position.
 struct SolidSpec {
   SolidShape shape;
-  std::vector<double> ratio;                         ///< of the dimensions; empty: free
-  std::array<std::optional<double>, 3> centre = {};  ///< by axis; std::nullopt: free
+  std::vector<double> ratio;  ///< ratio of the dimensions, by ball; empty if the proportions are free
+  /// Required coordinates of the centre, by axis; std::nullopt if a coordinate is free.
+  std::array<std::optional<double>, 3> centre = {};
 };
 
 /// The largest solid with its centre at a cell's centre such that all cells with their centres in it are good. Among
 /// several of this size, the one closest to the mean of their positions. If the proportions are free, those in which
 /// dimensions differ by powers of 2 are tried.
-/// @param good  whether each cell is good, by index
+/// @param good  for each cell, by VoxelGrid::index(): nonzero if the cell may be in the solid
 /// @return std::nullopt if no cell is good
 std::optional<Solid> largest_solid_on_grid(const VoxelGrid& grid, const std::vector<std::uint8_t>& good,
                                            const SolidSpec& spec);

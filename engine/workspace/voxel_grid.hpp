@@ -54,8 +54,8 @@ struct VoxelGrid {
   }
 };
 
-/// Computes volume, counts and box contact of a map.
-/// @param swept  number of swept coordinates; the other axes do not touch the box
+/// Computes volume, cell counts and contact with the box from a voxel map.
+/// @param swept  number of swept coordinates; cells at the ends of the other axes do not touch the box
 inline void summarise(const VoxelGrid& grid, const VoxelMap& map, WorkspaceResult<double>& result,
                       std::size_t swept = 3) {
   result.clear();

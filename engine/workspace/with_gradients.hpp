@@ -6,7 +6,8 @@
 
 namespace pkm {
 
-/// Self defines `template <class S> void run(std::span<const S> parameters, Scratch&, WorkspaceResult<S>&) const`.
+/// CRTP base: Self defines `template <class S> void run(std::span<const S> parameters, Scratch&, WorkspaceResult<S>&)
+/// const`.
 template <class Self>
 class WithGradients : public WorkspaceEvaluator, public GradientEvaluator {
  public:
@@ -19,7 +20,7 @@ class WithGradients : public WorkspaceEvaluator, public GradientEvaluator {
   const GradientEvaluator* gradients() const override { return this; }
 };
 
-/// Stores volume, relative error and number of columns of a quadrature.
+/// Stores the volume, the relative error and the number of columns of a quadrature in a workspace result.
 template <class S, class T>
 void set_volume(const Integral<T>& integral, WorkspaceResult<S>& result) {
   const double value = value_of(integral.value);
@@ -28,7 +29,7 @@ void set_volume(const Integral<T>& integral, WorkspaceResult<S>& result) {
   result.columns = integral.evaluations;
 }
 
-/// The parameters of a design as constants of another scalar type.
+/// The parameters of a design, converted to constants of another scalar type.
 template <class To, std::size_t N, class From>
 std::array<To, N> constants(std::span<const From> parameters) {
   std::array<To, N> values;

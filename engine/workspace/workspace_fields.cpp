@@ -22,7 +22,7 @@ WorkspaceAxis axis_of(const MechanismInfo& info, int coordinate, double lower, d
   return {coordinate, axis.name, axis.unit, lower, upper, cells};
 }
 
-/// Origin of the value of a fixed coordinate, for people.
+/// Origin of the value of a fixed coordinate, as a phrase for the report.
 std::string note_of(const FixedCoordinate& fixed) {
   using Kind = FixedCoordinate::Kind;
   if (fixed.kind == Kind::value) return "as given";
@@ -30,8 +30,8 @@ std::string note_of(const FixedCoordinate& fixed) {
   return fixed.kind == Kind::listed ? "the first of the listed values" : "default value; the study integrates over it";
 }
 
-/// Evaluates the fields of a sequence of poses in parallel, in blocks of consecutive poses. The first field must exist;
-/// it marks the feasible poses.
+/// Evaluates the fields of a sequence of poses in parallel, in blocks of consecutive poses. The first field,
+/// `feasible`, must exist already; it marks the feasible poses.
 class Evaluator {
  public:
   using Poses = std::function<Pose<double>(std::size_t)>;
@@ -61,7 +61,7 @@ class Evaluator {
     if (!why_no_joint_forces(mechanism)) add_quantities(true);
   }
 
-  static constexpr std::size_t kFeasible = 0;  ///< index of the existing field `feasible`
+  static constexpr std::size_t kFeasible = 0;  ///< index of the field `feasible`, which exists already
 
   /// Scratch memory of a thread.
   struct FieldScratch {
@@ -87,7 +87,8 @@ class Evaluator {
   }
 
  private:
-  static constexpr std::size_t kMargin = 1, kQuantities = 2;  ///< indices of fields
+  /// Index of the field `margin`, and index of the first field of a pose quantity.
+  static constexpr std::size_t kMargin = 1, kQuantities = 2;
 
   void add(std::string name, std::string unit, std::string meaning) {
     fields_.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
@@ -142,8 +143,8 @@ class Evaluator {
     for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(joints_ + i, cell) = (*report.joints)[i];
   }
 
-  /// Makes the sign of the margin agree with the field `feasible`, also after rounding, at poses without margins, and
-  /// in components that do not count.
+  /// The margin with the sign that agrees with the field `feasible`: rounding can give the opposite sign, some poses
+  /// have no margin, and feasible poses of components that do not count have to be negative.
   static double with_sign(double margin, bool feasible) {
     constexpr double kMinMagnitude = 1e-12;
     if (!std::isfinite(margin)) return feasible ? 1 : -1;
@@ -179,8 +180,8 @@ class Evaluator {
   std::string mode_;
   std::vector<WorkspaceField>& fields_;
   const Poses& poses_;
-  std::size_t block_;       ///< number of poses per block
-  std::size_t joints_ = 0;  ///< index of the field of the first joint
+  std::size_t block_;       ///< number of consecutive poses that one task evaluates
+  std::size_t joints_ = 0;  ///< index of the field that holds the position of the first joint
 };
 
 }  // namespace
@@ -237,7 +238,8 @@ PoseMargin::PoseMargin(const Mechanism& mechanism, std::span<const double> param
 double PoseMargin::operator()(const Pose<double>& pose, Scratch& scratch) const {
   double min_margin = std::numeric_limits<double>::infinity();
   const PoseMargins* const capability = mechanism_.pose_margins();
-  if (!capability) {  // take the margins from the report, which has some even if the pose does not assemble
+  // the mechanism has no PoseMargins: use those of the pose report, which has some even if the pose does not assemble
+  if (!capability) {
     const auto report = mechanism_.inspect(parameters_, pose, mechanism_.info().modes.front(), limits_);
     for (const auto& named : report.margins) min_margin = std::fmin(min_margin, named.second);
     return report.feasible || min_margin < 0 ? min_margin : -1;

@@ -35,7 +35,7 @@ inline constexpr std::int64_t kPictureCells = 48;
 /// One axis of the grid: `cells` equal cells from `lower` to `upper`.
 struct WorkspaceAxis {
   int coordinate = 0;  ///< index in MechanismInfo::coordinates
-  std::string name;    ///< "theta"
+  std::string name;    ///< name of the coordinate, such as "theta"
   std::string unit;    ///< "m" or "rad"
   double lower = 0, upper = 0;
   std::int64_t cells = 0;
@@ -43,29 +43,32 @@ struct WorkspaceAxis {
 
 struct WorkspaceField {
   std::string name;
-  std::string unit;  ///< "1", "m", .., or "mixed" for the minimum of lengths, angles and numbers
+  /// Unit of the values: "1", "m" or another unit; "mixed" for the minimum of lengths, angles and numbers.
+  std::string unit;
   std::string meaning;
-  std::vector<double> values;  ///< one per cell
+  std::vector<double> values;  ///< one value per cell, in the order of VoxelGrid::index(); NaN where undefined
 };
 
 struct WorkspaceFields {
   std::string mechanism;
-  std::vector<WorkspaceAxis> axes;      ///< one to three, in the order of Sweep::swept; the last axis varies fastest
-  std::vector<WorkspaceAxis> fixed;     ///< the fixed coordinates: lower = upper is the value, no cells
-  std::vector<std::string> fixed_note;  ///< origin of these values: "default value of the design"
+  /// The swept axes, one to three, in the order of Sweep::swept; the index along the last axis varies fastest.
+  std::vector<WorkspaceAxis> axes;
+  std::vector<WorkspaceAxis> fixed;  ///< the fixed coordinates: lower and upper are both the value, and `cells` is 0
+  /// Origin of the value of each fixed coordinate, such as "default value of the design".
+  std::vector<std::string> fixed_note;
   std::vector<WorkspaceField> fields;
-  double volume = 0;  ///< volume of the feasible cells
+  double volume = 0;  ///< volume of the feasible cells, in `volume_unit`
   std::string volume_unit;
-  bool touches_box = false;  ///< the plan has a box, and feasible cells lie in its outermost layer
+  bool touches_box = false;  ///< true if the plan has a box, and feasible cells lie in its outermost layer of cells
 
-  /// Numbers of the feasible cells, ascending.
+  /// Indices of the feasible cells, in ascending order.
   std::vector<std::size_t> feasible_cells() const;
   std::size_t cells() const { return fields.front().values.size(); }
   /// The grid with three axes; axes beyond `axes` have the single cell [0, 1], as in a VoxelMap.
   VoxelGrid grid() const;
   /// The pose at the centre of a cell.
   Pose<double> pose(std::size_t cell) const;
-  /// The pose with the values at[i] along axis i.
+  /// The pose whose coordinate of axis i has the value at[i].
   Pose<double> pose(const std::array<double, 3>& at) const;
   /// The field of this name; null if there is none.
   const WorkspaceField* find(std::string_view name) const;
@@ -99,7 +102,7 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
                                  const WorkspacePlan& plan, const std::string& mode);
 
 /// Evaluates all fields except `feasible` at given feasible poses; NaN where a quantity is undefined.
-/// @param limits  limits of the workspace plan
+/// @param limits  constraint limits of the workspace plan
 std::vector<WorkspaceField> fields_at(const Mechanism& mechanism, std::span<const double> parameters,
                                       const LimitSpec& limits, const std::string& mode,
                                       const std::vector<Pose<double>>& poses);

@@ -1,4 +1,4 @@
-// Inverse condition number of the Jacobian. Its columns of rotations are divided by a characteristic length.
+// Inverse condition number of the Jacobian, whose columns for rotations are divided by a characteristic length.
 #include "engine/workspace/pose_quantities.hpp"
 
 namespace pkm {
