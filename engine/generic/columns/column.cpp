@@ -54,16 +54,18 @@ Column::Column(SlicePlan plan) : plan_(std::move(plan)) {
     positive_literals_ &= ~(crank.at_min | crank.at_max | crank.after_min | crank.before_max);
 }
 
-/// Finds the roots of constraints of degree at most two. @return false if nothing is feasible. @param signs  receives
-/// the signs of these constraints at the lower end of the range
+/// Finds the roots of constraints of degree at most two.
+/// @return false if no point of the column is feasible.
+/// @param signs  receives the signs of these constraints at the lower end of the range
 bool Column::find_quadratic_roots(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
                                   ColumnScratch& scratch) const {
   const auto [from, to] = plan_.range.back();
   const double low = registers[from], high = registers[to], beyond = 1e-2 * (high - low);
   if (!(high > low)) return false;
-  range = {low - beyond, high + beyond};  // the faces of the box are constraints, too
+  // slightly enlarged, because the bounds of the box are constraints with roots at low and high
+  range = {low - beyond, high + beyond};
   std::array<Roots, kMaxSurfaces> roots;
-  std::array<bool, kMaxSurfaces> is_positive;  // sign of each constraint below its roots
+  std::array<bool, kMaxSurfaces> is_positive;  // for each constraint, whether it is positive below all of its roots
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
     if (((high_degree_ | transcendental_) & bit(k)) != 0) continue;
     const auto& at = plan_.surfaces[k].coefficients;
@@ -71,7 +73,8 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
     roots[k] = roots_of(c);
     is_positive[k] = c[2] != 0 ? c[2] > 0 : roots[k].count > 0 ? c[1] < 0 : c[0] >= 0;
     if ((plan_.formula.all & bit(k)) == 0 || is_positive[k]) continue;
-    const auto [r, count] = roots[k];  // the polynomial is >= 0 between two roots, or above a single root
+    // the constraint is negative below its first root, so it is >= 0 between two roots or above a single root
+    const auto [r, count] = roots[k];
     if (count == 0 || !(r[0] <= range[1]) || !(count == 1 || r[1] >= range[0])) return false;
     const double rest = count == 2 ? 1e-2 * (r[1] - r[0]) : beyond;
     range[0] = std::max(range[0], r[0] - rest);
@@ -92,8 +95,8 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
   return true;
 }
 
-/// Finds the roots of high-degree constraints between two other roots. @param signs  signs of these constraints at
-/// `from`
+/// Finds the roots of constraints of degree three and four between `from` and `to`.
+/// @param signs  receives the signs of these constraints at `from`
 void Column::find_high_degree_roots(std::span<const double> registers, double from, double to, Signs& signs,
                                     ColumnScratch& scratch) const {
   scratch.high_degree.clear();
@@ -143,7 +146,7 @@ void Column::merge_coincident_roots(std::span<const double> registers, double ti
     } else {
       ++i;
     }
-  const Ends& all = scratch.ends;  // in ascending order
+  const Ends& all = scratch.ends;  // the sign changes, in ascending order of z
   for (ColumnScratch::Piece& piece : pieces) {
     if (is_long(scratch)) check_stop();
     for (auto* const end : {&piece.lower, &piece.upper}) {
@@ -181,7 +184,7 @@ double Column::measure(std::span<double> registers, ColumnScratch& scratch) cons
   std::pair<double, EndLabel> from{range[0], 0};
   for (std::size_t i = 0; i <= scratch.quadratic.size();) {
     const double to = i < scratch.quadratic.size() ? scratch.quadratic[i].first : range[1];
-    // High-degree constraints are evaluated only where they matter.
+    // Constraints of degree three and four are evaluated only if the others can be satisfied.
     const bool at_best = holds(signs | positive_literals_);
     if (high_degree_ == 0 || (positive_literals_ == high_degree_ && (!at_best || holds(signs)))) {
       become(at_best, from);

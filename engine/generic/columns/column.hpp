@@ -11,25 +11,26 @@
 
 namespace pkm::generic {
 
-/// Scratch memory of Column. The label of an endpoint is twice its surface, plus one if the constraint decreases there.
+/// Scratch memory of Column. The label of an endpoint is 2 k for constraint k, plus 1 if the constraint decreases along
+/// z there.
 struct ColumnScratch {
-  /// A feasible interval of the column.
+  /// A feasible interval of the column, with the positions and labels of its endpoints.
   struct Piece {
     std::pair<double, EndLabel> lower, upper;
   };
   std::vector<Piece> pieces;
-  Ends ends;                     ///< all relevant sign changes of constraints
-  Ends quadratic;                ///< sign changes of quadratic and transcendental constraints, in ascending order
-  Ends high_degree;              ///< sign changes of constraints of degree three and four between two of those
+  Ends ends;         ///< sign changes of the constraints that can bound feasible intervals: position and label
+  Ends quadratic;    ///< sign changes of quadratic and transcendental constraints, in ascending order
+  Ends high_degree;  ///< sign changes of constraints of degree three and four between two neighbours in `quadratic`
   std::vector<EndLabel> labels;  ///< labels of the endpoints of pieces
   SliceType type = 0;
   double error = 0;  ///< total length of intervals in which the sign of a transcendental constraint is unknown
   SignChangeScratch sign_changes;
   long operations = 0;      ///< interval operations so far, in all columns
-  long max_operations = 0;  ///< limit, after which intervals with unknown signs count as error
+  long max_operations = 0;  ///< limit of `operations`, beyond which intervals with unknown signs count as error
 };
 
-/// Whether a column has so many endpoints that it takes much longer than a microsecond.
+/// Whether a column has so many endpoints that evaluating it takes much longer than a microsecond.
 inline bool is_long(const ColumnScratch& scratch) { return scratch.ends.size() > 64; }
 
 class Column {
@@ -44,10 +45,11 @@ class Column {
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
   void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
                     const ColumnScratch& scratch) const;
-  /// An endpoint with its derivatives, after measure(). @param dual_registers  after all stages but that of z
+  /// An endpoint with its derivatives, after measure().
+  /// @param dual_registers  registers with derivatives, after all stages except that of z
   Dual4 differentiable_end(const std::pair<double, EndLabel>& end, std::span<Dual4> dual_registers) const;
   /// Calls visit(z, weight) at quadrature nodes inside the column, after measure().
-  /// @param end_of  end_of(pair of position and label) returns an endpoint of a piece as S
+  /// @param end_of  end_of(position and label) returns an endpoint of a feasible interval as a number of type S
   template <class S, class EndOf, class Visit>
   void for_each_node(const GaussRule& along_z, const ColumnScratch& scratch, const EndOf& end_of,
                      const Visit& visit) const {
@@ -78,11 +80,12 @@ class Column {
   void merge_coincident_roots(std::span<const double> registers, double tie, ColumnScratch& scratch) const;
 
   SlicePlan plan_;
-  Signs high_degree_ = 0;        ///< constraints of degree three and four
-  Signs positive_literals_ = 0;  ///< those of them that occur only positively in the feasibility formula
+  Signs high_degree_ = 0;  ///< set of the constraints of degree three and four
+  /// Set of those constraints of degree three and four that occur only positively in the feasibility formula.
+  Signs positive_literals_ = 0;
   Signs transcendental_ = 0;
-  std::vector<WithDerivative> curves_;    ///< transcendental constraints
-  std::vector<EndLabel> curve_surfaces_;  ///< their surfaces
+  std::vector<WithDerivative> curves_;    ///< registers of the transcendental constraints and of their derivatives
+  std::vector<EndLabel> curve_surfaces_;  ///< index of the surface of each of them
 };
 
 }  // namespace pkm::generic

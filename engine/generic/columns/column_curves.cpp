@@ -11,9 +11,10 @@ namespace pkm::generic {
 /// transcendental constraints at the lower end
 void Column::find_transcendental_roots(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
                                        ColumnScratch& scratch) const {
-  constexpr long kMaxEvaluations = 4000;  // per column
+  constexpr long kMaxEvaluations = 4000;  // maximum number of interval evaluations per column
   const std::size_t stage = plan_.program.stages().size() - 1;
-  const long operations = static_cast<long>(plan_.program.stages()[stage].steps.size());  // per evaluation
+  // interval operations per evaluation
+  const long operations = static_cast<long>(plan_.program.stages()[stage].steps.size());
   evaluate_stage_of_z<double>(range[0], registers);
   for (std::size_t i = 0; i < curves_.size(); ++i)
     if (is_satisfied(registers[curves_[i].value])) signs |= bit(curve_surfaces_[i]);

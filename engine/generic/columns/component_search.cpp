@@ -10,7 +10,8 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kOuterBias = 16;  // prefer bisecting outer coordinates: contraction acts on v and z only
+// weight of outer coordinates in the choice of the side to bisect: contraction acts on v and z only
+constexpr double kOuterBias = 16;
 
 double middle_of(const Interval& x) { return 0.5 * (x.lower + x.upper); }
 double magnitude_of(const Interval& x) { return std::max(std::fabs(x.lower), std::fabs(x.upper)); }
@@ -48,7 +49,8 @@ bool narrow(double c, const Interval& slope, double curvature, Interval& side) {
 
 }  // namespace
 
-/// A surface in coordinates t and s in [-1, 1] for v and z of a box: c + ct t + cs s + ctt t^2 + css s^2, up to +-rest.
+/// A surface in a box, as a function of t and s in [-1, 1] for v and z: c + ct t + cs s + ctt t^2 + css s^2, with an
+/// error of at most +-rest.
 struct ComponentSearch::BoxQuadratic {
   Interval c, ct, cs, ctt, css;
   double rest = 0;
@@ -122,7 +124,7 @@ void ComponentSearch::add_samples(std::size_t side, std::optional<double> at, in
   std::ranges::sort(scratch.uncovered);
   for (std::size_t i = 0; i < scratch.uncovered.size();) {
     auto [from, to] = scratch.uncovered[i];
-    int boxes = 1;  // number of adjacent boxes
+    int boxes = 1;  // number of different boxes in this chain of adjacent boxes
     for (++i; i < scratch.uncovered.size() && scratch.uncovered[i][0] <= to; ++i) {
       boxes += scratch.uncovered[i][0] > scratch.uncovered[i - 1][0] ? 1 : 0;
       to = std::max(to, scratch.uncovered[i][1]);

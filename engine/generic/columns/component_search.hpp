@@ -11,18 +11,20 @@ namespace pkm::generic {
 /// Scratch memory of ComponentSearch.
 struct SearchScratch {
   struct Box {
-    std::array<Interval, kMaxCoordinates> side;  ///< range of each outer coordinate, of v and of z, if they exist
-    Signs open = ~Signs{0};                      ///< constraints that can be negative in the box
+    /// Range of each outer coordinate, then of v and z, as far as the slices have them.
+    std::array<Interval, kMaxCoordinates> side;
+    Signs open = ~Signs{0};  ///< set of the constraints that can be negative in the box
 
     const Interval& outermost() const { return side[0]; }
   };
   std::vector<Box> boxes;  ///< boxes that can contain feasible points
   std::size_t examined = 0;
 
-  Box whole;                                            ///< the ranges of all coordinates
-  std::array<Interval, kMaxCoordinates + 1> evaluated;  ///< by stage: the side for which the registers were computed
+  Box whole;  ///< box with the whole range of each coordinate
+  /// For each stage, the interval of its coordinate for which `registers` were computed.
+  std::array<Interval, kMaxCoordinates + 1> evaluated;
   std::vector<Interval> registers;
-  std::vector<Box> non_empty;  ///< boxes with a non-empty slice
+  std::vector<Box> non_empty;  ///< boxes that contain a non-empty slice, removed from `boxes`
   std::vector<Box> halves;
   std::vector<std::array<double, 2>> uncovered;
 };
@@ -37,16 +39,17 @@ class ComponentSearch {
   void add(double from, double to, SearchScratch& scratch) const;
   /// Discards boxes that are proven empty, and contracts the others.
   void examine(SearchScratch& scratch) const;
-  /// Whether bisect() will bisect the outermost coordinate.
+  /// Whether bisect() will divide this box along the outermost coordinate.
   bool bisects_outermost(const SearchScratch::Box& box, const SearchScratch& scratch) const {
     return longest(box, scratch) == 0;
   }
   void bisect(SearchScratch& scratch) const;
-  /// Removes the boxes that contain a non-empty slice: the refinement around that slice covers them.
+  /// Removes the boxes that contain the value `at` of the outermost coordinate, at which the slice is not empty: the
+  /// refinement around that slice covers them.
   void remove_containing(double at, SearchScratch& scratch) const;
-  /// Adds samples of one coordinate, given by its index among the sides of a box: in each interval that the boxes cover
-  /// without gaps, as many samples as there are adjacent boxes, but at least `count`.
-  /// @param at  only boxes that contain this value of the outermost coordinate; std::nullopt: all boxes
+  /// Adds samples of one coordinate, given by its index in Box::side. Each interval that adjacent boxes cover receives
+  /// as many samples as there are boxes, but at least `count`.
+  /// @param at  only boxes that contain this value of the outermost coordinate count; std::nullopt: all boxes
   void add_samples(std::size_t side, std::optional<double> at, int count, std::vector<double>& places,
                    SearchScratch& scratch) const;
   /// Volume of the remaining boxes, except those adjacent to non-empty slices.

@@ -8,12 +8,12 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kStraight =
-    1e-5;  // relative to the coefficients: a smaller one of s^2, by which formulas divide, is neglected
+// relative to Conic::scale: a smaller coefficient of s^2 is neglected, because formulas divide by it
+constexpr double kStraight = 1e-5;
 
 bool bends(const Conic& P) { return std::fabs(P.c[5]) > kStraight * P.scale; }
 
-/// 12 nodes are accurate to rounding for small curvature.
+/// Gauss-Legendre rule with 12 nodes, which is accurate to rounding errors for small curvature.
 const GaussRule& rule() {
   static const GaussRule gauss = gauss_legendre(12);
   return gauss;
@@ -24,7 +24,7 @@ struct Moments {
   double F, J0, J1, J2;
 };
 
-/// @param r, r2  R at both endpoints
+/// @param r, r2  values of R at the lower and the upper endpoint
 /// @param curvature  the coefficient of w^2 in q
 /// With y = q_2 h^2 / s^2, s = r + r2, d = r2 - r, and Y = y / (1 + sqrt(1 - y))^2,
 ///
@@ -64,7 +64,8 @@ Moments moments_of(const Conic& P, const Arc& arc) {
   const auto q = P.discriminant();
   const double middle = 0.5 * (arc.from + arc.to);
   const double noise = 4e-15 * (std::fabs(q[0]) + std::fabs(q[1]) + std::fabs(q[2]));
-  const auto root = [&](double w) {  // 0 at an endpoint that is a root up to rounding
+  // square root of q at w; 0 at an endpoint that is a root of q up to rounding errors
+  const auto root = [&](double w) {
     const double t = middle + w, square = q[0] + t * (q[1] + t * q[2]);
     return square > noise ? std::sqrt(square) : 0;
   };

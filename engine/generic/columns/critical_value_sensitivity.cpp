@@ -8,7 +8,8 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kCoincidence = 1e-3;  // relative to the slice: closer vertices coincide at the critical value
+// relative to the half widths of the slice: vertices at a smaller distance coincide at the critical value
+constexpr double kCoincidence = 1e-3;
 constexpr std::size_t kMaxDegenerateCurves = 3;
 
 bool are_near(const ArcEnd& x, const ArcEnd& y, const PlanarSliceScratch& scratch) {
@@ -27,7 +28,7 @@ void remove_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const PlanarS
   });
 }
 
-/// Factors of a linear combination of the gradients that vanishes if they are linearly dependent.
+/// Factors such that the sum of factor times gradient is zero if the gradients are linearly dependent.
 std::array<double, kMaxDegenerateCurves> dependency_factors(std::span<const PlanarSliceSensitivity::Boundary> curves) {
   const auto cross = [&](std::size_t i, std::size_t j) {
     return curves[i].t * curves[j].s - curves[i].s * curves[j].t;
@@ -58,7 +59,8 @@ std::vector<ArcEnd> arc_ends(const PlanarSlice& planar_slice, const PlanarSliceS
   planar_slice.for_each_arc_end(scratch, [&](EndLabel end, std::size_t first, double t) {
     const std::uint32_t surface = end >> 1U, label = vertex_of(surface, first, t, scratch);
     const Conic& P = scratch.conics[surface];
-    const bool turns = (label & kKind) == kTurningPoint && !P.is_straight();  // both roots, up to rounding
+    // at a turning point both roots are equal, up to rounding errors
+    const bool turns = (label & kKind) == kTurningPoint && !P.is_straight();
     const double s = turns ? -0.5 * (P.c[2] + t * P.c[4]) / P.c[5] : end_at(end, t, scratch);
     ends.push_back({label, surface, scratch.v[0] + scratch.v[1] * t, scratch.z[0] + scratch.z[1] * s});
   });
@@ -102,7 +104,9 @@ std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd
   const auto factors = dependency_factors(curves);
   if (!are_dependent(curves, factors, curves.size() == 1 ? scratch.conics[bounds[0] & ~kKind].scale : 0)) return {};
   Components<4> change;
-  double slope = 0, size = 0;  // of the linear combination, and of its terms
+  // slope: derivative of the linear combination with respect to the outer coordinate; size: sum of the magnitudes of
+  // its terms
+  double slope = 0, size = 0;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const double each = factors[i] * by_x.boundary(bounds[i], t, s).change[0];
     change = change + curves[i].change * factors[i];

@@ -12,9 +12,9 @@
 
 namespace pkm::generic {
 
-/// Endpoint of an arc.
+/// Endpoint of an arc that bounds a slice.
 struct ArcEnd {
-  std::uint32_t label;  ///< label of the vertex
+  std::uint32_t label;  ///< label of the vertex at which the arc ends
   std::uint32_t surface;
   double v, z;
 };
@@ -23,9 +23,9 @@ struct ArcEnd {
 std::vector<ArcEnd> arc_ends(const PlanarSlice& planar_slice, const PlanarSliceScratch& scratch);
 
 /// A critical value with its derivatives; std::nullopt if the degenerating curves are not identified.
-/// @param inside, outside  endpoints of arcs on both sides of the critical value
+/// @param inside, outside  endpoints of the arcs of the slices on the two sides of the critical value
 /// @param scratch          scratch memory of the slice inside
-/// @param by_design, by_x  sensitivities with respect to the design, and to the outer coordinate
+/// @param by_design, by_x  sensitivities with respect to the design, and to the outer coordinate x
 std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> outside,
                                                    const PlanarSliceScratch& scratch,
                                                    const PlanarSliceSensitivity& by_design,

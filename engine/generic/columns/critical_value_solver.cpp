@@ -6,9 +6,10 @@
 namespace pkm::generic {
 namespace {
 
-constexpr int kMaxExtrapolations = 18;  // afterwards bisection only
-constexpr std::size_t kMaxFeatures =
-    100;  // keys, and features with them: otherwise there are too many pairs, and bisection is as fast
+constexpr int kMaxExtrapolations = 18;  // after this many extrapolations, bisection only
+// maximum number of differing keys, and of features with them: beyond it the number of pairs is too large, and
+// bisection is as fast
+constexpr std::size_t kMaxFeatures = 100;
 
 }  // namespace
 
@@ -24,7 +25,7 @@ void CriticalValueSolver::reset(bool features_persist) {
   extrapolations_ = 0;
 }
 
-/// Finds the keys whose number of occurrences differs between the sides, and the features with these keys.
+/// Finds the keys that occur in different numbers below and above the critical value, and the features with these keys.
 void CriticalValueSolver::compare() {
   for (std::size_t i = 0; i < 2; ++i) {
     keys_[i].clear();
@@ -79,7 +80,8 @@ void CriticalValueSolver::add_size(double at, bool is_upper, double size) {
   add(sides_[0], {at, size});
 }
 
-/// Minimum distance of two features of one side that the other side does not have; signed for two endpoints.
+/// Minimum distance of two features on the side of the last sample whose keys occur in different numbers on the two
+/// sides; it has a sign if exactly two keys differ and the features persist beyond the critical value.
 double CriticalValueSolver::distance_of_two() {
   const BoundaryFeatures& features = changed_features_[is_upper_];
   const bool are_two = changed_.size() == 2;
@@ -116,7 +118,8 @@ void CriticalValueSolver::add(Side& side, Point point) {
   to.count = std::min(to.count + 1, 3);
 }
 
-/// Root of the size extrapolated from the samples of one side.
+/// Value of the coordinate in (low, high) at which the size extrapolated from the samples of one side is zero;
+/// std::nullopt if there is none.
 std::optional<double> CriticalValueSolver::zero_between(double low, double high, bool is_upper) {
   const Side& side = sides_[is_signed_ ? 0 : is_upper];
   if (side.count < 2) return {};
@@ -147,14 +150,15 @@ double CriticalValueSolver::next_sample(double low, double high, double toleranc
   if (!at) at = zero_between(low, high, is_upper = !is_upper);
   if (++extrapolations_ % 6 == 0) return middle;
   if (!at) {
-    // The extrapolation is close to an endpoint of the bracket, but the sample beside it was of another type.
+    // The extrapolation is close to one end of the bracket, but the sample next to it had another type: step away from
+    // this end.
     if (!last_ || offset_ == 0) return middle;
     offset_ = std::fmax(16 * offset_, tolerance);
     const double beyond = *last_ - low < high - *last_ ? low + offset_ : high - offset_;
     return beyond > low && beyond < high ? beyond : middle;
   }
-  // Sample on the side with the feature, at the estimated error from the extrapolation; once that is small, on the
-  // other side.
+  // Take the next sample on the side on which the feature exists, at the estimated error from the extrapolated value;
+  // once the bracket is that small, take it on the opposite side.
   const double from = is_upper ? high : low, there = std::fabs(*at - from);
   const double off = std::fmax(last_ ? std::fmin(std::fabs(*at - *last_), 0.1 * there) : 0.1 * there, 0.5 * tolerance);
   last_ = at;

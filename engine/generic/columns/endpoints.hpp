@@ -8,10 +8,11 @@
 
 namespace pkm::generic {
 
-/// Label of an endpoint of a column: twice the index of the surface, plus the number of its root.
+/// Label of an endpoint of a column. In planar slices: twice the index of the surface, plus the index (0 or 1) of its
+/// root. In slices that are lines: see ColumnScratch.
 using EndLabel = std::uint32_t;
 
-inline constexpr double kMergeDistance = 1e-13;  ///< closer points are merged
+inline constexpr double kMergeDistance = 1e-13;  ///< points at a smaller distance, relative to the slice, are merged
 
 inline Signs bit(std::size_t surface) { return Signs{1} << surface; }
 

@@ -11,13 +11,15 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kMinWidth = 1e-12;  // relative to the range: shorter intervals are ignored
-constexpr double kMinResolvableWidth =
-    1e-6;  // relative to the range: shorter intervals can have types that rounding mixes
-constexpr double kMinResolvableWidthInLines = 1e-4;  // the same limit if slices are lines
+constexpr double kMinWidth = 1e-12;  // relative to the range of the coordinate: shorter intervals are ignored
+// relative to the range of the coordinate: in shorter intervals, rounding errors can mix slices of different types
+constexpr double kMinResolvableWidth = 1e-6;
+constexpr double kMinResolvableWidthInLines = 1e-4;  // kMinResolvableWidth for slices that are lines
 constexpr std::size_t kMaxIntervals = 3000;
-constexpr int kBisectionsOfJump = 5;    // consecutive bisections that leave nearly all of a change in one half
-constexpr double kEndTolerance = 1e-7;  // relative to the largest slice, if derivatives will be computed
+// a change that so many consecutive bisections leave in one half is a discontinuity
+constexpr int kBisectionsOfJump = 5;
+// relative to the largest slice: tolerance of missed_at_ends() if derivatives will be computed
+constexpr double kEndTolerance = 1e-7;
 
 /// Value at t in [0, 1] of the polynomial through the nodes of kronrod_rule(), by the barycentric formula.
 double through_nodes(const std::array<Slice, NestedRule::kNodes>& slices, double t) {
@@ -41,9 +43,9 @@ double through_nodes(const std::array<Slice, NestedRule::kNodes>& slices, double
   return above / below;
 }
 
-/// Error at the endpoints of the polynomial through the nodes of an interval. A square-root singularity just outside
-/// the interval hardly affects the integral, but its derivative: that of sqrt(t^2 + e) with respect to e is as large as
-/// 1/sqrt(e) between 0 and the first node.
+/// Maximum error, at the endpoints of an interval, of the polynomial through its nodes. A square-root singularity just
+/// outside the interval hardly affects the integral, but it affects the derivative: that of sqrt(t^2 + e) with respect
+/// to e is as large as 1/sqrt(e) between 0 and the first node.
 double missed_at_ends(const SmoothInterval& part, const std::array<Slice, NestedRule::kNodes>& slices) {
   const auto& piece = part.piece;
   const double width = piece.upper - piece.lower, both = piece.sqrt_at_lower && piece.sqrt_at_upper ? 3 : 1;
@@ -53,8 +55,8 @@ double missed_at_ends(const SmoothInterval& part, const std::array<Slice, Nested
   return std::max(std::fabs(at_lower - part.below.measure), std::fabs(at_upper - part.above.measure));
 }
 
-/// Whether nearly all of the change across an interval is in one half, as at a discontinuity. At a square-root
-/// singularity it is 71 %.
+/// Whether one half of an interval contains nearly all of the change of the measure across it, as at a discontinuity.
+/// At a square-root singularity at one end the half next to it contains 71 % of the change.
 bool is_one_sided(const Slice& below, const Slice& middle, const Slice& above) {
   const double first = std::fabs(middle.measure - below.measure), second = std::fabs(above.measure - middle.measure);
   return std::max(first, second) > 0.95 * (first + second);
@@ -140,8 +142,8 @@ double NestedIntegral::find_univariate_changes(std::span<const double> inputs, I
   if (!(high > low)) return 0;
   find_sign_changes(program, 1, univariate_, low, high, kMaxEvaluations, scratch.univariate, scratch.changes);
   double unknown = scratch.changes.undecided;
-  if (unknown > kMaxUndecidedShare * (high - low))
-    scratch.max_evaluations = 0;  // gives up: the measure would remain unknown
+  // the search for critical values ends at once, because the measure would remain unknown
+  if (unknown > kMaxUndecidedShare * (high - low)) scratch.max_evaluations = 0;
   for (std::size_t i = 1; i < plan().range.size() && unknown > 0; ++i) unknown *= std::fabs(range(i)[1] - range(i)[0]);
   return unknown;
 }
@@ -239,7 +241,8 @@ Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) con
     sum.error += part.error + part.irreducible_error;
     if (part.below.hash != last) hash.add(part.below.hash);
     last = part.below.hash;
-    // The measure can also be discontinuous because another constraint bounds an interval, which keeps its type.
+    // When another independent constraint begins to bound an interval, the measure can be discontinuous although the
+    // type of the interval is unchanged: add the constraint to the hash.
     for (const IntervalBound closing : {part.lower, part.upper})
       if (closing != kCriticalValue) hash.add(closing);
   }
@@ -278,7 +281,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
   IntegralScratch::Level& own = scratch.levels[level];
   const double width = part.piece.upper - part.piece.lower;
   if (width < kMinWidth * whole) {
-    // Negative if slices beside a critical value lie beyond the next one: the overlap is counted twice.
+    // The width is negative if slices next to a critical value lie beyond the next critical value: the overlap then
+    // counts twice.
     own.irreducible_error += std::fabs(width) * std::max(part.below.measure, part.above.measure);
     return;
   }
@@ -325,7 +329,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     critical_values.push_back({part.piece.upper, part.piece.sqrt_at_upper, part.above, above, part.upper == kBox});
     return add_intervals(level, critical_values, whole, depth + 1, scratch);
   }
-  // Not rule_error(): the order of operations decides which of two symmetric intervals is bisected first.
+  // rule_error() would add in another order, and rounding errors decide which of two symmetric intervals is bisected
+  // first.
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
     spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
   part.error = quadpack_error(std::fabs(part.value - embedded), spread);
@@ -341,7 +346,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
 /// polynomial is inaccurate at the endpoints.
 void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& scratch) const {
   IntegralScratch::Level& own = scratch.levels[level];
-  // The error of an inner integral may be as large as is allowed for the largest one.
+  // The error of an inner integral may be as large as the error that is allowed for the largest inner integral.
   const double share = level == 0 ? 1 : ends_in_lines() ? 0.5 : 0.1;
   const double least = level == 0 ? 0 : share * tolerance_ * scratch.levels[level - 1].largest;
   const double may_miss = std::max(kEndTolerance, 10 * tolerance_) * own.largest;

@@ -19,70 +19,77 @@
 
 namespace pkm::generic {
 
-/// The slice at a value of an outer coordinate.
+/// The slice at the value `at` of an outer coordinate: its measure (area or length), the error of the measure, and its
+/// type.
 struct Slice {
   double at = 0, measure = 0, error = 0;
-  SliceType hash = 0;          ///< type; 0: empty
-  std::uint32_t violated = 0;  ///< if the slice is empty: 1 + number of the violated independent constraint
+  SliceType hash = 0;  ///< type of the slice; 0 if it is empty
+  /// 1 + index of the independent constraint that is violated; 0 if the slice is not empty, or empty for another
+  /// reason.
+  std::uint32_t violated = 0;
 };
 
-/// Bound of an integration interval: a critical value, a bound of the search box, or an independent constraint (1 + its
-/// number).
+/// Bound of an integration interval: kCriticalValue, kBox (a bound of the search box), or 1 + the index of an
+/// independent constraint.
 using IntervalBound = std::uint32_t;
 inline constexpr IntervalBound kCriticalValue = 0, kBox = ~IntervalBound{0};
 
-/// A critical value. `below` and `above` are slices just below and just above it.
+/// A critical value `at` of an outer coordinate, with the slices just below and just above it.
 struct CriticalValue {
   double at;
-  bool root;  ///< the measure or its derivative can have a square-root singularity there
+  bool root;  ///< true: the measure or its derivative can have a square-root singularity there
   Slice below, above;
   bool is_box = false;
-  double missed_error = 0;  ///< error that a discontinuity of the measure indicates
+  /// Estimated error of the integral if the measure is discontinuous, because a component may have been missed;
+  /// otherwise 0.
+  double missed_error = 0;
 };
 
 /// An interval of an outer coordinate in which the type is constant.
 struct SmoothInterval {
   Subinterval<double> piece;
-  Slice below, above;  ///< just inside its endpoints
+  Slice below, above;  ///< slices just inside the lower and the upper endpoint
   IntervalBound lower = kCriticalValue, upper = kCriticalValue;
-  double beyond_lower = 0, beyond_upper = 0;  ///< measures of slices just outside its endpoints
+  double beyond_lower = 0, beyond_upper = 0;  ///< measures of the slices just outside the lower and the upper endpoint
   std::array<double, NestedRule::kNodes> at{}, weight{};
   double value = 0, error = 0;
   double irreducible_error = 0;  ///< error that subdivision cannot reduce
-  double missed_at_ends =
-      0;  ///< error of the polynomial through the nodes at the endpoints, if derivatives will be computed
-  int one_sided_bisections = 0;  ///< consecutive bisections that left nearly all of a change in this half
-  std::size_t kept = 0;          ///< index in IntegralScratch::kept of the entry of its first node
+  /// Error at the endpoints of the polynomial through the nodes; computed only if derivatives will be computed.
+  double missed_at_ends = 0;
+  /// Number of consecutive bisections that left nearly all of a change of the measure in this half.
+  int one_sided_bisections = 0;
+  std::size_t kept = 0;  ///< index in IntegralScratch::kept of the entry that belongs to the first node
 };
 
-inline constexpr int kMaxDepth = 10;        ///< depth of subdivision
-inline constexpr int kSamplesOfLines = 64;  ///< samples of the outermost coordinate, if slices are lines
-inline constexpr double kClearDistance =
-    1e-11;  ///< relative to the range: distance from a critical value at which types are reliable
-inline constexpr double kDiscontinuity =
-    1e-7;  ///< relative to the largest slice: larger differences are not rounding errors
+inline constexpr int kMaxDepth = 10;        ///< maximum depth of the recursive subdivision at critical values
+inline constexpr int kSamplesOfLines = 64;  ///< number of samples of the outermost coordinate if slices are lines
+/// Relative to the range of the coordinate: distance from a critical value at which the type is reliable.
+inline constexpr double kClearDistance = 1e-11;
+/// Relative to the largest slice: larger differences of two measures are not rounding errors.
+inline constexpr double kDiscontinuity = 1e-7;
 
 /// Scratch memory of NestedIntegral.
 struct IntegralScratch {
   struct Level {
     std::vector<SmoothInterval> parts;
-    std::array<std::vector<CriticalValue>, kMaxDepth + 1>
-        critical_values;  ///< critical values of the range, and of intervals by their depth
-    double at = 0;        ///< current value of the coordinate
-    /// Intervals of this coordinate at values of the next outer one, in ascending order.
+    /// Critical values of the whole range [0], and of intervals at each depth of the subdivision.
+    std::array<std::vector<CriticalValue>, kMaxDepth + 1> critical_values;
+    double at = 0;  ///< current value of the coordinate of this level
+    /// Intervals that were found in this coordinate at one value `outside` of the next outer coordinate, in ascending
+    /// order.
     struct ExpectedIntervals {
       double outside;
       std::vector<std::array<double, 2>> parts;
     };
     std::vector<ExpectedIntervals> seen;
-    std::size_t seen_count = 0;    ///< elements of `seen` in use
-    std::vector<double> hints;     ///< where components are expected
-    std::vector<double> places;    ///< abscissas of the first samples
-    std::vector<Slice> scanned;    ///< slices at these samples
-    double largest = 0;            ///< largest measure so far
-    double irreducible_error = 0;  ///< error of intervals that are not subdivided further
-    CriticalValueSolver solver;    ///< for the critical value being bracketed
-    BoundaryFeatures features;     ///< features of the last slice
+    std::size_t seen_count = 0;    ///< number of elements of `seen` that are in use
+    std::vector<double> hints;     ///< values of the coordinate at which components are expected
+    std::vector<double> places;    ///< values of the coordinate for the first samples
+    std::vector<Slice> scanned;    ///< slices at the first samples
+    double largest = 0;            ///< largest measure of a slice of this level so far
+    double irreducible_error = 0;  ///< sum of the errors of intervals that are not subdivided further
+    CriticalValueSolver solver;    ///< extrapolates the critical value that is being bracketed
+    BoundaryFeatures features;     ///< boundary features of the last slice
   };
   PlanarSliceScratch planar_slice;
   ColumnScratch column;
@@ -90,27 +97,28 @@ struct IntegralScratch {
   std::vector<double> registers, adjoints;
   std::vector<double> own;         ///< derivatives of one constraint with respect to the registers
   std::vector<double> univariate;  ///< registers of SlicePlan::univariate
-  SignChangeScratch changes;       ///< sign changes of its constraints along the first coordinate
-  std::vector<double> ends;        ///< the sorted abscissas of these changes, and the ends of the range
-  expression::Rows rows;           ///< registers of several lines, for SIMD batches
-  std::vector<Dual4> dual_registers,
-      along;  ///< registers with derivatives with respect to the design, and to an outer coordinate
+  SignChangeScratch changes;  ///< sign changes of the constraints in SlicePlan::univariate, along the first coordinate
+  std::vector<double> ends;   ///< coordinates of these sign changes and of the ends of the range, in ascending order
+  expression::Rows rows;      ///< rows of `lines_`, which evaluates several lines in one SIMD batch
+  /// Registers with derivatives: with respect to the design, and with respect to an outer coordinate.
+  std::vector<Dual4> dual_registers, along;
   std::vector<Level> levels;
-  bool has_hints = false;     ///< boxes of the component search provide samples of the inner coordinates
-  bool is_scanning = false;   ///< the outermost coordinate is being sampled
-  bool measured = false;      ///< the measure is complete: further slices change nothing
-  bool for_gradient = false;  ///< derivatives will be computed
+  bool has_hints = false;     ///< true: boxes of the component search provide samples of the inner coordinates
+  bool is_scanning = false;   ///< true: the outermost coordinate is being sampled, not yet integrated over
+  bool measured = false;      ///< true: the measure is complete, and further slices do not change it
+  bool for_gradient = false;  ///< true: derivatives will be computed after this measure
   /// If derivatives will be computed and there are two outer coordinates: intervals of the inner one at the nodes of
   /// the outermost one.
   std::vector<std::vector<SmoothInterval>> kept;
-  std::unique_ptr<IntegralScratch> other;  ///< for the other side of a critical value
+  std::unique_ptr<IntegralScratch> other;  ///< scratch memory for slices on the opposite side of a critical value
   long evaluations = 0;
-  long max_evaluations = 0;  ///< limit, after which the search for critical values ends; undecided parts count as error
+  /// Limit of `evaluations`, beyond which the search for critical values ends and undecided parts count as error.
+  long max_evaluations = 0;
 };
 
 class NestedIntegral {
  public:
-  /// @param tolerance  relative
+  /// @param tolerance  relative error of the integral that is accepted
   NestedIntegral(SlicePlan plan, double tolerance);
 
   const SlicePlan& plan() const {
@@ -118,7 +126,7 @@ class NestedIntegral {
   }
   /// Limits of the work. When one is reached, undecided parts of the workspace count as error.
   struct Budget {
-    long evaluations = 0;             ///< evaluations of slices; 0: a limit that is rarely reached
+    long evaluations = 0;             ///< maximum number of evaluated slices; 0: a default limit that is rarely reached
     long operations = 1'000'000'000;  ///< interval operations for transcendental constraints: about ten seconds
   };
   /// @param inputs  values of the graph's inputs, including the fixed coordinates
@@ -150,14 +158,14 @@ class NestedIntegral {
   void set(std::size_t level, double at, IntegralScratch& scratch) const;
   /// Whether the budget is used up. Parts of the workspace that are undecided by then count as error.
   bool is_exhausted(const IntegralScratch& scratch) const;
-  /// Finds all sign changes of constraints along the first coordinate. @return upper bound of the part of the measure
-  /// that sign changes which remain unknown can affect
+  /// Finds all sign changes of the constraints in SlicePlan::univariate along the first coordinate.
+  /// @return upper bound of the measure that sign changes which were not found can affect
   double find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const;
-  /// The measure over the coordinates from `level` on, with the coordinates before `level` set.
+  /// The integral over the coordinates from `level` on, for the current values of the coordinates before `level`.
   Slice inside(std::size_t level, IntegralScratch& scratch) const;
-  /// Sets the coordinate of `level`. @return the slice there
+  /// Sets the coordinate of `level` to `at`. @return the slice at this value
   Slice slice(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// The slice at a value of the coordinate of `level` that is set already.
+  /// The slice at the value `at` of the coordinate of `level`, which has been set to it already.
   Slice set_slice(std::size_t level, double at, IntegralScratch& scratch) const;
   /// Computes the slices at several values of the coordinate of `level`.
   void find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
@@ -175,9 +183,10 @@ class NestedIntegral {
   void resample_changes(std::size_t level, IntegralScratch& scratch) const;
   void find_critical_values(std::size_t level, Slice from, Slice& to, double whole, CriticalValues& critical_values,
                             IntegralScratch& scratch) const;
-  /// Finds the boundary features of the last slice.
+  /// Finds the boundary features of the slice of `level` that was computed last.
   void find_features(std::size_t level, BoundaryFeatures& features, const IntegralScratch& scratch) const;
-  /// Brackets a critical value between two slices of different type. @param extrapolates  false: by bisection only
+  /// Brackets a critical value between two slices of different type.
+  /// @param extrapolates  true: extrapolate from boundary features; false: bisect only
   void bracket(std::size_t level, Slice& low, Slice& high, double whole, bool extrapolates,
                IntegralScratch& scratch) const;
   void add_intervals(std::size_t level, const CriticalValues& critical_values, double whole, int depth,
@@ -191,15 +200,18 @@ class NestedIntegral {
   double slope_of_independent(std::size_t level, IntervalBound closing, double at, IntegralScratch& scratch) const;
 
   struct OneSided;
-  /// visit(weight, slope): weight of a point, and derivative with respect to the coordinate of the constraint that the
-  /// point violates beyond the critical value. scratch.own has its derivatives with respect to the registers.
+  /// visit(weight, slope), called for a point that violates a constraint beyond the critical value: weight of the
+  /// point, and derivative of this constraint with respect to the coordinate. scratch.own has its derivatives with
+  /// respect to the registers.
   using OneSidedVisitor = std::function<void(double, double)>;
   static bool may_jump(std::size_t level, const SmoothInterval& part, bool upper, const IntegralScratch& scratch);
-  /// Visits quadrature nodes in the set that is feasible on one side of an endpoint only, if the measure is
-  /// discontinuous there. @param side  1: above the endpoint, -1: below it
+  /// If the measure is discontinuous at an endpoint of an interval, visits quadrature nodes in the set of points that
+  /// are feasible on one side of this endpoint only.
+  /// @param side  1: feasible above the endpoint; -1: feasible below it
   void visit_one_sided(std::size_t level, const SmoothInterval& part, bool upper, double side, IntegralScratch& scratch,
                        const OneSidedVisitor& visit) const;
-  /// The part of a discontinuity due to points that violate no constraint on the other side.
+  /// The part of a discontinuity of the measure that points cause for which no constraint is violated on the opposite
+  /// side.
   double unexplained_jump(std::size_t level, const CriticalValue& at, IntegralScratch& scratch) const;
   void visit_one_sided(std::size_t level, double weight, bool in_is_empty, bool out_is_empty,
                        const OneSided& one_sided_points) const;
@@ -209,9 +221,10 @@ class NestedIntegral {
 
   void start_dual(std::span<const Dual4> inputs, IntegralScratch& scratch) const;
   void set_dual(std::size_t level, const Dual4& at, IntegralScratch& scratch) const;
-  /// The intervals before bisection, so that sums over nodes are continuous functions of the design.
+  /// The intervals before they were bisected; their endpoints, and thus sums over nodes, are continuous functions of
+  /// the design.
   static std::vector<SmoothInterval> merged_intervals(std::size_t level, const IntegralScratch& scratch);
-  /// @param below  upper endpoint of the previous interval; null if there is none
+  /// @param below  upper endpoint of the previous interval; null for the first interval
   Subinterval<Dual4> differentiable_piece(std::size_t level, const SmoothInterval& part, const Dual4* below,
                                           IntegralScratch& scratch) const;
   Dual4 differentiable_end(std::size_t level, const SmoothInterval& part, bool upper, IntegralScratch& scratch) const;
@@ -264,10 +277,11 @@ class NestedIntegral {
   }
 
   std::variant<PlanarSlice, Column> innermost_;
-  std::optional<expression::BatchStage>
-      lines_;                                  ///< if slices are lines: the operations that differ from one to the next
-  std::vector<std::uint32_t> line_registers_;  ///< registers of this stage that Column reads
-  std::vector<WithDerivative> univariate_;     ///< registers of SlicePlan::univariate
+  /// The operations that differ from one line to the next, for batches of lines; absent if slices are planar.
+  std::optional<expression::BatchStage> lines_;
+  std::vector<std::uint32_t> line_registers_;  ///< registers of this batch stage that Column reads
+  /// Registers of the constraints in SlicePlan::univariate and of their derivatives.
+  std::vector<WithDerivative> univariate_;
   double tolerance_;
 };
 

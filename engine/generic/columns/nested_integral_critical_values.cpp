@@ -12,15 +12,17 @@ namespace {
 // the order of the square root of the width (3e-8 for 1e-15), volumes of its power 3/2, so that 1e-11 is sufficient for
 // volumes if slices are lines.
 constexpr double kBracketWidth = 1e-15, kBracketWidthOfLines = 1e-11;
-constexpr double kSmallDistance =
-    1e-3;  // relative to the range: slices at a larger distance from a critical value can differ in small components
+// relative to the range: two slices at a larger distance can differ because of small components, so that the slices
+// between them are sampled as densely as in the first scan
+constexpr double kSmallDistance = 1e-3;
 constexpr double kMergeDistanceOfValues = 1e-8;  // relative to the range: closer critical values are merged
-constexpr double kStepFactor =
-    64;  // factor of successive steps away from a critical value, where the type can depend on rounding
+// a change of type within this many steps of the previous one is due to rounding errors: the next step is 8 times
+// longer
+constexpr double kStepFactor = 64;
 
-/// Merges two adjacent critical values: near a tangency of conics, labels change again slightly later, when rounding no
-/// longer hides their intersections. The merged value is the one at which the square-root singularity begins, which has
-/// to be accurate because derivatives are infinite there.
+/// Merges two adjacent critical values. Near a tangency of conics, labels change a second time slightly later, when
+/// rounding errors no longer hide the intersections. The merged value is the one at which the square-root singularity
+/// begins, which has to be accurate because derivatives are infinite there.
 bool join(CriticalValue& first, const CriticalValue& second, double whole) {
   const double apart = second.at - first.at;
   if (first.is_box || apart > kMergeDistanceOfValues * whole) return false;
@@ -35,8 +37,8 @@ bool join(CriticalValue& first, const CriticalValue& second, double whole) {
 
 }  // namespace
 
-/// The measure is continuous across a critical value, possibly with a square-root singularity. A discontinuity is due
-/// to a constraint that is satisfied on one side only, or a component was missed.
+/// Whether the measure is discontinuous at a critical value. It is continuous, possibly with a square-root singularity,
+/// unless a constraint is satisfied on one side only, or a component was missed.
 bool NestedIntegral::is_discontinuous(const Slice& low, const Slice& high, std::size_t level,
                                       const IntegralScratch& scratch) const {
   return ends_in_lines() && low.violated == 0 && high.violated == 0 &&
@@ -55,7 +57,8 @@ void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& 
     const bool extrapolates = more < 2;
     bracket(level, low, high, whole, extrapolates, scratch);
     for (int again = 0; again < 4 && level + 1 < levels() && is_discontinuous(low, high, level, scratch); ++again) {
-      // If a component was missed on one side, the search there finds it now.
+      // If a component was missed on one side, the search on that side finds it now, because the slice on the opposite
+      // side has it.
       const bool is_low = low.measure < high.measure;
       const Slice found = slice(level, is_low ? low.at : high.at, scratch);
       if (found.hash == (is_low ? low : high).hash) break;
@@ -70,7 +73,8 @@ void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& 
       to = again;
       if (is_other) continue;
     }
-    // If rounding decides, types change repeatedly within a small distance; increasing steps leave this region.
+    // If the type depends on rounding errors, it changes repeatedly within a small distance; increasing steps leave
+    // this region.
     step = more > 0 && high.at - from.at < kStepFactor * step ? 8 * step : least;
     const double beyond = high.at + step;
     const Slice after = beyond < to.at ? slice(level, beyond, scratch) : to;
@@ -109,7 +113,8 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
   IntegralScratch::Level& own = scratch.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
              are_sections = is_innermost && !ends_in_lines();
-  std::uint32_t closing = 0;  // 1 + the number of the independent constraint that is satisfied on one side only
+  // 1 + index of the independent constraint that is satisfied on one side only; 0 if there is none
+  std::uint32_t closing = 0;
   own.solver.reset(are_columns);
   const auto look = [&](double at) {
     const Slice found = slice(level, at, scratch);
@@ -160,7 +165,8 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
     if (at <= low.at || at >= high.at) break;
     if (level == 0) scratch.is_scanning = high.at - low.at > kSmallDistance * whole;
     const Slice next = look(at);
-    if (extrapolates && next.hash != low.hash && next.hash != high.hash) {  // the type can depend on rounding here
+    // the type of the sample is that of neither side: it can depend on rounding errors here
+    if (extrapolates && next.hash != low.hash && next.hash != high.hash) {
       extrapolates = false;
       if (are_sections) {
         low = outer[0];

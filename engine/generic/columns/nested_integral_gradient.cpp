@@ -39,7 +39,8 @@ void NestedIntegral::add_gradient(std::size_t level, double factor, IntegralScra
   }
 }
 
-/// Adds the contribution of an endpoint of an interval: its derivative times the measure of the slice there.
+/// Adds the contribution of an endpoint of an interval: the derivative of the endpoint times the measure of the slice
+/// there.
 void NestedIntegral::add_side(std::size_t level, const SmoothInterval& part, bool upper, double factor,
                               IntegralScratch& scratch) const {
   const IntervalBound closing = upper ? part.upper : part.lower;
@@ -62,8 +63,8 @@ void NestedIntegral::add_side(std::size_t level, const SmoothInterval& part, boo
   for (std::size_t i = 0; i < scratch.own.size(); ++i) scratch.adjoints[i] -= sign * measure / slope * scratch.own[i];
 }
 
-/// Derivative of the independent constraint that bounds an interval with respect to the coordinate; scratch.own: with
-/// respect to the registers.
+/// Derivative, with respect to the coordinate of `level`, of the independent constraint that bounds an interval.
+/// scratch.own receives its derivatives with respect to the registers.
 double NestedIntegral::slope_of_independent(std::size_t level, IntervalBound closing, double at,
                                             IntegralScratch& scratch) const {
   set(level, at, scratch);

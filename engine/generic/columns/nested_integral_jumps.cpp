@@ -16,11 +16,12 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kOffset =
-    1e-9;  // relative to the range: distance from the critical value at which the two sides are compared
-constexpr double kSecondOffset = 10;  // a second distance, in units of the first
-constexpr double kNegligible =
-    1e-6;  // relative to the largest slice: smaller discontinuities are not distinguished from continuous changes
+// relative to the range: distance of the two compared slices from the critical value
+constexpr double kOffset = 1e-9;
+// factor of kOffset for a second pair of slices, from which a square-root singularity is recognised
+constexpr double kSecondOffset = 10;
+// relative to the largest slice: a smaller discontinuity cannot be distinguished from a continuous change
+constexpr double kNegligible = 1e-6;
 
 using Intervals = std::vector<std::array<double, 2>>;
 
@@ -40,7 +41,8 @@ Intervals difference(const Intervals& x, const Intervals& y) {
 
 /// Divides pieces at given points inside them, at which integrands can have square-root singularities.
 std::vector<Subinterval<double>> divided(const std::vector<Subinterval<double>>& pieces, std::vector<double> places) {
-  constexpr double kInset = 1e-6;  // relative to a piece
+  // distance from the ends of a piece, relative to its length, within which no division is made
+  constexpr double kInset = 1e-6;
   std::ranges::sort(places);
   std::vector<Subinterval<double>> all;
   for (Subinterval<double> rest : pieces) {
@@ -56,7 +58,7 @@ std::vector<Subinterval<double>> divided(const std::vector<Subinterval<double>>&
   return all;
 }
 
-/// Measure just above an endpoint of an interval minus that just below it.
+/// The measure just above an endpoint of an interval minus the measure just below it.
 double step_at(const SmoothInterval& part, bool upper) {
   return upper ? part.beyond_upper - part.above.measure : part.below.measure - part.beyond_lower;
 }
@@ -65,7 +67,7 @@ double step_at(const SmoothInterval& part, bool upper) {
 
 /// The set of points that are feasible on the side `in` of a critical value and infeasible on the side `out`.
 struct NestedIntegral::OneSided {
-  std::size_t level;  ///< level of the critical value
+  std::size_t level;  ///< level of the coordinate that has the critical value
   IntegralScratch &in, &out;
   const OneSidedVisitor& visit;
 };
@@ -87,8 +89,8 @@ void NestedIntegral::visit_one_sided(std::size_t level, const SmoothInterval& pa
   for (std::size_t i = 0; i < out.levels.size(); ++i) {
     const IntegralScratch::Level& own = scratch.levels[i];
     out.levels[i].largest = own.largest;
-    if (i <= level) continue;                   // outer coordinates are not integrated over again
-    out.levels[i].seen_count = own.seen_count;  // expected intervals
+    if (i <= level) continue;                   // integrals over outer coordinates are not repeated
+    out.levels[i].seen_count = own.seen_count;  // the intervals that are expected at the inner levels
     out.levels[i].seen.assign(own.seen.begin(), own.seen.begin() + static_cast<std::ptrdiff_t>(own.seen_count));
   }
   out.measured = true;
@@ -116,8 +118,8 @@ void NestedIntegral::visit_one_sided(std::size_t level, const SmoothInterval& pa
   const bool like_root = std::fabs(one_sided_points[1] - one_sided_points[0]) > kDiscontinuity * largest;
   const double jump = like_root ? (root * one_sided_points[0] - one_sided_points[1]) / (root - 1) : one_sided_points[0];
   if (std::fabs(jump) <= kNegligible * largest) return;
-  // Near another critical value, the square root can begin there; a discontinuity also exists directly beside the
-  // critical value.
+  // If another critical value is near, the square-root singularity can begin there. A discontinuity, in contrast, also
+  // exists directly next to the critical value.
   if (!(side * step_at(part, upper) / jump > 0.5)) return;
   const OneSided set{level, scratch, out, visit};
   visit_one_sided(level + 1, like_root ? root / (root - 1) : 1, inside[0].hash == 0, outside[0].hash == 0, set);
@@ -134,7 +136,8 @@ double NestedIntegral::unexplained_jump(std::size_t level, const CriticalValue& 
   return std::max(0.0, std::fabs(jump) - explained);
 }
 
-/// Visits the points that are feasible on the side `in` only. To be called after inside(level) on both sides.
+/// Visits the points that are feasible on the side `in` and infeasible on the side `out`. To be called after
+/// inside(level) on both sides.
 void NestedIntegral::visit_one_sided(std::size_t level, double weight, bool in_is_empty, bool out_is_empty,
                                      const OneSided& one_sided_points) const {
   if (in_is_empty) return;
@@ -198,8 +201,9 @@ void NestedIntegral::visit_columns(const std::vector<std::array<double, 2>>& col
     });
 }
 
-/// Derivative of the constraint that a point violates on the side `out` with respect to the coordinate of the critical
-/// value; in.own: with respect to the registers of the previous stages. 0 if none is violated.
+/// Derivative, with respect to the coordinate of the critical value, of the constraint that a point violates on the
+/// side `out`; 0 if it violates none. in.own receives the derivatives of this constraint with respect to the registers
+/// of the previous stages.
 double NestedIntegral::slope_of_violated(double v, double z, const OneSided& one_sided_points) const {
   const SlicePlan& plan = this->plan();
   const auto& stages = plan.program.stages();

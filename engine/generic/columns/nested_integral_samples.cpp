@@ -8,14 +8,15 @@
 namespace pkm::generic {
 namespace {
 
-constexpr std::size_t kSparseRatio = 8;  // a workspace is sparse if at most one of so many samples is non-empty
-// Numbers of samples: for planar slices, of a single outer coordinate and of each of several; for lines, of the
-// outermost coordinate, of the next one during the first scan, and of the next one later, when intervals are expected.
-// The last one: of a single outer coordinate within the workspace, for narrow gaps.
+constexpr std::size_t kSparseRatio = 8;  // a workspace is sparse if at most one of kSparseRatio samples is non-empty
+// Numbers of samples. kSamples: for planar slices, of a single outer coordinate, and of each of several.
+// kSamplesInLines: for lines, of the outermost coordinate, of the next one during the first scan, and of the next one
+// later, when intervals are expected. kSamplesInside: of a single outer coordinate within the workspace, to find narrow
+// gaps.
 constexpr int kSamples[] = {40, 24}, kSamplesInLines[] = {kSamplesOfLines, 192, 12}, kSamplesInside = 240;
 
-/// The i-th of several samples, not equidistant, because symmetric mechanisms can have their critical values at equal
-/// distances.
+/// Value number i of several samples in (low, high). They are not equidistant, because symmetric mechanisms can have
+/// their critical values at equal distances.
 double sample_position(double low, double high, int i, int places) {
   const double step = 0.618 * i;
   return low + (high - low) * (i + 0.4 + 0.2 * (step - std::floor(step))) / places;
@@ -23,8 +24,8 @@ double sample_position(double low, double high, int i, int places) {
 
 }  // namespace
 
-/// Evaluates samples beside a change of type again: intervals that are narrow there may have been found at neighbouring
-/// samples only, and are expected now.
+/// Evaluates samples next to a change of type again. Where intervals of the inner coordinate are narrow, only
+/// neighbouring samples may have found them; they are now expected here, so that they are found.
 void NestedIntegral::resample_changes(std::size_t level, IntegralScratch& scratch) const {
   std::vector<Slice>& scanned = scratch.levels[level].scanned;
   bool is_new = true;
@@ -85,14 +86,14 @@ void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   if (!has_found) scratch.levels[0].irreducible_error += search.undecided_volume(scratch.search);
   if (std::any_of(scanned.begin() + static_cast<std::ptrdiff_t>(known), scanned.end(), is_found)) {
     std::ranges::sort(scanned, {}, &Slice::at);
-  } else {  // the integral is unchanged
+  } else {  // if no slice was found, the integral is unchanged
     scanned.resize(known);
     scratch.evaluations = evaluations;
   }
 }
 
-/// If only few samples are in the workspace, it is small, and may have further components: boxes that can contain them
-/// are sampled in every slice.
+/// If few samples are non-empty, the workspace is small and may have further components: the boxes that can contain
+/// components are then sampled in every slice.
 void NestedIntegral::search_sparse_components(IntegralScratch& scratch) const {
   constexpr std::size_t kMost = 6000, kManyBoxes = 1500;
   constexpr int kPlaces = 9;
@@ -114,7 +115,7 @@ void NestedIntegral::search_sparse_components(IntegralScratch& scratch) const {
   std::ranges::sort(scanned, {}, &Slice::at);
 }
 
-/// Refines the samples between the first and the last non-empty slice.
+/// Adds samples between the first and the last non-empty slice, to find gaps in the workspace.
 void NestedIntegral::refine_support(IntegralScratch& scratch) const {
   std::vector<Slice>& scanned = scratch.levels[0].scanned;
   const auto is_found = [](const Slice& slice) { return slice.hash != 0; };
@@ -128,7 +129,8 @@ void NestedIntegral::refine_support(IntegralScratch& scratch) const {
   std::ranges::sort(scanned, {}, &Slice::at);
 }
 
-/// Adds samples of the inner coordinates from the boxes at a value of the outermost one.
+/// Replaces the hints of the inner coordinates by samples in the boxes that contain the value `at` of the outermost
+/// one.
 void NestedIntegral::add_hints(double at, IntegralScratch& scratch) const {
   constexpr int kPlaces = 3;
   const ComponentSearch search(plan());
@@ -153,7 +155,7 @@ void NestedIntegral::choose_samples(std::size_t level, double low, double high, 
   std::ranges::sort(own.places);
 }
 
-/// Adds samples of the outermost coordinate where there is none between two sign changes of constraints.
+/// Adds a sample of the outermost coordinate between any two neighbouring sign changes of constraints that have none.
 void NestedIntegral::add_samples_between_changes(double low, double high, IntegralScratch& scratch) {
   scratch.ends.assign({low, high});
   for (const SignChange& change : scratch.changes.found) scratch.ends.push_back(change.at);
@@ -168,8 +170,8 @@ void NestedIntegral::add_samples_between_changes(double low, double high, Integr
   std::ranges::sort(places);
 }
 
-/// Adds samples in the intervals that are expected here: those at the two nearest values of the next outer coordinate
-/// on either side, and their linear extrapolations.
+/// Adds samples of this coordinate in the intervals that are expected. These are the intervals that were found at the
+/// two nearest values of the next outer coordinate on either side, and their linear extrapolations.
 void NestedIntegral::add_expected_samples(double outside, IntegralScratch::Level& own) {
   using ExpectedIntervals = IntegralScratch::Level::ExpectedIntervals;
   const std::size_t known = own.places.size();

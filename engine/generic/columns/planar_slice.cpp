@@ -12,7 +12,7 @@
 namespace pkm::generic {
 namespace {
 
-/// Sign of a quadratic polynomial below all of its roots.
+/// Whether a quadratic polynomial is positive below all of its roots. @param roots  number of its roots
 bool positive_below(const std::array<double, 3>& c, int roots) {
   if (c[2] != 0) return c[2] > 0;
   return roots > 0 ? c[1] < 0 : c[0] >= 0;
@@ -44,7 +44,7 @@ void PlanarSlice::find_column(double t, const double* registers, PlanarSliceScra
     }
     if (plan_.formula.holds(signs, registers) != is_in) {
       is_in = !is_in;
-      // coincident endpoints are labelled by the first surface that changes its sign in this direction
+      // Coincident endpoints are represented by the first surface whose sign changes in the required direction.
       EndLabel label = ~EndLabel{0}, any = ~EndLabel{0};
       for (std::size_t j = i; j < end; ++j) {
         const EndLabel each = scratch.ends[j].second;
@@ -81,7 +81,7 @@ bool PlanarSlice::independent_constraints_hold(double t, std::span<double> regis
 }
 
 /// Finds the pieces between consecutive vertices.
-/// @param independent  whether constraints that are independent of z are evaluated, too
+/// @param independent  true: also evaluate the constraints that are independent of z
 void PlanarSlice::find_pieces(bool independent, std::span<double> registers, PlanarSliceScratch& scratch) const {
   scratch.pieces.clear();
   scratch.spans.clear();
@@ -116,7 +116,8 @@ void PlanarSlice::find_pieces(bool independent, std::span<double> registers, Pla
 
 void PlanarSlice::find_combinatorial_type(PlanarSliceScratch& scratch) const {
   SliceType& type = scratch.type;
-  Signs round = 0, cut = 0;  // surfaces with an arc that ends at a turning point, and at another vertex
+  // sets of the surfaces that have an arc which ends at a turning point, and at another vertex
+  Signs round = 0, cut = 0;
   const auto add = [&](std::size_t surface, std::size_t first, double t) {
     const std::uint32_t label = vertex_of(surface, first, t, scratch);
     if ((label & kKind) == kTurningPoint) {
@@ -146,7 +147,7 @@ void PlanarSlice::find_features(const PlanarSliceScratch& scratch, BoundaryFeatu
         std::find_if(scratch.vertices.begin() + static_cast<std::ptrdiff_t>(first), scratch.vertices.end(),
                      [&](const PlanarSliceScratch::Vertex& each) { return each.label == label; });
     if (vertex != scratch.vertices.end() && ((label & kKind) == kCrossing || (label & kKind) == kTurningPoint)) {
-      // a vertex is common to two arcs, but listed once
+      // two arcs share this vertex; list it once
       const BoundaryFeature feature{label, label, vertex->t, vertex->s};
       if (std::ranges::none_of(features, [&](const BoundaryFeature& m) {
             return m.key == label && m.t == feature.t && m.s == feature.s;
@@ -239,7 +240,9 @@ std::vector<std::array<double, 2>> PlanarSlice::columns(double v, std::span<doub
 }
 
 bool PlanarSlice::has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch) {
-  constexpr double kBracketWidth = 1e-7;  // near a tangency, intersections are on either side of the turning point
+  // difference in t up to which a vertex counts as a turning point: near a tangency, intersections can lie on either
+  // side of it
+  constexpr double kBracketWidth = 1e-7;
   return vertex < scratch.vertices.size() &&
          std::ranges::any_of(scratch.vertices, [&](const PlanarSliceScratch::Vertex& other) {
            return (other.label & kKind) == kTurningPoint &&

@@ -13,16 +13,16 @@
 
 namespace pkm::generic {
 
-/// Scratch memory of PlanarSlice, in coordinates t, s in [-1, 1] for v and z.
+/// Scratch memory of PlanarSlice. The coordinates t and s in [-1, 1] stand for v and z.
 struct PlanarSliceScratch {
   /// A vertex of the slice: a point at which arcs can end.
   struct Vertex {
     double t;
     std::uint32_t label;
-    bool touches = false;  ///< an intersection of conics that are tangent there
-    double s = 0;          ///< ordinate of intersections and turning points
+    bool touches = false;  ///< true: an intersection of two conics that are tangent there
+    double s = 0;          ///< ordinate s of intersections and turning points; 0 for other vertices
   };
-  /// A feasible interval of the columns of a piece, by the labels of its endpoints.
+  /// A feasible interval of z in all columns of a piece, by the labels of its lower and upper endpoint.
   struct Span {
     EndLabel lower, upper;
 
@@ -31,18 +31,20 @@ struct PlanarSliceScratch {
   /// An interval of t in which all columns have the same endpoints.
   struct Piece {
     double from, to;
-    std::size_t from_vertex, to_vertex;  ///< the first vertex at this t; after the last one: the sides of the slice
-    std::size_t first, count;            ///< range in `spans`
+    /// Index of the first vertex at `from` and at `to`; the number of vertices stands for a side of the slice.
+    std::size_t from_vertex, to_vertex;
+    std::size_t first, count;  ///< index of the first element in `spans`, and number of elements
   };
-  /// The constraints that a conic represents: several can be equal, or equal up to the sign.
+  /// Sets of the constraints that a conic represents: constraints with the same polynomial, and with the opposite sign.
   struct Meaning {
     Signs same, opposite;
   };
   std::array<Conic, kMaxSurfaces> conics;
   std::array<Meaning, kMaxSurfaces> meaning;
-  std::array<double, 2> v, z;       ///< centre and half width
-  std::vector<std::size_t> active;  ///< conics that change their sign in the slice, without duplicates
-  Signs always = 0;                 ///< constraints that are >= 0 in the whole slice
+  std::array<double, 2> v, z;  ///< centre and half width of the slice in v, and in z
+  /// Indices of the conics that change their sign in the slice; equal conics are listed once.
+  std::vector<std::size_t> active;
+  Signs always = 0;  ///< set of the constraints that are >= 0 in the whole slice
   std::vector<Vertex> vertices;
   std::vector<Piece> pieces;
   std::vector<Span> spans, column;
@@ -51,12 +53,13 @@ struct PlanarSliceScratch {
   SliceType type = 0;
 };
 
-/// s of an endpoint of the column at t.
+/// The coordinate s of an endpoint of the column at t.
 inline double end_at(EndLabel end, double t, const PlanarSliceScratch& scratch) {
   return place_on(scratch.conics[end >> 1U], static_cast<int>(end & 1U), t);
 }
 
-/// Endpoints of pieces and columns as numbers (PlanarSliceSensitivity: with derivatives).
+/// Endpoints of pieces and columns as numbers, for PlanarSlice::for_each_node(); PlanarSliceSensitivity has them with
+/// derivatives.
 struct PlanarSliceValues {
   using Scalar = double;
   const PlanarSliceScratch& scratch;
@@ -70,16 +73,17 @@ class PlanarSlice {
   explicit PlanarSlice(SlicePlan plan) : plan_(std::move(plan)) {}
 
   const SlicePlan& plan() const { return plan_; }
-  /// Computes the area of the slice, its type and its pieces. @param registers  values after all stages except that of
-  /// v
-  /// @param changes  sign changes along v of constraints that are independent of z; null: they are found by samples
+  /// Computes the area of the slice, its type and its pieces.
+  /// @param registers  values of the program's registers after all stages except that of v
+  /// @param changes  sign changes along v of the constraints that are independent of z; null: they are searched for by
+  ///                 sampling
   double measure(std::span<double> registers, PlanarSliceScratch& scratch,
                  const std::vector<SignChange>* changes = nullptr) const;
-  /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
+  /// Adds the derivatives of factor times the area, after measure(), to the adjoints of the program's registers.
   void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
                     PlanarSliceScratch& scratch) const;
-  /// Calls visit(v, z, weight) at quadrature nodes inside the columns, after measure(). @param ends  PlanarSliceValues
-  /// or PlanarSliceSensitivity
+  /// Calls visit(v, z, weight) at quadrature nodes inside the columns, after measure().
+  /// @param ends  PlanarSliceValues, or PlanarSliceSensitivity for nodes with derivatives
   template <class Ends, class Visit>
   void for_each_node(const GaussRule& along_v, const GaussRule& along_z, const PlanarSliceScratch& scratch,
                      const Ends& ends, const Visit& visit) const {
@@ -100,7 +104,8 @@ class PlanarSlice {
     }
   }
 
-  /// Calls visit(end, first vertex there, t) for each endpoint of an arc, after measure().
+  /// Calls visit(end, first, t) for each endpoint of an arc, after measure(): label of the arc, index of the first
+  /// vertex at t.
   template <class Visit>
   void for_each_arc_end(const PlanarSliceScratch& scratch, const Visit& visit) const {
     const auto continues = [&](const PlanarSliceScratch::Piece& piece, EndLabel end, bool above) {
@@ -128,12 +133,12 @@ class PlanarSlice {
   std::vector<std::array<double, 2>> columns(double v, std::span<double> registers, PlanarSliceScratch& scratch) const;
   /// Finds the vertices that define the type, after measure().
   void find_features(const PlanarSliceScratch& scratch, BoundaryFeatures& features) const;
-  /// Relative residual of a vertex in the surfaces that intersect at a vertex of a neighbouring slice; infinity if it
-  /// is on them, or if one of the two is not an intersection.
+  /// Relative residual of a vertex in the equations of the surfaces that intersect at a vertex of a neighbouring slice;
+  /// infinity if it lies on these surfaces, or if one of the two vertices is no intersection.
   static double distance(const BoundaryFeature& vertex, const BoundaryFeature& other,
                          const PlanarSliceScratch& scratch);
-  /// Derivative with respect to v of constraint k, which is independent of z, at t. @param by  see
-  /// expression::stage_derivative()
+  /// Derivative with respect to v, at t, of the independent constraint with index k.
+  /// @param by  see expression::stage_derivative()
   double slope_of_independent(std::size_t k, double t, std::span<double> registers, const PlanarSliceScratch& scratch,
                               std::vector<double>& by) const;
 
@@ -146,15 +151,15 @@ class PlanarSlice {
   void find_column(double t, const double* registers, PlanarSliceScratch& scratch) const;
   /// Computes the registers that depend on v, but not on z, for the value of v given by t in [-1, 1].
   void evaluate_stage_of_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
-  /// Evaluates the constraints that are independent of z at t.
+  /// Evaluates, at t, the constraints that are independent of z.
   void evaluate_independent(double t, std::span<double> registers, const PlanarSliceScratch& scratch,
                             std::vector<double>& values) const;
   bool independent_constraints_hold(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
-  /// Integrals of 1, s and s^2 over the columns of a piece at t.
+  /// Integrals of 1, s and s^2 over all columns of a piece at t.
   std::array<double, 3> moments(const PlanarSliceScratch::Piece& piece, double t,
                                 const PlanarSliceScratch& scratch) const;
   void find_combinatorial_type(PlanarSliceScratch& scratch) const;
-  /// Whether the length of columns has a square-root singularity at a vertex.
+  /// Whether the length of columns has a square-root singularity in t at a vertex.
   static bool has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch);
   std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
 

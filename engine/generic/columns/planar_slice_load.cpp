@@ -6,7 +6,7 @@
 namespace pkm::generic {
 namespace {
 
-/// Transforms a conic from v and z to t and s.
+/// Expresses a conic in v and z as a conic in the coordinates t and s of the box. @param v, z  centre and half width
 Conic in_box(const std::array<double, 6>& C, const std::array<double, 2>& v, const std::array<double, 2>& z) {
   const auto [vm, vh] = v;
   const auto [zm, zh] = z;
@@ -18,14 +18,14 @@ Conic in_box(const std::array<double, 6>& C, const std::array<double, 2>& v, con
          vh * zh * C[4],
          zh * zh * C[5]};
   for (const double c : P.c) P.scale += std::fabs(c);
-  // A conic whose terms in z are rounding errors is a vertical line.
+  // If the terms in z are rounding errors, the conic is a vertical line.
   constexpr double kRounding = 1e-14;
   if (std::fabs(P.c[2]) + std::fabs(P.c[4]) + std::fabs(P.c[5]) <= kRounding * P.scale) P.c[2] = P.c[4] = P.c[5] = 0;
   return P;
 }
 
-/// Intersects a range with a slightly enlarged [low, high], so that endpoints there are inside. @return false if it is
-/// empty
+/// Intersects a range with [low, high], enlarged by 1 % so that endpoints at low and high lie inside.
+/// @return false if the intersection is empty
 bool cut(std::array<double, 2>& range, double low, double high) {
   if (!(low <= range[1] && high >= range[0])) return false;
   const double beyond = 1e-2 * (high - low);
@@ -34,8 +34,9 @@ bool cut(std::array<double, 2>& range, double low, double high) {
   return true;
 }
 
-/// Contracts the ranges to the bounding box of P >= 0, if this is an ellipse or a strip along one of the coordinates.
-/// @return false if it is empty
+/// Contracts the ranges of v and z to the bounding box of P >= 0 if this is an ellipse or a strip along v or z;
+/// otherwise leaves them unchanged.
+/// @return false if no point of the ranges can satisfy P >= 0
 bool narrow_to(const std::array<double, 6>& C, std::array<double, 2>& v, std::array<double, 2>& z) {
   const auto [c, cv, cz, cvv, cvz, czz] = C;
   const bool has_sqrt_singularity = czz < 0 && cvv < 0 && cvz * cvz < 4 * cvv * czz;

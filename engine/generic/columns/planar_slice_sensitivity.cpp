@@ -49,7 +49,7 @@ Dual4 PlanarSliceSensitivity::vertex(std::size_t first, double t) const {
 }
 
 Dual4 PlanarSliceSensitivity::crossing(const PlanarSliceScratch::Vertex& at) const {
-  if (at.touches) return at.t;  // at a tangency of two endpoints, either of them can be used
+  if (at.touches) return at.t;  // both arcs coincide to first order, so that the motion of the vertex does not matter
   const Boundary p = boundary(at.label & 255U, at.t, at.s), q = boundary((at.label & ~kKind) >> 8U, at.t, at.s);
   return differentiable_root(at.t, p.change * q.s - q.change * p.s, p.t * q.s - p.s * q.t);
 }
@@ -58,7 +58,7 @@ Dual4 PlanarSliceSensitivity::turning_point(std::uint32_t surface, const PlanarS
   const Conic& P = scratch_.conics[surface];
   const auto change = [&](double s) { return boundary(surface, at.t, s).change; };
   if (!P.is_straight()) return differentiable_root(at.t, change(at.s), gradient(P, at.t, at.s)[0]);
-  // The root is infinite there: P_s = 0 for every s.
+  // P_s = 0 for every s, because the root s is infinite there.
   return differentiable_root(at.t, (change(1) - change(-1)) * 0.5, P.c[4]);
 }
 

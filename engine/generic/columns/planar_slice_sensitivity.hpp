@@ -8,34 +8,36 @@
 
 namespace pkm::generic {
 
-/// A root with the derivatives -sum / by; 0 if that is infinite.
+/// A root at the value `at` with the derivatives -sum / by; the derivatives are 0 if this is infinite.
 Dual4 differentiable_root(double at, const Components<4>& sum, double by);
 
-/// Derivatives of a quantity with the gradient `by` with respect to the registers.
+/// Derivatives of a quantity whose gradient with respect to the registers is `by`, by the chain rule.
 Components<4> tangent(std::span<const double> by, std::span<const Dual4> registers);
 
-/// Endpoints of pieces and columns, for PlanarSlice::for_each_node().
+/// Endpoints of pieces and columns with derivatives with respect to the design, for PlanarSlice::for_each_node().
 class PlanarSliceSensitivity {
  public:
   using Scalar = Dual4;
 
-  /// @param scratch         after measure()
-  /// @param dual_registers  registers with derivatives, after all stages but that of v
+  /// @param scratch         scratch memory of planar_slice after measure()
+  /// @param dual_registers  registers with derivatives, after all stages except that of v
   /// @param registers       values of `dual_registers`
   PlanarSliceSensitivity(const PlanarSlice& planar_slice, const PlanarSliceScratch& scratch,
                          std::span<const Dual4> dual_registers, std::span<double> registers)
       : slice_(planar_slice), scratch_(scratch), dual_registers_(dual_registers), registers_(registers) {}
 
-  /// @param first  the first vertex at t
+  /// The coordinate t of a vertex with its derivatives. @param first  index of the first vertex at t
   Dual4 vertex(std::size_t first, double t) const;
   Dual4 end(EndLabel end, const Dual4& t) const;
 
-  /// Derivatives of a boundary curve with respect to t, s, and the design at constant t and s.
+  /// Derivatives of the equation of a boundary curve: with respect to t and s, and (`change`) to the design at constant
+  /// t and s.
   struct Boundary {
     double t, s;
     Components<4> change;
   };
-  /// @param of  a surface, or the label of a vertex on a side of the slice or on an independent constraint
+  /// @param of  index of a surface, or label of a vertex that lies on a side of the slice or on an independent
+  ///            constraint
   Boundary boundary(std::uint32_t of, double t, double s) const;
 
  private:

@@ -20,8 +20,8 @@ bool touch(const Conic& P, const Conic& Q, double t, double s) {
   return std::fabs(pt * qs - ps * qt) <= 1e-5 * std::hypot(pt, ps) * std::hypot(qt, qs);
 }
 
-/// Removes the intersections of tangent conics that lie on a vertical line: whether tangent conics intersect depends on
-/// rounding, and the vertex with the vertical line represents the point reliably.
+/// Removes the intersections of tangent conics that lie on a vertical line of another vertex: rounding errors decide
+/// whether tangent conics intersect, whereas the vertex of the vertical line represents the point reliably.
 void drop_touching(std::vector<PlanarSliceScratch::Vertex>& vertices) {
   std::erase_if(vertices, [&](const PlanarSliceScratch::Vertex& vertex) {
     return vertex.touches && std::ranges::any_of(vertices, [&](const PlanarSliceScratch::Vertex& other) {
@@ -32,7 +32,7 @@ void drop_touching(std::vector<PlanarSliceScratch::Vertex>& vertices) {
 
 }  // namespace
 
-/// Adds a vertex, unless the point is infeasible for all signs of the surfaces `of`.
+/// Adds a vertex at (t, s), unless the point is infeasible whatever signs the surfaces in the set `of` have there.
 void PlanarSlice::add_vertex(double t, double s, Signs of, std::uint32_t label, PlanarSliceScratch& scratch) const {
   if (!(std::fabs(s) <= 1 + 1e-9)) return;
   Signs maybe = scratch.always;

@@ -36,7 +36,8 @@ bool has_one_sign(std::span<const double> c) {
   static constexpr int kBinomial[5][5] = {
       {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
   static const auto table = [] {
-    std::array<std::array<std::array<double, 5>, 5>, 5> b{};  // by degree, k, j: x^j over Bernstein number k
+    // by degree n and indices k, j: contribution of x^j to the Bernstein coefficient with index k
+    std::array<std::array<std::array<double, 5>, 5>, 5> b{};
     for (int n = 0; n < 5; ++n)
       for (int k = 0; k <= n; ++k)
         for (int j = 0; j <= n; ++j) {
@@ -85,7 +86,7 @@ std::size_t find_roots(std::span<const double> coefficients, bool touches, std::
   if (degree == 2) {
     const Roots found = roots_of({coefficients[0], coefficients[1], coefficients[2]});
     for (int i = 0; i < found.count; ++i) keep(found.s[static_cast<std::size_t>(i)]);
-    if (found.count == 0 && touches) {  // possibly a double root
+    if (found.count == 0 && touches) {  // no root was found, but there may be a double root
       const double x = -0.5 * coefficients[1] / coefficients[2];
       if (std::fabs(value(coefficients, x)) <= 1e-13 * scale) keep(x);
     }

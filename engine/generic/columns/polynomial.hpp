@@ -7,15 +7,15 @@
 
 namespace pkm::generic {
 
-inline constexpr double kNegligibleCoefficient =
-    1e-14;  ///< relative to the largest coefficient: smaller ones are neglected
+/// Relative to the largest coefficient: smaller leading coefficients are neglected.
+inline constexpr double kNegligibleCoefficient = 1e-14;
 
 struct Roots {
-  std::array<double, 2> s{};  ///< the lower one first
+  std::array<double, 2> s{};  ///< the roots, in ascending order; the first `count` are in use
   int count = 0;
 };
 
-/// Roots of c[0] + c[1] s + c[2] s^2. The root of a linear polynomial is number 0; the zero polynomial has none.
+/// Roots of c[0] + c[1] s + c[2] s^2. A linear polynomial has one root, with index 0; the zero polynomial has none.
 Roots roots_of(const std::array<double, 3>& c);
 
 /// Finds the roots in [-1, 1] in ascending order, and points where the polynomial nearly has a double root. @return

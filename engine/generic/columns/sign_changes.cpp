@@ -10,7 +10,7 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kNarrow = 1e-9;  // relative to the range: width below which intervals are not bisected
+constexpr double kNarrow = 1e-9;  // relative to the range: intervals of at most this width are not bisected
 
 class Search {
  public:
@@ -24,7 +24,7 @@ class Search {
   void run(double from, double to, long max_evaluations) {
     const double narrow = kNarrow * (to - from);
     s_.parts.assign(1, {from, to, constraints_.size() < 64 ? bit(constraints_.size()) - 1 : ~Signs{0}});
-    // breadth first: then the limit of evaluations leaves no part of the range unexamined
+    // Breadth-first order: if the limit of evaluations ends the search, every part of the range has been examined.
     while (!s_.parts.empty()) {
       s_.halves.clear();
       for (SignChangeScratch::Part part : s_.parts) {
@@ -33,9 +33,9 @@ class Search {
         if (part.undecided == 0) continue;
         const double middle = 0.5 * (part.from + part.to);
         const bool is_exhausted = s_.evaluations >= max_evaluations;
-        // an interval of a few ulp, or NaN, has no midpoint
+        // an interval of a few ulp, or with a NaN bound, has no midpoint
         if (is_exhausted || part.to - part.from <= narrow || !(part.from < middle && middle < part.to)) {
-          // a change of sign at the end of a domain is located to the width of the interval
+          // a sign change at the end of the domain of a constraint is located to the width of the interval
           if (add_changes(part, part.undecided, !is_exhausted) < std::popcount(part.undecided) || is_exhausted)
             s_.undecided += part.to - part.from;
           continue;
@@ -54,7 +54,8 @@ class Search {
     program_.run<S>(stage_, registers);
   }
 
-  /// Adds the changes of the constraints that are monotonic on an interval. @return the undecided constraints
+  /// Adds the sign changes of the constraints that are monotonic on an interval.
+  /// @return the set of undecided constraints
   Signs examine(const SignChangeScratch::Part& part) {
     ++s_.evaluations;
     evaluate<Interval>({part.from, part.to}, s_.registers);
@@ -71,9 +72,9 @@ class Search {
     return undecided;
   }
 
-  /// Adds a change for each of the constraints that have different signs at the ends of an interval.
-  /// @param refines  whether the change is located by root refinement; otherwise it is placed in the middle
-  /// @return number of these constraints
+  /// Adds a sign change for each constraint of the set `of` that has different signs at the two ends of an interval.
+  /// @param refines  true: locate the change by root refinement; false: place it in the middle of the interval
+  /// @return number of the added sign changes
   int add_changes(const SignChangeScratch::Part& part, Signs of, bool refines) {
     int count = 0;
     for (; of != 0; of &= of - 1) {

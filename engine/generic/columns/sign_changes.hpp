@@ -19,19 +19,19 @@ struct WithDerivative {
 
 struct SignChange {
   double at;
-  std::size_t constraint;  ///< its index in the list of given constraints
-  bool falls;              ///< it is violated beyond `at`
+  std::size_t constraint;  ///< index of the constraint in the given list
+  bool falls;              ///< true: the constraint is satisfied below `at` and violated above it
 };
 
 /// Result and scratch memory of find_sign_changes().
 struct SignChangeScratch {
-  std::vector<SignChange> found;  ///< in no particular order
+  std::vector<SignChange> found;  ///< the sign changes, in no particular order
   double undecided = 0;           ///< total length of intervals in which signs are unknown
-  long evaluations = 0;           ///< intervals evaluated in the last search
+  long evaluations = 0;           ///< number of intervals that the last search has evaluated
 
   struct Part {
     double from, to;
-    Signs undecided;  ///< constraints
+    Signs undecided;  ///< set of the constraints whose sign is still unknown in the interval
   };
   std::vector<Part> parts, halves;
   std::vector<Interval> registers;
