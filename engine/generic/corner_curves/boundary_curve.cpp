@@ -7,7 +7,7 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-/// Bounds of the magnitudes of the coefficients of a curve's equation.
+/// Upper bounds of the magnitudes of the coefficients b and c in the equation of a curve.
 double size_of_b(const BoundaryCurve& curve) {
   return (curve.is_circle() ? 2 : 1) * std::fmax(curve.size[0], curve.size[1]);
 }
@@ -40,7 +40,7 @@ bool BoundaryCurve::interpolate(double tolerance) {
     const double scale = is_circle() ? 1 + size[f] : 1;
     const double own_tail = interpolation_error(series[f], 0);
     has_converged = has_converged && own_tail <= tolerance * scale;
-    // Coefficients that rounding errors of the values can explain are not used.
+    // Trailing coefficients that are within the rounding errors of the values are not used.
     const double rounding = 8 * kUnitRoundoff * scale;
     tail = std::fmax(tail, own_tail);
     error = std::fmax(error, own_tail + rounding);

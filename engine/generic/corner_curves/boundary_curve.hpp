@@ -20,8 +20,8 @@ struct Vector {
 };
 inline double determinant(const Vector& g, const Vector& h) { return g.x * h.y - g.y * h.x; }
 
-/// A curve at one value of tau. u and w: centre of a circle, or normal of a line; c: squared radius, or h at the
-/// origin.
+/// A curve at one value of tau. (u, w) is the centre of a circle or the unit normal of a line; c is the squared radius
+/// of a circle, or the value of h at the origin for a line.
 struct CurveAt {
   bool is_circle;
   double u, w, c;
@@ -39,16 +39,17 @@ struct BoundaryCurve {
   enum class Kind : std::uint8_t {
     circle,
     line,
-    cut  ///< the line through a circle's centre in the direction of angle 0
+    cut  ///< line through the centre of a circle in the direction from which angles on the circle are counted
   };
   Kind kind = Kind::line;
-  std::array<Samples, 3> values;    ///< at the nodes: u, w and c of CurveAt
-  std::array<Samples, 3> series;    ///< their coefficients
-  std::array<Samples, 3> equation;  ///< b and c of the curve's equation, at the nodes
-  std::size_t terms = kNodes;       ///< number of coefficients of the series in use
-  double tail = 0;                  ///< interpolation error of the series, estimated from its last coefficients
-  double error = 0;                 ///< `tail` plus a bound of the rounding errors
-  std::array<double, 3> size{};     ///< maxima of |u|, |w|, |c|
+  std::array<Samples, 3> values;  ///< u, w and c of CurveAt, at the Chebyshev nodes
+  std::array<Samples, 3> series;  ///< Chebyshev coefficients of u, w and c
+  /// Coefficients b_x, b_y and c of h(p) = a |p|^2 + b . p + c, at the Chebyshev nodes.
+  std::array<Samples, 3> equation;
+  std::size_t terms = kNodes;    ///< number of leading coefficients of `series` that are in use
+  double tail = 0;               ///< interpolation error of the series, estimated from its last coefficients
+  double error = 0;              ///< `tail` plus a bound of the rounding errors
+  std::array<double, 3> size{};  ///< maximum over tau of |u|, of |w| and of |c|
 
   bool is_circle() const { return kind == Kind::circle; }
   CurveAt at(double tau) const {
@@ -57,12 +58,12 @@ struct BoundaryCurve {
   }
   CurveAt at_node(std::size_t n) const { return {is_circle(), values[0][n], values[1][n], values[2][n]}; }
   /// Computes all other members from `kind` and `values`.
-  /// @param tolerance  relative tail of an interpolant that is accepted
+  /// @param tolerance  accepted interpolation error, relative to the size of the function
   /// @return false if the interpolant has not converged
   bool interpolate(double tolerance);
 };
 
-/// A scalar function of tau at the nodes, with a bound of its rounding errors.
+/// Values of a scalar function of tau at the Chebyshev nodes, with a bound of their rounding errors.
 struct Sampled {
   Samples values;
   double rounding = 0;
@@ -76,11 +77,11 @@ void discriminant(const BoundaryCurve& i, const BoundaryCurve& j, Sampled& resul
 /// a determinant; for three lines a determinant.
 void concurrence(const BoundaryCurve& i, const BoundaryCurve& j, const BoundaryCurve& k, Sampled& result);
 
-/// Whether two curves cross, one of which is a circle.
+/// Whether two curves, at least one of which is a circle, cross each other.
 bool has_crossing(const CurveAt& i, const CurveAt& j);
 
 /// One of the two points in which two curves cross; for two lines there is one, whatever the branch.
-/// @param branch  1 or -1
+/// @param branch  1 or -1: which of the two points
 Vector crossing(const CurveAt& i, const CurveAt& j, double branch);
 
 }  // namespace pkm::generic::corner_curves

@@ -7,7 +7,7 @@ namespace {
 
 using Matrix = std::array<Samples, kNodes>;
 
-/// T_k at node n of `nodes`.
+/// Value of T_k at the Chebyshev node with index n of `nodes` nodes.
 double polynomial_at_node(std::size_t k, std::size_t n, std::size_t nodes) {
   static const std::array<double, 4 * kNodes> cosines = [] {
     std::array<double, 4 * kNodes> all;
@@ -64,7 +64,7 @@ void to_coefficients(const Samples& values, Samples& coefficients) {
 
 void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samples& by_values) {
   static const auto table_of = [](std::size_t count) {
-    Matrix table{};  // by coefficients, with the factor of the interpolation
+    Matrix table{};  // table of T_k at the nodes by coefficient k, multiplied by the factor of the interpolation
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < count; ++n)
         table[k][n] = polynomial_at_node(k, n, count) * (k == 0 ? 1.0 : 2.0) / static_cast<double>(count);

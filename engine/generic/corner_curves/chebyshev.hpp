@@ -16,7 +16,7 @@ namespace pkm::generic::corner_curves {
 
 inline constexpr double kUnitRoundoff = 0x1p-53;
 
-/// Values of a function at the nodes, or its coefficients.
+/// Values of a function at the kNodes Chebyshev nodes, or the coefficients of its Chebyshev series.
 struct alignas(64) Samples : std::array<double, kNodes> {};
 
 /// The nodes, in descending order.
@@ -25,15 +25,15 @@ const Samples& chebyshev_nodes();
 /// Coefficients of the interpolant through values at the nodes.
 void to_coefficients(const Samples& values, Samples& coefficients);
 
-/// Node n of the interpolation with `nodes` nodes, 8, 16 or kNodes.
+/// Coordinate of the node with index n if there are `nodes` nodes (8, 16 or kNodes).
 double chebyshev_node(std::size_t n, std::size_t nodes);
 
 /// Converts derivatives with respect to the coefficients to derivatives with respect to the values at `nodes` nodes (8,
 /// 16 or kNodes), by the transpose of the interpolation; for functions for which `nodes` coefficients are sufficient.
 void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samples& by_values);
 
-/// The number of leading coefficients that are significant, at least 1: the sum of the magnitudes of the others, up to
-/// coefficient `terms`, is at most `size`.
+/// The number of leading coefficients that are significant, at least 1. The sum of the magnitudes of the coefficients
+/// after them, up to coefficient `terms`, is at most `size`.
 std::size_t significant_terms(const Samples& coefficients, std::size_t terms, double size);
 
 /// c[0] T_0(x) + ... + c[terms - 1] T_(terms - 1)(x), by Clenshaw's recurrence.
@@ -48,11 +48,12 @@ inline double evaluate_series(const double* c, std::size_t terms, double x) {
 }
 
 /// Restricts a series to [-1, 0] and to [0, 1]: coefficients of both halves, each in its own variable in [-1, 1].
-/// @param terms  number of coefficients; those beyond them are not read, and those of the halves are undefined
+/// @param terms  number of coefficients; those after them are not read, and those of the halves after them are
+///               undefined
 void restrict_to_halves(const Samples& coefficients, std::size_t terms, Samples& lower, Samples& upper);
 
-/// Values of three series at kPoints places.
-/// @param values  kPoints values for each series
+/// Values of three series at the same kPoints points.
+/// @param values  receives kPoints values of the first series, then of the second and of the third
 void evaluate_at_points(const std::array<Samples, 3>& series, std::size_t terms, const double* points, double* values);
 
 /// Computes the terms - 1 coefficients of the derivative of a series.

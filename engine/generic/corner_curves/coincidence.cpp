@@ -7,7 +7,8 @@ namespace {
 
 using CurvePair = DecompositionScratch::Pair;
 
-/// The side of `other` on which a curve lies that touches it without crossing: by the point that is farthest from it.
+/// Whether a curve that touches `other` without crossing it lies outside it. The point of the curve that is farthest
+/// from `other` decides.
 bool is_outside(const CurveAt& curve, const CurveAt& other) {
   double largest = 0;
   const double radius = std::sqrt(std::fmax(0, curve.c));
@@ -22,11 +23,12 @@ bool is_outside(const CurveAt& curve, const CurveAt& other) {
   return largest > 0;
 }
 
-/// Resolves a triple of which two curves touch.
-/// @param touching  index of the pair that touches, whose crossings are not followed
+/// Resolves a triple in which two curves touch each other for all tau.
+/// @param touching  index (0 to 2) of the pair of curves that touch, whose crossings are not followed
 void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                      const std::array<CurvePair*, 3>& pairs, std::size_t touching) {
-  constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};  // positions of each pair in the triple
+  // indices in the triple of the two curves of each pair
+  constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   const auto [a, b] = kMembers[touching];
   const std::size_t first = triple[a], second = triple[b], middle = kNodes / 2;
   const CurveAt f = curves[first].at_node(middle), g = curves[second].at_node(middle);
@@ -38,11 +40,12 @@ void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<
   }
 }
 
-/// Finds the sign of the third curve at the crossings of one pair, if all three curves cross each other.
-/// @param moved  the curve that the perturbation moves outward
+/// Finds the sign of h of the third curve at the crossings of one pair, if all three curves cross each other.
+/// @param moved  index of the curve that the perturbation moves outward
 bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std::size_t third, std::size_t moved,
                   std::vector<Root>& roots) {
-  constexpr double kWellConditioned = 0.01;  // minimum discriminant of samples, relative to the maximum
+  // samples with a smaller discriminant, relative to the maximum, do not count
+  constexpr double kWellConditioned = 0.01;
   constexpr double kCoincide = 1e-11;
   const Samples& d = pair.discriminant.values;
   const double smallest = pair.has_branches ? kWellConditioned * *std::ranges::max_element(d) : 0;

@@ -10,11 +10,12 @@
 
 namespace pkm::generic::corner_curves {
 
-inline constexpr double kZero = 64;  ///< a function is zero if it is at most this many times its rounding error
+/// A function counts as zero if its magnitude is at most this many times its rounding error.
+inline constexpr double kZero = 64;
 
-/// Adds the constant signs, and the events of branches on which the three curves do not coincide, to the pairs.
-/// @param triple  curves in ascending order
-/// @param pairs   the pairs (0, 1), (0, 2) and (1, 2) of these; null: the two curves touch for all tau
+/// Adds the constant signs to the pairs, and the events on branches on which the three curves do not coincide.
+/// @param triple  indices of the three curves, in ascending order
+/// @param pairs   the pairs (0, 1), (0, 2) and (1, 2) of the triple; null: the two curves touch for all tau
 /// @return false if the degeneracy is not supported
 bool resolve_coincidence(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                          const std::array<DecompositionScratch::Pair*, 3>& pairs, std::vector<Root>& roots);

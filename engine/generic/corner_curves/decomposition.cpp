@@ -10,12 +10,13 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-constexpr double kTiny = 1e-13;       // minimum length in tau of intervals that are sampled
-constexpr double kShort = 1e-7;       // minimum length in tau of intervals in which signs are reliable
-constexpr double kParallel = 1e-13;   // relative distance of the centres, or sine of the angle, of parallel curves
-constexpr double kUnresolved = 1e-9;  // maximum relative error of a function
+constexpr double kTiny = 1e-13;  // intervals of tau that are not longer are not sampled
+constexpr double kShort = 1e-7;  // in shorter intervals of tau, signs are not reliable
+// curves are parallel if the relative distance of their centres, or the sine of their angle, is at most this
+constexpr double kParallel = 1e-13;
+constexpr double kUnresolved = 1e-9;  // maximum relative interpolation error of a discriminant or concurrence function
 
-/// Constraints that have to be satisfied: curves on one side of which no point is feasible.
+/// Constraints that have to be satisfied, as sets of curves: feasible points lie inside (h < 0), or outside (h > 0).
 struct NecessaryConstraints {
   Signs inside = 0, outside = 0;
 
@@ -34,11 +35,13 @@ struct NecessaryConstraints {
     for (const auto& bound : formula.bounds) (bound.outside ? outside : inside) |= bit(bound.curve);
   }
   bool has(std::size_t i) const { return ((inside | outside) & bit(i)) != 0; }
-  /// Whether the signs of the curves `known` violate one of these constraints.
+  /// Whether one of these constraints is violated.
+  /// @param signs  bit of a curve set: h > 0
+  /// @param known  curves whose sign is known
   bool is_violated(Signs signs, Signs known) const {
     return ((signs & inside & known) | (~signs & outside & known)) != 0;
   }
-  /// Violation of the constraint of a curve; <= 0: it is satisfied.
+  /// By how much h violates the constraint of curve i; <= 0 if the constraint is satisfied or there is none.
   double violation(std::size_t i, double h) const {
     if ((inside & bit(i)) != 0) return h;
     return (outside & bit(i)) != 0 ? -h : 0;
@@ -76,14 +79,14 @@ class Builder {
   using Pair = DecompositionScratch::Pair;
   struct Place {
     double tau;
-    std::size_t node;  ///< kNodes: none
+    std::size_t node;  ///< index of the Chebyshev node at `tau`; kNodes: `tau` is no node
   };
   static constexpr int kNone = -1, kTangent = -2, kInfeasible = -3;
 
   int& pair_of(std::size_t i, std::size_t j) { return s_.pair_of[i * curves_.size() + j]; }
 
-  /// Adds the cut of each circle, the direction of angle 0: preferably one in which the circle does not bound the
-  /// feasible part at any sample.
+  /// Appends a cut for each circle. Its direction, in which angle 0 is, is chosen such that the circle bounds the
+  /// feasible part there at as few samples as possible.
   void add_cuts() {
     constexpr std::size_t kDirections = 7, kSampleNodes = 5;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -142,7 +145,7 @@ class Builder {
     return signs;
   }
 
-  /// Interpolates a function and isolates its roots. @return false if the interpolant is not accurate enough
+  /// Interpolates a function of tau and isolates its roots. @return false if the interpolation error is too large
   bool find_roots(const Sampled& function, std::vector<Root>& roots) {
     roots.clear();
     ++out_.functions;
@@ -185,7 +188,7 @@ class Builder {
     return true;
   }
 
-  /// Whether two curves are concentric circles or parallel lines for all tau.
+  /// Whether two curves are concentric circles, or parallel lines, for all tau.
   bool is_parallel(std::size_t i, std::size_t j) const {
     if (curves_[i].is_circle() != curves_[j].is_circle()) return false;
     const auto& [u, w, c] = curves_[i].values;
@@ -197,7 +200,7 @@ class Builder {
     }
     return true;
   }
-  /// Finds the values of tau at which two parallel curves coincide. @return false if they are not resolved
+  /// Finds the values of tau at which two parallel curves coincide. @return false if the function cannot be resolved
   bool add_parallel(std::size_t i, std::size_t j) {
     const auto& first = curves_[i].values;
     const auto& second = curves_[j].values;
@@ -209,7 +212,7 @@ class Builder {
       s_.meetings.push_back({root.at, root.width, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)});
     return true;
   }
-  /// Where two parallel curves coincide, each of them passes through the crossings of the other one.
+  /// Adds events: where two parallel curves coincide, each of them passes through the crossings of the other one.
   void add_meetings() {
     for (const auto& [at, width, i, j] : s_.meetings)
       for (std::size_t k = 0; k < curves_.size(); ++k)
@@ -218,7 +221,8 @@ class Builder {
             s_.pairs[static_cast<std::size_t>(pair_of(own, k))].events.push_back({at, width, other, 0});
   }
 
-  /// Moves each undecided root to the nearest root within its width, so that an event has the same tau on all curves.
+  /// Moves each root with an undecided interval to the nearest root within this interval, so that an event has the same
+  /// tau on all curves.
   void align_undecided_roots() {
     if (out_.undecided == 0) return;
     const std::span<Pair> pairs = std::span(s_.pairs).first(s_.pair_count);
@@ -247,9 +251,9 @@ class Builder {
     }
   }
 
-  /// Whether a necessary constraint is violated wherever two curves cross; their crossings are then not followed. One
-  /// sample in each range in which they cross is sufficient if the curve of this constraint never passes through a
-  /// crossing.
+  /// Whether a necessary constraint is violated wherever two curves cross, so that their crossings need not be
+  /// followed. If the curve of this constraint never passes through a crossing, one sample in each range in which the
+  /// two curves cross is sufficient.
   bool is_infeasible(Pair& pair) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
@@ -303,7 +307,8 @@ class Builder {
       }
     return true;
   }
-  /// Adds the event that a third curve passes through a crossing of a pair.
+  /// Adds to a pair the event that a third curve passes through its crossing.
+  /// @param pair  index of the pair in `pairs`
   void add_event(int pair, const Root& root, std::size_t third) {
     s_.pairs[static_cast<std::size_t>(pair)].events.push_back(
         {root.at, root.width, static_cast<std::uint8_t>(third), 0});
@@ -318,7 +323,8 @@ class Builder {
       ++out_.functions;
       return resolve_coincidence(curves_, {i, j, k}, {pair(pairs[0]), pair(pairs[1]), pair(pairs[2])}, s_.roots);
     }
-    // Two curves that touch for all tau, but do not cross, both meet a third one at the same tau: this has no effect.
+    // If two curves touch for all tau without crossing, both meet the third curve at the same tau, and no crossing
+    // changes.
     if (pairs[0] < 0 || pairs[1] < 0 || pairs[2] < 0) return true;
     if (!find_roots(function_, s_.roots)) return false;
     for (const Root& root : s_.roots) {
@@ -355,8 +361,8 @@ class Builder {
     }
   }
 
-  /// The curves whose changes of sign at the crossings of a pair are not among the events, because their own crossings
-  /// with one of the pair are infeasible.
+  /// Set of the curves whose sign at the crossings of a pair can change without an event, because their crossings with
+  /// one curve of the pair are infeasible and were not followed.
   Signs unknown_signs(std::size_t i, std::size_t j) {
     Signs unknown = 0;
     for (std::size_t k = 0; k < count_; ++k)
@@ -364,8 +370,8 @@ class Builder {
     return unknown;
   }
 
-  /// Adds the active ranges of the crossings of a pair between two consecutive roots of the discriminant.
-  /// @param low, high  these roots: the curves cross everywhere between them or nowhere
+  /// Adds the active ranges of the crossings of a pair between two consecutive roots of its discriminant.
+  /// @param low, high  the two roots; between them the curves cross for all tau or for none
   void add_ranges_between(const Pair& pair, double low, double high, bool root_at_low, bool root_at_high) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
@@ -377,7 +383,8 @@ class Builder {
     root_at_high = root_at_high && pair.has_branches;
     for (const double branch : {1.0, -1.0}) {
       if (branch < 0 && (is_cut || !pair.has_branches)) break;
-      Signs signs = 0, stale = ~Signs{0}, constant = bit(i) | bit(j);  // stale: signs that may have changed
+      // stale: curves whose sign has to be evaluated again; constant: curves whose sign does not change
+      Signs signs = 0, stale = ~Signs{0}, constant = bit(i) | bit(j);
       for (const auto& each : pair.constants)
         if (each.branch == 0 || each.branch == static_cast<int>(branch)) {
           constant |= bit(each.third);
@@ -399,9 +406,9 @@ class Builder {
         const CurveAt first = curve_at(i, place), second = curve_at(j, place);
         const Vector p = crossing(first, second, branch);
         stale = (stale | unknown) & ~constant;
-        // In a short interval a sign may be a rounding error: it is determined again in the next one.
+        // In a short interval a sign may be a rounding error: evaluate it again in the next interval.
         const Signs evaluated_again = to - from < kShort ? stale : 0;
-        // The signs of constraints that have to hold come first: most crossings violate one of them.
+        // Evaluate the signs of necessary constraints first, because most crossings violate one of them.
         const Signs known = ~(stale | bit(i) | bit(j));
         bool is_violated = necessary_.is_violated(signs, known);
         for (const Signs which : {necessary_.inside | necessary_.outside, ~Signs{0}})
@@ -425,7 +432,7 @@ class Builder {
       for (const auto& event : pair.events) {
         if (event.at <= low || event.at >= high || (event.branches != 0 && event.branches != static_cast<int>(branch)))
           continue;
-        // No sample is taken close to an undecided interval.
+        // Take no sample close to an undecided interval.
         if (event.at - from > std::max({kTiny, width, event.width})) {
           sample(event.at);
           from = event.at;
@@ -446,8 +453,9 @@ class Builder {
     }
   }
 
-  /// Whether the signs that were followed through all events equal those at a place; otherwise an event was missed.
-  /// @param which  the signs to compare
+  /// Whether the signs that were updated at all events agree with the signs at a given place; if not, an event was
+  /// missed.
+  /// @param which  set of the curves whose signs are compared
   bool are_signs(std::size_t i, std::size_t j, double branch, const Place& place, Signs which, Signs signs) const {
     constexpr double kUncertain = 1e-9;
     const Vector p = crossing(curve_at(i, place), curve_at(j, place), branch);
@@ -493,12 +501,13 @@ class Builder {
   }
 
   std::vector<BoundaryCurve>& curves_;
-  std::size_t count_;  ///< number of curves without cuts
+  std::size_t count_;  ///< number of curves, not counting cuts
   const SliceFormula& formula_;
   NecessaryConstraints necessary_;
   Decomposition& out_;
   DecompositionScratch& s_;
-  std::array<std::size_t, kMaxCurves> cut_of_{};  ///< by curve; 0: it is no circle
+  /// Index of the cut of each circle in `curves_`, by curve; 0 for a line.
+  std::array<std::size_t, kMaxCurves> cut_of_{};
   Sampled function_;
 };
 

@@ -21,26 +21,29 @@ namespace pkm::generic::corner_curves {
 
 /// A maximal range of tau in which a crossing is a vertex of constant weight.
 struct ActiveRange {
-  std::uint8_t first, second;      ///< curves; the second one may be a cut
-  std::int8_t branch, weight;      ///< kappa; of a cut point: +-1, positive if the disc is feasible
-  double low, high;                ///< range of tau
-  bool root_at_low, root_at_high;  ///< the discriminant vanishes there
+  std::uint8_t first, second;  ///< indices of the two curves that cross; the second one may be a cut
+  /// Branch of the crossing (1 or -1), and its weight kappa; for the point of a circle on its cut the weight is 1 or
+  /// -1, positive if the disc is feasible.
+  std::int8_t branch, weight;
+  double low, high;                ///< limits of the range of tau
+  bool root_at_low, root_at_high;  ///< true: the discriminant vanishes at this end
 };
 
 struct Decomposition {
   std::vector<ActiveRange> ranges;
-  double undecided = 0;   ///< total length of undecided intervals of tau
-  double unbalanced = 0;  ///< length of tau on which decisions contradict each other: 0 unless one is wrong
-  long functions = 0;     ///< discriminants and concurrence functions examined
+  double undecided = 0;  ///< total length in tau of intervals in which roots are undecided
+  /// Total length in tau on which decisions contradict each other; 0 unless one of them is wrong.
+  double unbalanced = 0;
+  long functions = 0;  ///< number of discriminants and concurrence functions that were examined
 };
 
 /// Scratch memory of decompose().
 struct DecompositionScratch {
-  /// A root of a concurrence function of a pair and a third curve.
+  /// A root of the concurrence function of a pair and a third curve.
   struct Event {
-    double at, width;      ///< see Root
-    std::uint8_t third;    ///< curve whose sign may change
-    std::int8_t branches;  ///< branch of the crossing, 1 or -1; 0: both
+    double at, width;      ///< value of tau and width of the undecided interval around it, see Root
+    std::uint8_t third;    ///< index of the curve whose sign at the crossing may change
+    std::int8_t branches;  ///< branch of the crossing that it concerns, 1 or -1; 0: both
   };
   /// A third curve that passes through a crossing for all tau, and the side of it on which the perturbed crossing lies.
   struct Constant {
@@ -53,7 +56,7 @@ struct DecompositionScratch {
     std::uint8_t first, second;
     bool has_branches;
     Sampled discriminant;
-    std::vector<Root> ends;  ///< roots of the discriminant
+    std::vector<Root> ends;  ///< roots of the discriminant, between which the curves cross for all tau or for none
     std::vector<Event> events;
     std::vector<Constant> constants;
   };
@@ -64,11 +67,13 @@ struct DecompositionScratch {
   };
   std::vector<Pair> pairs;
   std::size_t pair_count = 0;
-  std::vector<int> pair_of;  ///< index of the pair of two curves; -1: they do not cross
+  /// Index in `pairs` of the pair of curves i and j, by i * (number of curves) + j; negative: their crossings are not
+  /// followed.
+  std::vector<int> pair_of;
   std::vector<Meeting> meetings;
   std::vector<Root> roots;
   std::vector<double> places;
-  /// Change of the number of vertices of a curve, weighted by sign, at a value of tau.
+  /// Change, at one value of tau, of the number of vertices on a curve, counted with their signs.
   struct Step {
     double at;
     std::uint8_t curve;
@@ -78,7 +83,7 @@ struct DecompositionScratch {
 };
 
 /// Finds the ranges in which the crossings are vertices.
-/// @param curves  at most kMaxCurves, without cuts, which are appended, one for each circle
+/// @param curves  at most kMaxCurves, without cuts; one cut for each circle is appended
 /// @return false if the slices have a degeneracy that is not supported, or the functions are not resolved
 bool decompose(std::vector<BoundaryCurve>& curves, const SliceFormula& formula, Decomposition& result,
                DecompositionScratch& scratch);

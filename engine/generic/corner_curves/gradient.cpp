@@ -12,7 +12,7 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-/// Sweeps backwards through the outer coordinate's stage. @return the adjoint of the outer coordinate
+/// Propagates the adjoints backwards through the stage of the outer coordinate. @return the adjoint of this coordinate
 double sweep_outer_stage(const expression::Program& program, std::span<const double> registers,
                          std::span<double> adjoints) {
   expression::backward_sweep(program, 1, registers, adjoints);
@@ -43,7 +43,8 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   by_curve.resize(segment.integral.curves.size());
   for (auto& curve : by_curve)
     for (Samples& each : curve) each.fill(0);
-  // The number of nodes that the curves' series need, and some more for their derivatives.
+  // Number of nodes: the number of coefficients that the series of the curves need, and some more for their
+  // derivatives.
   std::size_t terms = 1;
   for (const BoundaryCurve& curve : segment.slices.curves) terms = std::max(terms, curve.terms);
   const std::size_t nodes = terms <= 4 ? 8 : terms <= 14 ? 16 : kNodes;
@@ -73,7 +74,7 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   add_end_gradient(segment.upper, true, by_upper, scratch);
 }
 
-/// Adds the adjoints of the surfaces' coefficients at a node, from those of u, w and c of the curves.
+/// Adds the adjoints of the surfaces' coefficients at a node, computed from the adjoints of u, w and c of the curves.
 void Volume::add_node_gradient(const Segment& segment, std::size_t node, double tau, Scratch& scratch) const {
   using Kind = CurveSource::Kind;
   const auto& registers = scratch.segments.registers;
@@ -82,7 +83,7 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
     const CurveAt curve = segment.slices.curves[i].at(tau);
     const CurveSource& source = segment.slices.sources[i];
     const auto& by = scratch.by_curve[i];
-    // The curve is given in the coordinates of its frame, in which areas are smaller by the factor scale^2.
+    // The curve is given in the coordinates of its frame, in which areas are those in (v, z) divided by scale^2.
     const double u = frame.scale * by[0][node], w = frame.scale * by[1][node], c = by[2][node];
     if (source.kind == Kind::limit) {
       add_limit_gradient(source.surface, frame.v - frame.scale * curve.c, -frame.scale * c, scratch);

@@ -9,27 +9,27 @@ namespace {
 
 constexpr std::size_t kRule = NestedRule::kNodes;
 
-/// Angle of a point relative to a circle's cut, in [0, 2 pi).
+/// Angle of a point of a circle, counted from the direction of the circle's cut, in [0, 2 pi).
 double angle_of(const CurveAt& circle, const std::array<double, 2>& cut, const Vector& p) {
   const double x = p.x - circle.u, y = p.y - circle.w;
   const double angle = portable::atan2(cut[0] * y - cut[1] * x, cut[0] * x + cut[1] * y);
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
-/// Integral of (x dy - y dx)/2 along a curve.
+/// Integral of (x dy - y dx)/2 along a curve up to the point p. @param angle  angle_of() the point on a circle
 double potential(const CurveAt& curve, const Vector& p, double angle) {
   if (curve.is_circle) return 0.5 * (curve.u * p.y - curve.w * p.x + curve.c * angle);
   return -0.5 * curve.c * (curve.u * p.y - curve.w * p.x);
 }
 
-/// Derivatives of the area by u, w and c of a curve, as integrals along the curve up to p.
+/// Derivatives of the area with respect to u, w and c of a curve, as integrals along the curve up to p.
 std::array<double, 3> potential_derivatives(const CurveAt& curve, const Vector& p, double angle) {
   if (curve.is_circle) return {p.y - curve.w, curve.u - p.x, 0.5 * angle};
-  const double l = curve.w * p.x - curve.u * p.y;  // along (w, -u)
+  const double l = curve.w * p.x - curve.u * p.y;  // coordinate of p along the line, in the direction (w, -u)
   return {l * (-curve.c * curve.u + 0.5 * l * curve.w), l * (-curve.c * curve.w - 0.5 * l * curve.u), l};
 }
 
-/// The direction of every circle's cut; the cuts follow the other curves in the order of the circles.
+/// Direction of the cut of the circle with index i; cuts follow all other curves, in the order of the circles.
 std::array<double, 2> cut_of(const std::vector<BoundaryCurve>& curves, std::size_t i) {
   if (!curves[i].is_circle()) return {1, 0};
   std::size_t at = 0;
@@ -38,7 +38,7 @@ std::array<double, 2> cut_of(const std::vector<BoundaryCurve>& curves, std::size
   return {-curves[at].values[1][0], curves[at].values[0][0]};
 }
 
-/// The two curves of a range at the nodes of a cell.
+/// The two curves of an active range, evaluated at the quadrature nodes of a subinterval.
 class CellCurves {
  public:
   CellCurves(const SegmentIntegral& segment, const ActiveRange& range, const RangeCell& cell)

@@ -11,33 +11,34 @@
 
 namespace pkm::generic::corner_curves {
 
-/// The outer coordinate as a function of tau, t = low + (high - low) phi((tau + 1)/2), with the transformation phi of
-/// math/quadrature.hpp at ends where the curves behave like square roots.
+/// The outer coordinate t as a function of tau: t = low + (high - low) phi((tau + 1)/2). phi is the transformation of
+/// math/quadrature.hpp for ends at which the curves behave like square roots.
 using OuterRange = Subinterval<double>;
 
-/// The derivative of the outer coordinate by tau.
+/// The derivative dt/dtau of the outer coordinate.
 inline double outer_derivative(const OuterRange& range, double tau) {
   return 0.5 * map_node(range, 0.5 * (tau + 1)).jacobian;
 }
 
-/// A subinterval of an active range.
+/// A subinterval of an active range, with its integral.
 struct RangeCell {
   std::uint32_t range;
-  Subinterval<double> interval;  ///< subinterval of tau
-  double value, error, size;     ///< size: integral of the magnitude
+  Subinterval<double> interval;  ///< subinterval of tau over which the vertices are integrated
+  double value, error, size;     ///< integral, estimate of its error, and integral of the magnitude of the integrand
 };
 
-/// A segment of the outer coordinate.
+/// The integral over a segment of the outer coordinate, i.e. an interval in which the boundary curves are analytic.
 struct SegmentIntegral {
   OuterRange outer;
   std::vector<BoundaryCurve> curves;
   Decomposition decomposition;
   std::vector<RangeCell> cells;
-  Integral<double> area{};  ///< integral over tau, with a bound of the rounding error
+  /// Integral of the area of the slices over tau, with an error that includes rounding errors.
+  Integral<double> area{};
 
-  /// Integrates all ranges with one rule each.
+  /// Integrates over each active range with a single Kronrod rule.
   void start();
-  /// Bisects the subinterval with the largest error. @return false if all subintervals are too short
+  /// Bisects the subinterval with the largest error. @return false if all subintervals are too short to be bisected
   bool refine();
   void sum();
 };
@@ -47,7 +48,7 @@ using CurveAdjoints = std::array<Samples, 3>;
 
 /// Adds the derivatives of the integral of a segment with respect to the first coefficients of all series.
 /// @param terms     number of coefficients, at least 2
-/// @param adjoints  adjoints of each curve
+/// @param adjoints  adjoints of the curves, by curve, to which the derivatives are added
 void add_adjoints(const SegmentIntegral& segment, std::size_t terms, std::vector<CurveAdjoints>& adjoints);
 
 }  // namespace pkm::generic::corner_curves

@@ -17,20 +17,22 @@ template <InstructionSet set>
 void transform(const double* table, const double* values, double* coefficients);
 
 /// Restricts a series to [-1, 0] and [0, 1]. @param table  coefficients of T_k on [0, 1], by rows of kNodes
-/// @param terms  number of coefficients c; further ones up to a multiple of kLanes are set to 0
+/// @param terms  number of coefficients c that are used; further ones, up to a multiple of kLanes, are set to 0
 template <InstructionSet set>
 void restrict_to_halves(const double* table, const double* c, std::size_t terms, double* lower, double* upper);
 
 /// Values of `count` series, each with kNodes coefficients, of which `terms` are used, at kPoints places.
-/// @param values  kPoints values for each series
+/// @param values  receives kPoints values for each series, one series after the other
 template <InstructionSet set>
 void series_at_points(const double* const* series, std::size_t count, std::size_t terms, const double* points,
                       double* values);
 
-/// Three curves by their equations a |p|^2 + b . p + c = 0: each three rows of kNodes, b_x, b_y and c.
+/// Three curves by their equations a |p|^2 + b . p + c = 0: for each curve the values of b_x, b_y and c at the kNodes
+/// nodes.
 struct ConcurrenceArguments {
   const double *first[3], *second[3], *third[3];
-  double second_share, third_share;  ///< 1: a circle; 0: a line
+  /// Coefficient a of the second and of the third curve: 1 for a circle, 0 for a line.
+  double second_share, third_share;
 };
 
 /// The concurrence function (boundary_curve.hpp) at the nodes; the first curve is a circle.

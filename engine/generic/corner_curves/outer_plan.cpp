@@ -8,7 +8,7 @@ namespace {
 using expression::Code;
 using expression::Program;
 
-/// Functions other than those with a code that are analytic wherever they are defined.
+/// Whether a function of formulas is analytic wherever it is defined; for operations without a Code of their own.
 bool is_analytic(const std::string& name) {
   static const std::vector<std::string> names = {"sin", "cos", "exp", "sinh", "cosh", "tanh", "atan"};
   return std::ranges::find(names, name) != names.end();

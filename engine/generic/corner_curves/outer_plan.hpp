@@ -11,30 +11,30 @@
 
 namespace pkm::generic::corner_curves {
 
-/// A function of t, given by registers of the program.
+/// A function of t whose roots divide the range of t; its arguments are registers of the program.
 struct OuterFunction {
   enum class Kind : std::uint8_t { value, difference, one_minus_square, discriminant };
   Kind kind = Kind::value;
   std::array<std::uint32_t, 3> registers{};
-  bool has_root = false;     ///< curves behave like square roots where it vanishes
-  bool is_required = false;  ///< a constraint: >= 0 wherever a slice has feasible points
+  bool has_root = false;     ///< true: curves behave like square roots of the distance from a root of this function
+  bool is_required = false;  ///< true: the function is a constraint, which is >= 0 wherever a slice has feasible points
 
   double value(std::span<const double> all) const;
-  /// Derivatives by the registers.
+  /// Derivatives of the function with respect to its argument registers.
   std::array<double, 3> derivatives(std::span<const double> all) const;
   std::size_t arguments() const {
     return kind == Kind::value || kind == Kind::one_minus_square ? 1 : kind == Kind::difference ? 2 : 3;
   }
 };
 
-/// Shape of a surface in a slice.
+/// Shape of a constraint surface in a slice.
 enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_along_z };
 
-/// The shapes and functions of a plan.
+/// The shapes of the surfaces of a plan, and the functions that divide the range of its outer coordinate.
 struct OuterPlan {
-  std::vector<Shape> shapes;  ///< by surface
+  std::vector<Shape> shapes;  ///< shape of each surface, by surface
   std::vector<OuterFunction> functions;
-  std::string why_not;  ///< why corner curves cannot integrate the slices; "" if they can
+  std::string why_not;  ///< reason why corner curves cannot integrate the slices; "" if they can
 
   explicit OuterPlan(const SlicePlan& plan);
 };

@@ -17,7 +17,7 @@ struct SeriesInterval {
   Samples c;
 };
 
-/// Markov's bound of the derivative of a polynomial of `terms` coefficients on [-1, 1], relative to its maximum.
+/// Markov's bound of the derivative of a polynomial with `terms` coefficients on [-1, 1], relative to its maximum.
 double markov(std::size_t terms) { return static_cast<double>((terms - 1) * (terms - 1)); }
 
 /// Upper bound of the sum of |c[k]|, including its rounding error.
@@ -27,7 +27,7 @@ double sum_of_magnitudes(const double* c, std::size_t from, std::size_t terms) {
   return sum * (1 + 2 * kUnitRoundoff * static_cast<double>(kNodes));
 }
 
-/// The value of the series at -1 or 1.
+/// The value of a series at the lower end -1 or at the upper end 1 of its interval.
 double end_value(const SeriesInterval& interval, bool upper) {
   double sum = 0;
   for (std::size_t k = interval.terms; k-- > 0;) sum += upper || k % 2 == 0 ? interval.c[k] : -interval.c[k];
@@ -42,7 +42,7 @@ void isolate_roots(const Samples& coefficients, double error, std::vector<Root>&
   Samples halved;
   std::size_t size = 1;
   stack[0] = {-1, 1, error, markov(kNodes) * error, kNodes, 0, coefficients};
-  // An undecided interval includes the roots that it touches.
+  // If an undecided interval touches the previous root, both become one undecided interval.
   const auto add_root = [&](double low, double high) {
     if (!roots.empty() && (roots.back().width > 0 || high > low) && roots.back().at + 0.5 * roots.back().width >= low) {
       low = roots.back().at - 0.5 * roots.back().width;
@@ -52,7 +52,7 @@ void isolate_roots(const Samples& coefficients, double error, std::vector<Root>&
   };
   while (size > 0) {
     SeriesInterval& interval = stack[size - 1];
-    // Negligible coefficients become part of the error.
+    // Drop negligible coefficients and add them to the error bound.
     const std::size_t terms = significant_terms(interval.c, interval.terms, 0.1 * interval.error);
     if (terms < interval.terms) {
       const double rest = sum_of_magnitudes(interval.c.data(), terms, interval.terms);
@@ -91,7 +91,7 @@ void isolate_roots(const Samples& coefficients, double error, std::vector<Root>&
     const double middle = 0.5 * (interval.low + interval.high);
     lower.low = interval.low;
     lower.high = middle;
-    // Sums of products with a matrix whose rows have sums of magnitudes below 4.6.
+    // Bound of the rounding errors of sums of products with a matrix, whose rows have sums of magnitudes below 4.6.
     const double rounding = 4.6 * kUnitRoundoff * (0.5 * static_cast<double>(interval.terms) + 3) * (first + rest);
     lower.error = interval.error + rounding;
     lower.derivative_error = 0.5 * interval.derivative_error + markov(interval.terms) * rounding;

@@ -13,11 +13,13 @@
 
 namespace pkm::generic::corner_curves {
 
-inline constexpr double kAtEnd = 1e-11;  ///< roots that are closer to an endpoint of [-1, 1] count as the endpoint
+/// A root that is closer to an endpoint of [-1, 1] than this counts as the endpoint.
+inline constexpr double kAtEnd = 1e-11;
 
 struct Root {
   double at;
-  double width = 0;  ///< > 0: length of the undecided interval around `at`; 0: a simple root
+  /// Length of the undecided interval around `at`, in which there may be several roots; 0: a simple root.
+  double width = 0;
 };
 
 /// Error bound of an interpolant, from its last coefficients and the rounding errors.
@@ -30,8 +32,8 @@ inline double interpolation_error(const Samples& coefficients, double rounding) 
 
 /// Finds the roots in [-1, 1], in ascending order. A root at the common end of two subintervals may be reported
 /// twice.
-/// @param error  bound of the error of the series
-/// @param roots  empty
+/// @param error  upper bound of the error of the series
+/// @param roots  receives the roots; must be empty
 void isolate_roots(const Samples& coefficients, double error, std::vector<Root>& roots);
 
 }  // namespace pkm::generic::corner_curves

@@ -14,14 +14,15 @@
 
 namespace pkm::generic::corner_curves {
 
-/// Endpoint of a segment.
+/// Endpoint of a segment of the outer coordinate t, with the reason why the segment ends there.
 struct SegmentEnd {
-  enum class Kind : std::uint8_t { box, function, fold, division };  ///< division: bisected for convergence only
+  /// Bound of the search box, root of an OuterFunction, fold of a limit, or division only for the sake of convergence.
+  enum class Kind : std::uint8_t { box, function, fold, division };
   double at;
   Kind kind;
-  std::size_t function = 0;  ///< index of the function; of a fold: index of the limit
-  bool has_root = false;     ///< curves behave like square roots
-  double v = 0;              ///< v of a fold
+  std::size_t function = 0;  ///< index in OuterPlan::functions; for a fold, the index of the limit
+  bool has_root = false;     ///< true: curves behave like square roots of the distance from this endpoint
+  double v = 0;              ///< value of v at a fold
 };
 
 struct Segment {
@@ -36,26 +37,27 @@ struct Segment {
 struct SegmentScratch {
   /// An interval of the recursive division.
   struct Level {
-    std::vector<SegmentEnd> ends;  ///< roots in the interval, then its upper endpoint
-    std::vector<char> known;       ///< by function: it has no root in the interval
+    std::vector<SegmentEnd> ends;  ///< roots of functions in the interval, followed by its upper endpoint
+    std::vector<char> known;  ///< for each function, whether it is known to have no root in the interval; by function
   };
   std::vector<double> registers;
   NodeValues nodes;
   std::vector<Sampled> functions;
   std::vector<Root> roots;
-  std::deque<Level> levels;       ///< by recursion depth
-  std::vector<Segment> segments;  ///< the first `count` of them hold the last design
+  std::deque<Level> levels;       ///< one element for each recursion depth
+  std::vector<Segment> segments;  ///< the segments; the first `count` of them belong to the last design
   std::size_t count = 0;
   DecompositionScratch decomposition;
   LimitScratch limits;
   long runs = 0;  ///< number of evaluations of the stage of the outer coordinate
 };
 
-/// Runs the stage of the outer coordinate.
+/// Evaluates the stage of the outer coordinate at the value t.
 void run_outer_stage(const SlicePlan& plan, double t, std::span<double> registers);
 
-/// Divides the range for a design, and decomposes the segments that are not empty.
-/// @param scratch  contains the registers after the design's stage
+/// Divides the range of the outer coordinate for a design, and decomposes the slices of the segments that are not
+/// empty.
+/// @param scratch  scratch memory whose registers have the values after the stage of the design
 /// @return false if corner curves do not support the design
 bool divide(const SlicePlan& plan, const OuterPlan& outer, SegmentScratch& scratch);
 

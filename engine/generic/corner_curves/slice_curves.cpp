@@ -8,11 +8,13 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-constexpr double kSame = 1e-12;   // difference of equal curves
-constexpr double kMargin = 1e-9;  // minimum distance of a curve that misses the rectangle
+// maximum difference of u, w and c of two equal curves, relative to 1 + their magnitude
+constexpr double kSame = 1e-12;
+// minimum of |h| in the rectangle for a curve that misses it, and margin by which the rectangle is enlarged
+constexpr double kMargin = 1e-9;
 constexpr std::size_t kMiddle = kNodes / 2;
 
-/// Enclosure of a series.
+/// Interval that contains all values of a series.
 struct Range {
   double low, high;
 };
@@ -26,7 +28,7 @@ Range product(const Range& a, const Range& b) {
   return {low, high};
 }
 
-/// Enclosure of h of a curve in a rectangle.
+/// Interval that contains all values of h of a curve in a rectangle.
 Range values_in(const BoundaryCurve& curve, const Range& x, const Range& y) {
   const Range u = range_of(curve, 0), w = range_of(curve, 1), c = range_of(curve, 2);
   if (!curve.is_circle()) {
@@ -69,8 +71,8 @@ std::size_t SliceCurves::add_curve(const BoundaryCurve& curve, const CurveSource
   return curves.size() - 1;
 }
 
-/// Adds a line with a normal direction that does not depend on the sign of its equation, so that opposite constraints
-/// share one curve.
+/// Adds a line. The direction of its normal is normalised independently of the sign of its equation, so that opposite
+/// constraints share one curve.
 void SliceCurves::add_line(BoundaryCurve& line, CurveSource source, Signs positive, std::size_t* number) {
   const double u = line.values[0][kMiddle], w = line.values[1][kMiddle];
   const bool flips = std::fabs(u) >= std::fabs(w) ? u < 0 : w < 0;
@@ -84,7 +86,7 @@ void SliceCurves::add_line(BoundaryCurve& line, CurveSource source, Signs positi
   if (number) *number = at;
 }
 
-/// Two parallel lines, the roots of a quadratic in one coordinate.
+/// Adds the two parallel lines that are the roots of a quadratic in one coordinate.
 bool SliceCurves::add_strip(std::size_t surface, bool along_v, const std::array<Samples, 6>& c) {
   const Samples &c0 = c[0], &b = along_v ? c[1] : c[2], &a = along_v ? c[3] : c[5];
   const bool is_inside = a[kMiddle] < 0;
@@ -118,7 +120,7 @@ bool SliceCurves::add_strip(std::size_t surface, bool along_v, const std::array<
 
 bool SliceCurves::add_surface(std::size_t surface, Shape shape, const std::array<Samples, 6>& c) {
   bool nowhere = false;
-  if (!is_defined(c, nowhere)) return nowhere;  // an undefined value is not >= 0
+  if (!is_defined(c, nowhere)) return nowhere;  // an undefined value violates the constraint
   BoundaryCurve curve;
   switch (shape) {
     case Shape::constant:
@@ -159,16 +161,16 @@ bool SliceCurves::add_surface(std::size_t surface, Shape shape, const std::array
   return true;
 }
 
-/// Adds a bound of v as a line.
+/// Adds the lower or the upper bound of v as a line.
 void SliceCurves::add_bound(BoundaryCurve& line, bool upper) {
   std::size_t at = 0;
   add_line(line, {CurveSource::Kind::v_bound, upper ? std::size_t{1} : 0, 1}, 0, &at);
   formula.bounds.push_back({at, !upper});
 }
 
-/// Adds the roots of limits as lines: no point is feasible in the intervals of v in which a limit is violated.
+/// Adds the roots of limits as lines. No point is feasible in the intervals of v in which a limit is violated.
 bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
-  std::size_t before = 0;  // index of the line of the previous root
+  std::size_t before = 0;  // index of the line that belongs to the previous root
   for (std::size_t i = 0; i < roots.size(); ++i) {
     const bool is_first = i == 0 || roots[i - 1].limit != roots[i].limit,
                is_last = i + 1 == roots.size() || roots[i + 1].limit != roots[i].limit;
@@ -188,7 +190,8 @@ bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
   return true;
 }
 
-/// Replaces a curve in the formula by its constant sign. The curve itself remains in the list, without a literal.
+/// Replaces the sign of a curve in the formula by a constant. The curve remains in the list, but no literal refers to
+/// it.
 void SliceCurves::remove_constant(std::size_t i, bool outside) {
   auto& literal = formula.literals[i];
   formula.constant |= outside ? literal.outside : literal.inside;
@@ -201,7 +204,7 @@ void SliceCurves::remove_constant(std::size_t i, bool outside) {
     }
     const bool is_first = strip->first == i;
     auto& other = formula.literals[is_first ? strip->second : strip->first];
-    if (is_first == outside) {  // the point is on the strip's side of this line: the other line decides
+    if (is_first == outside) {  // all points are on the strip's side of this line: only the other line decides
       const bool is_other_inside = is_first == strip->is_inside;
       (is_other_inside ? other.inside : other.outside) |= strip->surface;
       if (strip->surface == 0) formula.bounds.push_back({is_first ? strip->second : strip->first, !is_other_inside});
@@ -214,7 +217,7 @@ void SliceCurves::remove_constant(std::size_t i, bool outside) {
 
 SliceCurves::Status SliceCurves::simplify() {
   Formula& f = formula.formula;
-  // Find a rectangle around the points that satisfy all constraints that have to hold.
+  // Find a rectangle that contains all points which satisfy the necessary constraints.
   constexpr double kFar = 1e6;
   Range x{-kFar, kFar}, y{-kFar, kFar};
   const auto bound = [&](std::size_t i, bool outside) {
@@ -231,7 +234,7 @@ SliceCurves::Status SliceCurves::simplify() {
       const Range& across = along_x ? w : u;
       Range& place = along_x ? x : y;
       if (normal.low < 0.999999 || std::fmax(-across.low, across.high) > 1e-13) continue;
-      // The curve's error, and what an inclination of 1e-13 can move within the rectangle, are within this margin.
+      // kMargin covers the error of the curve, and its displacement within the rectangle if it is inclined by 1e-13.
       (outside ? place.low : place.high) =
           outside ? std::fmax(place.low, -c.high - kMargin) : std::fmin(place.high, -c.low + kMargin);
     }

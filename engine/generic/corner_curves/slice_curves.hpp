@@ -13,34 +13,36 @@
 
 namespace pkm::generic::corner_curves {
 
-/// Coordinates of the curves: (v, z) = centre + scale (x, y).
+/// Coordinates (x, y) in which the curves are given: (v, z) = centre + scale (x, y).
 struct Frame {
   double v = 0, z = 0, scale = 1;
 };
 
-/// Origin of a curve, for derivatives.
+/// The constraint from which a curve originates, for derivatives.
 struct CurveSource {
   enum class Kind : std::uint8_t { circle, line, lower_root, upper_root, v_bound, limit };
   Kind kind;
-  std::size_t surface;  ///< surface; v_bound: 0 lower, 1 upper bound; limit: its index
-  double sign;          ///< sign of a line's normal relative to the surface's gradient
+  /// Index of the surface; v_bound: 0 for the lower and 1 for the upper bound; limit: index of the limit.
+  std::size_t surface;
+  double sign;  ///< 1 or -1: direction of a line's normal relative to the gradient of the surface
 };
 
-/// Values of all registers that the curves need, by node.
+/// Values at the Chebyshev nodes of all registers from which the curves are computed.
 struct NodeValues {
-  std::vector<std::array<Samples, 6>> surfaces;  ///< coefficients of 1, v, z, v^2, v z, z^2
-  std::array<Samples, 2> v;                      ///< the range of v
+  std::vector<std::array<Samples, 6>> surfaces;  ///< by surface, coefficients of 1, v, z, v^2, v z, z^2
+  std::array<Samples, 2> v;                      ///< lower and upper bound of v
 };
 
 /// The boundary curves of a segment's slices, and the formula of feasibility.
 struct SliceCurves {
   Frame frame;
   std::vector<BoundaryCurve> curves;
-  std::vector<CurveSource> sources;  ///< by curve
+  std::vector<CurveSource> sources;  ///< origin of each curve, by curve
   SliceFormula formula;
 
   enum class Status { empty, filled, unresolved };
-  /// @return empty: nothing is feasible in the segment; unresolved: a coefficient is not analytic, or has not converged
+  /// @return empty: no point of the segment is feasible; unresolved: a coefficient is not analytic, or its
+  /// interpolation has not converged
   Status build(const SlicePlan& plan, const OuterPlan& outer, const NodeValues& nodes,
                const std::vector<LimitRoot>& limits, const Frame& where, const double* registers);
 

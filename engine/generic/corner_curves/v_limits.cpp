@@ -10,8 +10,9 @@ namespace {
 using Cell = LimitScratch::Cell;
 using Search = LimitScratch::Search;
 
-constexpr int kMaxBisections = 8;              // bisections of the range of v
-constexpr int kBisectionsBeforeCurvature = 3;  // shorter subintervals are often monotone
+constexpr int kMaxBisections = 8;  // maximum number of successive bisections of the range of v
+// until then the curvature does not count, because a shorter subinterval is often monotone
+constexpr int kBisectionsBeforeCurvature = 3;
 
 int sign_of(const Interval& x) { return x.lower > 0 ? 1 : x.upper < 0 ? -1 : 0; }
 
@@ -54,8 +55,8 @@ class LimitRootFinder {
   std::uint32_t at(std::size_t limit, std::size_t derivative) const {
     return program_.outputs()[3 * limit + derivative];
   }
-  /// The end of the interval that is searched, beyond an end of the range of v: a root may leave the range within the
-  /// segment, but must not pass the end of the search. The limit has a certified sign there, if possible.
+  /// The value of v, slightly beyond an end of the range of v, at which the search for roots ends: within a segment a
+  /// root may leave the range, but it must not pass this value. If possible, the limit has a certified sign there.
   double end_of_search(std::size_t limit, double end, double outwards) {
     for (const double margin : {0.03, 0.05, 0.08})
       if (sign_beside(cell_of(limit, end + margin * outwards, end + margin * outwards)) != 0)
@@ -74,8 +75,8 @@ class LimitRootFinder {
     }
     return cell;
   }
-  /// Bisects an interval of v and appends its subintervals to the cells. @return false if one in the range of v is
-  /// undecided
+  /// Bisects an interval of v recursively and appends its subintervals to the cells.
+  /// @return false if a subinterval in the range of v remains undecided
   bool bisect(std::size_t limit, double lower, double upper, int bisections) {
     const Cell cell = cell_of(limit, lower, upper);
     const bool is_decided =
@@ -88,10 +89,12 @@ class LimitRootFinder {
     return bisect(limit, lower, middle, bisections + 1) && bisect(limit, middle, upper, bisections + 1);
   }
 
-  /// Finds the groups of adjacent cells that contain roots. @return false if the number of roots is unknown
+  /// Finds the groups of adjacent cells that contain roots, and appends a search for each.
+  /// @return false if the number of roots is unknown
   bool add_searches(std::size_t limit) {
     const std::vector<Cell>& cells = s_.cells;
-    int sign = 0, first_sign = 0;  // sign above the cells so far, and first sign in the range of v; 0: unknown
+    // sign: of the limit above the previous cells; first_sign: first known sign in the range of v; 0: unknown
+    int sign = 0, first_sign = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (cells[i].is_undefined) continue;
       if (cells[i].sign != 0) {
@@ -123,7 +126,7 @@ class LimitRootFinder {
   }
   static int sign_beside(const Cell& cell) { return cell.is_undefined ? 0 : cell.sign; }
 
-  /// Finds the roots at node n of the segment. evaluate_limits_at_t() must have been called for this node.
+  /// Finds the roots of a search at the Chebyshev node n. evaluate_limits_at_t() must have been called for this node.
   void solve(Search& search, std::size_t n) {
     const auto guess = [&](const Samples& v) { return n > 0 ? v[n - 1] : 0.5 * (search.lower + search.upper); };
     if (search.curvature == 0) {
@@ -148,7 +151,7 @@ class LimitRootFinder {
     search.root[1][n] = root_of(search.limit, 0, extremum, search.upper, -search.sign_at_lower, search.upper);
   }
 
-  /// Newton's method with a bracket, for the limit or one of its derivatives along v.
+  /// Root of a limit, or of one of its derivatives with respect to v, by Newton's method with a bracket.
   double root_of(std::size_t limit, std::size_t derivative, double lower, double upper, int sign_at_lower, double v) {
     const auto limit_at = [&](double x) {
       evaluate_limits_at_v(plan_, x, s_);
@@ -160,8 +163,8 @@ class LimitRootFinder {
     return refine_root_newton(limit_at, lower, upper, sign_at_lower > 0, v, converged);
   }
 
-  /// Refines a fold by Newton's method: roots near a fold vary like the square root of the distance from it, so an
-  /// error of the fold would be magnified.
+  /// Refines the position of a fold by Newton's method. Roots near a fold vary like the square root of the distance
+  /// from it, so that an error of the fold would be magnified.
   LimitFold fold_near(const Search& search, double t) {
     double v = 0.5 * (search.lower + search.upper);
     const auto extremum = [&](double place) {
@@ -181,7 +184,7 @@ class LimitRootFinder {
     return {search.limit, t, v};
   }
 
-  /// Appends the roots of a search, or its folds. @return false if the extremum is not resolved
+  /// Appends the roots of a search, or the folds at which they merge. @return false if the extremum is not resolved
   bool add_roots(const Search& search) {
     constexpr double kConverged = 1e-11;
     if (search.curvature == 0) {
@@ -212,7 +215,7 @@ class LimitRootFinder {
   const expression::Program& program_;
   const Subinterval<double>& outer_;
   LimitScratch& s_;
-  double low_, high_;  ///< range of v in the segment
+  double low_, high_;  ///< smallest and largest value of v in the segment
 };
 
 }  // namespace

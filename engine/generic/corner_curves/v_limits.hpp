@@ -17,10 +17,10 @@
 
 namespace pkm::generic::corner_curves {
 
-/// A root of a limit on a segment.
+/// A root v(t) of a limit on a segment.
 struct LimitRoot {
   std::size_t limit;
-  bool rises;  ///< true: the limit is satisfied above the root
+  bool rises;  ///< true: the limit is violated below the root and satisfied above it
   Samples v;
 };
 
@@ -33,35 +33,38 @@ struct LimitFold {
 /// Result and scratch memory of find_limit_roots().
 struct LimitScratch {
   std::vector<double> registers, adjoints;
-  std::vector<std::size_t> active;  ///< limits that are not certified to be satisfied by the design everywhere
-  std::vector<LimitRoot> roots;     ///< roots on the last segment, in ascending order for each limit
+  std::vector<std::size_t> active;  ///< limits that are not certified to be satisfied in the whole box at this design
+  /// Roots on the segment that was examined last, in ascending order of v for each limit.
+  std::vector<LimitRoot> roots;
   std::vector<LimitFold> folds;
 
   std::vector<Interval> inputs, intervals;
-  /// A subinterval of v. sign: of f, 0: unknown; slope, curvature: signs of the derivatives, 0: unknown.
+  /// A subinterval of v with the signs there of f, of df/dv (slope) and of its second derivative (curvature); 0:
+  /// unknown.
   struct Cell {
     double lower, upper;
     int sign, slope, curvature;
     bool is_undefined;
   };
   std::vector<Cell> cells;
-  /// An interval with one root, or with an extremum between at most two roots.
+  /// An interval of v with one root, or with an extremum between at most two roots.
   struct Search {
     std::size_t limit;
     double lower, upper;
     int sign_at_lower;
-    int curvature;  ///< sign of the curvature at the extremum; 0: one root
-    double scale;   ///< magnitude of the limit at the ends of an interval with an extremum
+    int curvature;  ///< sign of the second derivative at the extremum; 0: the interval has one root
+    double scale;   ///< magnitude of the limit at the ends of the interval, if it contains an extremum
     Samples extremum, value_there;
     std::array<Samples, 2> root;
     bool has_extremum;
   };
   std::vector<Search> searches;
-  std::vector<int> signs;  ///< sign of each active limit at a point in the range of v; 0: undefined everywhere
+  /// For each active limit, its sign at one point in the range of v; 0: the limit is undefined in the whole range.
+  std::vector<int> signs;
   std::vector<Root> isolated;
 };
 
-/// Runs the design's stage, and finds the limits that are not certified to be satisfied in the box.
+/// Evaluates the stage of the design, and finds the limits that are not certified to be satisfied in the whole box.
 /// @param box  ranges of t and v
 void start_limits(const SlicePlan& plan, std::span<const double> inputs, const std::array<Interval, 2>& box,
                   LimitScratch& scratch);
@@ -75,7 +78,7 @@ void evaluate_limits_at_v(const SlicePlan& plan, double v, LimitScratch& scratch
 enum class LimitState { resolved, violated, divided, unresolved };
 
 /// Finds the roots of the active limits on a segment.
-/// @param v  range of v at the nodes
+/// @param v  lower and upper bound of v at the Chebyshev nodes
 /// @return violated: a limit is violated everywhere; divided: there are folds inside the segment; unresolved: shorter
 ///         segments are needed
 LimitState find_limit_roots(const SlicePlan& plan, const Subinterval<double>& outer, const std::array<Samples, 2>& v,
