@@ -50,7 +50,7 @@ void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   const auto is_found = [](const Slice& slice) { return slice.hash != 0; };
   const auto found = static_cast<std::size_t>(std::ranges::count_if(scanned, is_found));
   const bool has_found = found > 0;
-  if (levels() > 1 && has_found) {  // the slices are integrals, which are expensive
+  if (levels() > 1 && has_found) {  // each slice is an integral over the inner coordinates, which is expensive
     if (kSparseRatio * found <= scanned.size()) search_sparse_components(scratch);
     return;
   }
