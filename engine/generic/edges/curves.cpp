@@ -5,12 +5,12 @@
 namespace pkm::generic::edges {
 namespace {
 
-// Relative difference of quantities of order one that are considered equal.
+// Quantities of order one that differ by at most this, relatively, are considered equal.
 constexpr double kCoincident = 1e-12;
 
 bool is_same(double a, double b) { return std::fabs(a - b) <= kCoincident * (std::fabs(a) + std::fabs(b)); }
 
-/// A unit vector normal to a unit vector.
+/// An arbitrary unit vector that is normal to a given unit vector.
 Vector3 any_normal(const Vector3& axis) {
   Vector3 e{};
   std::size_t smallest = 0;
@@ -21,7 +21,7 @@ Vector3 any_normal(const Vector3& axis) {
   return v * (1 / norm(v));
 }
 
-/// a[0] + a[1] cos t + a[2] sin t
+/// Trigonometric polynomial a[0] + a[1] cos t + a[2] sin t, by its coefficients.
 using Linear = std::array<double, 3>;
 Trigonometric product(const Linear& a, const Linear& b) {
   return {a[0] * b[0] + 0.5 * (a[1] * b[1] + a[2] * b[2]), a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0],
@@ -42,14 +42,14 @@ Quadric quadric_of(const Face& face) {
   return q;
 }
 
-/// |p|^2 as an affine function on a sphere.
+/// |p|^2 as an affine function of the points p of a face; std::nullopt if the face is not on a sphere.
 std::optional<Affine> square_on(const Face& face) {
   if (face.surface != Surface::sphere) return {};
   const double r = face.body->radius;
   return Affine{face.centre * 2.0, r * r - dot(face.centre, face.centre)};
 }
 
-/// Rewrites a quadric as a function of p - c. For spheres and planes.
+/// Expresses the equation of a sphere or plane as a function of p - c instead of p.
 Quadric relative_to(const Vector3& c, const Quadric& q) {
   return {.square = q.square, .v = q.v + c * (2 * q.square), .k = q.square * dot(c, c) + dot(q.v, c) + q.k};
 }
@@ -66,13 +66,14 @@ void sphere_and_plane(const Face& sphere, const Face& other, const Vector3& norm
     curves.push_back(circle(sphere, other, sphere.centre + normal * distance, normal, std::sqrt(radius_2)));
 }
 
-/// Curves on a cylinder: generators o(t) + s axis with A s^2 + 2 B(t) s + C(t) = 0.
+/// Adds the intersection curves of a cylinder with another surface. On the generator o(t) + s axis at the angle t, they
+/// satisfy A s^2 + 2 B(t) s + C(t) = 0.
 void on_cylinder(const Face& cylinder, const Face& other, std::vector<Curve>& curves) {
   const Vector3 &a = cylinder.body->axis, &c = cylinder.centre;
   const Quadric q = quadric_of(other);
   const double r = cylinder.body->radius, slant = dot(a, q.axis);
   const Vector3 x = any_normal(a) * r, y = cross(a, x);
-  // p(t) . d, as a trigonometric polynomial
+  // p(t) . d as a trigonometric polynomial in t
   const auto along = [&](const Vector3& d) { return Linear{dot(c, d), dot(x, d), dot(y, d)}; };
   const double A = q.square - q.across * slant * slant;
   const Linear m = along(q.axis), h = along(q.v), g = along(a), e = along(c);
@@ -103,7 +104,8 @@ void on_cylinder(const Face& cylinder, const Face& other, std::vector<Curve>& cu
   curves.push_back(curve);
 }
 
-/// Lines along the axis of a cylinder of radius r through `centre`, in the plane normal . p = distance (normal to it).
+/// Adds lines parallel to the axis of a cylinder of radius r through `centre`, in the plane normal . p = distance,
+/// whose normal is normal to the axis.
 void parallel_lines(const Face& a, const Face& b, const Vector3& centre, double r, const Vector3& axis,
                     const Vector3& normal, double distance, std::vector<Curve>& curves) {
   const double d = distance - dot(centre, normal), half_2 = (r - d) * (r + d);
@@ -218,7 +220,7 @@ bool add_implicit(const Face& torus, const Face& other, std::vector<Curve>& curv
   return true;
 }
 
-/// Coefficients of cos and sin of k (t - t_0), for k = 1, 2.
+/// Coefficients of cos and sin of k (t - t_0) in D(t), at index k - 1, for k = 1, 2.
 struct Shifted {
   double cosine[2], sine[2];
 };
@@ -232,7 +234,7 @@ Shifted shifted(const Trigonometric& D, double t_0) {
   return at;
 }
 
-/// D(t_0 + x) / x^order, where t_0 is a root of D of multiplicity `order`.
+/// D(t_0 + x) / x^order, where t_0 is a root of D with multiplicity `order`.
 Enclosure quotient(const Trigonometric& D, double t_0, int order, const Enclosure& x) {
   const auto [cosine, sine] = shifted(D, t_0);
   const Enclosure half = x * 0.5, twice = x * 2.0;
@@ -250,10 +252,11 @@ Enclosure value_of_D(const Trigonometric& D, const SineCosine& t) {
   return c * D[1] + s * D[2] + (square(c) * 2.0 - 1.0) * D[3] + s * c * (2 * D[4]) + D[0];
 }
 
-/// Simple roots that are closer to each other cannot be told from a double root, because of the rounding errors of D.
+/// Two simple roots at a smaller distance cannot be distinguished from a double root, because of the rounding errors of
+/// D.
 constexpr double kDoubleRoot = 4e-8;
 
-/// Isolates the roots of D in an interval by bisection. Roots that may be double are reported once or several times.
+/// Isolates the roots of D in an interval by bisection. A root that may be double is reported once or several times.
 void isolate(const Trigonometric& D, double from, double to, double rounding, std::vector<CurveRoot>& roots) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   const auto at = [&](double t, double h) { return value_of_D(D, sine_cosine(Enclosure::variable(t, h))); };
@@ -278,7 +281,7 @@ void isolate(const Trigonometric& D, double from, double to, double rounding, st
   }
 }
 
-/// Merges roots that cannot be told from a double root into one, at the root of D'.
+/// Merges roots that cannot be distinguished from a double root into one, which is placed at the root of D'.
 void merge(const Trigonometric& D, std::vector<CurveRoot>& roots) {
   std::size_t count = 0;
   for (std::size_t i = 0, end = 0; i < roots.size(); i = end) {
@@ -340,8 +343,8 @@ bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, s
   double size = 0;
   for (const double d : curve.D) size = std::max(size, std::fabs(d));
   if (!(size > 0)) return false;
-  // Meridians outside of the range of a torus are not needed. On other surfaces the start is arbitrary; this number
-  // makes it unlikely that a turning point is exactly there.
+  // On a torus, meridians outside of its range are not needed. On other surfaces the starting angle is arbitrary; with
+  // this number a turning point is unlikely to be exactly there.
   const bool on_torus = curve.kind == Curve::Kind::on_torus;
   const double start = on_torus ? curve.faces[0]->body->from : 0.1234;
   const double length = on_torus ? curve.faces[0]->body->to - start : 2 * kPi;
@@ -355,7 +358,7 @@ bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, s
     }
   };
   const auto is_positive = [&](double t) { return value_of_D(curve.D, sine_cosine(Enclosure(t))).value > 0; };
-  if (!on_torus && !roots.empty()) {  // begin and end at the same root
+  if (!on_torus && !roots.empty()) {  // begin and end the closed curve at the same root
     roots.push_back({roots.front().t + length, roots.front().order});
   } else {
     roots.insert(roots.begin(), {start, 0});
@@ -401,7 +404,7 @@ CurvePoint point(const Arc& arc, const Enclosure& u) {
   }
   const Enclosure x = (arc.order == 1 ? square(u) : u) * arc.direction, t = x + arc.t_0;
   CurvePoint at;
-  // p = o + s a + r b
+  // sets p = o + s a + r b
   const auto combine = [&](const Vector3& o, const Vector3& a, const Enclosure& s, const Vector3& b,
                            const Enclosure& r) {
     for (std::size_t i = 0; i < 3; ++i) at.p[i] = s * a[i] + r * b[i] + o[i];

@@ -21,42 +21,43 @@
 
 namespace pkm::generic::edges {
 
-/// Left side of the equation square |p|^2 - across (p . axis)^2 + v . p + k = 0 of a plane, sphere or cylinder.
+/// Left side of the equation square |p|^2 - across (p . axis)^2 + v . p + k = 0 of a plane, sphere or cylinder, by its
+/// coefficients.
 struct Quadric {
   double square = 0, across = 0;
   Vector3 axis{}, v{};
   double k = 0;
 };
 
-/// An intersection curve; o, x, y, w and D as in the table above.
+/// An intersection curve. o, x, y, w and D have the meaning that they have in the table above.
 struct Curve {
   enum class Kind : std::uint8_t { trigonometric, line, on_torus, implicit };
   Kind kind = Kind::trigonometric;
   std::array<const Face*, 2> faces{};
-  Vector3 o{}, x{}, y{}, w{};  ///< w: 0 without a square root
-  bool has_root = false;       ///< the curve has two branches, +- sqrt(D)
+  Vector3 o{}, x{}, y{}, w{};  ///< w: 0 for a curve without a square root
+  bool has_root = false;       ///< true: the curve has two branches, with +sqrt(D) and -sqrt(D)
   Trigonometric D{};
-  std::optional<Affine> square{};  ///< |p|^2 on a sphere
-  Quadric with{};                  ///< on_torus: the other surface, relative to the centre of the torus
-  std::optional<Quadric> cut{};    ///< the surfaces touch where this function vanishes
-  TorusFunction function{};        ///< implicit: function of the second surface on the first one
+  std::optional<Affine> square{};  ///< |p|^2 as an affine function of p, if one of the surfaces is a sphere
+  Quadric with{};                ///< on_torus only: equation of the second surface, relative to the centre of the torus
+  std::optional<Quadric> cut{};  ///< function that vanishes where the two surfaces touch each other, if there is one
+  TorusFunction function{};      ///< implicit only: the function of the second surface on the first one, a torus
 };
 
-/// Part of one branch of a curve: u in [0, length].
+/// An interval u in [0, length] of one branch of a curve.
 struct Arc {
   const Curve* curve;
   double branch = 1;
   double t_0 = 0, direction = 1;
-  int order = 0;  ///< multiplicity of the root of D at u = 0
+  int order = 0;  ///< multiplicity of the root of D at u = 0; 0 if D has no root there
   double length = 0;
   TorusArc implicit{};
 };
 
-/// Intersection curves of two faces.
-/// @param bound  half the length of lines
+/// Adds the intersection curves of the surfaces of two faces.
+/// @param bound  lines extend by this length in both directions
 /// @return false if the surfaces are the same
 bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves);
-/// The circle between an end face and the fold of a slide or crank.
+/// The circle that separates an end face of a slide or crank from its fold.
 Curve equator(const Face& end, const Face& fold);
 
 /// A root t of Curve::D and its multiplicity.
@@ -70,10 +71,10 @@ struct CurveRoot {
 /// @return false if D vanishes identically
 bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, std::vector<Arc>& arcs);
 
-/// A point of a torus.
+/// The point of a torus at the angles q of the crank and b around the fold.
 CurvePoint point_on(const Face& torus, const Enclosure& q, const Enclosure& b);
 
-/// Encloses the points of an arc.
+/// Encloses the points of an arc over an interval of u.
 /// @param u  Enclosure::variable(): the slope of the result is dp/du
 CurvePoint point(const Arc& arc, const Enclosure& u);
 Enclosure evaluate(const Quadric& quadric, const CurvePoint& at);

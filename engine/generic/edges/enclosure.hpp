@@ -24,16 +24,16 @@ using Vector3 = Vector<double, 3>;
 inline double norm(const Vector3& v) { return std::sqrt(dot(v, v)); }
 
 struct Enclosure {
-  double value = 0, slope = 0;  ///< at the middle
-  double bend = 0;              ///< bound on the second derivative
-  double h = 0;                 ///< half the width of the interval; 0 also for constants
+  double value = 0, slope = 0;  ///< value and derivative at the middle of the interval
+  double bend = 0;              ///< upper bound of the magnitude of the second derivative in the interval
+  double h = 0;                 ///< half the width of the interval; 0 at a single point, and for constants
 
   Enclosure() = default;
   Enclosure(double number) : value(number) {}  // not explicit: constants mix with it in formulas
   Enclosure(double f, double f1, double bound, double half) : value(f), slope(f1), bend(bound), h(half) {}
   static Enclosure variable(double middle, double half) { return {middle, 1, 0, half}; }
 
-  /// Bound on the distance of the function from its value at the middle.
+  /// Upper bound of the distance of the function from its value at the middle.
   double reach() const { return (std::fabs(slope) + 0.5 * bend * h) * h; }
   double max_magnitude() const { return std::fabs(value) + reach(); }
   double max_slope() const { return std::fabs(slope) + bend * h; }
@@ -67,7 +67,7 @@ inline Enclosure square(const Enclosure& x) {
   return {x.value * x.value, 2 * x.value * x.slope, 2 * (x.max_slope() * x.max_slope() + x.max_magnitude() * x.bend),
           x.h};
 }
-/// A bound that is too large to decide anything: the function may be undefined in the interval.
+/// Bound of the second derivative, too large to decide anything, for a function that may be undefined in the interval.
 inline constexpr double kUnbounded = 1e60;
 
 inline Enclosure inverse(const Enclosure& x) {
@@ -92,10 +92,10 @@ inline SineCosine sine_cosine(const Enclosure& x) {
   return {x.through(s, c, max_cosine, max_sine), x.through(c, -s, max_sine, max_cosine)};
 }
 /// sin(x) / x
-/// @param of_x  sine_cosine(x)
+/// @param of_x  sine and cosine of x, i.e. sine_cosine(x)
 inline Enclosure sinc(const Enclosure& x, const SineCosine& of_x) {
   const double t = x.value, t2 = t * t, s = of_x.sine.value, c = of_x.cosine.value;
-  const bool is_small = std::fabs(t) < 0.3;  // the series is exact to 1e-16 there
+  const bool is_small = std::fabs(t) < 0.3;  // for smaller |t| the series is accurate to 1e-16
   const double f = is_small ? 1 - t2 / 6 * (1 - t2 / 20 * (1 - t2 / 42 * (1 - t2 / 72 * (1 - t2 / 110)))) : s / t;
   const double f1 = is_small ? -t / 3 * (1 - t2 / 10 * (1 - t2 / 28 * (1 - t2 / 54 * (1 - t2 / 88)))) : (c - f) / t;
   return x.through(f, f1, 0.5, 1.0 / 3);

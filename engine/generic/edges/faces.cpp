@@ -9,8 +9,8 @@ bool is_up_to_half_turn(const Body& body) { return body.kind == Body::Kind::slid
 
 using Bits = std::array<bool, kFunctions>;
 
-/// Membership of a body by the rule of limbs::CrankRange. A slide has the rule of a crank whose range is less than half
-/// a revolution.
+/// Whether a point belongs to the body of a slide or crank, by the rule of limbs::CrankRange. A slide follows the rule
+/// of a crank whose range is less than half a revolution.
 bool is_in_body(const Bits& is, bool is_first_root, bool half_turn) {
   const bool after_from = is[2], before_to = !is[3];
   if (is[0] != is[1]) return is_first_root == is[0];
@@ -124,7 +124,8 @@ Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoin
 
 const Rule& membership(const Body& body, const Part* face) {
   static const Rule single = rule_of([](const Bits& is) { return is[0]; });
-  // By first or second root, by range up to half a turn or more, and by body (0) or part of its boundary (1 + Part).
+  // Rules by is_first_root, by whether the range is up to half a turn, and by 0 for the body or 1 + Part for a part of
+  // its boundary.
   static const auto rules = [] {
     std::array<std::array<std::array<Rule, 4>, 2>, 2> all;
     for (const bool first : {false, true})
@@ -149,7 +150,7 @@ Vector3 outward(const Face& face, const Vector3& p) {
       return P * face.side;
     case Surface::cylinder:
       return (P - body.axis * dot(P, body.axis)) * face.side;
-    case Surface::torus: {  // minus the gradient of the discriminant
+    case Surface::torus: {  // the normal is minus the gradient of the discriminant
       const double l = body.crank, K = dot(P, P) + l * l - body.radius * body.radius;
       return P * K - (P - body.axis * dot(P, body.axis)) * (2 * l * l);
     }
@@ -182,7 +183,7 @@ Moments forms(const Face& face, const Vector3& p, const Vector3& dp) {
     }
     case Surface::torus: {
       const double u = dot(P, body.zero), w = dot(P, body.beside), l = body.crank, rod = body.radius;
-      const double outer = dot(P, P) + l * l > rod * rod ? 1 : -1;  // the sign of the distance from the axis
+      const double outer = dot(P, P) + l * l > rod * rod ? 1 : -1;  // sign of the distance from the axis on the torus
       const double distance = outer * std::sqrt(u * u + w * w);
       if (distance == 0) break;
       const double ddistance = (u * dot(dp, body.zero) + w * dot(dp, body.beside)) / distance;
@@ -190,7 +191,8 @@ Moments forms(const Face& face, const Vector3& p, const Vector3& dp) {
       const double middle = 0.5 * (body.from + body.to);
       const auto [s, c] = portable::sincos(middle);
       const double q = portable::atan2(outer * (w * c - u * s), outer * (u * c + w * s));
-      const double db = cosine * dot(dp, body.axis) - sine * ddistance;  // times the rod
+      // derivative of b, multiplied by the length of the rod
+      const double db = cosine * dot(dp, body.axis) - sine * ddistance;
       m.radius = {q * distance * db, q * distance * cosine * db};
       break;
     }

@@ -13,7 +13,7 @@
 
 namespace pkm::generic::edges {
 
-/// Coefficients up to order N.
+/// Taylor coefficients of a function up to order N, as intervals.
 template <std::size_t N>
 struct IntervalSeries {
   std::array<Interval, N + 1> c{};
@@ -21,7 +21,7 @@ struct IntervalSeries {
   IntervalSeries() = default;
   IntervalSeries(double constant) { c[0] = constant; }           // not explicit: constants mix with it in formulas
   IntervalSeries(const Interval& constant) { c[0] = constant; }  // the same
-  /// The variable itself, in an interval.
+  /// The series of the variable x itself, at a point or in an interval.
   static IntervalSeries variable(const Interval& x) {
     IntervalSeries series(x);
     if constexpr (N > 0) series.c[1] = 1;
@@ -96,14 +96,14 @@ SineCosineSeries<N> sine_cosine(const IntervalSeries<N>& x) {  // from s' = c x'
   return of;
 }
 
-/// The derivative, of one order less.
+/// The series of the derivative, whose order is lower by one.
 template <std::size_t N>
 IntervalSeries<N - 1> derivative(const IntervalSeries<N>& x) {
   IntervalSeries<N - 1> d;
   for (std::size_t k = 0; k < N; ++k) d.c[k] = x.c[k + 1] * Interval(static_cast<double>(k + 1));
   return d;
 }
-/// The same series with one order less.
+/// The same series without its highest order.
 template <std::size_t N>
 IntervalSeries<N - 1> truncated(const IntervalSeries<N>& x) {
   IntervalSeries<N - 1> all;

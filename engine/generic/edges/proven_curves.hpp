@@ -18,13 +18,13 @@ class ProvenCurves : public ProvenSolid {
       }
   }
 
-  // Activity.
+  // Decides which points of a curve are active, i.e. belong to all bodies and to both faces.
 
   struct ProvenTest {
     std::size_t body;
     const Rule* rule;
   };
-  using Tests = std::uint64_t;  // one bit each
+  using Tests = std::uint64_t;  // set of tests, one bit each, by index in tests_
 
   const Rule& rule_of(std::size_t body, const Part* face) const {
     const IntervalBody& b = bodies_[body];
@@ -33,17 +33,18 @@ class ProvenCurves : public ProvenSolid {
     return membership({.kind = b.kind, .to = range.upper, .is_first_root = b.is_first_root}, face);
   }
 
-  /// Collects the conditions on the points of an intersection curve.
+  /// Collects the tests that points of an intersection curve of two faces have to pass.
   void set_tests(const ProvenFace& a, const ProvenFace& b) {
     tests_.clear();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (i != a.body && i != b.body)
         tests_.push_back({i, &rule_of(i, nullptr)});
       else if (a.body != b.body && has_range(bodies_[i]) && !(i == a.body && a.surface == Surface::torus))
-        tests_.push_back({i, &rule_of(i, i == a.body ? &a.part : &b.part)});  // q on the first torus is in its range
+        tests_.push_back({i, &rule_of(i, i == a.body ? &a.part : &b.part)});  // q of the first torus needs no test
     }
   }
-  /// The combinations of signs that are possible in a set of points. @param sign  that of a function, 0: unknown
+  /// The combinations of signs that are possible in a set of points.
+  /// @param sign  sign(k): sign of function k in the set, 0 if unknown
   template <class Sign>
   static SignSets possible_signs(const Rule& rule, const Sign& sign) {
     SignSets possible = ~SignSets{0};
@@ -54,7 +55,7 @@ class ProvenCurves : public ProvenSolid {
     }
     return possible;
   }
-  /// The same for all points of a box.
+  /// The combinations of signs that are possible at the points of a box.
   SignSets possible_signs(const ProvenTest& test, const IntervalVector& box) const {
     const SeriesVector<0> p = series<0>(box);
     return possible_signs(*test.rule, [&](std::size_t k) { return sign_of(function(test.body, k, p).c[0]); });
@@ -65,7 +66,7 @@ class ProvenCurves : public ProvenSolid {
         tests_, [&](const ProvenTest& test) { return (test.rule->holds & possible_signs(test, box)) == 0; });
   }
 
-  /// Counts an interval that is examined.
+  /// Counts an examined interval; throws Unproven if there are too many.
   void count() {
     constexpr long kMaxBoxes = 300'000;
     if (++boxes_ > kMaxBoxes) throw Unproven{};
@@ -87,7 +88,7 @@ class ProvenCurves : public ProvenSolid {
     } else if (a.surface == Surface::sphere && b.surface == Surface::sphere) {
       const IntervalVector between = b.centre - a.centre;
       const Interval distance = length_of(between);
-      if (!(distance.lower > 0)) {  // (nearly) concentric
+      if (!(distance.lower > 0)) {  // the spheres are concentric, or nearly so
         if (!is_positive(magnitude(A.radius - B.radius) - distance)) throw Unproven{};
         return;
       }
@@ -148,7 +149,7 @@ class ProvenCurves : public ProvenSolid {
       const Interval from_c = Interval(0.5) * (distance + (r - B.radius) * (r + B.radius) / distance);
       return add_parallel_lines({&a, &b}, c, r, axis, normal, dot(c, normal) + from_c);
     }
-    // generators o(t) + s axis with A s^2 + 2 B(t) s + C(t) = 0
+    // the curve consists of points of generators o(t) + s axis with A s^2 + 2 B(t) s + C(t) = 0
     const bool is_plane = b.surface == Surface::plane;
     const Interval square = is_plane ? 0 : 1, across = b.surface == Surface::cylinder ? 1 : 0;
     const IntervalVector m_axis = B.axis;
@@ -197,14 +198,15 @@ class ProvenCurves : public ProvenSolid {
   // Curves on a torus, in boxes of the angles q and b.
 
   struct AngleBox {
-    std::array<std::array<Interval, 2>, 2> ends;  ///< of q and b; a number, or the interval of a limit
+    /// Lower and upper end of q and of b: a number, or the interval that encloses a limit.
+    std::array<std::array<Interval, 2>, 2> ends;
     Interval range(std::size_t i) const { return {ends[i][0].lower, ends[i][1].upper}; }
   };
 
   void add_curves_on_torus(const ProvenFace& a, const ProvenFace& b) {
     set_tests(a, b);
     const IntervalBody& body = bodies_[a.body];
-    constexpr double kFirst = 0.8;  // width of the first boxes
+    constexpr double kFirst = 0.8;  // maximum width of the first boxes [rad]
     const auto divisions = [](const Interval& low, const Interval& high) {
       const int count = static_cast<int>((high.upper - low.lower) / kFirst) + 1;
       std::vector<Interval> places{low};
@@ -227,12 +229,13 @@ class ProvenCurves : public ProvenSolid {
     Interval f = function_on_torus(a, b, middle(angles[0]), middle(angles[1])).c[0];
     for (std::size_t i = 0; i < 2; ++i) f += by[i] * (angles[i] - middle(angles[i]).c[0]);
     if (sign_of(f) != 0) return;
-    // The parameter is the coordinate along which the curve is flatter; the torus must not cross its axis.
+    // The parameter is the coordinate along which the curve is flatter. The part of the torus in the box must not reach
+    // the axis of the torus.
     const IntervalBody& body = bodies_[a.body];
     const std::size_t steeper = std::fabs(by[1].middle()) >= std::fabs(by[0].middle()) ? 1 : 0;
     if (sign_of(body.crank + body.radius * cos(angles[1])) != 0)
       for (const std::size_t other : {steeper, 1 - steeper}) {
-        // Steep curves have wide enclosures.
+        // A steep curve has a wide enclosure: bisect the box instead.
         constexpr double kSteepest = 3, kAnySlope = 1e-3;
         const double least = std::min(std::fabs(by[other].lower), std::fabs(by[other].upper));
         const bool is_flat = magnitude(by[1 - other]).upper <= kSteepest * least;
@@ -256,14 +259,16 @@ class ProvenCurves : public ProvenSolid {
     }
   }
 
-  // Arcs of a curve with the parameter t.
+  // Divides a curve with the parameter t into arcs.
 
-  static constexpr double kStart = 0.1234;  // arbitrary, so that no special point is there
-  static constexpr double kLongest = 1.6;   // enclosures over more than a quarter of a circle decide nothing
+  // start of a closed curve [rad], arbitrary, so that no special point is likely to be there
+  static constexpr double kStart = 0.1234;
+  // maximum length of an arc [rad]: enclosures over more than a quarter of a circle decide nothing
+  static constexpr double kLongest = 1.6;
   static Interval end_of_turn() { return Interval(kPi, next_up(kPi)) * Interval(2) + Interval(kStart); }
 
   void add_whole_turn(const ProvenArc& arc) { add_arcs(arc, kStart, end_of_turn()); }
-  /// Adds [from, to], in which D has no root.
+  /// Adds the arcs of [from, to], an interval in which D has no root.
   void add_arcs(ProvenArc arc, double from, const Interval& to) {
     const int parts = static_cast<int>((to.upper - from) / kLongest) + 1;
     const IntervalTrigonometric D = arc.D;
@@ -292,7 +297,7 @@ class ProvenCurves : public ProvenSolid {
     arcs_.push_back(arc);
   }
 
-  /// A root of D, or an interval in which no point of either branch is active.
+  /// A root of D, or an interval of t in which no point of either branch is active.
   struct Division {
     Interval t;
     bool is_root;
@@ -302,7 +307,7 @@ class ProvenCurves : public ProvenSolid {
     const double root = sqrt(D).upper;
     return is_inactive(arc.o + arc.x * cos(t) + arc.y * sin(t) + arc.w * Interval(-root, root));
   }
-  /// Appends the divisions of [from, to], in ascending order.
+  /// Appends the divisions of the interval [from, to] of t, in ascending order.
   void isolate(const ProvenArc& arc, const IntervalTrigonometric& D, double from, double to,
                std::vector<Division>& divisions) {
     const double middle = 0.5 * (from + to);
@@ -328,7 +333,7 @@ class ProvenCurves : public ProvenSolid {
         if (!(from < between && between < to) || sign == 0) break;
         (sign == at_from ? from : to) = between;
       }
-      // The middle is not decided; the enclosure shrinks towards it from both sides.
+      // The sign of D in the middle is not decided: contract the enclosure from both sides.
       for (double width = 0.25 * (to - from); width > 1e-16; width *= 0.5) {
         if (sign_of(value(D, from + width)) == at_from && from + width < to) from += width;
         if (sign_of(value(D, to - width)) == at_to && to - width > from) to -= width;

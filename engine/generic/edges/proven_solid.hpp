@@ -14,13 +14,13 @@ namespace pkm::generic::edges::proven {
 template <std::size_t N>
 using SeriesVector = Vector<IntervalSeries<N>, 3>;
 
-/// Thrown if no bounds can be proven.
+/// Thrown if no bounds of the volume can be proven.
 struct Unproven {};
 
 inline bool is_zero(const Interval& x) { return x.lower == 0 && x.upper == 0; }
-/// The sign of all values; 0: unknown.
+/// 1 or -1 if all values of the interval have this sign, otherwise 0: the sign is unknown.
 inline int sign_of(const Interval& x) { return x.lower > 0 ? 1 : x.upper < 0 ? -1 : 0; }
-/// Whether all values are positive. Throws if that is unknown.
+/// Whether all values of the interval are positive. Throws Unproven if the sign is unknown.
 inline bool is_positive(const Interval& x) {
   const int sign = sign_of(x);
   if (sign == 0) throw Unproven{};
@@ -45,13 +45,13 @@ IntervalSeries<N> squared_length(const SeriesVector<N>& p) {
   return square(p[0]) + square(p[1]) + square(p[2]);
 }
 
-/// A box around a ball about the origin.
+/// A box that contains the ball of the given radius about the origin.
 inline IntervalVector within_ball(double radius) {
   const Interval any(-radius, radius);
   return {{any, any, any}};
 }
 
-/// A unit vector normal to a unit vector.
+/// An arbitrary unit vector that is normal to a given unit vector.
 inline IntervalVector normal_to(const IntervalVector& axis) {
   IntervalVector e{};
   std::size_t smallest = 0;
@@ -62,7 +62,7 @@ inline IntervalVector normal_to(const IntervalVector& axis) {
   return v * (Interval(1) / length_of(v));
 }
 
-// a[0] + a[1] cos t + a[2] sin t, and with cos 2t and sin 2t
+// Coefficients of a[0] + a[1] cos t + a[2] sin t; with five elements, also those of cos 2t and sin 2t.
 using IntervalLinear = std::array<Interval, 3>;
 using IntervalTrigonometric = std::array<Interval, 5>;
 
@@ -71,7 +71,7 @@ inline IntervalTrigonometric product(const IntervalLinear& a, const IntervalLine
   return {a[0] * b[0] + half * (cosines + sines), a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0],
           half * (cosines - sines), half * (a[1] * b[2] + a[2] * b[1])};
 }
-/// D(t), or its derivative.
+/// The value D(t), and (slope) its derivative.
 inline Interval value(const IntervalTrigonometric& D, const Interval& t) {
   const Interval c = cos(t), s = sin(t);
   return D[0] + D[1] * c + D[2] * s + D[3] * (square(c) - square(s)) + D[4] * Interval(2) * s * c;
@@ -86,7 +86,7 @@ struct ProvenFace {
   Surface surface = Surface::plane;
   IntervalVector centre{};
   double side = 1;
-  IntervalVector away_from_pole{};  ///< sphere: opposite of the point where its form has a pole
+  IntervalVector away_from_pole{};  ///< sphere only: direction from the pole of its differential form to the centre
 };
 
 /// A part of an intersection curve, as a function of u. A line is o + u x. On a torus, u is one of the angles q of the
@@ -98,18 +98,18 @@ struct ProvenArc {
   const ProvenFace* b = nullptr;
   bool is_line = false, has_root = false, is_on_torus = false;
   IntervalVector o{}, x{}, y{}, w{};
-  IntervalTrigonometric D{};         ///< as a function of t - t_0
-  Interval cosine = 1, sine = 0;     ///< of t_0
-  double direction = 0;              ///< 1, -1: sign of s, if D(t_0) = 0
-  Interval from{}, to{};             ///< range of u
-  std::size_t along = 0;             ///< on a torus: which angle u is, 0: q, 1: b
-  std::array<Interval, 2> across{};  ///< on a torus: limits of the other angle
+  IntervalTrigonometric D{};         ///< trigonometric polynomial as a function of t - t_0
+  Interval cosine = 1, sine = 0;     ///< cosine and sine of t_0
+  double direction = 0;              ///< 1 or -1: sign of s in s = +-u^2; 0: D(t_0) is not 0, and s = u
+  Interval from{}, to{};             ///< lower and upper end of the range of u, each known to an interval
+  std::size_t along = 0;             ///< on a torus: the angle that u is; 0: q, 1: b
+  std::array<Interval, 2> across{};  ///< on a torus: lower and upper limit of the other angle
 };
 
 struct ProvenRange {
   std::size_t arc;
   double from, to;
-  bool is_certain;  ///< active at all points; otherwise unknown
+  bool is_certain;  ///< true: all points of the range are active; false: unknown
 };
 
 template <std::size_t N>
@@ -122,14 +122,14 @@ SeriesVector<N> point_of_closed_form(const ProvenArc& arc, const IntervalSeries<
   using S = IntervalSeries<N>;
   const bool at_root = arc.direction != 0;
   const S s = at_root ? square(u) * Interval(arc.direction) : u;
-  const S s_2 = square(s), k = sqrt(S(1.0) - s_2);                      // sine squared and cosine of (t - t_0) / 2
+  const S s_2 = square(s), k = sqrt(S(1.0) - s_2);  // square of the sine, and cosine, of (t - t_0) / 2
   const S c_1 = S(1.0) - s_2 * Interval(2), s_1 = s * k * Interval(2);  // cosine and sine of t - t_0
   const S c_t = c_1 * arc.cosine - s_1 * arc.sine, s_t = s_1 * arc.cosine + c_1 * arc.sine;
   for (std::size_t i = 0; i < 3; ++i) p[i] = c_t * arc.x[i] + s_t * arc.y[i] + arc.o[i];
   if (!arc.has_root) return p;
   const IntervalTrigonometric& D = arc.D;
   S root;
-  if (at_root) {  // D / s, where D[0] + D[1] + D[3] = 0
+  if (at_root) {  // D / s, whose constant term D[0] + D[1] + D[3] is 0
     const S R = s * (Interval(-2) * D[1]) + k * (Interval(2) * D[2]) + s * (S(1.0) - s_2) * (Interval(-8) * D[3]) +
                 k * c_1 * (Interval(4) * D[4]);
     root = u * sqrt(R * Interval(arc.direction));
@@ -148,7 +148,7 @@ inline bool has_range(const IntervalBody& body) {
 /// The path of the end E of a rod: E and the unit vector along the path, at both ends of the range.
 struct Path {
   std::array<IntervalVector, 2> end{}, along{};
-  IntervalVector beside{};  ///< crank: axis x zero
+  IntervalVector beside{};  ///< crank only: the unit vector axis x zero
 };
 
 inline Path path_of(const IntervalBody& body) {
@@ -176,7 +176,7 @@ class ProvenSolid {
     }
   }
 
-  /// As function() of faces.hpp, at the points of a series.
+  /// The function `function()` of faces.hpp, evaluated for the points of a series.
   template <std::size_t N>
   IntervalSeries<N> function(std::size_t index, std::size_t number, const SeriesVector<N>& p) const {
     const IntervalBody& body = bodies_[index];
@@ -214,7 +214,7 @@ class ProvenSolid {
     const SeriesVector<0> p = on_torus(torus, IntervalSeries<0>(q), IntervalSeries<0>(b));
     return {{p[0].c[0], p[1].c[0], p[2].c[0]}};
   }
-  /// The function of a face's surface, at a point of a torus.
+  /// The function of a face's surface, evaluated for points of a torus given by its two angles.
   template <std::size_t N>
   IntervalSeries<N> function_on_torus(const ProvenFace& torus, const ProvenFace& face, const IntervalSeries<N>& q,
                                       const IntervalSeries<N>& b) const {
@@ -222,7 +222,8 @@ class ProvenSolid {
     const std::size_t number = !has_range(body) || face.part == Part::first ? 0 : face.part == Part::second ? 1 : 4;
     return function(face.body, number, on_torus(torus, q, b));
   }
-  /// Its derivative by one of the angles, in a box.
+  /// Derivative of function_on_torus() with respect to one of the angles, over a box of angles.
+  /// @param by  0: q, 1: b
   Interval slope_on_torus(const ProvenFace& torus, const ProvenFace& face, std::size_t by,
                           const std::array<Interval, 2>& angles) const {
     std::array<IntervalSeries<1>, 2> at{angles[0], angles[1]};
@@ -230,7 +231,7 @@ class ProvenSolid {
     return function_on_torus(torus, face, at[0], at[1]).c[1];
   }
 
-  /// Encloses the other angle of an arc on a torus.
+  /// Encloses the angle of a point of an arc on a torus that is not the parameter.
   template <std::size_t N>
   IntervalSeries<N> other_angle(const ProvenArc& arc, const IntervalSeries<N>& u) const {
     const auto value = [&]<std::size_t M>(const IntervalSeries<M>& along, const IntervalSeries<M>& other) {
@@ -238,7 +239,7 @@ class ProvenSolid {
                             : function_on_torus(*arc.a, *arc.b, other, along);
     };
     Interval root(arc.across[0].lower, arc.across[1].upper), slope;
-    for (int i = 0; i < 5; ++i) {  // interval Newton method
+    for (int i = 0; i < 5; ++i) {  // interval Newton method with at most five steps
       slope = value(IntervalSeries<1>(u.c[0]), IntervalSeries<1>::variable(root)).c[1];
       const double middle = root.middle();
       const Interval next = Interval(middle) - value(IntervalSeries<0>(u.c[0]), IntervalSeries<0>(middle)).c[0] / slope;
@@ -258,7 +259,7 @@ class ProvenSolid {
     return arc.along == 0 ? on_torus(*arc.a, u, other) : on_torus(*arc.a, other, u);
   }
 
-  /// Whether an arc on a torus has a point at all u of an interval (1) or at none (-1); 0: unknown.
+  /// Whether an arc on a torus has a point at every u of an interval (1) or at none (-1); 0: unknown.
   int existence(const ProvenArc& arc, const Interval& u) const {
     const auto sign_at = [&](const Interval& across) {
       const Interval middle = 0.5 * (u.lower + u.upper);
@@ -275,7 +276,7 @@ class ProvenSolid {
   IntervalVector outward(const ProvenFace& face, const IntervalVector& p) const {
     const IntervalVector &axis = bodies_[face.body].axis, P = p - face.centre;
     if (face.surface == Surface::plane) return axis;
-    if (face.surface == Surface::torus) {  // minus the gradient of the discriminant
+    if (face.surface == Surface::torus) {  // the normal is minus the gradient of the discriminant
       const Interval l_2 = square(bodies_[face.body].crank);
       return P * (dot(P, P) + l_2 - square(bodies_[face.body].radius)) -
              (P - axis * dot(P, axis)) * (Interval(2) * l_2);
@@ -283,7 +284,7 @@ class ProvenSolid {
     return (face.surface == Surface::sphere ? P : P - axis * dot(P, axis)) * Interval(face.side);
   }
 
-  /// The integrand of the volume, of one order less than p.
+  /// The integrand of the volume along an arc; its order is lower by one than that of p.
   template <std::size_t N>
   IntervalSeries<N - 1> integrand(const ProvenArc& arc, const SeriesVector<N>& p) const {
     SeriesVector<N - 1> at, dp;
@@ -311,7 +312,7 @@ class ProvenSolid {
     }
     return sum;
   }
-  /// The part of a torus that is due to its radii, as in forms() of faces.hpp.
+  /// The term of the integrand that is due to the radii of a torus, as in forms() of faces.hpp.
   template <std::size_t N>
   IntervalSeries<N> three_volumes_of_torus(const ProvenFace& face, const SeriesVector<N>& P,
                                            const SeriesVector<N>& dp) const {

@@ -19,12 +19,13 @@ struct IntervalBody {
   double side = 1;
   bool is_first_root = true;
 };
-/// The body of given numbers, with directions of exactly unit length, of which `zero` is exactly normal to `axis`.
+/// The body with the given numbers, where directions have exactly unit length and `zero` is exactly normal to `axis`.
 IntervalBody enclosed(const Body& body);
 
-/// Bounds of the volume of the intersection of bodies, with all rounding errors, for all numbers in the intervals.
-/// @param bound  on the distance of the points of the solid from the origin [m]
-/// @return std::nullopt if they cannot be proven: surfaces that touch or coincide, or too many intervals
+/// Bounds of the volume of the intersection of bodies, for all numbers in the intervals; rounding errors are included.
+/// @param bound  upper bound of the distance of the points of the solid from the origin [m]
+/// @return std::nullopt if no bounds can be proven, because surfaces touch or coincide, or too many intervals are
+/// needed
 std::optional<Interval> proven_volume(const std::vector<IntervalBody>& bodies, double bound);
 
 }  // namespace pkm::generic::edges

@@ -16,7 +16,8 @@ double factor_of(QuadricCoefficients f, Body::Kind kind) {
 
 /// Finds the axis of a cylinder. @return false if A is not the matrix of a cylinder
 bool find_axis(const Matrix<double, 3, 3>& A, double factor, Vector3& axis) {
-  Matrix<double, 3, 3> square = Matrix<double, 3, 3>::identity() - A * (1 / factor);  // axis axis^T
+  // axis axis^T, if the quadric is a cylinder
+  Matrix<double, 3, 3> square = Matrix<double, 3, 3>::identity() - A * (1 / factor);
   std::size_t largest = 0;
   for (std::size_t i = 1; i < 3; ++i)
     if (square(i, i) > square(largest, largest)) largest = i;
@@ -70,8 +71,8 @@ std::array<double, 10> by_coefficients(QuadricCoefficients f, const Body& body, 
   const Vector3 b = linear_part(f);
   if (body.kind == Body::Kind::plane) {
     const double length = norm(b);
-    const Vector3 along =
-        body.axis * (dot(body.axis, by.axis) + by.radius * body.radius) - by.axis;  // times the length
+    // derivatives with respect to b, multiplied by the length of b
+    const Vector3 along = body.axis * (dot(body.axis, by.axis) + by.radius * body.radius) - by.axis;
     result[0] = by.radius / length;
     for (std::size_t i = 0; i < 3; ++i) result[1 + i] = along[i] / length;
     return result;
@@ -83,7 +84,7 @@ std::array<double, 10> by_coefficients(QuadricCoefficients f, const Body& body, 
   for (std::size_t i = 0; i < 3; ++i) result[1 + i] = -0.5 * by_centre[i] / factor;
   const double by_factor = (0.5 * dot(by_centre, b) + by_square * f[0]) / (factor * factor);
   const double share = body.kind == Body::Kind::sphere ? 1.0 / 3 : 0.5;
-  const Vector3 turn = by.axis * (-1 / factor);  // a change of A turns the axis by -dA axis / factor
+  const Vector3 turn = by.axis * (-1 / factor);  // a change dA of the matrix changes the axis by -dA axis / factor
   const Vector3& a = body.axis;
   for (std::size_t i = 0; i < 3; ++i) result[4 + i] = share * by_factor + turn[i] * a[i];
   result[7] = 0.5 * (turn[0] * a[1] + turn[1] * a[0]);

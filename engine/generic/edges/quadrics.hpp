@@ -7,16 +7,20 @@
 
 namespace pkm::generic::edges {
 
-/// Coefficients of 1, x, y, z, x^2, y^2, z^2, x y, x z, y z.
+/// Coefficients of 1, x, y, z, x^2, y^2, z^2, x y, x z, y z of a quadric.
 using QuadricCoefficients = std::span<const double, 10>;
 
-enum class QuadricKind { satisfied, violated, body, other };  ///< satisfied, violated: at all points
+/// Satisfied, violated: f >= 0, or f < 0, at all points; body: see classify(); other: none of these.
+enum class QuadricKind { satisfied, violated, body, other };
 
-/// @param bound  length; coefficients are zero if they contribute only rounding errors at this distance
+/// Classifies the constraint f >= 0, and sets `body` if it is a plane, sphere or cylinder.
+/// @param bound  distance from the origin [m]; a coefficient that contributes only rounding errors up to this distance
+///               is 0
 QuadricKind classify(QuadricCoefficients f, double bound, Body& body);
 
-/// The derivatives of a function by the coefficients, for changes that keep the kind.
-/// @param by  derivatives by the members of the body that classify() returned
+/// Converts the derivatives of a quantity from members of the body to coefficients, for changes that do not change the
+/// kind.
+/// @param by  derivatives of the quantity with respect to the members of the body that classify() has set
 std::array<double, 10> by_coefficients(QuadricCoefficients f, const Body& body, const Body& by);
 
 }  // namespace pkm::generic::edges

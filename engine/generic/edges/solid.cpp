@@ -7,30 +7,31 @@
 namespace pkm::generic::edges {
 namespace {
 
-constexpr double kFunctionRounding = 4e-15;  // relative to the size of the solid, to the power of a function's degree
+// relative to the size of the solid, raised to the power degree() of a function
+constexpr double kFunctionRounding = 4e-15;
 constexpr int kMaxBisections = 36;
 constexpr long kMaxBoxes = 400'000;
 
-/// A condition on the points of a curve: they have to belong to a body, or, if they lie on the surface of one of its
-/// faces, to that face.
+/// A test of the points of a curve: they have to belong to a body, or, if they lie on the surface of one of its faces,
+/// to that face.
 struct Test {
   std::size_t body;
   const Rule* rule;
 };
 
-/// An active part of an arc.
+/// An active interval of an arc, i.e. one whose points belong to the boundary of the solid.
 struct Range {
   const Arc* arc;
   double from, to;
-  double sign;  ///< 1: the first face is on the left in the direction of increasing u; -1: the second one is
+  double sign;  ///< 1: for increasing u, the first face is on the left; -1: the second face is
 };
 
-/// A quadrature interval of an active part.
+/// A quadrature interval of an active range.
 struct Panel {
   std::size_t range;
   Subinterval<double> interval;
   double value = 0, error = 0;
-  std::array<Moments, 2> moments{};  ///< moments of the two faces
+  std::array<Moments, 2> moments{};  ///< moments of the first and of the second face
 };
 
 Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].value}}; }
@@ -94,13 +95,14 @@ class Evaluator {
     return true;
   }
 
-  /// Adds the arcs of an implicit curve on a torus that may be active.
+  /// Adds the arcs of an implicit curve on a torus, except those that cannot be active.
   void trace(const Curve& curve) {
     const PreparedBody& torus = *curve.faces[0]->body;
     set_tests(curve);
     long boxes = 0;
-    constexpr double kFirst = 0.8;  // width of the first boxes
-    constexpr double kStart = 2.9;  // arbitrary angle b, at which a symmetric solid has no special point
+    constexpr double kFirst = 0.8;  // maximum width of the first boxes [rad]
+    // start of the angle b [rad], arbitrary, so that a symmetric solid has no special point there
+    constexpr double kStart = 2.9;
     const double width = torus.to - torus.from;
     const int along_q = static_cast<int>(width / kFirst) + 1, along_b = static_cast<int>(2 * kPi / kFirst) + 1;
     const std::array<double, 2> half{0.5 * width / along_q, kPi / along_b};
@@ -133,12 +135,12 @@ class Evaluator {
     }
   }
 
-  /// Whether no point of a box belongs to all bodies and faces.
+  /// Whether every point of a box of angles fails one of the tests, so that no part of the curve in it is active.
   bool is_inactive(const Curve& curve, const TorusBox& box) const {
     const PreparedBody& torus = *curve.faces[0]->body;
     CurvePoint at = point_on(*curve.faces[0], box.middle[0], box.middle[1]);
     const double distance = (torus.crank + torus.radius) * box.half[0] + torus.radius * box.half[1];
-    // as functions of a variable in [-1, 1] with slope 0
+    // the coordinates as functions of a variable in [-1, 1], with slope 0
     for (Enclosure& x : at.p) x = {x.value, 0, 2 * distance, 1};
     at.square = {at.square.value, 0, 2 * distance * (2 * norm(values(at.p)) + distance), 1};
     std::array<Enclosure, kFunctions> values;
@@ -150,11 +152,11 @@ class Evaluator {
     });
   }
 
-  // Search for the active parts of arcs.
+  // Search for the active intervals of arcs.
 
-  using Tests = std::uint64_t;  // one bit each
+  using Tests = std::uint64_t;  // set of tests, one bit each, by index in tests_
 
-  /// Collects the conditions on the points of a curve.
+  /// Collects the tests that points of a curve have to pass.
   void set_tests(const Curve& curve) {
     const auto& [a, b] = curve.faces;
     tests_.clear();
@@ -162,7 +164,7 @@ class Evaluator {
       if (i != a->number && i != b->number) {
         tests_.push_back({i, &membership(bodies_[i], nullptr)});
       } else if (a->number != b->number && bodies_[i].kind >= Body::Kind::slide) {
-        // A curve on a torus is restricted to the range already.
+        // A curve on a torus needs no test of the range of that torus.
         const Face& face = i == a->number ? *a : *b;
         if (curve.kind < Curve::Kind::on_torus || &face != a)
           tests_.push_back({i, &membership(bodies_[i], &face.part)});
@@ -174,7 +176,7 @@ class Evaluator {
     set_tests(*arc.curve);
     arc_ = &arc;
     first_range_ = ranges_.size();
-    // Enclosures over more than a quarter of a circle are too wide to decide any condition.
+    // Divide long arcs: enclosures over more than a quarter of a circle are too wide to decide any test.
     const int parts = std::max(1, static_cast<int>(arc.length / 1.6));
     for (int i = 0; i < parts; ++i)
       search(arc.length * i / parts, arc.length * (i + 1) / parts, 0, (Tests{1} << tests_.size()) - 1);
@@ -205,7 +207,8 @@ class Evaluator {
         return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
       });
       if ((rule.holds & possible) == 0) {
-        if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);  // the test often decides the next interval as well
+        // try this test first in the next interval, which it often decides, too
+        if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);
         return;
       }
       if ((~rule.holds & possible) == 0) {
@@ -242,8 +245,8 @@ class Evaluator {
       if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), tests)) emit(ends[i], ends[i + 1]);
   }
 
-  /// The combinations of signs that are possible at a point or on an interval. Functions on which the rule does not
-  /// depend are not evaluated.
+  /// The combinations of signs that are possible at a point or on an interval. Only the functions on which the rule
+  /// depends are evaluated.
   template <class Sign>
   SignSets examine(const Test& test, const CurvePoint& at, std::array<Enclosure, kFunctions>& values,
                    const Sign& sign_of) const {
@@ -258,8 +261,8 @@ class Evaluator {
     return possible;
   }
 
-  /// Sign of a function on an interval; 0: unknown. A function that vanishes on the whole curve counts as positive: it
-  /// has no change of sign there, so that either sign is right.
+  /// Sign of a function on an interval; 0 if unknown. A function that vanishes on the whole curve counts as positive:
+  /// it has no sign change, so that both signs are correct.
   static int sign(const Enclosure& f, double power, double half) {
     const double reach = f.reach();
     if (f.value - reach > kFunctionRounding * power) return 1;
@@ -274,7 +277,7 @@ class Evaluator {
                                  : function(bodies_[tests_[test].body], number, at);
   }
 
-  /// The root of a monotone function.
+  /// Position of the root of a monotone function in [from, to]; std::nullopt if it has no sign change there.
   std::optional<double> find_root(std::size_t test, std::size_t number, double from, double to) const {
     const auto at = [&](double u) { return function_at(test, number, u); };
     const double first = at(from).value, last = at(to).value;
@@ -284,7 +287,7 @@ class Evaluator {
       const Enclosure f = at(u);
       return ValueAndDerivative{f.value, f.slope};
     };
-    // The error of Newton's method is of the order of the square of its last step.
+    // After a step, the error of Newton's method is of the order of the square of this step.
     const auto converged = [this](const ValueAndDerivative&, double u, double next) {
       return std::fabs(next - u) < 1e-9 * arc_->length;
     };
@@ -318,9 +321,9 @@ class Evaluator {
       ranges_.push_back({arc_, from, to, sign});
   }
 
-  // Sums over the active parts.
+  // Sums over the active intervals.
 
-  /// Checks that the directed edges of each face form closed curves.
+  /// Checks whether the directed edges of each face form closed curves, and estimates the error if they do not.
   void close() {
     std::vector<Vector3>& gaps = gaps_;
     gaps.assign(faces_.size(), {});
@@ -338,7 +341,7 @@ class Evaluator {
     return static_cast<std::size_t>(range.arc->curve->faces[which] - faces_.data());
   }
 
-  /// Places the pole of each whole sphere far from the edges on it.
+  /// Places the pole of the differential form of each whole sphere far from the edges on this sphere.
   void choose_poles() {
     for (Face& face : faces_) {
       if (face.body->kind != Body::Kind::sphere) continue;
@@ -430,7 +433,8 @@ class Evaluator {
     result_.nodes += static_cast<long>(level.nodes);
   }
 
-  /// The derivative by a parameter is the integral of the normal speed of the faces.
+  /// Computes the derivatives of the volume. The derivative with respect to a parameter is the integral of the normal
+  /// speed of the faces.
   void differentiate(std::vector<Body>& gradient) const {
     gradient.assign(bodies_.size(), Body{});
     for (std::size_t i = 0; i < bodies_.size(); ++i) gradient[i].side = gradient[i].radius = 0;
@@ -439,7 +443,7 @@ class Evaluator {
       const PreparedBody& body = *face.body;
       const Moments& m = moments_[i];
       Body& by = gradient[face.number];
-      if (face.surface == Surface::plane) {  // the speed is the change of radius - axis . p
+      if (face.surface == Surface::plane) {  // the normal speed of a plane is the change of radius - axis . p
         const double area = dot(body.axis, m.normal);
         by.radius = area;
         by.axis = cross(m.rotation, body.axis) - body.axis * (area * body.radius);
@@ -481,7 +485,7 @@ class Evaluator {
   double undecided_ = 0;
   EdgeVolume result_;
 
-  // members of the search along one arc
+  // state of the search along one arc
   const Arc* arc_ = nullptr;
   std::vector<Test> tests_;
   std::vector<Undecided> undecided_functions_;

@@ -5,16 +5,16 @@
 namespace pkm::generic::edges {
 namespace {
 
-/// Coefficients of products of 1, cos q, sin q and 1, cos b, sin b.
+/// Coefficients [i][j] of the products of the i-th of 1, cos q, sin q and the j-th of 1, cos b, sin b.
 using Bilinear = std::array<std::array<double, 3>, 3>;
 using Coefficients = std::array<Trigonometric, 5>;
 
-/// Products of two of the functions 1, cos t, sin t.
+/// kProduct[i][j]: product of the i-th and the j-th of the functions 1, cos t, sin t, as a trigonometric polynomial.
 constexpr Trigonometric kProduct[3][3] = {{{1, 0, 0, 0, 0}, {0, 1, 0, 0, 0}, {0, 0, 1, 0, 0}},
                                           {{0, 1, 0, 0, 0}, {0.5, 0, 0, 0.5, 0}, {0, 0, 0, 0, 0.5}},
                                           {{0, 0, 1, 0, 0}, {0, 0, 0, 0, 0.5}, {0.5, 0, 0, -0.5, 0}}};
 
-/// Adds the product factor x y to `to`.
+/// Adds factor times the product of the functions x and y to `to`.
 void add_product(const Bilinear& x, const Bilinear& y, double factor, Coefficients& to) {
   for (std::size_t i = 0; i < 9; ++i)
     for (std::size_t j = 0; j < 9; ++j) {
@@ -26,7 +26,7 @@ void add_product(const Bilinear& x, const Bilinear& y, double factor, Coefficien
     }
 }
 
-/// P . v + k on a torus, where P is the distance from its centre.
+/// The function P . v + k on a torus, where P is the vector from its centre to the point.
 Bilinear along(const PreparedBody& torus, const Vector3& v, double k) {
   const double x = dot(torus.zero, v), y = dot(torus.beside, v);
   return {{{k, 0, torus.radius * dot(torus.axis, v)},
@@ -34,7 +34,7 @@ Bilinear along(const PreparedBody& torus, const Vector3& v, double k) {
            {torus.crank * y, torus.radius * y, 0}}};
 }
 
-/// 1, cos t, sin t, cos 2t, sin 2t, or their derivatives.
+/// Values of 1, cos t, sin t, cos 2t, sin 2t [0], and their derivatives [1].
 std::array<Trigonometric, 2> basis(double t) {
   const auto [s, c] = portable::sincos(t);
   const double c_2 = (c - s) * (c + s), s_2 = 2 * s * c;
@@ -98,7 +98,7 @@ class Examination {
   CurveInBox run() const {
     if (std::fabs(centre_.f) > reach({true, true}) + rounding_error_) return {CurveInBox::State::absent};
     const std::array<double, 2> least{least_slope(0), least_slope(1)};
-    // the parameter is the coordinate along which the curve is flatter
+    // The parameter is the coordinate along which the curve is flatter.
     const std::size_t other = std::fabs(centre_.by[1]) >= std::fabs(centre_.by[0]) ? 1 : 0;
     if (least[other] > 0 && (least[1 - other] > 0 || has_fixed_sides(other))) return found(other, least[other]);
     const std::size_t second = 1 - other;
@@ -110,7 +110,7 @@ class Examination {
   }
 
  private:
-  /// Bound of |f - f(m)| in the box, or along one coordinate of it.
+  /// Upper bound of |f - f(m)| in the box if only the coordinates with varies[i] vary.
   double reach(const std::array<bool, 2>& varies) const {
     double sum = 0;
     for (std::size_t i = 0; i < 2; ++i)
@@ -121,7 +121,7 @@ class Examination {
       if (varies[i]) sum += std::fabs(centre_.by[i]) * box_.half[i];
     return sum;
   }
-  /// Lower bound of |df/d(coordinate i)|; not positive if that can vanish.
+  /// Lower bound of |df/d(coordinate i)| in the box; zero or negative if the derivative may vanish.
   double least_slope(std::size_t i) const {
     return std::fabs(centre_.by[i]) - f_.bend(i, 0) * box_.half[0] - f_.bend(i, 1) * box_.half[1];
   }
@@ -134,7 +134,7 @@ class Examination {
   double low(std::size_t i) const { return box_.middle[i] - box_.half[i]; }
   double high(std::size_t i) const { return box_.middle[i] + box_.half[i]; }
 
-  /// Whether f has no zero on the two sides of the box at which coordinate `other` is extreme.
+  /// Whether f has no zero on the two sides of the box on which coordinate `other` has its minimum and its maximum.
   bool has_fixed_sides(std::size_t other) const {
     const std::size_t i = 1 - other;
     for (const double end : {low(other), high(other)}) {
@@ -203,7 +203,8 @@ Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, c
   };
   const auto [low, high] = arc.across;
   const double at_low = at(low).f, at_high = at(high).f;
-  double root = std::fabs(at_low) < std::fabs(at_high) ? low : high;  // at an end of the arc both can have one sign
+  // where the arc ends, both values can have the same sign
+  double root = std::fabs(at_low) < std::fabs(at_high) ? low : high;
   if ((at_low > 0) != (at_high > 0))
     root = refine_root_newton(
         [&](double x) {
@@ -215,7 +216,7 @@ Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, c
   const TorusFunction::Value here = at(root);
   const double slope = -here.by[along] / here.by[other], h = parameter.reach();
   if (h == 0) return {root, slope * parameter.slope, 0, parameter.h};
-  // Bounds near the point; those of the box hold in any case.
+  // Bounds that hold near the point; those of the box hold, too.
   const double reach = arc.max_slope * h;
   const double least = std::max(
       arc.least, std::fabs(here.by[other]) - function.bend(other, along) * h - function.bend(other, other) * reach);
