@@ -11,7 +11,7 @@ struct Vector3 : std::array<Term, 3> {
   Vector3(const Term& x, const Term& y, const Term& z) : std::array<Term, 3>{{x, y, z}} {}
 };
 struct Rotation : std::array<Vector3, 3> {
-  /// @param x, y, z  the rows of the matrix
+  /// @param x, y, z  the rows of the rotation matrix
   Rotation(const Vector3& x, const Vector3& y, const Vector3& z) : std::array<Vector3, 3>{{x, y, z}} {}
 };
 
@@ -36,7 +36,7 @@ inline Rotation operator*(const Rotation& A, const Rotation& B) {
 }
 
 /// Rotation about a coordinate axis by an angle with this sine and cosine.
-/// @param axis  0 to 2
+/// @param axis  index of the coordinate axis, 0 to 2
 Rotation rotation_about(std::size_t axis, const Term& sine, const Term& cosine);
 /// Rotation about a unit vector by an angle (Rodrigues' formula).
 Rotation rotation_about(const Vector3& axis, const Term& angle);

@@ -65,7 +65,8 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
   struct Order {
     bounds::Constraints conditions;
     Ranges ranges;
-    std::vector<std::size_t> coordinates;  ///< by axis
+    /// Index of the mechanism's coordinate for each axis of the boxes, by axis; the last axis is the innermost one.
+    std::vector<std::size_t> coordinates;
   };
   std::optional<Order> best;
   double min_gap = 0;

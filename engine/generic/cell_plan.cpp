@@ -11,11 +11,12 @@ namespace {
 
 using expression::Program;
 
-using Surfaces = std::array<expression::Polynomial, 4>;  ///< at_min, at_max, after_min, before_max of a crank's range
+/// Quadratics at_min, at_max, after_min, before_max of a crank's range.
+using Surfaces = std::array<expression::Polynomial, 4>;
 
 /// The constraints in polynomial normal form along the coordinate of the innermost loop.
 struct NormalisedConstraints {
-  std::vector<Node> plain;  ///< constraints without a normal form, or independent of the coordinate
+  std::vector<Node> plain;  ///< constraints that have no normal form or do not depend on the coordinate
   std::vector<expression::Clause> clauses;
   struct Crank {
     CrankRangeNodes range;
@@ -23,7 +24,8 @@ struct NormalisedConstraints {
   };
   std::vector<Crank> cranks;
 
-  /// All nodes in the order of the members, with the coefficients of polynomials.
+  /// All nodes that the program has to compute, in the order of the members; of a polynomial, its coefficients c[0] to
+  /// c[2].
   std::vector<Node> outputs() const {
     std::vector<Node> all = plain;
     const auto add = [&all](const expression::Polynomial& q) { all.insert(all.end(), q.c.begin(), q.c.begin() + 3); };
@@ -69,7 +71,7 @@ void simplify(expression::Graph& graph, std::vector<expression::Clause>& clauses
   }
 }
 
-/// The quadratics in z of a crank's range; std::nullopt if they are not quadratic or do not depend on z.
+/// The four quadratics in z that decide a crank's range; std::nullopt if it cannot be decided in this way.
 std::optional<Surfaces> surfaces_of(expression::Graph& graph, const CrankRangeNodes& crank, Groups z) {
   if ((graph[crank.reach].groups & z) == 0 || (graph[crank.half_turn].groups & ~Inputs::kDesign) != 0 ||
       !graph[crank.branch].is_number())
@@ -83,7 +85,7 @@ std::optional<Surfaces> surfaces_of(expression::Graph& graph, const CrankRangeNo
   return surfaces;
 }
 
-/// @param z  group of the coordinate of the innermost loop
+/// @param z  input group of the coordinate of the innermost loop
 NormalisedConstraints normalised(PoseConstraints& known, Groups z) {
   NormalisedConstraints made;
   std::vector<Node> constraints = known.all;
@@ -109,7 +111,7 @@ NormalisedConstraints normalised(PoseConstraints& known, Groups z) {
   return made;
 }
 
-/// The groups of inputs that each stage of the program provides.
+/// The input groups that become available in each stage of the program, by stage.
 std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector<std::size_t>& order) {
   std::array<Groups, 4> groups{~Groups{0}, 0, 0, 0};
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -122,7 +124,7 @@ std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector
 
 /// Merges a disjunction of two constraints, one of which does not depend on z, into one ColumnConstraint with an
 /// alternative.
-/// @param all  one constraint per polynomial of the clause
+/// @param all  the constraints of the clause, one per polynomial
 CellPlan::Disjunction merge_constant(const expression::Clause& clause, CellPlan::Disjunction all, Node zero) {
   if (clause.size() != 2) return all;
   const auto constant =
@@ -159,7 +161,7 @@ CellPlan::CellPlan(const Evaluation& evaluation, const std::vector<int>& swept, 
   program = Program(graph, constraints.outputs(), groups);
   set_loops(constraints.plain.size());
 
-  std::size_t output = constraints.plain.size();  // index of the next output to read
+  std::size_t output = constraints.plain.size();  // index of the program output that next() reads next
   const auto next = [&](const expression::Polynomial& q) {
     ColumnConstraint constraint{.shape = shape_of(graph, q.c[2])};
     for (expression::Operand& c : constraint.c) c = middle->operand(program.outputs()[output++]);
@@ -211,8 +213,8 @@ double CellPlan::cost(const std::array<std::int64_t, 3>& cells) const {
   std::size_t stage = kInner + 1 - order.size();
   for (const std::size_t axis : order) {
     iterations *= static_cast<double>(cells[axis]);
-    sum += iterations * cost_of(program.stages()[stage].steps) *
-           (stage == kOuter ? 4 : 1);  // the outer loop is not vectorised
+    // factor 4, because the outer loop is not vectorised
+    sum += iterations * cost_of(program.stages()[stage].steps) * (stage == kOuter ? 4 : 1);
     if (stage == kMiddle)
       sum += iterations * 8 * static_cast<double>(columns.size() + 4 * disjunctions.size() + 8 * cranks.size());
     ++stage;

@@ -20,17 +20,18 @@ inline constexpr std::size_t kOuter = 1, kMiddle = 2, kInner = 3;
 /// Immutable, shared by threads. Operands and registers are those of `program`.
 struct CellPlan {
   using Registers = std::vector<std::uint32_t>;
-  using Disjunction = std::vector<ColumnConstraint>;  ///< at least one of them has to be satisfied
+  using Disjunction = std::vector<ColumnConstraint>;  ///< at least one of these constraints has to be satisfied
 
-  /// limbs::CrankRange, as constraints along the innermost loop.
+  /// The range of a crank (limbs::CrankRange), as constraints that are quadratic along the innermost loop.
   struct Crank {
     ColumnConstraint at_min, at_max, after_min, before_max;
-    std::uint32_t half_turn, reach;  ///< registers
-    bool is_first;                   ///< the joint is the smaller one of the two angles that assemble
+    /// Registers of two values: >= 0 if the range is at most half a revolution, and >= 0 if the limb reaches the pose.
+    std::uint32_t half_turn, reach;
+    bool is_first;  ///< true: the joint angle is the smaller one of the two angles that assemble
   };
 
-  /// @param swept  coordinate of each axis of the grid
-  /// @param order  axes, from the outermost loop to the innermost one
+  /// @param swept  index of the swept coordinate of each axis of the grid
+  /// @param order  indices of the axes, from the outermost loop to the innermost one
   CellPlan(const Evaluation& evaluation, const std::vector<int>& swept, std::vector<std::size_t> order,
            std::size_t mode);
   /// The plan with the order of loops that has the shortest estimated time for a grid with the given numbers of cells.
@@ -39,9 +40,11 @@ struct CellPlan {
 
   std::vector<std::size_t> order;
   expression::Program program;
-  Registers outer_constraints, middle_constraints, inner_constraints;  ///< by loop; outer: also those of stage 0
-  Registers passed_to_inner;              ///< registers of the middle loop that the inner loop reads
-  std::vector<ColumnConstraint> columns;  ///< linear ones first, which are the cheapest
+  /// Registers of the constraints that each loop tests; those of stage 0 belong to `outer_constraints`.
+  Registers outer_constraints, middle_constraints, inner_constraints;
+  Registers passed_to_inner;  ///< registers of the middle loop that the inner loop reads
+  /// Constraints that bound the columns; linear ones, which are the cheapest, come first.
+  std::vector<ColumnConstraint> columns;
   std::vector<Disjunction> disjunctions;
   std::vector<Crank> cranks;
   std::optional<expression::BatchStage> middle, inner;

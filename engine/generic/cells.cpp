@@ -12,14 +12,16 @@ namespace {
 
 using expression::kRow;
 
-/// Writes the centres of cells [first, first + count), padded to a multiple of kLanes. @return that multiple
+/// Writes the centres of cells [first, first + count) along an axis, padded to a multiple of kLanes.
+/// @return the padded number of values
 std::size_t fill_centres(const VoxelGrid& grid, std::size_t axis, std::size_t first, std::size_t count, double* to) {
   const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
   for (std::size_t k = 0; k < whole; ++k) to[k] = grid.centre(axis, static_cast<std::int64_t>(first + k));
   return whole;
 }
 
-/// Bits [from, to) of a word.
+/// One word of a bit set in which the bits from `from` up to, but excluding, `to` are set.
+/// @param word  index of the word
 std::uint64_t range_of_bits(double from, double to, std::size_t word) {
   const double first = static_cast<double>(word * 64);
   const auto below = [&](double end) {  // bits before `end`
@@ -191,7 +193,7 @@ void CellTest::find_crank_bits(std::size_t i, const ColumnGrid& column_grid, std
   for (std::size_t k = 0; k < in.size(); ++k) {
     const std::uint64_t f1 = scratch.at_min[k], f2 = scratch.at_max[k];
     const std::uint64_t p1 = scratch.after_min[k], p2 = scratch.before_max[k];
-    // phi, or phi + pi, is in the range
+    // cells in which the angle phi, or phi + pi, is in the range of the crank
     const std::uint64_t phi = is_half ? p1 & p2 : p1 | p2, opposite = is_half ? ~p1 & ~p2 : ~p1 | ~p2;
     in[k] = crank.is_first ? f1 & ~f2 : ~f1 & f2;
     if_reached[k] = (f1 & f2 & phi) | (~f1 & ~f2 & opposite);
@@ -217,7 +219,7 @@ void CellTest::clear_bits(const VoxelGrid& grid, std::size_t first, std::size_t 
     for (std::size_t k = 0; k < count * length; ++k) bits[k] &= scratch.in_range[i][k] | scratch.if_reached[i][k];
   }
   for (std::size_t j = 0; j < count; ++j) {
-    bool has_open_cells = false;  // constraints of the inner loop are still to be tested
+    bool has_open_cells = false;  // true: a cell is left for which constraints of the inner loop have to be tested
     for (std::size_t k = j * length; k < (j + 1) * length; ++k) {
       has_open_cells = has_open_cells || (!plan_.inner_constraints.empty() && bits[k] != 0);
       for (const auto& if_reached : scratch.if_reached)
@@ -231,7 +233,7 @@ void CellTest::clear_bits(const VoxelGrid& grid, std::size_t first, std::size_t 
 }
 
 void CellTest::test_cells(const VoxelGrid& grid, std::size_t first_column, std::size_t j, CellScratch& scratch) const {
-  static_assert(kRow == 64);  // one batch per word
+  static_assert(kRow == 64);  // because one batch of cells corresponds to one word of the bit set
   const std::size_t cells = shape(grid)[2], length = words(cells);
   for (std::size_t word = 0; word < length; ++word) {
     std::uint64_t& bits = scratch.bits[(first_column + j) * length + word];

@@ -13,20 +13,21 @@
 
 namespace pkm::generic {
 
-/// Scratch memory of CellTest. Bit sets have CellTest::words() words per column.
+/// Scratch memory of CellTest. Each bit set has one bit per cell, in CellTest::words() words per column.
 struct CellScratch {
   std::vector<double> registers;
   expression::Rows middle_rows, rows;
-  std::vector<std::uint64_t> bits;  ///< feasible cells of a slice, if requested
+  std::vector<std::uint64_t> bits;  ///< bit set of the feasible cells of a slice, if it is requested
   std::vector<std::uint64_t> any, hole, at_min, at_max, after_min, before_max;
-  std::vector<std::vector<std::uint64_t>> in_range, if_reached;  ///< by crank
+  /// For each crank, the cells in its range; and the cells that are in its range if the limb reaches them.
+  std::vector<std::vector<std::uint64_t>> in_range, if_reached;
   CellRanges ranges, other;
 };
 
-/// Feasible cells of a slice.
+/// Number of feasible cells of a slice or of some of its columns.
 struct CellTally {
   std::int64_t cells = 0;
-  bool touches_box = false;  ///< a feasible cell lies at the border of the grid
+  bool touches_box = false;  ///< true: a feasible cell lies at the border of the grid
 };
 
 /// Tests the cells of a grid slice by slice: a slice is one value of the outer loop of three; its columns are those of
@@ -37,12 +38,12 @@ class CellTest {
 
   /// Number of cells of the outer, middle and inner loop; 1 for a loop that does not exist.
   std::array<std::size_t, 3> shape(const VoxelGrid& grid) const;
-  /// Indices of a cell by axis of the grid, from those by loop.
+  /// Converts the indices of a cell in the three loops to its indices along the axes of the grid.
   std::array<std::int64_t, 3> cell(std::size_t outer, std::size_t middle, std::size_t inner) const;
   static std::size_t words(std::size_t cells) { return (cells + 63) / 64; }
-  /// True if a slice lies at the border of the grid.
+  /// True if all cells of a slice are at the border of the grid.
   bool is_outermost(const VoxelGrid& grid, std::size_t outer) const;
-  /// True if a column lies at the border of the grid.
+  /// True if all cells of a column are at the border of the grid.
   bool at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const;
 
   /// Computes everything that does not depend on the swept coordinates.

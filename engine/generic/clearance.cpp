@@ -10,7 +10,8 @@
 namespace pkm::generic {
 namespace {
 
-constexpr std::size_t kNumbers = 7;  // per link: two ends and the radius
+// numbers per link in the program's outputs: two end points with three coordinates each, and the radius
+constexpr std::size_t kNumbers = 7;
 
 template <class ValueOf>
 auto capsule_of(const ValueOf& value) -> Capsule<decltype(value(0))> {
@@ -61,7 +62,7 @@ std::vector<Node> nodes_of(const std::vector<LinkNodes>& links) {
 /// Finds the pair with the minimum clearance by sweep and prune: the links are sorted by the lower ends of their
 /// bounding boxes along the axis of largest extent, and each is compared with the following ones until their boxes are
 /// farther apart than the minimum so far. Among pairs of equal clearance the first one is returned.
-/// @param pairs  ascending
+/// @param pairs  pairs of link indices whose clearance is tested, in ascending order
 template <class S>
 ClosestPair<S> nearest_pair(const std::vector<Capsule<S>>& links, const std::vector<LinkPair>& pairs) {
   ClosestPair<S> nearest{S(std::numeric_limits<double>::infinity())};

@@ -6,8 +6,8 @@
 
 namespace pkm::generic {
 
-/// The pairs of links whose clearance is tested: all except pairs of fixed links, of links with a common group, and of
-/// links with a common end, which are joined there. Ascending.
+/// The pairs of links whose clearance is tested, in ascending order: all pairs except those of two fixed links, of
+/// links with a common group, and of links that share an end point, at which they are joined.
 std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<LinkNodes>& links);
 
 /// Indices of the links that move and whose clearance is tested.
@@ -19,7 +19,8 @@ std::vector<JoinedLinks> joined_links(const Model& model);
 /// The clearance limit [m]; std::nullopt if there is none or it is inactive.
 std::optional<double> clearance_of(const Model& model, const LimitSpec& limits);
 
-/// Throws std::invalid_argument if the limits include a clearance. @param why  the message after "mechanism NAME"
+/// Throws std::invalid_argument if the limits include a clearance.
+/// @param why  rest of the message, which begins with "mechanism NAME"
 void refuse_clearance(const Model& model, const LimitSpec& limits, const std::string& why);
 
 /// All links of a pose that assembles; empty if a position is undefined.
@@ -30,7 +31,7 @@ std::vector<Capsule<S>> capsules_at(const Evaluation& evaluation, const std::vec
 /// Two links, or a link and an obstacle, with the minimum clearance.
 template <class S>
 struct NearestBodies {
-  S clearance;  ///< [m], < 0 if they overlap; NaN if the position of a link is undefined
+  S clearance;  ///< distance of the two bodies [m], < 0 if they overlap; NaN if the position of a link is undefined
   std::string first, second;
 };
 
@@ -73,7 +74,7 @@ class ClearanceBatch {
   double limit_;
   Obstacles obstacles_;
   PoseBatch batch_;
-  std::vector<expression::Operand> operands_;  ///< kNumbers per link
+  std::vector<expression::Operand> operands_;  ///< operands of the link positions and radii, kNumbers per link
 };
 
 }  // namespace pkm::generic

@@ -21,11 +21,14 @@ namespace {
 using expression::Node;
 using generic::Evaluation;
 
-// Poses of the test are not close to singularities, where rounding errors grow: least inverse condition number of J.
+// Minimum inverse condition number of J at test poses, because rounding errors grow near singularities: initial value
+// in double and in single precision, and value below which no poses are searched for.
 constexpr double kMinConditioning = 2e-2, kMinConditioningOfFloats = 1e-1, kLeastConditioning = 1e-3;
-constexpr double kStep = 1e-5;  // [m, rad] from the pose to the start of its forward kinematics
+// distance [m, rad], in every coordinate, of the start of the forward kinematics from the test pose
+constexpr double kStep = 1e-5;
 
-/// The name as an identifier of all languages.
+/// The name, with other characters than letters and digits replaced, so that it is an identifier in all target
+/// languages.
 std::string identifier(const std::string& name) {
   std::string text;
   for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -99,7 +102,7 @@ class Collector {
                             {"Jw", 6, n, e->J_wrench}}};
   }
 
-  /// The margins that `pkmopt pose` lists, as far as they are formulas.
+  /// The margins that `pkmopt pose` lists, except those that no formula gives.
   Output margins() {
     Output output{"margins", 0, 1, {}};
     const auto add = [&](const std::string& name, const std::string& unit, Node node) {
@@ -141,8 +144,8 @@ class Collector {
     graph_ = substitute_nodes(graph_, nodes, roots);
   }
 
-  /// Replaces signs of the working mode and inputs beside the pose by numbers, and the parameters unless they are
-  /// arguments.
+  /// Replaces the signs of the working mode, and all inputs other than the pose, by numbers; the parameters, too,
+  /// unless they are arguments of the generated functions.
   void replace_constants(std::span<const double> parameters, std::vector<Node>& roots) {
     std::vector<std::optional<double>> numbers(model_.inputs.count());
     for (std::size_t i = 0; i < model_.inputs.signs; ++i) numbers[model_.inputs.sign(i)] = model_.signs[mode_][i];
@@ -186,8 +189,9 @@ double inverse_condition(const AxisMatrix<double>& J) {
   return 1 / (norm(J) * norm(solve(J, AxisMatrix<double>::identity(J.rows()))));
 }
 
-/// Feasible poses spread over the ranges of the coordinates, with the engine's values, as far as they are found.
-/// @param min_conditioning  inverse condition number of their Jacobians
+/// Feasible poses spread over the ranges of the coordinates, with the results of the engine there; fewer than requested
+/// if no more are found.
+/// @param min_conditioning  minimum inverse condition number of the Jacobian at these poses
 std::vector<Sample> samples_of(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
                                const std::string& mode, const Module& module, double min_conditioning) {
   constexpr std::size_t kMaxTrials = 50'000;

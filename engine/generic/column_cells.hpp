@@ -10,7 +10,7 @@
 
 namespace pkm::generic {
 
-/// Cell t of a column has its centre at first + t step.
+/// Cells of a column: cell t = 0, ..., cells - 1 has its centre at the coordinate first + t step.
 struct ColumnGrid {
   double first, step, cells;
 };
@@ -19,8 +19,8 @@ struct ColumnGrid {
 /// convex if it is a positive constant, any if it varies.
 enum class Shape { linear, concave, convex, any };
 
-/// The constraint c[0] + c[1] z + c[2] z^2 >= 0. If has_alternative, it is also satisfied where `alternative` >= 0,
-/// which does not depend on z.
+/// The constraint c[0] + c[1] z + c[2] z^2 >= 0 along the innermost coordinate z. If has_alternative, a point is also
+/// feasible where `alternative`, which does not depend on z, is >= 0.
 struct ColumnConstraint {
   Shape shape = Shape::any;
   std::array<expression::Operand, 3> c{};
@@ -28,14 +28,15 @@ struct ColumnConstraint {
   expression::Operand alternative{};
 };
 
-/// Feasible cells by column: [from, to) except those in [hole_from, hole_to). The numbers are whole.
+/// Feasible cells of each column: cells from, ..., to - 1 except hole_from, ..., hole_to - 1. All values are whole
+/// numbers.
 struct CellRanges {
   alignas(64) std::array<double, expression::kRow> from, to, hole_from, hole_to;
 };
 
-/// Contracts the ranges of `count` columns to the cells in which the constraint is satisfied; where it is undefined,
-/// it is violated. The holes of all columns are overwritten if the constraint can have any (convex, any), and otherwise
-/// left unchanged.
+/// Contracts the ranges of `count` columns to the cells in which the constraint is satisfied; a constraint that is
+/// undefined counts as violated. If the constraint can have holes (convex, any), the holes of all columns are
+/// overwritten; otherwise they are left unchanged.
 /// @param count            a multiple of kLanes
 /// @param registers, rows  see expression::BatchStage
 /// @return true if a column has a hole inside its range

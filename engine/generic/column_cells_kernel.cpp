@@ -15,7 +15,7 @@ bool contract(const ColumnConstraint& constraint, const double* registers, const
   const auto load = [&](const expression::Operand& operand, std::size_t k) __attribute__((always_inline)) {
     return operand.row ? L::load(rows + operand.index * expression::kRow + k) : L(registers[operand.index]);
   };
-  // abscissa in cells, clamped to at most one cell outside of the column
+  // Converts a coordinate to a cell index, not rounded, and clamped to at most one cell outside of the column.
   const auto cell_at = [&](const L& z) __attribute__((always_inline)) {
     return lesser(greater((z - grid.first) * per_step, L(-1.0)), all);
   };
@@ -39,7 +39,7 @@ bool contract(const ColumnConstraint& constraint, const double* registers, const
       const auto is_constant = (b <= 0.0) & (b >= 0.0);
       to = select(is_constant, select(c0 >= 0.0, all, none), to);
       const L sum = c0 + b;
-      to = select(sum >= sum, to, none);  // NaN: undefined
+      to = select(sum >= sum, to, none);  // if the sum is NaN, the constraint is undefined: no cell is feasible
     } else if (shape != Shape::any) {
       const L discriminant = b * b - (4.0 * leading) * c0, root = sqrt_or_zero(discriminant);
       const double half = 0.5 / (leading < 0 ? -leading : leading);
@@ -78,7 +78,7 @@ bool contract(const ColumnConstraint& constraint, const double* registers, const
     }
     from = greater(previous_from, from);
     to = lesser(previous_to, to);
-    if (may_have_holes) {  // a hole that extends over an end of the range shortens the range
+    if (may_have_holes) {  // if a hole extends over an end of the range, shorten the range instead
       const auto has_hole = hole_from < hole_to;
       from = select(has_hole & (hole_from <= from), greater(from, hole_to), from);
       to = select(has_hole & (hole_to >= to), lesser(to, hole_from), to);

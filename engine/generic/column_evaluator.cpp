@@ -49,7 +49,7 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
   friend WithGradients<GenericColumns>;
   static constexpr int kSampleNodes = 6;
 
-  /// The volume and its derivatives that were computed last.
+  /// Inputs and results of the last call of measure_with_gradient().
   struct LastGradient {
     const GenericColumns* of = nullptr;
     std::vector<Dual4> inputs;
@@ -96,7 +96,7 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
   }
 
   /// Samples the slice at every quadrature node of the outermost coordinates, and appends the samples to the result.
-  /// @param weight  product of the quadrature weights of the outermost coordinates before `level`
+  /// @param weight  product of the quadrature weights of the outermost coordinates whose index is less than `level`
   template <class S>
   void add_all_samples(std::size_t level, const S& weight, std::span<const S> parameters, SampleScratch<S>& samples,
                        DesignScratch& design, WorkspaceResult<S>& result) const {
@@ -118,8 +118,9 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
                      });
   }
 
-  /// The volume; its derivatives by all inputs are in design.last. Parameters come in blocks of four (forward mode):
-  /// the first block computes the results for all blocks, because only the derivatives of their inputs differ.
+  /// The volume; its derivatives with respect to all inputs are in design.last. A caller passes its parameters in
+  /// blocks of four (forward mode). The first block computes the results for all blocks, because the blocks differ only
+  /// in the derivatives of their inputs.
   Integral<double> measure_with_gradient(const std::vector<Dual4>& inputs, DesignScratch& design) const {
     LastGradient& last = design.last;
     const auto same_derivatives = [](const Dual4& x, const Dual4& y) { return std::ranges::equal(x.v.d, y.v.d); };
@@ -133,7 +134,8 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
     return last.volume;
   }
 
-  /// Appends the samples of the slices that design.volume holds to the result. @param share  factor of their weights
+  /// Appends the quadrature nodes of the slices that design.volume holds to the samples.
+  /// @param share  factor of their weights
   template <class S>
   void add_samples(const S& share, std::span<const S> parameters, SampleScratch<S>& samples, DesignScratch& design,
                    WorkspaceResult<S>& result) const {
@@ -170,9 +172,9 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
   ColumnVolume volume_;
-  std::optional<SampleConditioning> conditioning_;  ///< if it is requested
-  std::optional<InertiaBatch> inertia_;             ///< if fields of inertia are requested
-  std::optional<SampleFormulas> formulas_;          ///< if formulas are requested
+  std::optional<SampleConditioning> conditioning_;  ///< absent if the conditioning is not requested
+  std::optional<InertiaBatch> inertia_;             ///< absent if no fields of inertia are requested
+  std::optional<SampleFormulas> formulas_;          ///< absent if no fields given by formulas are requested
 };
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace pkm::generic {
 namespace {
 
-/// The integrated coordinates. The quadrature over slices has at most three coordinates in all; OuterQuadrature has the
-/// outermost integrated coordinates beyond three.
+/// The coordinates that are integrated over although they are not swept. The quadrature over slices has at most three
+/// coordinates, swept ones included; OuterQuadrature integrates over the outermost ones beyond that.
 struct IntegratedCoordinates {
   std::vector<std::size_t> beyond_three, of_slices;
 
@@ -60,7 +60,7 @@ CoordinateRanges box_of(const Sweep& sweep, std::size_t coordinates, const Colum
 
 struct Plans {
   std::vector<SlicePlan> all;
-  std::string why_not;  ///< the reason, if there are no plans
+  std::string why_not;  ///< reason why there are no plans; empty if there are some
 };
 
 /// Plans with planar slices bounded by conics if possible, otherwise with lines bounded by polynomials, otherwise with
@@ -142,7 +142,7 @@ SlicePlan ColumnVolume::choose_slices() const {
   const std::vector<double> inputs = inputs_of_default_design();
   IntegralScratch scratch;
   const SlicePlan* best = nullptr;
-  // limit on interval operations, or on surfaces times slices: about a second
+  // maximum number of interval operations, or of surfaces times slices: about one second
   long least = has_curves ? 100'000'000 : 10'000'000;
   for (const SlicePlan& plan : plans_) {
     const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
@@ -206,7 +206,8 @@ Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, st
     return {found->value, std::max(found->error, missed), by_slices.evaluations};
   }
   if (needs_gradient) slices().add_gradient(by_input, scratch.integral);
-  scratch.is_sampled = scratch.is_sampled || !slices().plan().order.outer.empty();  // a single slice is exact
+  // a single slice, without outer coordinates, is exact
+  scratch.is_sampled = scratch.is_sampled || !slices().plan().order.outer.empty();
   return by_slices;
 }
 

@@ -12,10 +12,10 @@
 
 namespace pkm::generic {
 
-/// Why the default analysis of a mechanism has no columns; empty if it has.
+/// Reason why the default analysis of a mechanism has no columns; empty if it has columns.
 std::string why_no_columns(const Evaluation& evaluation);
 
-/// Shared by threads.
+/// Immutable except for the plan of slices, which is chosen once; threads can share it.
 class ColumnVolume {
  public:
   /// Scratch memory of one thread.
@@ -23,18 +23,18 @@ class ColumnVolume {
     IntegralScratch integral;
     corner_curves::Volume::Scratch corner_curves;
     edges::EdgePlan::Scratch edges;
-    bool is_sampled = false;  ///< the last volume was computed from slices, which can miss a connected component
+    bool is_sampled = false;  ///< true: the last volume was computed from slices, which can miss a connected component
   };
 
   /// Throws std::invalid_argument with a message if the workspace has no exact columns.
   /// @param evaluation     must outlive this object
-  /// @param needs_samples  the nodes of slices() will be visited after measure()
+  /// @param needs_samples  true: the caller will visit the nodes of slices() after measure()
   ColumnVolume(const Evaluation& evaluation, const WorkspacePlan& plan, const ColumnOptions& columns, std::size_t mode,
                bool needs_samples);
 
   /// The volume over all swept and integrated coordinates.
   /// @param inputs    values of the graph's inputs; those of the outermost coordinates are overwritten
-  /// @param by_input  if not empty, the derivatives of the volume are added
+  /// @param by_input  derivatives by input, to which those of the volume are added; empty: not requested
   Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, Scratch& scratch) const;
 
   /// Proven bounds of the volume, including rounding errors; std::nullopt if there are none, because the workspace is
@@ -63,8 +63,10 @@ class ColumnVolume {
   double slice_tolerance_ = 0;
   mutable std::once_flag is_chosen_;
   mutable std::optional<NestedIntegral> slices_;
-  std::optional<edges::EdgePlan> edges_;                ///< if the workspace is a solid with edges
-  std::optional<corner_curves::Volume> corner_curves_;  ///< if they serve a plan
+  /// Plan of the volume from edges; absent if the workspace is no solid with edges.
+  std::optional<edges::EdgePlan> edges_;
+  /// Volume by corner curves; absent if they cannot integrate any plan.
+  std::optional<corner_curves::Volume> corner_curves_;
 };
 
 }  // namespace pkm::generic

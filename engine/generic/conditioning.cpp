@@ -43,7 +43,7 @@ AxisMatrix<S> rates_by_twist(const Model& model, const Pose<S>& pose) {
   return rates;
 }
 
-/// Minimum over maximum singular value of A; derivatives of a singular value: d sigma = u^T dA v.
+/// Minimum divided by maximum singular value of A. The derivatives of a singular value are d sigma = u^T dA v.
 template <class S>
 S singular_ratio(const AxisMatrix<S>& A) {
   constexpr unsigned kVectors = Derivative<S> ? Eigen::ComputeThinU | Eigen::ComputeThinV : 0;
@@ -61,7 +61,7 @@ S singular_ratio(const AxisMatrix<S>& A) {
   return A.rows() >= A.cols() && value_of(maximum) > 0 ? S(minimum / maximum) : S(0.0);
 }
 
-/// Index of the coordinate that belongs to a column of included_columns().
+/// Index of the coordinate to which a column of included_columns() belongs.
 std::size_t included_coordinate(const Model& model, std::size_t column) {
   return model.conditioning_coordinates.empty() ? column : model.conditioning_coordinates[column];
 }
@@ -121,7 +121,7 @@ S SampleConditioning::at(const Pose<S>& pose, ConditioningScratch<S>& scratch) c
   const std::optional<S> found = conditioning_of<S>(e_.model, scratch.lengths, pose, J);
   if (found && std::isfinite(value_of(*found))) return *found;
   check(e_.model.info, scratch.lengths);
-  return S(kConditioning.value_if_undefined);  // J is infinite: the pose is singular
+  return S(kConditioning.value_if_undefined);  // if J is infinite, the pose is singular
 }
 
 template std::optional<double> conditioning_of(const Model&, const CharacteristicLengths<double>&, const Pose<double>&,

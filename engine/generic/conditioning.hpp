@@ -7,7 +7,7 @@
 namespace pkm::generic {
 
 /// The characteristic length, which scales rotations of the platform, and the characteristic radius, which scales
-/// revolute drives beside prismatic ones; std::nullopt if the file does not define it.
+/// revolute drives if there are also prismatic ones; std::nullopt if the mechanism file does not define it.
 template <class S>
 struct CharacteristicLengths {
   std::optional<S> length, radius;
@@ -22,7 +22,7 @@ CharacteristicLengths<S> characteristic_lengths(const Evaluation& evaluation, st
 void check_lengths(const Evaluation& evaluation, std::span<const double> parameters);
 
 /// The conditioning at a pose. S is double or Dual4.
-/// @param J  joints x coordinates: joint rates by coordinate rates
+/// @param J  joints x coordinates: derivatives of the joint positions with respect to the coordinates
 /// @return std::nullopt if a length that is needed is not defined, or if J is not finite
 template <class S>
 std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths<S>& lengths, const Pose<S>& pose,
@@ -35,19 +35,19 @@ struct ConditioningScratch {
   std::vector<S> registers;
 };
 
-/// The conditioning of samples of a workspace analysis.
+/// Evaluates the conditioning at the samples of a workspace analysis.
 class SampleConditioning {
  public:
   SampleConditioning(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode)
       : e_(evaluation), batch_(evaluation.model, evaluation.model.jacobian, swept, mode) {}
 
-  /// Prepares the evaluation at poses of one design, like PoseBatch::start().
+  /// Prepares the evaluation for one design, like PoseBatch::start().
   template <class S>
   void start(std::span<const S> parameters, const std::vector<S>& inputs, ConditioningScratch<S>& scratch) const {
     scratch.lengths = characteristic_lengths(e_, parameters);
     batch_.start<S>(inputs, scratch.registers);
   }
-  /// Value of the field kConditioning. If J is not finite, the value of a singular pose.
+  /// Conditioning at a pose, for the field kConditioning. If J is not finite, it is that of a singular pose.
   template <class S>
   S at(const Pose<S>& pose, ConditioningScratch<S>& scratch) const;
 

@@ -49,7 +49,7 @@ PoseConstraints constraints_of(const Model& model, std::size_t mode) {
 }
 
 std::vector<Node> finiteness_constraints(Graph& graph, Node constraint, Groups along) {
-  // finite for all finite arguments, except for overflow
+  // Functions whose value is finite for all finite arguments, except for overflow.
   static const std::vector<std::string> finite = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "turn", "tanh"};
   const auto may_be_infinite = [&graph](const expression::Entry& entry) {
     if (!entry.operation) return false;
@@ -77,7 +77,7 @@ std::vector<Node> finiteness_constraints(Graph& graph, Node constraint, Groups a
     if (entry.operation && entry.operation->code == expression::Code::divide && is_divisor(entry.arguments[1]))
       subexpressions.push_back(graph.apply(*entry.operation, std::array{graph.number(1), entry.arguments[1]}));
   }
-  std::vector<bool> is_infinite(graph.size());  // true: possibly infinite or undefined
+  std::vector<bool> is_infinite(graph.size());  // for each node, true if its value may be infinite or undefined
   for (const Node node : graph.reachable(subexpressions))
     is_infinite[static_cast<std::size_t>(node)] =
         may_be_infinite(graph[node]) || std::ranges::any_of(graph[node].operands(), [&](Node operand) {

@@ -10,11 +10,13 @@ namespace pkm::generic {
 /// The constraints as nodes of a separate graph, in which the signs of the working mode are constants.
 struct PoseConstraints {
   Graph graph;
-  std::vector<Node> all;  ///< Model::domains, then margins, then defined; satisfied if >= 0
+  /// Constraints, each satisfied if >= 0, in the order Model::domains, Model::margins, Model::defined.
+  std::vector<Node> all;
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
   std::vector<RodAndPathNodes> paths;
-  std::vector<std::optional<std::array<Node, 2>>> box;  ///< by coordinate
+  /// Lower and upper bound of the range that is searched, by coordinate; std::nullopt if the file does not define it.
+  std::vector<std::optional<std::array<Node, 2>>> box;
 };
 
 /// The constraints of a model in one working mode.
@@ -23,10 +25,10 @@ PoseConstraints constraints_of(const Model& model, std::size_t mode);
 /// A constraint that is not finite is violated, but its polynomial normal form along some coordinates does not show
 /// this for subexpressions that are constant along them. For each of these subexpressions this function returns a
 /// constraint, 0 times the subexpression, which is satisfied if it is finite.
-/// @param along  groups of the coordinates
+/// @param along  input groups of these coordinates
 std::vector<Node> finiteness_constraints(Graph& graph, Node constraint, Groups along);
 
-/// Name of a constraint for messages.
+/// Name of a constraint, for messages.
 /// @param constraint  index in PoseConstraints::all
 std::string constraint_name(const Model& model, std::size_t constraint);
 

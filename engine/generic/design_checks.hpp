@@ -5,7 +5,8 @@
 
 namespace pkm::generic {
 
-/// Empty if the design describes a mechanism, otherwise a message with the first empty range or violated constraint.
+/// Empty if the design describes a mechanism; otherwise a message that names the first empty range or violated
+/// constraint.
 Unsupported refuse_design(const Evaluation& evaluation, std::span<const double> parameters);
 
 }  // namespace pkm::generic

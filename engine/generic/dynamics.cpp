@@ -10,7 +10,8 @@
 namespace pkm::generic {
 namespace {
 
-/// Reads the outputs of a program in their order. @param value_of_register  value_of_register(std::uint32_t)
+/// Reads the outputs of a program one after the other.
+/// @param value_of_register  value_of_register(std::uint32_t): value of the register with this index
 template <class ValueOf>
 class Outputs {
  public:
@@ -72,7 +73,7 @@ void check_masses(const Evaluation& e, std::span<const S> parameters) {
 
 namespace {
 
-/// Evaluates up to kRow states in one SIMD batch.
+/// Evaluates at most kRow states in one SIMD batch.
 void find_batch(const Evaluation& e, std::span<const double> registers, std::span<const MotionState<double>> states,
                 double* rows, std::span<PoseDynamics<double>> found) {
   const Inputs& at = e.model.inputs;
@@ -82,7 +83,7 @@ void find_batch(const Evaluation& e, std::span<const double> registers, std::spa
     double* const row = rows + e.motion_batch->inputs()[i] * expression::kRow;
     const std::size_t position = inputs[i].position;
     const bool is_rate = position >= at.rate(0);
-    for (std::size_t k = 0; k < padded; ++k) {  // padding: copies of the last state
+    for (std::size_t k = 0; k < padded; ++k) {  // pad the batch with copies of the last state
       const MotionState<double>& state = states[std::min(k, count - 1)];
       row[k] = is_rate ? state.velocity[position - at.rate(0)] : state.pose[position - at.coordinate(0)];
     }
@@ -102,7 +103,8 @@ void find_batch(const Evaluation& e, std::span<const double> registers, std::spa
 template <class S>
 void find_dynamics(const Evaluation& e, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found) {
-  constexpr std::size_t kMinBatch = 4;  // states; smaller batches are not faster than single states
+  // minimum number of states; evaluating a smaller batch is not faster than evaluating single states
+  constexpr std::size_t kMinBatch = 4;
   check_masses(e, parameters);
   const Inputs& at = e.model.inputs;
   with_scratch<S>(at.count() + e.motion.registers(), [&](std::span<S> scratch) {

@@ -25,7 +25,7 @@ class QuadricConverter {
     return result;
   }
 
-  /// Converts a constraint to a conjunction of disjunctions of quadrics.
+  /// Converts a constraint to clauses (a conjunction of disjunctions) of quadrics; std::nullopt if it has no such form.
   std::optional<std::vector<std::vector<NodeQuadric>>> clauses(Node constraint) const {
     for (std::size_t first = 0; first < 3; ++first)
       if (auto found = clauses_along(constraint, first)) return found;
@@ -35,8 +35,8 @@ class QuadricConverter {
  private:
   using Exponents = std::array<std::size_t, 3>;
 
-  /// Adds node x^i y^j z^k to a quadric, where the node is a polynomial in the coordinates from `axis` on, except
-  /// `known`.
+  /// Adds node x^i y^j z^k to a quadric, where (i, j, k) are the exponents and the node is a polynomial in the
+  /// coordinates from `axis` on, except `known`.
   bool expand(Node node, std::size_t axis, const Exponents& exponents, std::size_t known, NodeQuadric& result) const {
     static constexpr std::size_t kPlace[3][3][3] = {
         {{0, 3, 6}, {2, 9, 0}, {5, 0, 0}}, {{1, 8, 0}, {7, 0, 0}, {0, 0, 0}}, {{4, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
@@ -93,7 +93,7 @@ double extent(const Body& body, const Vector3& direction) {
     case Body::Kind::cylinder:
       return body.side > 0 && std::fabs(cosine) < kParallel ? centre + body.radius : kInfinity;
     case Body::Kind::slide: {
-      // The rod ends on the half sphere ahead of E, for the first root, or behind it.
+      // The rod ends on a half sphere about E: ahead of E for the first root, behind E for the second one.
       const bool is_whole = (cosine >= 0) == body.is_first_root;
       return centre + std::max(body.from * cosine, body.to * cosine) + body.radius * (is_whole ? 1 : sine);
     }
@@ -125,7 +125,7 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
   std::vector<Node> constants, outputs;
   std::vector<bool> is_covered(known.all.size());
   for (const RodAndPathNodes& path : known.paths) {
-    // v = p + offset
+    // the vector v of the path is p + offset, where p consists of the swept coordinates
     std::array<Node, 3> offset{};
     bool is_translation = graph[path.branch].is_number();
     for (std::size_t i = 0; i < 3 && is_translation; ++i) {
@@ -210,7 +210,8 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
       double reach = std::numeric_limits<double>::infinity();
       for (const Body& other : design.solid.bodies) reach = std::min(reach, extent(other, body.axis));
       if (reach <= body.radius + margin) {
-        design.beyond += std::max(reach - body.radius, 0.0) + 0.1 * margin;  // more than the rounding error of extent()
+        // add more than the rounding error of extent()
+        design.beyond += std::max(reach - body.radius, 0.0) + 0.1 * margin;
         return;
       }
     }
@@ -230,7 +231,7 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
                     .to = values[at + 12],
                     .is_first_root = rod.is_first_root};
     if (!(body.from < body.to)) design.is_empty = true;
-    // A whole revolution has coinciding ends.
+    // The two ends of a whole revolution coincide.
     if (rod.is_crank && body.to - body.from > 2 * kPi - 1e-6) return false;
     add(body, {Source::Kind::rod, at});
   }
@@ -331,7 +332,7 @@ std::optional<IntervalBody> EdgePlan::enclose(const Body& body, const Source& so
     case Source::Kind::quadric:
       break;
   }
-  // k + b . p + p . A p
+  // The quadric is k + b . p + p . A p.
   const auto is_number = [](const Interval& x, double number) { return x.lower == number && x.upper == number; };
   const IntervalVector b = vector(1), squares = vector(4), products = vector(7);
   if (!std::ranges::all_of(products, [&](const Interval& x) { return is_number(x, 0); })) return {};
@@ -342,7 +343,7 @@ std::optional<IntervalBody> EdgePlan::enclose(const Body& body, const Source& so
     made.radius = f[0] / length - dot(made.axis, middle);
     return made;
   }
-  // A sphere, or a cylinder along a coordinate axis: the same number for two or three squares.
+  // A sphere, or a cylinder along a coordinate axis: three or two of the squares have the same coefficient.
   const double factor = squares[squares[0].lower != 0 ? 0 : 1].lower;
   IntervalVector centre = b * (Interval(-0.5) / Interval(factor));
   int along = 0;
@@ -370,7 +371,7 @@ bool EdgePlan::are_others_superfluous(const Design& design, std::span<const Inte
   };
   return std::ranges::all_of(clauses_, [&](const Clause& clause) {
     if (std::ranges::any_of(clause, [&](std::size_t at) { return over_box(at).is_certified_satisfied(); })) return true;
-    // at most one quadric of the disjunction is a body, and the others hold nowhere
+    // At most one quadric of the disjunction may be a body; the others must be violated everywhere.
     std::size_t bodies = 0;
     for (const std::size_t at : clause) {
       Body body;

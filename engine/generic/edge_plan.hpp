@@ -15,13 +15,13 @@ namespace pkm::generic::edges {
 /// crank; every other constraint has to be a quadric in the swept coordinates. Immutable, shared by threads.
 class EdgePlan {
  public:
-  /// @param swept      coordinates; the others are inputs
-  /// @param box        range of each coordinate; std::nullopt: the range of the model
+  /// @param swept      indices of the three coordinates of the solid; all other coordinates are inputs
+  /// @param box        range of each coordinate that is searched; std::nullopt: the range of the model
   /// @param tolerance  relative error of the volume
   EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::vector<int>& swept,
            const std::vector<std::optional<std::array<double, 2>>>& box, double tolerance);
 
-  /// Why the workspace is not an intersection of such bodies; empty if it is.
+  /// Reason why the workspace is not an intersection of such bodies; empty if it is.
   const std::string& why_not() const { return why_not_; }
 
   struct Scratch;
@@ -29,7 +29,7 @@ class EdgePlan {
   /// The volume of a design, if why_not() is empty; std::nullopt if a quadric is no plane, sphere or cylinder, two
   /// faces are on the same surface, or the edges are not closed.
   /// @param inputs    values of the inputs of the model's graph
-  /// @param by_input  if not empty, the derivatives of the volume are added
+  /// @param by_input  derivatives by input, to which those of the volume are added; empty: not requested
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch,
                                           std::span<double> by_input = {}) const;
   /// Proven bounds of the volume of a design, if why_not() is empty. The inputs are exactly the given numbers; all
@@ -41,40 +41,43 @@ class EdgePlan {
   /// of the program, the first of the 10 coefficients of a quadric.
   using Clause = std::vector<std::size_t>;
   struct Rod {
-    std::size_t output;  ///< index of the first output: B - A at the origin, axis, zero, rod, crank, from, to
+    /// Index of the first of its outputs: B - A if the coordinates are 0, then axis, zero, rod, crank, from, to.
+    std::size_t output;
     bool is_crank, is_first_root;
   };
   /// Source of a body of the solid: a rod, a quadric constraint, or a bound of the search box.
   struct Source {
     enum class Kind { rod, quadric, box };
     Kind kind;
-    std::size_t output;  ///< index of the first output that describes it
-    double side = 0;     ///< bound of the box only: 1: upper bound
+    std::size_t output;  ///< index of the first program output that describes the body
+    double side = 0;     ///< of a bound of the box: 1 for an upper bound; otherwise unused
   };
   /// The solid of one design.
   struct Design {
     std::vector<double> registers, outputs;
     Vector3 origin;
     Solid solid;
-    std::vector<Source> sources;  ///< source of each body
+    std::vector<Source> sources;  ///< source of each body of the solid, by body
     bool is_empty = false;
-    double beyond = 0;  ///< how far, in total, the other bodies reach beyond planes that are omitted
+    double beyond = 0;  ///< sum of the distances by which other bodies reach beyond the planes that were omitted
 
-    /// Bound on the distance of the solid from the origin of the coordinates.
+    /// Upper bound of the distance of the solid's points from the origin of the coordinates.
     double reach() const { return solid.bound + norm(origin); }
   };
   /// Builds the solid of a design. @return false if a quadric is no plane, sphere or cylinder
   bool build(std::span<const double> inputs, Design& design) const;
-  /// The same body with the rounding errors of its numbers.
+  /// The same body with intervals that contain its numbers and their rounding errors; std::nullopt if there is no such
+  /// body.
   static std::optional<IntervalBody> enclose(const Body& body, const Source& source, const Vector3& origin,
                                              std::span<const Interval> values);
-  /// Whether every constraint that is no body of the solid has no effect, by proof.
+  /// Whether it is proven that every constraint which is no body of the solid has no effect.
   bool are_others_superfluous(const Design& design, std::span<const Interval> values) const;
   void add_gradient(Scratch& scratch, std::span<double> by_input) const;
 
   expression::Program program_;
-  std::size_t constants_ = 0;  ///< first of the last outputs: constraints that depend on the design only, >= 0
-  std::size_t box_ = 0;        ///< first of the outputs of the box: lower and upper bound of each coordinate
+  /// Index of the first output that is a constraint on the design only; these outputs are the last ones.
+  std::size_t constants_ = 0;
+  std::size_t box_ = 0;  ///< index of the first output of the box: lower and upper bound of each coordinate
   std::vector<Rod> rods_;
   std::vector<Clause> clauses_;
   std::string why_not_;

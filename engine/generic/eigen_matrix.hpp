@@ -7,7 +7,7 @@
 
 namespace pkm::generic {
 
-/// Matrix of bounded size, without heap allocation.
+/// Eigen matrix of at most kMaxJoints rows and columns, without heap allocation.
 using EigenMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
 
 /// The values of A, without derivatives.
@@ -20,7 +20,7 @@ EigenMatrix eigen(const M& A) {
   return copy;
 }
 
-/// A matrix of at most kMaxJoints rows and columns.
+/// Conversion from an Eigen matrix of at most kMaxJoints rows and columns.
 template <class Derived>
 AxisMatrix<double> axis_matrix(const Eigen::MatrixBase<Derived>& A) {
   AxisMatrix<double> copy(static_cast<std::size_t>(A.rows()), static_cast<std::size_t>(A.cols()));

@@ -17,8 +17,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::Vector3d;
 
 Vector3d vector(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Values at a pose of the dimensions and compliances of all elastic bodies, of the platform's origin, and of the axis
-/// of a platform that is a pin.
+/// Values of nodes at a pose: dimensions and compliances of all elastic bodies, the origin of the platform frame, and
+/// the axis of a platform that is a pin.
 class Numbers {
  public:
   Numbers(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode) {
@@ -50,14 +50,15 @@ class Numbers {
   std::map<Node, double> value_;
 };
 
-/// The columns of a joint among the unknowns: three forces, then its couples.
+/// Index of the first column of each joint among the unknowns (three forces, then the couples of the joint), by joint;
+/// the last element is the number of unknowns.
 std::vector<Index> first_columns(const NewtonEuler& system) {
   std::vector<Index> first = {0};
   for (const Joint& joint : system.joints) first.push_back(first.back() + 3 + std::ssize(joint.couples));
   return first;
 }
 
-/// Twice the complementary energy as a quadratic form of the unknowns.
+/// Twice the complementary energy as a quadratic form x^T Q x of the unknown forces and couples x.
 class Energy {
  public:
   Energy(const NewtonEuler& system, const JointedBodies& bodies, const Numbers& numbers)
@@ -72,7 +73,8 @@ class Energy {
   const MatrixXd& matrix() const { return Q_; }
 
  private:
-  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  // three components, as linear forms of the unknowns
+  // three components of a vector, as linear forms of the unknowns
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
   Rows no_rows() const { return Rows::Zero(3, Q_.cols()); }
   Rows force(std::size_t joint) const {
@@ -86,7 +88,7 @@ class Energy {
       rows.col(first_[joint] + 3 + static_cast<Index>(k)) = vector(system_.joints[joint].couples[k]);
     return rows;
   }
-  /// Adds the energy of elastic drives. Joints of the same drive share its force.
+  /// Adds the energy of elastic drives. Joints with the same drive share its force.
   void add_drives() {
     std::map<std::size_t, Eigen::RowVectorXd> forces;
     std::map<std::size_t, double> compliances;
@@ -100,7 +102,7 @@ class Energy {
     }
     for (const auto& [drive, sum] : forces) Q_ += compliances[drive] * sum.transpose() * sum;
   }
-  /// Joints that load a beam, with the signs of their forces and couples.
+  /// Joints that load a beam, by index, each with the sign of its force and couples.
   using Loads = std::vector<std::pair<std::size_t, double>>;
 
   Loads loads_of_solid(std::size_t solid, std::size_t near_joint) const {
@@ -112,19 +114,19 @@ class Energy {
     }
     return loads;
   }
-  /// The loads of elastic slides, by drive.
+  /// For each drive with an elastic slide, the joints whose forces load this slide; the key is the index of the drive.
   std::map<std::size_t, Loads> joints_of_rams() const {
     std::map<std::size_t, Loads> loads;
     for (std::size_t i = 0; i < bodies_.joints.size(); ++i)
       if (const auto& drive = bodies_.joints[i].drive; drive && drive->ram) loads[drive->joint].push_back({i, 1});
     return loads;
   }
-  /// Adds the energy of a beam. The moment is linear along the beam; the integral of its square follows from its values
-  /// at both ends.
+  /// Adds the energy of a beam. The bending moment is linear along the beam, so that the integral of its square follows
+  /// from the values at both ends.
   void add_beam(const BeamNodes& beam, const Loads& loads) {
     const Vector3d near = numbers_(beam.near), far = numbers_(beam.far);
     const double length = (far - near).norm();
-    if (length == 0) return;  // a slide that is retracted into its guide
+    if (length == 0) return;  // a slide that is fully retracted into its guide
     const Vector3d u = (far - near) / length;
     Rows load = no_rows(), at_near = no_rows(), at_far = no_rows();
     for (const auto& [i, sign] : loads) {
@@ -165,7 +167,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
   const Energy energy(system, bodies, numbers);
   const MatrixXd& Q = energy.matrix();
 
-  // Wrenches at the origin of the platform's frame, as loads on the platform. Lengths are divided by `size`, so that
+  // Unit wrenches at the origin of the platform frame, as loads on the platform. Lengths are divided by `size`, so that
   // ranks do not depend on units.
   const auto platform = static_cast<std::size_t>(std::ranges::find(bodies.solids, true, &SolidNodes::with_platform) -
                                                  bodies.solids.begin());
@@ -178,7 +180,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
     B.block<3, 1>(row + 3, k) = -arm.cross(Vector3d(Vector3d::Unit(k)));
   }
   for (const JointNodes& joint : bodies.joints)
-    if (joint.holds_pin) {  // as in newton_euler()
+    if (joint.holds_pin) {  // a moment about the axis of the pin has no effect, as in newton_euler()
       const Vector3d axis = numbers(joint.axes[0]).normalized();
       B.middleRows<3>(row + 3) -= axis * (axis.transpose() * B.middleRows<3>(row + 3)).eval();
     }
@@ -195,7 +197,8 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
                  scaled_B = scale_rows.asDiagonal() * B * scale_wrench.asDiagonal(),
                  scaled_Q = scale_columns.asDiagonal() * Q * scale_columns.asDiagonal();
 
-  // The wrenches that are in the column space of A: B w has no component in the left null space.
+  // Find the wrenches that the mechanism supports: B w is in the column space of A, i.e. has no component in its left
+  // null space.
   Eigen::JacobiSVD<MatrixXd> decomposition(scaled_A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   decomposition.setThreshold(1e-9);
   const Index rank = decomposition.rank();
@@ -208,7 +211,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
     supported = of_wrenches.matrixV().rightCols(6 - blocked);
   }
   if (supported.cols() == 0) return {AxisMatrix<double>(6, 0), {}};
-  // x = x_0 + N y with the null space N of A; y minimises the energy
+  // x = x_0 + N y, where N spans the null space of A, and y minimises the energy
   const MatrixXd x_0 = decomposition.solve(scaled_B * supported);
   const MatrixXd N = decomposition.matrixV().rightCols(A.cols() - rank);
   MatrixXd x = x_0;
@@ -224,7 +227,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
       x -= direction * (direction.transpose() * scaled_Q * x_0) / eigenvalue;
     }
   }
-  // back from scaled wrenches to orthonormal ones in N and N m
+  // convert scaled wrenches to orthonormal ones with units N and N m
   const MatrixXd wrenches = scale_wrench.asDiagonal() * supported;
   const MatrixXd basis =
       supported.cols() == 6

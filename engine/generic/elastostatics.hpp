@@ -16,7 +16,7 @@
 
 namespace pkm::generic {
 
-/// @param evaluation  evaluation of a model with Model::jointed
+/// @param evaluation  evaluation of a model whose Model::jointed is present
 /// @param pose        a pose that assembles
 PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<const double> parameters,
                                        const Pose<double>& pose, std::size_t mode);

@@ -50,10 +50,10 @@ class Equations {
  private:
   /// The derivatives of a function f of the pose.
   struct Derivatives {
-    std::vector<Term> by;  ///< partial derivatives by the coordinates: f_X
+    std::vector<Term> by;  ///< f_X: partial derivatives with respect to the coordinates, by coordinate
     Term rate;             ///< time derivative f'
   };
-  /// Weights of products f' g', by the indices of f and g in functions_, f <= g.
+  /// Weights of the products f' g'. The key is the pair of the indices of f and g in functions_, with f <= g.
   using Products = std::map<std::pair<std::size_t, std::size_t>, Term>;
 
   Term number(double value) { return {model_.graph, value}; }
@@ -62,7 +62,7 @@ class Equations {
     for (const Term& term : terms) to.push_back(term.node());
   }
 
-  /// Derivatives of the arm's angle q; also sets those of the arm's vector, arm' = q' axis x arm.
+  /// Derivatives of the angle q of an arm; also stores those of the vector `arm`, by arm' = q' axis x arm.
   Derivatives angle_of(const ArmNodes& arm) {
     const Vector3 at = vector(arm.arm), rod = vector(arm.rod), tangent = cross(vector(arm.axis), at);
     const Term lever = number(1) / dot(rod, tangent);
@@ -80,7 +80,8 @@ class Equations {
     return angle;
   }
 
-  /// Index of a function in functions_, to which it is added if it has new derivatives; std::nullopt if it is constant.
+  /// Index of a function in functions_; std::nullopt if the function is constant. A function whose derivatives are not
+  /// in the list yet is added.
   std::optional<std::size_t> index_of(const Derivatives& function) {
     std::vector<Node> key;
     append(function.by, key);
@@ -108,7 +109,7 @@ class Equations {
       const auto f = index_of(arm_angles_[rotation.arm]);
       add_product(f, f, model_.term(rotation.weight));
     }
-    for (const BodyNodes::LineRotation& rotation : body.line_rotations) {  // angular velocity d x d' / |d|^2
+    for (const BodyNodes::LineRotation& rotation : body.line_rotations) {  // the angular velocity is d x d' / |d|^2
       const Vector3 d = vector(rotation.d);
       const Term per_square = number(1) / dot(d, d);
       const auto omega = [&](Rates& derivative) {
@@ -126,7 +127,7 @@ class Equations {
     }
   }
 
-  /// Adds the inertia terms to M_X and h_X.
+  /// Adds the inertia terms of all products to M_X and h_X.
   void add_inertia(EquationNodes& e) {
     std::vector<Term> M(n_ * n_, number(0)), h(n_, number(0));
     const auto add_to = [](Term& sum, const Term& x) { sum = sum + x; };
@@ -152,12 +153,13 @@ class Equations {
   }
 
   Model& model_;
-  std::vector<Rates> by_;  ///< partial derivatives, by coordinate
-  Rates along_;            ///< time derivatives
+  std::vector<Rates> by_;  ///< computes partial derivatives with respect to a coordinate; by coordinate
+  Rates along_;            ///< computes derivatives with respect to time
   std::size_t n_;
   std::vector<Derivatives> arm_angles_;
   std::vector<Derivatives> functions_;
-  std::map<std::vector<Node>, std::size_t> indices_;  ///< indices in functions_, by partial derivatives
+  /// Index in functions_ of the function with given partial derivatives.
+  std::map<std::vector<Node>, std::size_t> indices_;
   Products products_;
 };
 

@@ -7,36 +7,37 @@
 
 namespace pkm::generic {
 
-/// Immutable, shared by threads.
+/// Immutable; threads can share it.
 struct Evaluation {
   explicit Evaluation(Model source);
 
   Model model;
 
-  // Programs of a pose or state. The outputs have the names of members of Model.
-  expression::Program constraints;  ///< joints, domains, margins, angles
-  expression::Program reported;     ///< ReportedMargin::shown, quantities
+  // Programs of a pose or of a state of motion. Their outputs are named after members of Model.
+  expression::Program constraints;  ///< outputs: joints, domains, margins, angles
+  expression::Program reported;     ///< outputs: ReportedMargin::shown, quantities
   expression::Program joints, closures, links, origin, rods;
-  expression::Program frame;                           ///< origin, rotation, rotation_directions
-  expression::Program motion;                          ///< joints, domains, equations; the design is a stage of its own
-  std::optional<expression::BatchStage> motion_batch;  ///< the second stage of `motion`
+  expression::Program frame;   ///< outputs: origin, rotation, rotation_directions
+  expression::Program motion;  ///< outputs: joints, domains, equations; the first stage depends on the design only
+  std::optional<expression::BatchStage> motion_batch;  ///< the second stage of `motion`, for SIMD batches of states
 
-  // Programs of a design. Those of values that the file does not define have no outputs.
-  expression::Program requirements;  ///< both ends of each range, required
+  // Programs of a design. The program of a value that the file does not define has no outputs.
+  expression::Program requirements;  ///< outputs: both ends of each joint range, Model::required
   expression::Program tests, masses, size, length, radius;
-  expression::Program total_mass;            ///< total mass of all bodies
-  std::vector<expression::Program> derived;  ///< by limit
-  std::vector<expression::Program> lower, upper, default_values, reach_lower, reach_upper;  ///< by coordinate
+  expression::Program total_mass;            ///< output: total mass of all bodies [kg]
+  std::vector<expression::Program> derived;  ///< threshold of each limit that the design determines, by limit
+  /// Bounds of the search box, default value and bounds of the reach, by coordinate.
+  std::vector<expression::Program> lower, upper, default_values, reach_lower, reach_upper;
 
-  /// The thresholds of limits: given, derived from the parameters, or inactive.
+  /// Computes the threshold of each limit: the given one, or one derived from the parameters, or the inactive one.
   template <class S>
   void thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const;
-  /// The graph's inputs for a design; coordinates and joints are set to 0.
-  /// @param values  size Inputs::count()
+  /// Writes the values of the graph's inputs for a design; those of coordinates and joints are 0.
+  /// @param values  must have Inputs::count() elements
   template <class S>
   void fill_inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode, std::span<S> values) const;
-  /// The graph's inputs for a workspace analysis, with the fixed coordinates at their values; integrated ones are 0.
-  /// Throws std::invalid_argument with a message if a fixed coordinate has no value.
+  /// Writes the values of the graph's inputs for a workspace analysis, with the fixed coordinates at their values;
+  /// integrated coordinates are 0. Throws std::invalid_argument with a message if a fixed coordinate has no value.
   template <class S>
   void fill_inputs(std::span<const S> parameters, const WorkspacePlan& plan, std::size_t mode,
                    std::vector<S>& values) const;
@@ -52,7 +53,7 @@ struct Evaluation {
   /// Range of a coordinate in the search box of the file; std::nullopt if the file does not define it.
   std::optional<std::array<double, 2>> range(std::span<const double> parameters, const LimitSpec& limits,
                                              std::size_t mode, std::size_t coordinate) const;
-  /// The range of range(); throws std::invalid_argument with a message if the file does not define it.
+  /// Range of a coordinate, as range(); throws std::invalid_argument with a message if the file does not define it.
   std::array<double, 2> required_range(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
                                        std::size_t coordinate) const;
   /// Search box of a workspace analysis, by axis: that of the plan, otherwise the ranges of the swept coordinates.
@@ -60,7 +61,7 @@ struct Evaluation {
                  const std::vector<int>& swept) const;
 };
 
-/// Calls work(scratch) with memory for `count` scalars, which is on the stack if there are few.
+/// Calls work(scratch) with scratch memory for `count` scalars. It is on the stack if `count` is small.
 template <class S, class Work>
 auto with_scratch(std::size_t count, const Work& work) {
   constexpr std::size_t kMaxOnStack = 512;
@@ -72,7 +73,7 @@ auto with_scratch(std::size_t count, const Work& work) {
   return work(std::span<S>(scratch));
 }
 
-/// The outputs of a program.
+/// Values of the outputs of a program, in their order, for given values of the graph's inputs.
 template <class S>
 std::vector<S> outputs_of(const expression::Program& program, const std::vector<S>& inputs) {
   std::vector<S> registers, values;

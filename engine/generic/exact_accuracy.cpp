@@ -16,13 +16,14 @@ namespace pkm::generic {
 namespace {
 
 struct PlatformError {
-  double position = 0, angle = 0;  ///< [m], [rad]
+  double position = 0, angle = 0;  ///< displacement of the origin [m], and angle of the rotation [rad]
 };
 
-/// The displacement between two frames, each given by the origin and the rows of the rotation matrix.
+/// The displacement of the platform between two frames. Each frame consists of the origin, then the rows of its
+/// rotation matrix.
 PlatformError displacement(const std::vector<double>& from, const std::vector<double>& to) {
   const auto R = [](const std::vector<double>& frame, std::size_t i, std::size_t k) { return frame[3 + 3 * i + k]; };
-  Matrix<double, 3, 3> turn;  // from one frame to the other
+  Matrix<double, 3, 3> turn;  // rotation from the first frame to the second
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t k = 0; k < 3; ++k) turn(i, j) += R(to, i, k) * R(from, j, k);
@@ -61,11 +62,13 @@ class ExactAccuracy {
   void place(const Pose<double>& pose, std::vector<double>& inputs) const {
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
   }
-  /// Writes the pose with the given joints to `inputs`. @return false if the iteration does not converge
+  /// Finds the pose with the given joint positions and writes it to `inputs`.
+  /// @return false if the iteration does not converge
   bool find_pose(const AxisVector<double>& joints, const AxisMatrix<double>& J, Pose<double> pose,
                  std::vector<double>& inputs) const {
     constexpr int kMaxSteps = 100;
-    constexpr double kConverged = 1e-9;  // last step [m, rad], after which rounding errors prevent a smaller one
+    // the iteration has converged if steps cease to shrink below this size [m, rad], because of rounding errors
+    constexpr double kConverged = 1e-9;
     double last = std::numeric_limits<double>::infinity();
     for (int step = 0; step < kMaxSteps; ++step) {
       place(pose, inputs);

@@ -13,7 +13,7 @@ bool is_finite(std::span<const double> values) {
   return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
 }
 
-/// The loop-closure equations f(pose) = 0 for given joints. Allocates in the constructor only.
+/// The loop-closure equations f(pose) = 0 for given joint positions. Allocates memory in the constructor only.
 class LoopClosure {
  public:
   LoopClosure(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints,
@@ -34,7 +34,7 @@ class LoopClosure {
     for (std::size_t i = 0; i < f.size(); ++i) f[i] = registers_[program_.outputs()[i]];
     return f;
   }
-  /// Derivatives of f by the coordinates, by forward-mode automatic differentiation in blocks of 4.
+  /// Derivatives of f with respect to the coordinates, by forward-mode automatic differentiation in blocks of four.
   AxisMatrix<double> jacobian(const Pose<double>& pose) {
     constexpr std::size_t kBlock = 4;
     AxisMatrix<double> G(program_.outputs().size(), pose.size());
@@ -52,21 +52,22 @@ class LoopClosure {
 
  private:
   const expression::Program& program_;
-  std::size_t first_;  ///< index of the first coordinate among the inputs
+  std::size_t first_;  ///< index of the first coordinate among the inputs of the graph
   std::vector<double> inputs_, registers_;
   std::vector<Dual4> dual_inputs_, dual_registers_;
 };
 
 struct Solution {
-  std::optional<Pose<double>> pose;  ///< std::nullopt: no convergence
-  bool is_defined_at_start = false;  ///< the closures are finite at the start pose
+  std::optional<Pose<double>> pose;  ///< the pose to which the iteration converged; std::nullopt if it did not converge
+  bool is_defined_at_start = false;  ///< true: all closures are finite at the start pose
 };
 
-/// Newton's method with bounded steps, to rounding accuracy.
+/// Newton's method with bounded steps, down to rounding accuracy.
 Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
   constexpr int kMaxIterations = 60, kMaxHalvings = 10;
-  constexpr double kMaxStep = 0.5;     // [m, rad] relative to 1 + |coordinate|
-  constexpr double kConverged = 1e-9;  // step size below which the iteration ends as soon as it stagnates
+  constexpr double kMaxStep = 0.5;  // maximum step in a coordinate, relative to 1 + |coordinate| [m, rad]
+  // relative step size below which the iteration ends as soon as steps no longer shrink by half
+  constexpr double kConverged = 1e-9;
   double last_size = std::numeric_limits<double>::infinity();
   AxisVector<double> f = closure.at(pose);
   const bool is_defined_at_start = is_finite(f);
@@ -77,7 +78,8 @@ Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
     for (std::size_t k = 0; k < pose.size(); ++k) size = std::max(size, std::fabs(step[k]) / (1 + std::fabs(pose[k])));
     double factor = std::min(1.0, kMaxStep / std::max(size, 1e-300));
     const Pose<double> previous = pose;
-    for (int halvings = 0; halvings < kMaxHalvings; ++halvings, factor /= 2) {  // until the closures are defined
+    // halve the step until all closures are finite
+    for (int halvings = 0; halvings < kMaxHalvings; ++halvings, factor /= 2) {
       pose = previous + step * factor;
       f = closure.at(pose);
       if (is_finite(f)) break;
@@ -88,7 +90,7 @@ Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
   return {{}, is_defined_at_start};
 }
 
-/// The working mode whose inverse kinematics gives the joints at a pose; "" if there is none.
+/// The working mode in which the inverse kinematics gives these joint positions at a pose; "" if there is none.
 std::string mode_with(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                       const AxisVector<double>& joints) {
   const MechanismInfo& info = e.model.info;
@@ -101,8 +103,8 @@ std::string mode_with(const Evaluation& e, std::span<const double> parameters, c
   return "";
 }
 
-/// Working modes with different closures. Closures of limbs in closed form do not depend on the mode; those of formulas
-/// may contain signs.
+/// Indices of working modes whose closures differ. Closures of limbs in closed form do not depend on the working mode,
+/// whereas closures given by formulas may contain its signs.
 std::vector<std::size_t> modes_of_closures(const Model& model) {
   const auto is_sign = [&](Node node) {
     const auto input = static_cast<std::size_t>(model.graph[node].input);
@@ -135,7 +137,7 @@ class StartPoses {
   std::vector<std::array<double, 2>> ranges_;
 };
 
-/// The distinct rigid-body poses found so far.
+/// The assembly modes found so far; no two of them have the same rigid-body pose.
 class AssemblySet {
  public:
   enum class Angles { principal, as_found };
@@ -143,8 +145,9 @@ class AssemblySet {
   AssemblySet(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, Angles angles)
       : e_(e), parameters_(parameters), joints_(joints), angles_(angles) {}
 
-  /// Adds a pose, if the inverse kinematics of a working mode reproduces the joints there, and no earlier pose is the
-  /// same rigid-body pose. @return whether it was added
+  /// Adds a pose if the inverse kinematics of a working mode reproduces the joint positions there, and if no earlier
+  /// pose is the same rigid-body pose.
+  /// @return true if it was added
   bool add(Pose<double> pose) {
     const Model& model = e_.model;
     for (std::size_t i = 0; i < pose.size(); ++i)
@@ -160,7 +163,7 @@ class AssemblySet {
     if (angles_ == Angles::principal) make_principal(pose, rigid, working_mode);
     const double size = std::fabs(*std::ranges::max_element(pose, {}, [](double x) { return std::fabs(x); }));
     for (double& x : pose)
-      if (std::fabs(x) < 1e-14 * size) x = 0;  // a rounding error
+      if (std::fabs(x) < 1e-14 * size) x = 0;  // replace a rounding error by 0
     modes_.push_back(
         {.pose = pose, .mode = "found " + std::to_string(modes_.size() + 1), .working_mode = working_mode});
     rigid_.push_back(rigid);
@@ -168,16 +171,17 @@ class AssemblySet {
   }
 
   const std::vector<AssemblyMode>& modes() const { return modes_; }
-  /// mirror_image() of pose k.
+  /// The mirror_image() of the pose with index k.
   std::optional<Pose<double>> mirrored(std::size_t k) const {
     return mirror_image(e_, inputs(modes_[k].pose, modes_[k].working_mode));
   }
 
  private:
-  static constexpr double kSamePose = 1e-6;  // [m, 1], larger than the error of Newton's method by a factor of 1000
+  // poses at a smaller distance [m, 1] are equal; larger than the error of Newton's method by a factor of 1000
+  static constexpr double kSamePose = 1e-6;
 
-  /// Replaces the angles by equivalent ones in the principal ranges (rigid_pose.hpp), if the inverse kinematics of a
-  /// working mode reproduces the joints at this pose.
+  /// Replaces the angles of a pose by equivalent angles in the principal ranges (rigid_pose.hpp), unless no working
+  /// mode's inverse kinematics reproduces the joint positions at the new pose.
   void make_principal(Pose<double>& pose, const RigidPose& rigid, std::string& working_mode) const {
     Pose<double> principal = pose;
     set_angles(e_.model, rigid.rotation, principal);
@@ -203,7 +207,7 @@ class AssemblySet {
   const AxisVector<double>& joints_;
   Angles angles_;
   std::vector<AssemblyMode> modes_;
-  std::vector<RigidPose> rigid_;  ///< rigid-body poses of these modes
+  std::vector<RigidPose> rigid_;  ///< rigid-body pose of each assembly mode in modes_, by index
 };
 
 }  // namespace
@@ -212,17 +216,19 @@ std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const dou
                                         const AxisVector<double>& joints) {
   const StartPoses poses(e, parameters);
   AssemblySet found(e, parameters, joints, AssemblySet::Angles::principal);
-  std::vector<LoopClosure> closures;  // by mode
+  std::vector<LoopClosure> closures;  // one element for each mode of modes_of_closures()
   for (const std::size_t mode : modes_of_closures(e.model)) {
     LoopClosure& of_mode = closures.emplace_back(e, parameters, joints, mode);
-    std::size_t idle = 0;  // starts since the last new pose, not counting those at which the closures are undefined
+    // number of starts since the last new pose, not counting those at which the closures are undefined
+    std::size_t idle = 0;
     for (std::size_t tried = 0; tried < kMaxStarts && idle < kMaxIdleStarts; ++tried) {
       const Solution solution = solve_closures(of_mode, poses[tried]);
       idle += solution.is_defined_at_start;
       if (solution.pose && found.add(*solution.pose)) idle = 0;
     }
   }
-  for (std::size_t k = 0; k < found.modes().size(); ++k)  // the set grows: includes mirror images of mirror images
+  // the set grows in this loop, so that mirror images of mirror images are included
+  for (std::size_t k = 0; k < found.modes().size(); ++k)
     if (const auto start = found.mirrored(k))
       for (LoopClosure& of_mode : closures)
         if (const Solution solution = solve_closures(of_mode, *start); solution.pose) found.add(*solution.pose);

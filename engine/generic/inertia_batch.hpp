@@ -16,22 +16,23 @@ struct InertiaScratch {
 class InertiaBatch {
  public:
   /// @param evaluation  evaluation of a model with bodies
-  /// @param rotors      FieldRequest::rotors
+  /// @param rotors      see FieldRequest::rotors
   InertiaBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
                const std::vector<double>& rotors);
 
-  /// Prepares the evaluation at poses of one design, like PoseBatch::start().
+  /// Prepares the evaluation for one design, like PoseBatch::start().
   void start(const std::vector<double>& inputs, InertiaScratch& scratch) const;
-  /// Adds a pose, whose values are appended to the fields of the result when the batch is full or finish() is called.
+  /// Adds a pose to the batch. Its values are appended to the fields of the result when the batch is full or finish()
+  /// is called.
   void add(const Pose<double>& pose, InertiaScratch& scratch, WorkspaceResult<double>& to) const;
   void finish(InertiaScratch& scratch, WorkspaceResult<double>& to) const;
-  /// With derivatives: poses are evaluated one by one.
+  /// Variants with derivatives, which evaluate one pose after the other.
   void start(const std::vector<Dual4>& inputs, InertiaScratch& scratch) const;
   void add(const Pose<Dual4>& pose, InertiaScratch& scratch, WorkspaceResult<Dual4>& to) const;
   void finish(InertiaScratch&, WorkspaceResult<Dual4>&) const {}
 
  private:
-  /// Inertia matrix M_q of a single pose. @param output  output(i): value of output i of batch_
+  /// Inertia matrix M_q of a single pose. @param output  output(i): value of the output of batch_ with index i
   template <class S, class OutputOf>
   AxisMatrix<S> inertia_of(const OutputOf& output) const;
 

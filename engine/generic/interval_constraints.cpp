@@ -11,7 +11,7 @@ namespace {
 
 using expression::Code, expression::Entry, expression::Term;
 
-/// The value of a node; std::nullopt if it does not depend on the design only.
+/// Value of a node that depends on the design only; std::nullopt if it depends on other inputs, too.
 std::optional<Interval> design_value(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
   if ((graph[node].groups & ~Inputs::kDesign) != 0) return {};
   std::vector<Interval> registers;
@@ -27,7 +27,7 @@ bool is_zero(const Graph& graph, Node node, const std::vector<Interval>& inputs)
   const auto number = design_value(graph, node, inputs);
   return number && number->lower == 0 && number->upper == 0;
 }
-/// True for an angle in [0, pi]: kPi is less than pi.
+/// Whether a node that depends on the design only is certified to be in [0, pi]; the double kPi is less than pi.
 bool is_value_of_acos(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
   const auto number = design_value(graph, node, inputs);
   return number && number->is_certified_satisfied() && number->upper <= kPi;
@@ -39,8 +39,8 @@ std::optional<Node> radicand(const Graph& graph, Node node) {
   return entry.arguments[0];
 }
 
-/// Rewrites c - sqrt(a) >= 0 and sqrt(a) - c >= 0 by squaring; the latter becomes a >= 0 for c = 0. Other constraints
-/// are returned unchanged.
+/// Rewrites c - sqrt(a) >= 0 and sqrt(a) - c >= 0 by squaring; for c = 0 the second one becomes a >= 0. All other
+/// constraints are returned unchanged.
 Node squared(Graph& graph, Node constraint, const std::vector<Interval>& inputs) {
   const Entry entry = graph[constraint];
   if (!entry.operation || entry.operation->code != Code::subtract) return constraint;
@@ -54,15 +54,16 @@ Node squared(Graph& graph, Node constraint, const std::vector<Interval>& inputs)
 }
 
 /// Rewrites c - acos(u) >= 0 and acos(u) - c >= 0 by taking cosines. For u = k / sqrt(a), the constraint is also
-/// multiplied by sqrt(a). That u is in [-1, 1] is a constraint of its own, or always true. Other constraints are
-/// returned unchanged.
+/// multiplied by sqrt(a). The condition that u is in [-1, 1] is a separate constraint, or always satisfied. All other
+/// constraints are returned unchanged.
 /// @param quotient  receives u = k / sqrt(a), which has to be finite
 Node without_acos(Graph& graph, Node constraint, const std::vector<Interval>& inputs, std::optional<Node>& quotient) {
   const Entry entry = graph[constraint];
   if (!entry.operation || entry.operation->code != Code::subtract) return constraint;
   const auto [left, right] = std::pair(entry.arguments[0], entry.arguments[1]);
   const auto is_acos = [&](Node node) { return graph[node].operation && graph[node].operation->name == "acos"; };
-  const bool is_upper = is_acos(right) && is_value_of_acos(graph, left, inputs);  // c - acos(u)
+  // true: c - acos(u); false: acos(u) - c
+  const bool is_upper = is_acos(right) && is_value_of_acos(graph, left, inputs);
   if (!is_upper && !(is_acos(left) && is_value_of_acos(graph, right, inputs))) return constraint;
   const Term cosine = cos(Term(graph, is_upper ? left : right));
   const Node u = graph[is_upper ? right : left].arguments[0];
@@ -74,19 +75,19 @@ Node without_acos(Graph& graph, Node constraint, const std::vector<Interval>& in
   return (is_upper ? k - bound : bound - k).node();
 }
 
-/// A constraint that is satisfied if a node is finite.
+/// A constraint that is satisfied if and only if a node is finite.
 Node is_finite(Graph& graph, Node node) {
   return graph.apply(expression::operation("*"), std::array{node, graph.number(0)});
 }
 
-/// Finds operations whose arguments are within the domain if all constraints are satisfied.
+/// Finds the operations whose arguments are in their domain at every pose that satisfies all constraints.
 class DomainTest {
  public:
   DomainTest(Graph& graph, const std::vector<bounds::NamedConstraint>& constraints) : graph_(graph) {
     for (const auto& constraint : constraints) known_.insert(constraint.node);
   }
 
-  /// True for sqrt, acos or asin of an argument that the constraints restrict to the domain.
+  /// Whether an operation is sqrt, acos or asin, and the constraints restrict its argument to the domain.
   bool ensures_domain(const Entry& entry) {
     const std::string& name = entry.operation->name;
     if (name == "sqrt") return known_.contains(entry.arguments[0]);

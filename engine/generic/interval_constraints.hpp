@@ -10,7 +10,7 @@ namespace pkm::generic {
 
 struct IntervalConstraints {
   Graph graph;
-  std::vector<bounds::NamedConstraint> all;  ///< nodes of `graph`
+  std::vector<bounds::NamedConstraint> all;  ///< the constraints, as nodes of `graph`
 };
 
 /// Rewrites the domains and margins of a model. The resulting constraints are all satisfied if and only if those of the
@@ -25,7 +25,7 @@ struct IntervalConstraints {
 ///     acos(u), asin(u), if -1 <= u <= 1    acos(min(max(u, -1), 1)), asin(..)
 ///
 /// The last row applies to u = k / h if h - k >= 0 and h + k >= 0 are constraints, and to any u if 1 - |u| >= 0 is one.
-/// @param inputs  values of the graph's inputs for the design
+/// @param inputs  values of the graph's inputs for the design, as intervals
 IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs);
 
 }  // namespace pkm::generic

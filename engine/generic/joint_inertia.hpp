@@ -10,13 +10,14 @@ namespace pkm::generic {
 /// Arguments and results of find_joint_inertia(). A plain struct, so that kernels share no inline functions with files
 /// that are compiled for another instruction set.
 struct InertiaKernelData {
-  const expression::Operand *J, *M_X;  ///< n x n, row-major
+  const expression::Operand *J, *M_X;  ///< operands of the elements of J and M_X: n x n, row-major
   const double *registers, *rows;      ///< see expression::BatchStage
-  std::size_t n, count;                ///< number of joints; number of poses, a multiple of kLanes
-  const double* rotors;                ///< n numbers that are added to the diagonal of M_q
-  double* M_q;                         ///< n x n rows of expression::kRow numbers
-  double* indices;                     ///< coupling indices, n rows
-  double* found;  ///< by pose: 1, or 0 if it has to be evaluated alone (nearly singular or infinite)
+  std::size_t n, count;                ///< number of joints; number of poses in the batch, a multiple of kLanes
+  const double* rotors;                ///< n numbers that are added to the diagonal of M_q, by joint
+  double* M_q;                         ///< receives M_q: n x n rows of expression::kRow numbers, one number per pose
+  double* indices;                     ///< receives the coupling indices: n rows, one number per pose
+  /// Receives for each pose 1, or 0 if it has to be evaluated alone, because it is nearly singular or infinite.
+  double* found;
 };
 
 /// Computes M_q and the coupling indices of all poses. The results have the same bits as those of joint_inertia() and

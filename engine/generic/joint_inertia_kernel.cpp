@@ -24,8 +24,9 @@ template <class L, class Mask>
 template <class L, class Mask, int n>
 struct LuDecomposition {
   L u[n][n], factor[n][n];
-  int pivot[n];         ///< by step: pivot row of all lanes; -1: it differs between lanes
-  Mask is_pivot[n][n];  ///< by step and row, if the lanes have different pivot rows
+  int pivot[n];  ///< for each step, the row that is the pivot in all lanes; -1 if the lanes have different pivots
+  /// For each step and row, whether the row is the pivot of a lane; used if the lanes have different pivots.
+  Mask is_pivot[n][n];
 
   /// Exchanges row k with the pivot row of step k, in the columns from `first` on.
   [[gnu::always_inline]] inline void exchange(L (&m)[n][n], int k, int first) const {
@@ -72,7 +73,7 @@ struct LuDecomposition {
   }
 };
 
-/// Evaluates kLanes poses from pose k on. @return false if one of them has to be evaluated alone
+/// Evaluates the kLanes poses from index k on. @return false if at least one of them has to be evaluated alone
 template <class L, int n>
 [[gnu::always_inline]] inline bool find_lanes(const InertiaKernelData& data, std::size_t k) {
   LuDecomposition<L, decltype(L() < L()), n> lu;
@@ -99,7 +100,7 @@ template <class L, int n>
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) M[i][j] = half[j][i];
   lu.solve(M);
-  L zero(0.0), smallest = M[0][0];  // zero: 0 if all elements are finite, else NaN
+  L zero(0.0), smallest = M[0][0];  // zero is 0 in a lane if all elements there are finite, otherwise NaN
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < i; ++j) M[i][j] = M[j][i] = (M[i][j] + M[j][i]) * 0.5;
     M[i][i] = M[i][i] + data.rotors[i];

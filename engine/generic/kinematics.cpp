@@ -17,7 +17,7 @@ namespace {
 
 using expression::Program;
 
-/// Derivatives of the outputs of a program by its inputs [first, first + count).
+/// Derivatives of the outputs of a program with respect to its inputs [first, first + count).
 /// @return outputs x count
 AxisMatrix<double> derivatives(const Program& program, std::span<const double> inputs, std::size_t first,
                                std::size_t count) {
@@ -43,7 +43,8 @@ AxisVector<double> axis_vector(std::span<const double> values) {
 
 /// Computes PoseReport::T. @param inputs  values of the graph's inputs, including the pose
 AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inputs) {
-  constexpr std::size_t kDirections = 12;  // index of rotation_directions among the outputs of Evaluation::frame
+  // index of the first element of rotation_directions among the outputs of Evaluation::frame
+  constexpr std::size_t kDirections = 12;
   const std::size_t n = e.model.inputs.coordinates;
   const std::vector<double> frame = outputs_of(e.frame, inputs);
   const AxisMatrix<double> rates = derivatives(e.origin, inputs, e.model.inputs.coordinate(0), n);
@@ -56,7 +57,7 @@ AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inpu
   return T;
 }
 
-/// The graph's inputs for a design and a pose.
+/// Values of the graph's inputs for a design and a pose.
 std::vector<double> inputs_at(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                               std::size_t mode, const LimitSpec& limits) {
   std::vector<double> inputs = e.inputs(parameters, limits, mode);
@@ -64,8 +65,8 @@ std::vector<double> inputs_at(const Evaluation& e, std::span<const double> param
   return inputs;
 }
 
-/// Combines margins according to Model::reported_margins. @param shown  values of all ReportedMargin::shown that exist,
-/// in order
+/// Combines margins into those of Model::reported_margins.
+/// @param shown  values of all ReportedMargin::shown that exist, in their order
 NamedValues reported_margins(const Model& model, const NamedValues& margins,
                              std::vector<double>::const_iterator shown) {
   NamedValues list;
@@ -82,8 +83,8 @@ NamedValues reported_margins(const Model& model, const NamedValues& margins,
   return list;
 }
 
-/// Adds the quantities of the pose, not those of the design or of motions: angles and lengths to report.angles, others
-/// to report.indices.
+/// Adds the quantities that depend on the pose only (not those of the design or of motions) to a report: angles and
+/// lengths to report.angles, all others to report.indices.
 void add_quantities(const Model& model, std::vector<double>::const_iterator values, PoseReport& report) {
   for (const QuantityInfo& quantity : model.info.quantities) {
     const double value = *values++;
@@ -106,8 +107,8 @@ void add_clearance(const Model& model, const NearestBodies<double>& nearest, con
         ": " + nearest.first + " and " + nearest.second + (nearest.clearance < 0 ? " overlap" : " are too near");
 }
 
-/// Adds Jq, G, J, their determinants and the conditioning. @param inputs  values of the graph's inputs, including the
-/// pose and its joints
+/// Adds Jq, G, J, their determinants and the conditioning to a report.
+/// @param inputs  values of the graph's inputs, including the pose and its joint positions
 void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                    std::span<const double> inputs, PoseReport& report);
 

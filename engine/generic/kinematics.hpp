@@ -7,7 +7,7 @@
 
 namespace pkm::generic {
 
-/// Joint coordinates, margins, Jacobians and quantities of a pose.
+/// Kinematic analysis of a pose: joint positions, margins, Jacobians and quantities.
 PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                         std::size_t mode, const LimitSpec& limits);
 
@@ -17,15 +17,16 @@ bool assembles_at(const Evaluation& evaluation, const std::vector<double>& input
 
 /// Variant of inspect_pose() for a pose that is known to be feasible: without margins, angles and quantities, and
 /// without heap allocation.
-/// @param inputs  values of the graph's inputs, including the pose; receives the joints
+/// @param inputs  values of the graph's inputs, including the pose; the joint positions are written to it
 PoseReport inspect_sample(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                           std::span<double> inputs);
 
-/// Values of Model::quantities at a pose and motion.
+/// Values of Model::quantities at a pose, for a given motion.
 std::vector<double> quantities_at(const Evaluation& evaluation, std::span<const double> parameters, std::size_t mode,
                                   const LimitSpec& limits, const MotionSample& at);
 
-/// The influence coefficients at a pose; std::nullopt if it does not assemble, or if the coefficients are infinite.
+/// The influence coefficients at a pose; std::nullopt if the pose does not assemble, or if the coefficients are
+/// infinite.
 std::optional<Influence<double>> influence_at(const Evaluation& evaluation, std::span<const double> parameters,
                                               const Pose<double>& pose, std::size_t mode);
 

@@ -27,7 +27,7 @@
 namespace pkm::generic {
 namespace {
 
-/// Offers the capabilities that the file has data for: links, masses, joints, columns.
+/// A mechanism from a file. Offers those capabilities that the file has data for: links, masses, joints, columns.
 class GenericMechanism final : public Mechanism,
                                public TotalMass,
                                public OrderedMargins,
@@ -74,7 +74,7 @@ class GenericMechanism final : public Mechanism,
     }
     return all;
   }
-  /// From the formulas of the file only: the box of [survey] may be smaller than the reach of the limbs.
+  /// Uses the formulas of the file only, because the box of [survey] may be smaller than the reach of the limbs.
   std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const override {
     const auto i = static_cast<std::size_t>(coordinate);
     const auto from = e_.of_design<double>(e_.reach_lower[i], parameters),
@@ -177,7 +177,7 @@ class GenericMechanism final : public Mechanism,
   std::unique_ptr<const PoseSides> prepare_sides(const WorkspacePlan& plan, const std::string& mode) const override {
     return prepare_pose_sides(e_, plan, mode);
   }
-  /// The plan without the limits of quantities, which accelerators do not have.
+  /// The plan without the limits of pose quantities, which accelerators do not support.
   WorkspacePlan without_quantities(WorkspacePlan plan) const {
     for (std::size_t i = info().limits.size(); i-- > 0;)
       if (info().limits[i].group == kQuantityLimit) {
@@ -186,15 +186,16 @@ class GenericMechanism final : public Mechanism,
       }
     return plan;
   }
-  /// The plan for accelerators; std::nullopt if it limits quantities, or if the request is for formulas or every pose.
+  /// The plan for accelerators; std::nullopt if it has limits of pose quantities, or if formulas or every pose are
+  /// requested.
   std::optional<WorkspacePlan> accelerated_plan(const WorkspacePlan& plan, const FieldRequest& request) const {
     if (request.has_formulas() || request.every_pose) return {};
     for (std::size_t i = 0; i < info().limits.size(); ++i)
       if (info().limits[i].group == kQuantityLimit && plan.limits.given[i]) return {};
     return without_quantities(plan);
   }
-  /// The search box of the accelerator's voxels, so that the generic engine counts the same cells; null if there is no
-  /// accelerator.
+  /// The search box of the accelerator's voxels, with which the generic engine counts the same cells; null if there is
+  /// no accelerator.
   BoxOfDesign accelerated_box(const WorkspacePlan& plan, const FieldRequest& request) const {
     WorkspacePlan unlimited = plan;
     unlimited.limits = no_limits(info());

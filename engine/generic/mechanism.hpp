@@ -8,11 +8,11 @@
 
 namespace pkm::generic {
 
-/// @param accelerators  closed forms for this mechanism, used in place of the generic evaluation where they exist
+/// @param accelerators  closed forms for this mechanism; where they exist, they replace the generic evaluation
 std::shared_ptr<const Mechanism> make_mechanism(Model model, Accelerators accelerators = {});
 
 struct Evaluation;
-/// The evaluation of a mechanism from a file, with or without drive trains; null for other mechanisms.
+/// The evaluation of a mechanism from a file, whether or not it has drive trains; null for any other mechanism.
 const Evaluation* evaluation_of(const Mechanism& mechanism);
 
 }  // namespace pkm::generic

@@ -23,7 +23,7 @@ namespace {
 using Eigen::Index, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
 using VectorNodes = std::array<Node, 3>;
 
-constexpr double kRankThreshold = 1e-9;  // relative to the maximum singular value
+constexpr double kRankThreshold = 1e-9;  // relative to the maximum singular value: smaller singular values count as 0
 
 Eigen::JacobiSVD<MatrixXd> decomposed(const MatrixXd& A) {
   Eigen::JacobiSVD<MatrixXd> decomposition(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -36,7 +36,7 @@ MatrixXd beside(const MatrixXd& A, const MatrixXd& B) {
   both << A, B;
   return both;
 }
-/// True if a vector is in the column space of A.
+/// Whether a vector is in the column space of A.
 bool spans(const MatrixXd& A, Index rank_of_A, const Eigen::VectorXd& vector) {
   return rank(beside(A, vector)) == rank_of_A;
 }
@@ -46,7 +46,7 @@ Matrix3d cross_matrix(const Vector3d& p) {
   return m;
 }
 
-/// The points and directions of the joints at a pose, with their derivatives by the coordinates.
+/// The points and directions of the joints at a pose, with their derivatives with respect to the coordinates.
 class JointsAtPose {
  public:
   JointsAtPose(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
@@ -74,7 +74,7 @@ class JointsAtPose {
     if (size_ == 0) size_ = 1;
   }
 
-  /// Orthonormal columns: the twists of the platform that the joints allow, (v / size, omega).
+  /// The twists (v / size, omega) of the platform that the joints allow, as orthonormal columns.
   MatrixXd allowed() const {
     const auto bodies = static_cast<Index>(6 * of_.solids.size());
     MatrixXd A = MatrixXd::Zero(static_cast<Index>(6 * of_.joints.size()), bodies + static_cast<Index>(drives_));
@@ -104,14 +104,14 @@ class JointsAtPose {
     if (nullity == 0) return MatrixXd(6, 0);
     const MatrixXd twists = decomposition.matrixV().rightCols(nullity).middleRows(static_cast<Index>(6 * platform_), 6);
     const auto of_platform = decomposed(twists);
-    // An absolute threshold, because null vectors have length 1, and the platform may be fixed in all of them.
+    // The threshold is absolute, because null vectors have length 1 and the platform may be at rest in all of them.
     Index count = 0;
     while (count < of_platform.singularValues().size() && of_platform.singularValues()[count] > kRankThreshold) ++count;
     return of_platform.matrixU().leftCols(count);
   }
 
-  /// The twist of the platform by each coordinate, (v / size, omega); std::nullopt if the ends of the limbs are given
-  /// by formulas and do not move with the platform frame.
+  /// The twist (v / size, omega) of the platform for a unit rate of each coordinate, as columns; std::nullopt if the
+  /// ends of the limbs are given by formulas that do not move with the platform frame.
   std::optional<MatrixXd> by_coordinates() const {
     MatrixXd twists(6, static_cast<Index>(values_.size()));
     for (std::size_t j = 0; j < values_.size(); ++j) {
@@ -153,7 +153,7 @@ class JointsAtPose {
     const auto at = [&](std::size_t k) { return values_[coordinate].at(point[k]).d; };
     return {at(0), at(1), at(2)};
   }
-  /// Projection matrix onto the directions of the couples that a joint transmits.
+  /// Projection matrix onto the directions of the couples that a joint can transmit.
   Matrix3d couples_of(const JointNodes& joint) const {
     MatrixXd axes(3, static_cast<Index>(joint.axes.size()));
     for (std::size_t k = 0; k < joint.axes.size(); ++k)
@@ -170,7 +170,8 @@ class JointsAtPose {
   const JointedBodies& of_;
   const std::array<VectorNodes, 3>& rotation_;  ///< rotation matrix of the platform, by rows
   std::size_t platform_, drives_;
-  std::vector<std::map<Node, Taylor>> values_;  ///< by coordinate
+  /// Values and derivatives of the nodes, for a unit rate of each coordinate; by coordinate.
+  std::vector<std::map<Node, Taylor>> values_;
   Vector3d origin_;
   double size_ = 0;
 };

@@ -13,12 +13,12 @@ namespace pkm::generic {
 
 /// Degrees of freedom of the platform that the joints allow if the drives move freely.
 struct PlatformMobility {
-  std::size_t of_joints;  ///< dimension of the space of the platform's twists that the joints allow
+  std::size_t of_joints;  ///< dimension of the space of platform twists that the joints allow
   /// Dimension of the part of this space that the coordinates describe; std::nullopt if the ends of the limbs are given
   /// by formulas that are inconsistent with the motion of the platform frame.
   std::optional<std::size_t> of_coordinates;
-  /// Twists that the joints allow but the coordinates do not describe: "rotation about z". Empty if there are none, or
-  /// if they are not along the axes.
+  /// Twists that the joints allow but the coordinates do not describe, such as "rotation about z". Empty if there are
+  /// none, or if they are not along coordinate axes.
   std::vector<std::string> assumed;
 };
 
@@ -26,8 +26,9 @@ struct PlatformMobility {
 PlatformMobility mobility_at(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                              std::size_t mode);
 
-/// The mobility of a mechanism; std::nullopt if it is not from a file that describes the joints.
-/// @param mode  one of MechanismInfo::modes
+/// The mobility of a mechanism; std::nullopt if the mechanism is not from a file, or its file does not describe the
+/// joints.
+/// @param mode  working mode, one of MechanismInfo::modes
 std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, std::span<const double> parameters,
                                                   const Pose<double>& pose, const std::string& mode);
 

@@ -45,7 +45,8 @@ struct Result {
   std::string name;
   std::string unit;
   Node node{};
-  std::string consequence{};  ///< of a domain: what its violation means, such as "limb1 cannot reach the pose"
+  /// Of a domain: meaning of its violation for messages, such as "limb1 cannot reach the pose"; otherwise "".
+  std::string consequence{};
 };
 
 /// Margins [first, first + count) of a model that are reported as a single margin: the value of `shown` if there is
@@ -66,7 +67,7 @@ struct JointRange {
 struct ReportLimit {
   const PoseQuantity* quantity;
   std::size_t limit;  ///< index among MechanismInfo::limits
-  bool is_minimum;    ///< false: the threshold is the maximum
+  bool is_minimum;    ///< true: the threshold is the minimum of the quantity; false: its maximum
 };
 
 /// Name of the limit on the clearance of links.
@@ -77,24 +78,27 @@ struct LinkNodes {
   std::string name, part;
   std::array<Node, 3> from, to;
   Node radius;
-  std::vector<std::string> groups;  ///< the clearance of links with a common group is not tested
-  bool has_clearance = true;        ///< false: the link is only drawn
+  /// Groups to which the link belongs; the clearance of two links with a common group is not tested.
+  std::vector<std::string> groups;
+  bool has_clearance = true;  ///< false: the link is drawn, but its clearance is not tested
 };
 
-/// The terms of limbs::CrankRange, and the constraints of poses that are equivalent to it.
+/// The terms of limbs::CrankRange as nodes, and those constraints of a feasible pose that are equivalent to them.
 struct CrankRangeNodes {
   Node at_min, at_max, after_min, before_max, half_turn, reach, branch;
   std::vector<Node> constraints;
 };
 
-/// The two surfaces of limbs::Annulus, and the constraints of poses that are equivalent to it.
+/// The two surfaces of limbs::Annulus as nodes, and those constraints of a feasible pose that are equivalent to them.
 struct AnnulusNodes {
   std::array<Node, 2> surfaces;
   std::vector<Node> constraints;
-  std::optional<std::size_t> crank_range;  ///< index in Model::crank_ranges of that of the same limb
+  /// Index in Model::crank_ranges of the range of the same limb; std::nullopt if it has none.
+  std::optional<std::size_t> crank_range;
 };
 
-/// The terms of limbs::RodAndPath, the range of the joint, and the constraints of poses that are equivalent to both.
+/// The terms of limbs::RodAndPath as nodes, the range of the joint, and those constraints of a feasible pose that are
+/// equivalent to both.
 struct RodAndPathNodes {
   bool is_circle;
   std::array<Node, 3> v, axis, zero;
@@ -108,70 +112,72 @@ struct RodNodes {
   std::array<Node, 3> C, B;
 };
 
-/// Size of the mechanism, for the objective workspace-ratio.
+/// Size of the mechanism, by which the objective workspace-ratio divides.
 struct SizeNodes {
   Node node;
   std::string unit, meaning;
 };
 
-/// The vectors of limbs::Arm, and the end B of its rod.
+/// The vectors of limbs::Arm as nodes, and the end B of its rod.
 struct ArmNodes {
   std::array<Node, 3> arm, axis, rod, B;
-  std::optional<Node> joint;  ///< the joint coordinate, if the arm is driven
+  std::optional<Node> joint;  ///< joint coordinate, if the arm is driven; otherwise std::nullopt
 };
 
 /// A rigid body. Twice its kinetic energy is the sum of the terms below; ' is the time derivative.
 struct BodyNodes {
-  /// weight f' . g'
+  /// The term weight f' . g'.
   struct Product {
     std::array<Node, 3> f, g;
     Node weight;
   };
-  /// weight q'^2 for the angle q of an arm
+  /// The term weight q'^2 for the angle q of an arm.
   struct ArmRotation {
     std::size_t arm;
     Node weight;
   };
-  /// weight |d x d'|^2 / |d|^4, for a slender body along d that does not spin about d
+  /// The term weight |d x d'|^2 / |d|^4 for a slender body along d that does not spin about d.
   struct LineRotation {
     std::array<Node, 3> d;
     Node weight;
   };
   std::string name;
   Node mass;
-  std::array<Node, 3> centre;  ///< of mass
+  std::array<Node, 3> centre;  ///< centre of mass
   std::vector<Product> products;
   std::vector<ArmRotation> arm_rotations;
   std::vector<LineRotation> line_rotations;
-  /// Principal moments about the centre of mass: of a slender body along and across its line, of the platform about the
-  /// axes of its frame.
+  /// Principal moments of inertia about the centre of mass: along and across the line of a slender body, or about the
+  /// axes of the platform frame.
   std::optional<std::array<Node, 3>> inertia{};
-  std::string part_of{};  ///< the body to which this one is rigidly attached; "": none
+  std::string part_of{};  ///< name of the body to which this one is rigidly attached; "" if there is none
 };
 
 /// An elastic beam that is clamped at `near` and loaded at `far`.
 struct BeamNodes {
   std::array<Node, 3> near, far;
-  Node EA, EI, GJ;  ///< axial [N], bending and torsional stiffness [N m^2]
-  Node area;        ///< of the cross-section [m^2]
+  Node EA, EI, GJ;  ///< axial stiffness [N], bending stiffness [N m^2] and torsional stiffness [N m^2]
+  Node area;        ///< area of the cross-section [m^2]
 };
 
 /// A free body of the Newton-Euler equations.
 struct SolidNodes {
   std::string name;
-  std::vector<std::size_t> bodies{};                   ///< bodies of the model that it consists of; empty: massless
-  double share = 1;                                    ///< fraction of their inertia: 1/2 for one of two parallel rods
-  std::array<Node, 3> point;                           ///< a point of the body
-  std::optional<std::array<Node, 3>> line{};           ///< the body rotates with this direction, without spin about it
-  std::optional<std::array<Node, 3>> centre_offset{};  ///< of its centre of mass from that of its bodies
-  bool with_platform = false;                          ///< the body rotates with the platform
+  std::vector<std::size_t> bodies{};  ///< indices of the bodies of the model that it consists of; empty: it has no mass
+  double share = 1;           ///< fraction of the inertia of these bodies that it has; 1/2 for one of two parallel rods
+  std::array<Node, 3> point;  ///< a point of the body
+  /// Direction with which the body rotates, without spin about it; std::nullopt if there is none.
+  std::optional<std::array<Node, 3>> line{};
+  /// Offset of its centre of mass from that of `bodies`; std::nullopt: none.
+  std::optional<std::array<Node, 3>> centre_offset{};
+  bool with_platform = false;  ///< true: the body rotates with the platform
 
-  /// An elastic body, loaded by all of its joints but one.
+  /// An elastic body that one of its joints holds and all others load.
   struct Beam : BeamNodes {
-    std::size_t near_joint;  ///< index of the joint that holds it
-    bool is_rod;             ///< pinned at both ends; false: a crank
+    std::size_t near_joint;  ///< index of the joint that holds the body
+    bool is_rod;             ///< true: a rod, pinned at both ends; false: a crank
   };
-  std::optional<Beam> beam{};  ///< std::nullopt: rigid
+  std::optional<Beam> beam{};  ///< elasticity of the body; std::nullopt: it is rigid
 };
 
 /// A joint between two solids, or between a solid and the base.
@@ -181,26 +187,28 @@ struct JointNodes {
   struct Drive {
     std::size_t joint;
     std::array<Node, 3> axis;
-    bool turns = false;                  ///< true: revolute; false: prismatic
-    std::optional<std::size_t> slide{};  ///< body (a point mass) that moves with the drive
-    std::optional<Node> compliance{};    ///< [m/N or rad/(N m)]; std::nullopt: rigid
-    std::optional<BeamNodes> ram{};      ///< elastic slide, loaded by all joints with this drive
+    bool turns = false;  ///< true: revolute; false: prismatic
+    /// Index of the body (a point mass) that moves with the drive; std::nullopt if there is none.
+    std::optional<std::size_t> slide{};
+    std::optional<Node> compliance{};  ///< compliance of the drive [m/N or rad/(N m)]; std::nullopt: it is rigid
+    /// Elasticity of the slide, which all joints with this drive load; std::nullopt: it is rigid.
+    std::optional<BeamNodes> ram{};
   };
   std::string name;
   std::array<Node, 3> point;
-  std::size_t on;                   ///< index of one solid
-  std::optional<std::size_t> from;  ///< index of the other solid; std::nullopt: the base
+  std::size_t on;                   ///< index of the solid on one side of the joint
+  std::optional<std::size_t> from;  ///< index of the solid on the opposite side; std::nullopt: the base
   Couples couples;
   std::vector<std::array<Node, 3>> axes;
   std::optional<Drive> drive{};
-  /// Of a universal joint: its axis on the body that carries the rod, and the index of the rod's solid.
+  /// For a universal joint: its axis on the body that carries the rod, and the index of the rod's solid.
   struct Universal {
     std::array<Node, 3> axis;
     std::size_t rod;
   };
   std::optional<Universal> universal{};
-  /// The platform is a pin, a point that several rods rotate about, and this joint makes it part of its rod: its own
-  /// rotation, without effect, would be undetermined.
+  /// True if the platform is a pin, i.e. a point about which several rods rotate, and if this joint attaches it to its
+  /// rod. Otherwise the rotation of the platform, which has no effect, would be undetermined.
   bool holds_pin = false;
 };
 
@@ -212,45 +220,51 @@ struct JointedBodies {
 
 /// A mass or an inertia, which has to be positive.
 struct MassCheck {
-  std::string name;  ///< "the mass of rod 11"
+  std::string name;  ///< name for messages, such as "the mass of rod 11"
   std::string unit;
   Node node;
   bool may_vanish;
 };
 
-/// The members of PoseDynamics as functions of the coordinates and their rates; matrices row-major.
+/// The members of PoseDynamics as functions of the coordinates and their rates; matrices are row-major.
 struct EquationNodes {
   std::vector<Node> J, J_rate_X, M_X, h_X, G_X, J_wrench;
 };
 
-/// All constraints are satisfied if >= 0. Vectors are in the base frame.
+/// A mechanism as described by its file. Constraints are satisfied if they are >= 0. Vectors are in the base frame.
 struct Model {
   MechanismInfo info;
   Graph graph;
   Inputs inputs;
-  std::vector<std::vector<double>> signs;  ///< by working mode
+  std::vector<std::vector<double>> signs;  ///< signs of each working mode, by mode
 
   // kinematics
-  std::vector<Node> joints, closures;  ///< joint coordinates as functions of the pose; loop-closure equations
+  std::vector<Node> joints, closures;  ///< formulas of the joint coordinates; left sides of the loop-closure equations
   std::vector<Result> domains;         ///< constraints under which the pose assembles
-  std::vector<Result> margins;         ///< constraints of a feasible pose
-  std::vector<Node> defined;           ///< 0 times a formula: satisfied if the formula is finite
-  std::string margin_unit;             ///< common unit of domains and margins that depend on the pose; "": they differ
+  std::vector<Result> margins;         ///< constraints that a feasible pose has to satisfy in addition
+  /// Constraints of the form 0 * formula >= 0, which are satisfied if the formula is finite.
+  std::vector<Node> defined;
+  /// Common unit of all domains and margins that depend on the pose; "" if their units differ.
+  std::string margin_unit;
   std::vector<ReportedMargin> reported_margins;
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
   std::vector<RodAndPathNodes> paths;
-  std::vector<Node> quantities;  ///< in the order of MechanismInfo::quantities
+  std::vector<Node> quantities;  ///< formulas of the quantities, in the order of MechanismInfo::quantities
   std::vector<ReportLimit> report_limits;
-  std::vector<Node> joint_errors;  ///< bounds that the quantity `accuracy` assumes, by joint [m, rad]; or empty
-  std::vector<Result> angles;      ///< of passive joints
+  /// Bounds of the joint errors [m, rad] that the quantity `accuracy` assumes, by joint; empty if there are none.
+  std::vector<Node> joint_errors;
+  std::vector<Result> angles;  ///< angles of the passive joints
 
   // platform frame
   std::array<Node, 3> origin;
-  std::array<std::array<Node, 3>, 3> rotation;               ///< rotation matrix, by rows
-  std::vector<std::optional<std::size_t>> rotation_axes;     ///< by coordinate: axis of a rotation, 0 to 2
-  std::vector<std::array<Node, 3>> rotation_directions;      ///< by coordinate: that axis as a unit vector, or 0
-  std::vector<std::optional<std::size_t>> translation_axes;  ///< by coordinate: axis of a translation, 0 to 2
+  std::array<std::array<Node, 3>, 3> rotation;  ///< rotation matrix, by rows
+  /// Axis of the rotation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if it describes none.
+  std::vector<std::optional<std::size_t>> rotation_axes;
+  /// Unit vector along this axis, by coordinate; 0 if the coordinate describes no rotation.
+  std::vector<std::array<Node, 3>> rotation_directions;
+  /// Axis of the translation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if none.
+  std::vector<std::optional<std::size_t>> translation_axes;
 
   // design
   std::vector<JointRange> ranges;
@@ -258,35 +272,45 @@ struct Model {
   std::vector<DesignMarginInfo> tests;
   std::vector<Node> test_nodes;
   std::optional<SizeNodes> size;
-  std::optional<Node> length, radius;                        ///< characteristic length and radius of the conditioning
-  std::vector<std::size_t> conditioning_coordinates;         ///< those that the conditioning includes; empty: all
-  std::vector<std::optional<Node>> derived;                  ///< by limit: threshold derived from the design
-  std::vector<std::optional<std::size_t>> limit_parameters;  ///< by limit: parameter of its name, the default threshold
+  /// Characteristic length and radius of the conditioning; std::nullopt if the file does not define them.
+  std::optional<Node> length, radius;
+  /// Indices of the coordinates that the conditioning includes; empty: all.
+  std::vector<std::size_t> conditioning_coordinates;
+  /// Threshold that the design determines, by limit; std::nullopt if there is none.
+  std::vector<std::optional<Node>> derived;
+  /// Index of the parameter that has the name of the limit and is its default threshold, by limit; std::nullopt if
+  /// none.
+  std::vector<std::optional<std::size_t>> limit_parameters;
 
   // workspace analysis, by coordinate
-  std::vector<std::optional<std::array<Node, 2>>> box;    ///< range that is searched
-  std::vector<std::optional<std::array<Node, 2>>> reach;  ///< range outside of which no pose is feasible
-  std::vector<std::optional<Node>> default_values;        ///< of a fixed coordinate
+  /// Range that is searched; std::nullopt if the file does not define it.
+  std::vector<std::optional<std::array<Node, 2>>> box;
+  /// Range outside of which no pose is feasible; std::nullopt if the file does not define it.
+  std::vector<std::optional<std::array<Node, 2>>> reach;
+  /// Default value of the coordinate if it is fixed; std::nullopt if the file does not define it.
+  std::vector<std::optional<Node>> default_values;
 
   // links
   std::vector<LinkNodes> links;
-  std::vector<LinkPair> link_pairs;            ///< pairs whose clearance is tested
-  std::vector<std::size_t> moving_links;       ///< links whose clearance from obstacles is tested
-  std::optional<std::size_t> clearance_limit;  ///< index among the limits, after those that are inputs of the graph
-  std::vector<RodNodes> rods;                  ///< of the limbs that have one
+  std::vector<LinkPair> link_pairs;       ///< pairs of indices of links whose clearance is tested
+  std::vector<std::size_t> moving_links;  ///< indices of the links whose clearance from obstacles is tested
+  /// Index of the clearance limit among the limits; it follows those that are inputs of the graph.
+  std::optional<std::size_t> clearance_limit;
+  std::vector<RodNodes> rods;  ///< rods of those limbs that have one
 
   // dynamics
   std::vector<ArmNodes> arms;
   std::vector<BodyNodes> bodies;
   std::vector<MassCheck> masses;
-  std::optional<std::array<Node, 3>> wrench_point;  ///< where a wrench acts on the platform
+  std::optional<std::array<Node, 3>> wrench_point;  ///< point of the platform at which a wrench acts
   std::optional<EquationNodes> equations;           ///< present if there are bodies
-  std::vector<Node> jacobian;                       ///< EquationNodes::J, present without bodies, too
+  std::vector<Node> jacobian;                       ///< EquationNodes::J, also present if there are no bodies
   std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
-  std::vector<std::optional<Node>> peak_forces;     ///< of the drives, by joint [N, N m]; or empty
+  /// Peak force or torque of each drive [N, N m], by joint; empty if the file defines none.
+  std::vector<std::optional<Node>> peak_forces;
   std::string why_no_reactions, why_no_elasticity;
-  std::vector<std::string> mass_models;  ///< the first is the default
-  std::string mass_model;                ///< the selected one
+  std::vector<std::string> mass_models;  ///< names of the mass models; the first one is the default
+  std::string mass_model;                ///< name of the mass model in use
   /// Builds the same mechanism with another mass model.
   std::function<std::shared_ptr<const Mechanism>(const std::string& mass_model)> with_masses;
 

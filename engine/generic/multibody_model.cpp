@@ -19,31 +19,32 @@ using Eigen::Index, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
 using VectorNodes = std::array<Node, 3>;
 using Type = MultibodyModel::JointType;
 
-constexpr double kParallelAxes = 1e-9;      // sine of the angle of axes that count as parallel
-constexpr double kSameMotion = 1e-7;        // relative: velocities that differ by less are equal
-constexpr double kRankOfVelocities = 1e-9;  // relative to the largest pivot
+constexpr double kParallelAxes = 1e-9;      // axes count as parallel if the sine of their angle is at most this
+constexpr double kSameMotion = 1e-7;        // velocities whose relative difference is smaller are equal
+constexpr double kRankOfVelocities = 1e-9;  // relative to the largest pivot: smaller pivots count as 0
 
 Vector3d eigen(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Velocities of a rigid body by the rates of the coordinates.
+/// Velocities of a rigid body for a unit rate of each coordinate.
 struct BodyMotion {
   Vector3d point;
-  std::vector<Vector3d> v, omega;  ///< velocity of the point, angular velocity; by coordinate
+  std::vector<Vector3d> v, omega;  ///< velocity of the point, and angular velocity; by coordinate
 };
 
-/// A joint before the spanning tree is known: of the body `on` relative to the body `from`.
+/// A joint between the bodies `from` and `on`, before it is known whether it belongs to the spanning tree.
 struct Connection {
   std::string name;
   Type type;
   std::size_t from, on;
   Vector3d point;
-  std::vector<Vector3d> axes{};  ///< of a universal joint: on `from` and on `on`
+  std::vector<Vector3d> axes{};  ///< axes of rotation; of a universal joint first the axis on `from`, then that on `on`
   std::optional<MultibodyModel::Drive> drive{};
 };
 
 /// A unit vector normal to `line`, as close to `preferred` as possible.
 Vector3d normal_to(const Vector3d& line, const Vector3d& preferred) {
-  constexpr double kOblique = 0.1;  // sine of the angle, below which another direction is better
+  // if the sine of the angle between the two is smaller, another direction is preferred
+  constexpr double kOblique = 0.1;
   const Vector3d u = line.normalized();
   for (const Vector3d& wanted : {preferred, Vector3d(Vector3d::UnitX()), Vector3d(Vector3d::UnitY())})
     if (const Vector3d across = wanted - u * u.dot(wanted); across.norm() > kOblique * wanted.norm())
@@ -63,7 +64,8 @@ class MultibodyBuilder {
       rates_.push_back(values(program, nodes, at));
       at[model_.inputs.coordinate(j)].d = 0;
     }
-    // A pose nearby, at which axes that are parallel by chance are not; formulas of axes do not need assembled limbs.
+    // Evaluate the nodes at a second pose nearby, at which axes that are parallel by chance are not. The formulas of
+    // axes do not need a pose that assembles.
     constexpr double kStep = 0.1;
     for (std::size_t j = 0; j < pose.size(); ++j)
       at[model_.inputs.coordinate(j)].a += kStep * static_cast<double>(j + 1);
@@ -183,7 +185,8 @@ class MultibodyBuilder {
     for (std::size_t row = 0; row < 3; ++row)
       for (std::size_t k = 0; k < 3; ++k)
         added.inertia(static_cast<Index>(row), static_cast<Index>(k)) = body.inertia(row, k);
-    if (!solid.with_platform && !solid.line)  // it does not rotate, so that the equations of motion leave this out
+    // the body does not rotate, so that the equations of motion do not contain its inertia
+    if (!solid.with_platform && !solid.line)
       for (const std::size_t part : solid.bodies)
         if (const auto& own = model_.bodies[part].inertia) added.inertia.diagonal() += at_pose(*own) * solid.share;
     motions_.push_back(motion_of(solid));
@@ -198,7 +201,7 @@ class MultibodyBuilder {
     return drive;
   }
 
-  /// Index of the body of a slide on a rail; adds it with its driven joint.
+  /// Index of the body that is the slide of a drive along a rail; adds the body with its driven joint if necessary.
   std::size_t slide_of(const JointNodes& joint, MultibodyModel& built) {
     const JointNodes::Drive& drive = *joint.drive;
     if (const auto found = slides_.find(drive.joint); found != slides_.end()) return found->second;
@@ -225,7 +228,7 @@ class MultibodyBuilder {
     return index;
   }
 
-  /// The axes about which a joint rotates, without parallel ones.
+  /// The axes about which a joint rotates; of several parallel axes only the first.
   std::vector<Vector3d> free_axes(const JointNodes& joint) const {
     std::vector<Vector3d> here, there;
     for (const VectorNodes& nodes : joint.axes) {
@@ -257,7 +260,7 @@ class MultibodyBuilder {
     if (joint.drive) added.from = slide_of(joint, built);
     if (joint.couples == JointNodes::Couples::all_but_about) {
       if (!joint.holds_pin) added.axes = free_axes(joint);
-      std::ranges::reverse(added.axes);  // the file's order: the axis on `on`, then that on `from`
+      std::ranges::reverse(added.axes);  // the file lists the axis on `on` first, then the axis on `from`
       add_rotations(added);
     } else if (joint.universal) {
       const Vector3d of_carrier = at_pose(joint.universal->axis).normalized();
@@ -265,7 +268,7 @@ class MultibodyBuilder {
       const bool on_is_rod = joint.universal->rod == joint.on;
       added.axes = on_is_rod ? std::vector{of_carrier, of_rod} : std::vector{of_rod, of_carrier};
       add_rotations(added);
-    } else if (!joint.axes.empty()) {  // no spin about the line of the rod: axes normal to it
+    } else if (!joint.axes.empty()) {  // the rod does not spin about its line: use two axes normal to it
       const Vector3d line = at_pose(joint.axes[0]);
       const Vector3d axis = normal_to(line, pivot_beside(added));
       const Vector3d other = axis.cross(line).normalized();
@@ -278,16 +281,16 @@ class MultibodyBuilder {
       connections_.push_back(added);
     }
   }
-  /// Axis of the crank that one of the two bodies is; a horizontal direction if neither is a crank.
+  /// Axis of a crank if one of the two bodies of the joint is a crank; otherwise a horizontal direction.
   Vector3d pivot_beside(const Connection& joint) const {
     for (const Connection& other : connections_)
       if (other.type == Type::revolute && other.drive && (other.on == joint.from || other.on == joint.on))
         return other.axes[0];
     return Vector3d::UnitX();
   }
-  /// Adds a joint with the axes about which it rotates.
+  /// Adds a joint whose type follows from the number of axes about which it rotates.
   void add_rotations(Connection joint) {
-    constexpr double kOblique = 1e-9;  // cosine of the angle
+    constexpr double kOblique = 1e-9;  // maximum cosine of the angle between the axes of a universal joint
     if (joint.axes.size() == 2 && std::abs(joint.axes[0].dot(joint.axes[1])) > kOblique)
       throw std::invalid_argument("the two axes of the joint " + joint.name +
                                   " are not normal to each other, as those of a universal joint are");
@@ -305,7 +308,7 @@ class MultibodyBuilder {
     }
     return true;
   }
-  /// Refuses formulas by which a body would not be rigid.
+  /// Throws if a formula would make the points of a body move in a way that is not rigid.
   void check_motions() const {
     for (const JointNodes& joint : of_.joints) {
       const bool on_slide = joint.drive && slides_.contains(joint.drive->joint);
@@ -317,7 +320,7 @@ class MultibodyBuilder {
     }
   }
 
-  /// Refuses drives that do not move as their joint, such as one with the opposite direction.
+  /// Throws if a drive does not move like its joint coordinate, for example in the opposite direction.
   void check_drives() const {
     for (const Connection& joint : connections_) {
       if (!joint.drive) continue;
@@ -336,7 +339,8 @@ class MultibodyBuilder {
     }
   }
 
-  /// Compares the degrees of freedom of the bodies, with free drives, with the number of coordinates.
+  /// Throws if the number of degrees of freedom of the bodies, with free drives, differs from the number of
+  /// coordinates.
   void check_mobility(const MultibodyModel& built) const {
     const auto bodies = static_cast<Index>(built.bodies.size() - 1);
     MatrixXd A = MatrixXd::Zero(6 * static_cast<Index>(connections_.size()), 6 * bodies);
@@ -412,8 +416,8 @@ class MultibodyBuilder {
     return made;
   }
 
-  /// Adds the capsule of a link to the body with which it moves; that of a leg half to each of its bodies, and that in
-  /// the middle of a pair of rods to both.
+  /// Adds the capsule of a link to the body with which it moves. The capsule of a leg is divided between its two
+  /// bodies, and the capsule in the middle of a pair of rods is added to both rods.
   void draw(const LinkNodes& link, MultibodyModel& built) const {
     const Vector3d from = at_pose(link.from), to = at_pose(link.to);
     const double radius = number(link.radius);
@@ -438,7 +442,7 @@ class MultibodyBuilder {
       built.bodies[body].shapes.push_back({from, to, radius});
       return;
     }
-    for (const MultibodyModel::Joint& slide : built.tree) {  // from a cylinder to its piston
+    for (const MultibodyModel::Joint& slide : built.tree) {  // from the cylinder of a leg to its piston
       if (slide.type != Type::prismatic || !is_carried(link.from, motions_[slide.parent]) ||
           !is_carried(link.to, motions_[slide.child]))
         continue;
@@ -455,12 +459,13 @@ class MultibodyBuilder {
   const JointedBodies& of_;
   std::vector<Taylor> design_;
   std::size_t mode_;
-  std::vector<Values> rates_;  ///< by coordinate: values and their derivatives by it
+  /// Values of the nodes and their derivatives with respect to each coordinate, by coordinate.
+  std::vector<Values> rates_;
   Values nearby_;
   double size_ = 0;
-  std::vector<BodyMotion> motions_;  ///< by body
+  std::vector<BodyMotion> motions_;  ///< motion of each body, by body
   std::vector<Connection> connections_;
-  std::map<std::size_t, std::size_t> slides_;  ///< by drive: index of the slide's body
+  std::map<std::size_t, std::size_t> slides_;  ///< index of the slide's body for each drive that has one, by drive
 };
 
 }  // namespace

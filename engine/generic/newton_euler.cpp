@@ -13,7 +13,7 @@ using Vec = Vector<double, 3>;
 using Mat = Matrix<double, 3, 3>;
 using VectorNodes = std::array<Node, 3>;
 
-/// A point or vector with its first and second time derivative.
+/// A point or vector with its first and second derivatives with respect to time.
 struct MovingVector {
   Vec x, v, a;
 };
@@ -48,7 +48,7 @@ class System {
     apply(platform, at(*model_.wrench_point).x, Vec{{wrench[0], wrench[1], wrench[2]}},
           Vec{{wrench[3], wrench[4], wrench[5]}});
     for (const JointNodes& joint : model_.jointed->joints)
-      if (joint.holds_pin) {  // a moment about the pin's axis does no work in the coordinates
+      if (joint.holds_pin) {  // a moment about the axis of the pin does no work for any motion of the coordinates
         const Vec axis = unit(at(joint.axes[0]).x);
         platform.moment = platform.moment - axis * dot(axis, platform.moment);
       }
@@ -93,7 +93,7 @@ class System {
 
   /// Rotation matrix R, angular velocity and angular acceleration: omega x = R' R^T, epsilon x = R'' R^T + R' R'^T.
   void find_rotation_of_platform() {
-    Mat first, second;  // derivatives of R
+    Mat first, second;  // first and second derivative of R with respect to time
     for (std::size_t i = 0; i < 3; ++i) {
       const MovingVector row = at(model_.rotation[i]);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -106,7 +106,7 @@ class System {
     epsilon_ = axial(second * transpose(R_) + first * transpose(first));
   }
 
-  /// The body with its rotation, without mass.
+  /// The body of a solid with its position and rotation, but without mass.
   RigidBody massless(const SolidNodes& solid) const {
     RigidBody body;
     body.name = solid.name;
@@ -115,7 +115,7 @@ class System {
       body.omega = omega_;
       body.epsilon = epsilon_;
     } else if (solid.line) {
-      // omega = d x d' / |d|^2, without component along d, and its derivative
+      // omega = d x d' / |d|^2, which has no component along d, and its derivative
       const MovingVector d = at(*solid.line);
       const double square = dot(d.x, d.x);
       body.omega = cross(d.x, d.v) * (1 / square);
@@ -132,7 +132,7 @@ class System {
       for (std::size_t k = 0; k < 3; ++k) inertia(k, k) = number((*body.inertia)[k]);
       return R_ * inertia * transpose(R_);
     }
-    if (!solid.line) return inertia;  // the body does not rotate: its inertia has no effect
+    if (!solid.line) return inertia;  // the body does not rotate, so that its inertia has no effect
     const Vec u = unit(at(*solid.line).x);
     return (Mat::identity() - outer(u, u)) * number((*body.inertia)[1]);
   }
@@ -179,7 +179,8 @@ class System {
 
   /// Orthonormal basis of the orthogonal complement of the axes (Gram-Schmidt).
   static std::vector<Vec> normal_to(const std::vector<Vec>& axes) {
-    constexpr double kParallel = 1e-9;  // length of the normal component of a unit vector
+    // vectors whose component normal to the axes is shorter are parallel to the axes
+    constexpr double kParallel = 1e-9;
     std::vector<Vec> span, complement;
     const auto normal_part = [&](Vec v) {
       for (const auto* const list : {&span, &complement})

@@ -8,14 +8,14 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kCoarse = 1e-5;  // with this tolerance or a larger one, the subdivision begins with a single cell
+constexpr double kCoarse = 1e-5;  // if the tolerance is at least this, the subdivision begins with a single cell
 constexpr std::size_t kMaxCells = 100;
 
-/// Adds factor() times the gradient of the first output of a program that has a single stage.
+/// Adds factor() times the gradient of the first output of a program, which has a single stage.
 template <class Factor>
 void add_gradient(const expression::Program& program, const std::vector<double>& inputs, const Factor& factor,
                   std::span<double> by_input) {
-  if (program.stages().front().inputs.empty()) return;  // a constant
+  if (program.stages().front().inputs.empty()) return;  // the output is constant, so that its gradient is 0
   std::vector<double> registers;
   program.run_all<double>(inputs, registers);
   std::vector<double> adjoints(registers.size());
@@ -24,11 +24,11 @@ void add_gradient(const expression::Program& program, const std::vector<double>&
   for (const auto& input : program.stages().front().inputs) by_input[input.position] += adjoints[input.to];
 }
 
-/// The integral over a subinterval of a range.
+/// A subinterval of the range of an outer coordinate, with its integral.
 struct OuterCell {
   Subinterval<double> interval;
   double value = 0, error = 0;
-  double inner_error = 0;  ///< integral of the errors of the inner volumes
+  double inner_error = 0;  ///< integral of the errors of the inner volumes over the subinterval
   std::vector<double> by_input{};
 };
 

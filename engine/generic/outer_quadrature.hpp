@@ -13,19 +13,19 @@ namespace pkm::generic {
 
 class OuterQuadrature {
  public:
-  /// @param coordinates  the outer coordinates, the outermost first; their ranges are those of the model
-  /// @param tolerance    relative
+  /// @param coordinates  indices of the outer coordinates, the outermost first; their ranges are those of the model
+  /// @param tolerance    relative error of the volume that is accepted
   OuterQuadrature(const Evaluation& evaluation, std::vector<std::size_t> coordinates, double tolerance)
       : e_(evaluation), coordinates_(std::move(coordinates)), tolerance_(tolerance) {}
 
   const std::vector<std::size_t>& coordinates() const { return coordinates_; }
 
-  /// Function that returns the volume over the inner coordinates at the values of the outer ones in `inputs`, and adds
-  /// its derivatives by the inputs, unless `by_input` is empty.
+  /// inner(inputs, by_input) returns the volume over the inner coordinates for the values of the outer ones in
+  /// `inputs`, and adds its derivatives with respect to the inputs to `by_input`, unless that is empty.
   using Inner = std::function<Integral<double>(std::span<const double> inputs, std::span<double> by_input)>;
   /// The volume over all coordinates.
   /// @param inputs    values of the graph's inputs; those of the coordinates are overwritten
-  /// @param by_input  if not empty, the derivatives of the volume are added
+  /// @param by_input  derivatives by input, to which those of the volume are added; empty: not requested
   Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, const Inner& inner) const {
     return measure(0, inputs, by_input, inner);
   }
@@ -39,7 +39,7 @@ class OuterQuadrature {
  private:
   Integral<double> measure(std::size_t level, std::vector<double>& inputs, std::span<double> by_input,
                            const Inner& inner) const;
-  /// The integral over the coordinates after coordinates_[level], at a value of the latter.
+  /// The integral over the coordinates after coordinates_[level], where the coordinate of `level` has the given value.
   Integral<double> at(std::size_t level, double value, std::vector<double>& inputs, std::span<double> by_input,
                       const Inner& inner) const;
 

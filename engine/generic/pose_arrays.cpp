@@ -17,7 +17,7 @@ std::vector<int> all_coordinates(const Model& model) {
   return all;
 }
 
-/// The values, then the joints and the constraints that decide whether a pose assembles.
+/// The nodes of the values, followed by those that decide whether a pose assembles: joints and constraints.
 std::vector<Node> with_assembly(const Model& model, std::vector<Node> values) {
   values.insert(values.end(), model.joints.begin(), model.joints.end());
   for (const Result& domain : model.domains) values.push_back(domain.node);
@@ -53,7 +53,7 @@ void PoseArrays::evaluate(std::span<const double> parameters, const LimitSpec& l
     PoseBatchScratch scratch;
     batch_.start(inputs, scratch);
     Pose<double> pose(coordinates);
-    std::size_t first = begin;  // of the batch
+    std::size_t first = begin;  // index of the first pose of the batch
     for (std::size_t k = begin; k < end; ++k) {
       std::ranges::copy(poses.subspan(k * coordinates, coordinates), pose.begin());
       if (!batch_.add(pose, scratch) && k + 1 < end) continue;

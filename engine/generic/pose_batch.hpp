@@ -14,13 +14,13 @@ namespace pkm::generic {
 struct PoseBatchScratch {
   std::vector<double> registers;
   expression::Rows rows;
-  std::size_t count = 0;  ///< poses in the batch
+  std::size_t count = 0;  ///< number of poses in the batch
 };
 
-/// Immutable, shared by threads; each has its own scratch memory.
+/// Immutable; threads can share it if each has its own scratch memory.
 class PoseBatch {
  public:
-  /// @param outputs  nodes of the model's graph
+  /// @param outputs  nodes of the model's graph to be evaluated
   PoseBatch(const Model& model, std::vector<Node> outputs, const std::vector<int>& swept, std::size_t mode);
 
   /// Evaluates the operations that do not depend on the swept coordinates, and empties the batch.
@@ -28,11 +28,12 @@ class PoseBatch {
   void start(const std::vector<double>& inputs, PoseBatchScratch& scratch) const;
   /// Adds a pose to the batch. @return true if the batch is full
   bool add(const Pose<double>& pose, PoseBatchScratch& scratch) const;
-  /// Evaluates the batch, which must not be empty, padded with copies of its last pose. The caller reads the results
-  /// and sets scratch.count to 0. @return number of poses with the padding, a multiple of kLanes
+  /// Evaluates the batch, which must contain at least one pose and is padded with copies of its last pose. The caller
+  /// then reads the results and sets scratch.count to 0.
+  /// @return number of poses with the padding, a multiple of kLanes
   std::size_t run(PoseBatchScratch& scratch) const;
 
-  /// Evaluates single poses, for any scalar; the results are in the registers outputs().
+  /// Evaluates a single pose, for any scalar type S; the results are in the registers outputs().
   template <class S>
   void start(std::span<const S> inputs, std::vector<S>& registers) const {
     registers.resize(program_.registers());
@@ -61,7 +62,7 @@ class PoseBatch {
   };
   expression::Program program_;
   std::optional<expression::BatchStage> stage_;
-  std::vector<Coordinate> coordinates_;  ///< swept coordinates that the program depends on
+  std::vector<Coordinate> coordinates_;  ///< those swept coordinates on which the program depends
 };
 
 }  // namespace pkm::generic

@@ -5,15 +5,15 @@
 
 namespace pkm::generic {
 
-/// Appends the finite margins of each pose: domains, margins and clearance, each in its own unit. A pose with a margin
-/// that is not finite, or without a solution for a joint, is infeasible; if none of its margins is negative, -1 is
+/// Appends the finite margins of each pose: domains, margins and clearance, each in its own unit. A pose is infeasible
+/// if one of its margins is not finite, or if a joint has no solution; if such a pose has no negative margin, -1 is
 /// appended.
 template <class S>
 void append_margins(const Evaluation& evaluation, std::span<const S> parameters, std::size_t mode,
                     const LimitSpec& limits, std::span<const Pose<double>> poses, Scratch& scratch,
                     std::vector<S>& margins);
 
-/// Names of the margins of append_ordered_margins().
+/// Names of the margins that append_ordered_margins() appends for a pose, in the same order.
 std::vector<std::string> ordered_margin_names(const Model& model, const LimitSpec& limits);
 
 /// Appends the margins of each pose in a fixed order, NaN where one does not exist: domains, margins, clearance, and

@@ -13,7 +13,7 @@
 namespace pkm::generic {
 namespace {
 
-/// Nodes of which all have to be satisfied at a feasible pose.
+/// The nodes that all have to be satisfied at a feasible pose.
 std::vector<Node> constraint_nodes(const Model& model) {
   std::vector<Node> nodes;
   for (const auto* const list : {&model.domains, &model.margins})
@@ -76,7 +76,7 @@ class GenericSides final : public PoseSides {
 
   const std::vector<int>& swept() const { return sweep_of(e_.model.info, plan_).swept; }
 
-  /// Side of a pose of a batch, whose outputs are constraints, then the Jacobian.
+  /// Side of one pose of a batch. The outputs of the batch are the constraints, followed by the Jacobian.
   std::int8_t side(const PoseBatch& batch, std::size_t constraints, std::size_t pose,
                    const PoseBatchScratch& scratch) const {
     for (std::size_t i = 0; i < constraints; ++i)
@@ -89,8 +89,9 @@ class GenericSides final : public PoseSides {
   const Evaluation& e_;
   WorkspacePlan plan_;
   std::size_t mode_;
-  bool has_other_limits_;    ///< limits that are not formulas: clearance, quantities of pose reports
-  std::size_t constraints_;  ///< number of constraints in `all_`
+  /// true: there are limits that formulas do not give, i.e. clearance or quantities of pose reports.
+  bool has_other_limits_;
+  std::size_t constraints_;  ///< number of the outputs of `all_` that are constraints
   PoseBatch jacobian_, all_;
 };
 

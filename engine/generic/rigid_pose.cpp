@@ -14,13 +14,14 @@ using Eigen::Matrix3d, Eigen::Vector3d;
 struct Plane {
   Vector3d point, normal;
 
-  /// Matrix of the reflection in the plane.
+  /// Matrix of the reflection of directions in the plane.
   Matrix3d reflection() const { return Matrix3d::Identity() - 2 * normal * normal.transpose(); }
   Vector3d reflected(const Vector3d& x) const { return x - 2 * normal.dot(x - point) * normal; }
 };
 
-/// The least-squares plane of points: the eigenvector of the smallest eigenvalue of the scatter matrix is its normal.
-/// @param in_plane  coordinate axes to which the plane is parallel
+/// The least-squares plane of points. Its normal is the eigenvector that belongs to the smallest eigenvalue of the
+/// scatter matrix.
+/// @param in_plane  true for each coordinate axis to which the plane has to be parallel
 Plane plane_of(const std::vector<Vector3d>& points, const std::array<bool, 3>& in_plane) {
   Vector3d mean = Vector3d::Zero();
   for (const Vector3d& point : points) mean += point / static_cast<double>(points.size());
@@ -36,7 +37,8 @@ Plane plane_of(const std::vector<Vector3d>& points, const std::array<bool, 3>& i
   return {mean, Eigen::SelfAdjointEigenSolver<Matrix3d>(scatter).eigenvectors().col(0)};
 }
 
-/// The normal of a planar mechanism, by axis: the platform neither translates along it nor rotates about another axis.
+/// For each axis, whether it is normal to the plane of a planar mechanism: the platform does not translate along it,
+/// and rotates about no other axis.
 std::array<bool, 3> normal_to_motion(const Model& model) {
   std::array<bool, 3> normals{};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -12,13 +12,13 @@ namespace pkm::generic {
 
 struct RigidPose {
   Eigen::Vector3d origin;    ///< origin of the platform frame, in the base frame [m]
-  Eigen::Matrix3d rotation;  ///< from the platform frame to the base frame
+  Eigen::Matrix3d rotation;  ///< rotation matrix from the platform frame to the base frame
 };
 
 /// @param inputs  values of the graph's inputs, including the pose
 RigidPose rigid_pose(const Evaluation& e, const std::vector<double>& inputs);
 
-/// True if the rotation matrices, origins and translations of two poses are equal to `tolerance` [1, m].
+/// Whether the rotation matrices, origins and translations of two poses are equal to within `tolerance` [1, m].
 bool is_same_pose(const Model& model, const Pose<double>& a, const RigidPose& rigid_a, const Pose<double>& b,
                   const RigidPose& rigid_b, double tolerance);
 

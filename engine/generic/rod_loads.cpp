@@ -12,9 +12,9 @@ namespace {
 
 using Vec = Vector<double, 3>;
 
-/// Component of a joint's force along a unit vector; std::nullopt if it is undetermined.
+/// Component of a joint's force along the unit vector u; std::nullopt if the equations do not determine it.
 std::optional<double> along(const Vec& u, const std::array<std::optional<double>, 3>& force) {
-  constexpr double kNormal = 1e-9;  // smaller components of u are neglected
+  constexpr double kNormal = 1e-9;  // components of u that are smaller are neglected
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (std::fabs(u[k]) < kNormal) continue;
@@ -24,9 +24,10 @@ std::optional<double> along(const Vec& u, const std::array<std::optional<double>
   return sum;
 }
 
-/// The rods of a model, and the nodes of their data.
+/// The rods of a model, and the nodes of the numbers that their loads depend on.
 struct Rods {
-  static constexpr std::size_t kNumbers = 8;  // coordinates of both ends, E I, area
+  // numbers per rod: three coordinates of each end, E I, and the area
+  static constexpr std::size_t kNumbers = 8;
   std::vector<std::size_t> solids;
   std::vector<Node> nodes;
 

@@ -18,17 +18,17 @@ namespace pkm::generic {
 
 /// Loads of a rod at one state.
 struct RodLoad {
-  std::string name;           ///< "rod 1 of arm1"
+  std::string name;           ///< name of the rod, such as "rod 1 of arm1"
   double area = 0;            ///< area of its cross-section [m^2]
-  double buckling_force = 0;  ///< the compression at which the rod buckles [N]
-  /// Forces at both ends [N], tension > 0; the inertia of the rod makes them differ. std::nullopt if the equations do
-  /// not determine them.
+  double buckling_force = 0;  ///< compressive force at which the rod buckles [N]
+  /// Axial forces at the two ends [N], > 0 for tension; they differ because of the inertia of the rod. std::nullopt if
+  /// the equations do not determine them.
   std::optional<std::array<double, 2>> ends;
 
-  /// The end force of larger magnitude [N], and the compression, >= 0 [N]. Precondition: `ends` is set.
+  /// The axial force of larger magnitude of the two ends [N]; and the compression [N], >= 0. `ends` must be set.
   double axial() const { return std::fabs((*ends)[0]) > std::fabs((*ends)[1]) ? (*ends)[0] : (*ends)[1]; }
   double compression() const { return std::max({0.0, -(*ends)[0], -(*ends)[1]}); }
-  /// Buckling force divided by the compression; std::nullopt without compression.
+  /// Buckling force divided by the compression; std::nullopt if the rod is not under compression.
   std::optional<double> reserve() const {
     return ends && compression() > 0 ? std::optional(buckling_force / compression()) : std::nullopt;
   }
@@ -43,15 +43,15 @@ std::vector<RodLoad> rod_loads(const Mechanism& mechanism, std::span<const doubl
 /// Extrema of the loads of a rod along a trajectory.
 struct PeakRodLoad {
   std::string name;
-  double buckling_force = 0;            ///< [N]
-  double tension = 0, compression = 0;  ///< maxima [N]; 0: none
-  double stress = 0;                    ///< maximum magnitude [Pa]
-  std::optional<double> reserve;        ///< minimum over the trajectory; std::nullopt without compression
-  std::size_t critical = 0;             ///< index of the first sample with this reserve
-  bool is_determined = true;            ///< false: the axial force is undetermined at a sample
+  double buckling_force = 0;            ///< compressive force at which the rod buckles [N]
+  double tension = 0, compression = 0;  ///< maximum tension and maximum compression [N]; 0 if there is none
+  double stress = 0;                    ///< maximum magnitude of the axial stress [Pa]
+  std::optional<double> reserve;  ///< minimum of RodLoad::reserve(); std::nullopt if the rod is never under compression
+  std::size_t critical = 0;       ///< index of the first sample at which the minimum reserve occurs
+  bool is_determined = true;      ///< false: the axial force is undetermined at one sample or more
 };
 
-/// Finds the extrema for each rod. @param trajectory  has reactions at all samples (add_reactions)
+/// Finds the extrema of the loads of each rod. @param trajectory  must have reactions at all samples (add_reactions)
 std::vector<PeakRodLoad> peak_rod_loads(const Mechanism& mechanism, std::span<const double> parameters,
                                         const std::string& mode, const Trajectory& trajectory);
 

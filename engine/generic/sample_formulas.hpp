@@ -14,17 +14,17 @@ struct FormulaScratch {
 
 class SampleFormulas {
  public:
-  /// @param fields  fields of a FieldRequest; those that are not formulas are ignored
+  /// @param fields  fields of a FieldRequest; those that are not given by formulas are ignored
   SampleFormulas(const Evaluation& evaluation, const std::vector<const PoseQuantity*>& fields,
                  const std::vector<int>& swept, std::size_t mode);
 
-  /// Prepares the evaluation at poses of one design, like PoseBatch::start().
+  /// Prepares the evaluation for one design, like PoseBatch::start().
   void start(const std::vector<double>& inputs, FormulaScratch& scratch) const { batch_.start(inputs, scratch.poses); }
-  /// Adds a pose, whose values are appended to the fields of the result when the batch is full or finish() is called:
-  /// NaN where a formula is undefined.
+  /// Adds a pose to the batch. Its values, NaN where a formula is undefined, are appended to the fields of the result
+  /// when the batch is full or finish() is called.
   void add(const Pose<double>& pose, FormulaScratch& scratch, WorkspaceResult<double>& to) const;
   void finish(FormulaScratch& scratch, WorkspaceResult<double>& to) const;
-  /// With derivatives: poses are evaluated one by one.
+  /// Variants with derivatives, which evaluate one pose after the other.
   void start(const std::vector<Dual4>& inputs, FormulaScratch& scratch) const {
     batch_.start<Dual4>(inputs, scratch.dual_registers);
   }

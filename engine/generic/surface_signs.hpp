@@ -10,19 +10,20 @@ namespace pkm::generic {
 using Signs = std::uint64_t;
 inline constexpr std::size_t kMaxSurfaces = 64;
 
-/// limbs::CrankRange in terms of the bits of surfaces.
+/// The range of a crank (limbs::CrankRange), decided by the signs of surfaces: each set contains the surfaces that
+/// decide one of its terms.
 struct CrankSigns {
   Signs at_min, at_max, after_min, before_max, reach;
-  std::uint32_t half_turn;  ///< register
-  bool is_first;            ///< the joint is the first of the two angles that assemble
+  std::uint32_t half_turn;  ///< register of CrankRange::half_turn
+  bool is_first;            ///< true: the joint angle is the smaller one of the two angles that assemble
 };
 
 struct Formula {
-  Signs all = 0;           ///< all of these bits have to be set
-  std::vector<Signs> any;  ///< at least one bit of each of these has to be set
+  Signs all = 0;           ///< set of the surfaces that all have to be >= 0
+  std::vector<Signs> any;  ///< from each of these sets, at least one surface has to be >= 0
   std::vector<CrankSigns> cranks;
 
-  /// @param registers  registers of the program
+  /// @param registers  values of the registers of the program
   bool holds(Signs signs, const double* registers) const {
     if ((signs & all) != all) return false;
     for (const Signs one_of : any)

@@ -47,13 +47,15 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
  private:
   friend GridEvaluator;
   struct WorkerScratch {
-    std::optional<std::size_t> number;  ///< index of the grid for which the memory is prepared
+    /// Index of the grid for which this memory is prepared; std::nullopt if there is none.
+    std::optional<std::size_t> number;
     std::vector<double> inputs;
     CellScratch cells;
     InertiaScratch inertia;
     FormulaScratch formulas;
     ClearanceScratch clearance;
-    std::array<std::size_t, expression::kRow> waiting;  ///< indices of the bits of the cells in the clearance batch
+    /// For each pose in the clearance batch, the index of the bit of its cell.
+    std::array<std::size_t, expression::kRow> waiting;
   };
   struct Common {
     std::vector<double> inputs;
@@ -61,7 +63,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   };
   using Buffers = GridBuffers<Common, WorkerScratch>;
 
-  /// A design and its grids, whose blocks are slices of the outer loop.
+  /// A design and its grids; each block of a grid is a slice, i.e. one value of the outer loop.
   struct GriddedSlices : GriddedDesign {
     std::span<const double> parameters;
     const Common& common;
@@ -118,7 +120,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     if (clearance_) clearance_->start(scratch.inputs, scratch.clearance);
   }
 
-  /// Calls visit(column, cell) for the feasible cells of a slice, in order.
+  /// Calls visit(column, cell) for each feasible cell of a slice, in ascending order.
   template <class Visit>
   static void for_each_cell(const CellScratch& scratch, std::size_t columns, std::size_t cells, const Visit& visit) {
     const std::size_t words = CellTest::words(cells);
@@ -135,7 +137,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     return pose;
   }
 
-  /// Finds the feasible cells of a slice under all limits. @param want_bits  whether to compute scratch.cells.bits
+  /// Finds the cells of a slice that satisfy all limits. @param want_bits  true: also compute scratch.cells.bits
   CellTally find_cells(const GriddedSlices& slices, std::size_t slice, bool want_bits, WorkerScratch& scratch) const {
     const VoxelGrid& grid = slices.grid;
     if (!clearance_ && limited_.empty()) return test_.test(grid, slice, want_bits, scratch.cells);
@@ -150,7 +152,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     });
     return tally;
   }
-  /// Clears the bits of the cells in which links are too near to each other.
+  /// Clears the bits of the cells in which the clearance limit is violated.
   void clear_near_links(const VoxelGrid& grid, std::size_t slice, WorkerScratch& scratch) const {
     const std::array<std::size_t, 3> shape = test_.shape(grid);
     const std::size_t columns = shape[1], cells = shape[2], length = CellTest::words(cells) * 64;
@@ -167,7 +169,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     });
     test_batch();
   }
-  /// Clears the bits of the cells that violate a limit of a quantity that is not given by a formula.
+  /// Clears the bits of the cells that violate a limit of a pose quantity without a formula.
   void clear_beyond_limits(const GriddedSlices& slices, std::size_t slice, WorkerScratch& scratch) const {
     const std::array<std::size_t, 3> shape = test_.shape(slices.grid);
     const std::size_t length = CellTest::words(shape[2]) * 64;
@@ -182,8 +184,8 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
       if (!satisfied) scratch.cells.bits[bit / 64] &= ~(std::uint64_t{1} << bit % 64);
     });
   }
-  /// Computes the parts of the report of a feasible pose that the quantities need. Writes the coordinates of the pose
-  /// to scratch.inputs.
+  /// Computes those parts of the report of a feasible pose that the quantities need. The coordinates of the pose are
+  /// written to scratch.inputs.
   PoseReport report_at(std::span<const double> parameters, const Pose<double>& pose, WorkerScratch& scratch,
                        const std::vector<const PoseQuantity*>& quantities) const {
     std::ranges::copy(pose, scratch.inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
@@ -203,7 +205,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     if (inertia_) inertia_->finish(scratch.inertia, to);
     if (formulas_) formulas_->finish(scratch.formulas, to);
   }
-  /// Writes the coordinates of the pose to scratch.inputs.
+  /// Appends the sample of a feasible pose to the result, and writes the coordinates of the pose to scratch.inputs.
   void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight, WorkerScratch& scratch,
                   WorkspaceResult<double>& to) const {
     check_stop();
@@ -224,10 +226,10 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   std::size_t mode_;
   BoxOfDesign default_box_;
   CellTest test_;
-  std::optional<InertiaBatch> inertia_;       ///< if fields of inertia are requested
-  std::optional<SampleFormulas> formulas_;    ///< if formulas are requested
-  std::optional<ClearanceBatch> clearance_;   ///< if there is a clearance limit
-  std::vector<const PoseQuantity*> limited_;  ///< quantities of Model::report_limits in force
+  std::optional<InertiaBatch> inertia_;       ///< absent if no fields of inertia are requested
+  std::optional<SampleFormulas> formulas_;    ///< absent if no fields given by formulas are requested
+  std::optional<ClearanceBatch> clearance_;   ///< absent if there is no clearance limit
+  std::vector<const PoseQuantity*> limited_;  ///< quantities without a formula that have a limit in force
 };
 
 }  // namespace

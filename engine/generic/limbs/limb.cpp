@@ -5,12 +5,12 @@
 namespace pkm::limbs {
 namespace {
 
-/// B - A, projected onto the plane of the limb.
+/// The vector v = B - A, projected onto the plane in which the limb moves, if there is one.
 Vector3 projected(const Ends& ends) {
   const Vector3 v = ends.B - ends.A;
   return ends.across ? v - *ends.across * dot(v, *ends.across) : v;
 }
-/// Closure of a rod: (|v|^2 - length^2) / 2. The factor 1/2 makes its gradient by v equal to v.
+/// Closure of a rod: (|v|^2 - length^2) / 2. Because of the factor 1/2, its gradient with respect to v is v.
 Term rod_closure(const Vector3& v, const Term& length) { return (dot(v, v) - length * length) * 0.5; }
 
 }  // namespace
@@ -46,7 +46,8 @@ Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, c
   const Term s = dot(v, e);
   const Vector3 normal = v - e * s;
   const Term distance_2 = dot(normal, normal), distance = sqrt(distance_2);
-  // position of the elbow: component along the line between the outer ends of the links, and distance from it
+  // Position of the elbow: its component along the line between the outer ends of the two links, and its distance from
+  // this line.
   const Term along = (distance_2 + l_1 * l_1 - l_2 * l_2) / (distance * 2.0);
   const Term beside = branch * sqrt(l_1 * l_1 - along * along);
   const Vector3 slide = ends.A + e * s, arm = (normal * along - cross(axis, normal) * beside) / distance;
@@ -67,7 +68,7 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
   const Term angle = atan2(w, u) + branch * acos(k / h);
   const Term joint = centre + call(expression::angle_wrapping(), angle - centre);
   const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
-  // cosine and sine of the angle, times h^2
+  // cosine and sine of the crank angle, multiplied by h^2
   const Term root = branch * sqrt(h * h - k * k), cosine = u * k - w * root, sine = w * k + u * root;
   const Vector3 to_C = (zero * cosine + beside * sine) * (crank / (h * h));
   Limb limb = {.joint = joint,

@@ -19,7 +19,7 @@ using expression::Rotation, expression::Term, expression::Vector3;
 
 /// A constraint margin >= 0.
 struct Constraint {
-  std::string name;  ///< "reaches"
+  std::string name;  ///< name of the constraint, such as "reaches"
   std::string unit;
   Term margin;
 };
@@ -30,23 +30,23 @@ struct Constraint {
 /// The crank angles that assemble are phi - acos(k / h) and phi + acos(k / h), phi = atan2(w, u) (see crank_and_rod()).
 /// The loop-closure function f(q) = (|v - crank(q)|^2 - rod^2) / 2 is <= 0 between them and > 0 elsewhere. For a range
 /// of less than one revolution:
-/// - exactly one of the angles is in the range if f has different signs at its ends; the sign of f at q_min determines
-/// which
-///   one;
+/// - exactly one of the angles is in the range if f has different signs at its two ends; the sign of f at q_min
+///   determines which one it is;
 /// - both are in the range if the limb reaches B, and either f >= 0 at both ends and phi is in the range, or f <= 0 at
 ///   both ends and phi + pi is in the range.
 struct CrankRange {
-  Term at_min, at_max;         ///< f at q_min and at q_max
-  Term after_min, before_max;  ///< >= 0: phi is at most half a revolution after q_min, or before q_max
-  Term half_turn;              ///< >= 0: the range is at most half a revolution
-  Term reach;                  ///< h^2 - k^2, >= 0 if the limb reaches B
+  Term at_min, at_max;  ///< values of f at q_min and at q_max
+  /// >= 0: phi is at most half a revolution after q_min; and at most half a revolution before q_max.
+  Term after_min, before_max;
+  Term half_turn;  ///< >= 0: the range is at most half a revolution
+  Term reach;      ///< h^2 - k^2, >= 0 if the limb reaches B
   Term branch;
 };
 
 /// A link of constant length that rotates about a pivot, with the rod from its end C to B. Rates follow without angles:
 /// arm' = q' axis x arm, where q' = rod . B' / rod . (axis x arm). The pivot may move, but only along the axis.
 struct Arm {
-  Vector3 arm;        ///< from the pivot to C; formulas that contain square roots but no angles
+  Vector3 arm;        ///< vector from the pivot to C, by formulas that contain square roots but no angles
   Vector3 axis, rod;  ///< axis: unit vector; rod: vector from C to B
 };
 
@@ -58,50 +58,54 @@ using Annulus = std::array<Term, 2>;
 /// E = A + q axis, or E = A + crank (cos q zero + sin q axis x zero).
 struct RodAndPath {
   bool is_circle;
-  Vector3 v, axis, zero;  ///< v = B - A; zero: of a circle
+  /// v = B - A; axis of the line or circle; zero: direction of the crank at q = 0, for a circle only.
+  Vector3 v, axis, zero;
   Term crank, rod, branch;
 };
 
 /// The closed form of a limb.
 struct Limb {
-  Term joint;                           ///< joint coordinate; undefined if a constraint is violated
-  std::vector<Constraint> constraints;  ///< under which the limb assembles
+  Term joint;                           ///< formula of the joint coordinate; undefined if a constraint is violated
+  std::vector<Constraint> constraints;  ///< constraints under which the limb assembles
   /// Loop-closure equation closure = 0; with Jq = -d/dq and G = d/dX the velocities satisfy Jq qdot = G Xdot.
   Term closure;
-  Vector3 C;  ///< inner end of the rod: end of the crank, elbow, slide; A for a telescope
+  Vector3 C;  ///< inner end of the rod: end of the crank, elbow or slide; A for a telescope
   Vector3 S;  ///< position of the slide; A for cranks and telescopes
   std::optional<CrankRange> crank_range{};
   std::optional<Arm> arm{};
-  std::optional<Annulus> annulus{};  ///< equivalent to all constraints, for a planar crank
-  std::optional<RodAndPath> path{};  ///< for a rod with ball joints, without Ends::across
+  /// Constraints that are equivalent to `constraints`, for a planar crank with a rod.
+  std::optional<Annulus> annulus{};
+  std::optional<RodAndPath> path{};  ///< for a rod with ball joints, if Ends::across is not given
 };
 
-/// The joints of a limb on the base and on the platform.
+/// The positions A of the limb's joint on the base and B of its joint on the platform.
 struct Ends {
   Vector3 A, B;
-  std::optional<Vector3> across;  ///< unit vector: rod and crank stay normal to it
+  /// Unit vector to which rod and crank stay normal; std::nullopt: the limb is not restricted to a plane.
+  std::optional<Vector3> across;
 };
 
-// In the following functions the argument q is the joint as a variable of the closure; the formula q = .. is
-// Limb::joint.
+// In the following functions, the argument q is the joint coordinate as a variable of the loop-closure equation; the
+// formula q = .. in the comment becomes Limb::joint.
 
-/// q = |v|
+/// Telescope: q = |v|.
 Limb telescope(const Ends& ends, const Term& q);
-/// q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), s = v . e
+/// Slide and rod: q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), where s = v . e.
 /// @param e  unit vector along the rail
 Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q);
-/// q = v . e: the joint on the platform moves along with the slide.
+/// Slide without a rod: q = v . e. The joint on the platform moves along with the slide.
 /// @param e  unit vector along the rail
 Limb slider(const Ends& ends, const Vector3& e, const Term& q);
-/// q = v . e, with two links in the plane normal to e.
-/// @param axis    e or -e
+/// Slide and two links that move in the plane normal to e: q = v . e.
+/// @param axis    unit vector e or -e, about which the angle of the links is counted
 /// @param branch  sign of the angle from the first link to the second one about `axis`
 Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, const Term& l_1, const Term& l_2,
                       const Term& branch, const Term& q);
-/// q = atan2(w, u) + branch acos(k / h), where u = v . zero, w = v . (axis x zero), h = hypot(u, w) and
-/// k = (|v|^2 + crank^2 - rod^2) / (2 crank); wrapped to the revolution about the centre of the range, or about 0.
+/// Crank and rod: q = atan2(w, u) + branch acos(k / h), where u = v . zero, w = v . (axis x zero), h = hypot(u, w) and
+/// k = (|v|^2 + crank^2 - rod^2) / (2 crank). The angle is wrapped to the revolution about the centre of the range, or
+/// about 0 if there is no range.
 /// @param axis, zero  orthogonal unit vectors: axis of rotation, direction of the crank at q = 0
-/// @param range       minimum and maximum angle
+/// @param range       minimum and maximum angle [rad]
 Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
                    const Term& branch, const std::optional<std::array<Term, 2>>& range, const Term& q);
 

@@ -1,4 +1,4 @@
-// Stiffness and natural frequency.
+// Stiffness of the platform, and its lowest natural frequency.
 #include <numbers>
 
 #include "engine/generic/performance/performance.hpp"

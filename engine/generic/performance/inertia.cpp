@@ -17,14 +17,14 @@ Term face_distance(const TermMatrix& W, const TermMatrix& offset, const std::vec
   Term square = n[0] * n[0], support = along(W, 0) - along(offset, 0);
   for (std::size_t i = 1; i < n.size(); ++i) square = square + n[i] * n[i];
   for (std::size_t j = 1; j < W.columns(); ++j) support = support + along(W, j);
-  // parallel w_i, w_j span no face
+  // two parallel vectors w_i and w_j span no face
   expression::Graph& graph = W.graph();
   const expression::Node is_face = graph.apply(expression::operation(">"), std::array{square.node(), graph.number(0)});
   return {graph,
           graph.apply(expression::choice(), std::array{is_face, (support / sqrt(square)).node(), graph.number(1e300)})};
 }
 
-/// Normals of all faces, up to their signs: of a segment, a parallelogram-sided polygon, or a zonotope in space.
+/// Normals, up to their signs, of all faces of a zonotope, which is a segment, a polygon or a solid.
 std::vector<std::vector<Term>> face_normals(const TermMatrix& W) {
   std::vector<std::vector<Term>> normals;
   if (W.rows() == 1) return {{Term(W.graph(), 1.0)}};

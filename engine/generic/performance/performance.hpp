@@ -19,47 +19,50 @@ namespace pkm::generic {
 using expression::TermMatrix;
 using limbs::Term;
 
-/// A quantity of the pose that a mechanism gets without a [[quantity]].
+/// A named quantity of the pose that a mechanism has even if its file does not contain a [[quantity]] for it.
 struct NamedTerm {
   std::string name, unit, meaning;
   Term value;
 };
 
-/// Velocities of joints and platform by the rates of the coordinates: one column for each coordinate.
+/// Velocities of the joints and of the platform for unit rates of the coordinates: one column per coordinate.
 struct FirstOrderKinematics {
-  TermMatrix J;            ///< one row per joint
-  TermMatrix translation;  ///< T_v without the directions in which the origin does not move; at most three rows
-  TermMatrix rotation;     ///< T_w; for one or two rotations, whose axes are orthonormal, the components along these
-  std::optional<expression::Inverse> inverse;  ///< inverse of J, if there are as many joints as coordinates
+  TermMatrix J;            ///< joints x coordinates: q' = J x'
+  TermMatrix translation;  ///< T_v without the directions in which the origin cannot move; at most three rows
+  /// T_w; if there are one or two rotations, whose axes are orthonormal, the components along these axes.
+  TermMatrix rotation;
+  /// Inverse of J; std::nullopt unless there are as many joints as coordinates.
+  std::optional<expression::Inverse> inverse;
 };
 FirstOrderKinematics first_order_kinematics(Model& model);
 
 /// `velocity_transmission` and `force_transmission`, and for rotations `angular_velocity_transmission` and
 /// `moment_transmission`: minimum singular values of V = T J^-1, which maps joint rates to velocities of the platform,
 /// and of its inverse, 1 / sigma_max(V). They are in the units of the joints, which have to be the same for all.
-/// @param kinematics  must have an inverse
+/// @param kinematics  must have an `inverse`
 std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& kinematics);
 
-/// Bounds of the errors that act along each joint: those of the joint itself, and those of dimensions, by the effect
-/// that they have on the joint coordinate at this pose.
+/// Bounds of the errors that act along each joint: errors of the joint itself, and errors of dimensions, multiplied by
+/// their effect on the joint coordinate at this pose.
 struct JointErrors {
-  std::vector<Term> bound;           ///< by joint: sum of all contributions, for the worst case
-  std::vector<Term> squared_spread;  ///< by joint: sum of their squares, the variance if each is a standard deviation
+  std::vector<Term> bound;  ///< sum of all contributions, which is the worst case; by joint
+  /// Sum of the squares of all contributions, which is the variance if each is a standard deviation; by joint.
+  std::vector<Term> squared_spread;
 };
 /// `accuracy` and `accuracy_rms` [m] of the origin of the platform, `accuracy_angle` and `accuracy_angle_rms` [rad] of
 /// its orientation, to first order: the error of the pose is J^-1 times the errors e of the joints.
 ///
 /// The worst case is the maximum of |T J^-1 e| over |e_i| <= bound_i. Since the norm is convex, the maximum is at a
 /// vertex of the box of errors: all 2^(n-1) pairs of vertices are compared.
-/// @param kinematics  must have an inverse
+/// @param kinematics  must have an `inverse`
 std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& kinematics, const JointErrors& errors);
 
-/// One limb as a spring: the force along `row`, by the rates of the coordinates, compresses it by `compliance` times
-/// its value. The row is the power of a unit force, f . (dB/dx), so that the limb's stiffness in the coordinates is
-/// row^T row / compliance.
+/// One limb as a spring. The force along `row`, in terms of the rates of the coordinates, compresses the limb by
+/// `compliance` times its value. The row is the power of a unit force, f . (dB/dx), so that the stiffness of the limb
+/// in the coordinates is row^T row / compliance.
 struct LimbSpring {
   std::vector<Term> row;
-  Term compliance;  ///< [m/N], or [rad/(N m)] for a row of joint rates
+  Term compliance;  ///< compliance [m/N], or [rad/(N m)] if `row` is a row of joint rates
 };
 /// `stiffness` [N/m]: the minimum over all directions of the force at the origin of the platform, divided by the
 /// deflection in its direction; `rotational_stiffness` [N m/rad] for couples. The compliance is sum c_i a_i a_i^T,
@@ -78,7 +81,7 @@ std::vector<NamedTerm> inertia_quantities(const FirstOrderKinematics& kinematics
 /// rest and under gravity. The accelerations for |tau_i| <= peak_i are the zonotope of the vectors
 /// w_i = peak_i T_v M_X^-1 J_i^T, moved by the weight; the result is the radius of the largest ball about 0 inside,
 /// the minimum over its faces; it is negative where the drives do not hold the weight.
-/// @param peak  by joint: maximum force or torque
+/// @param peak  maximum force or torque of each drive, by joint
 std::optional<NamedTerm> acceleration_quantity(const FirstOrderKinematics& kinematics, const TermMatrix& M_X,
                                                const std::vector<Term>& G_X, const std::vector<Term>& peak);
 
