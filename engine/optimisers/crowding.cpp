@@ -21,7 +21,7 @@ class LinkedFront {
     previous_.resize(n);
     next_.resize(n);
     for (std::size_t node = 0; node < n; ++node) {
-      previous_[node] = node - 1;  // node 0: wraps to kNone
+      previous_[node] = node - 1;  // node 0 has no predecessor: 0 - 1 wraps around to kNone
       next_[node] = node + 1 < n ? node + 1 : kNone;
     }
     present_.assign(n, 1);
@@ -44,7 +44,7 @@ class LinkedFront {
 
  private:
   std::vector<std::uint32_t> order_;
-  Scores scores_;  ///< scaled scores of the nodes
+  Scores scores_;  ///< scores by which distances are measured; row i belongs to node i
   std::vector<std::size_t> previous_, next_;
   std::vector<std::uint8_t> present_;
 };
@@ -66,8 +66,8 @@ class NearestNeighbours {
     for (std::size_t node = 0; node < front.size(); ++node) search(node);
   }
 
-  /// Product of the squared distances to the `wanted` nearest nodes that have not been removed. Searches again where
-  /// too many of the cached neighbours have been removed.
+  /// Product of the squared distances from a node to its `wanted` nearest neighbours that have not been removed.
+  /// Repeats the search if too many of the cached neighbours have been removed.
   double product(std::size_t node, std::size_t wanted) {
     for (const bool again : {false, true}) {
       double product = 1;

@@ -95,9 +95,10 @@ void sort_into_fronts(const Scores& scores, std::vector<std::uint32_t>& front) {
   }
 }
 
-/// Merges old members, which are mutually non-dominated, with new designs, and calls keep(is_new, index) for each
-/// non-dominated one, in lexicographic order. Where scores are equal, an old member precedes a new design.
-/// @param order  the new designs in lexicographic order
+/// Merges old members, none of which dominates another, with new designs. Calls keep(is_new, index) for each design
+/// that no other one dominates, in lexicographic order of the scores. If scores are equal, an old member precedes a new
+/// design.
+/// @param order  indices of the new designs, in lexicographic order of their scores
 template <class Front, class Keep>
 void merge_non_dominated(const Scores& old, const Scores& fresh, const std::vector<std::uint32_t>& order,
                          const Keep& keep) {
@@ -116,7 +117,7 @@ void merge_non_dominated(const Scores& old, const Scores& fresh, const std::vect
   }
 }
 
-/// Calls work.template operator()<Front>() with the front class for this number of objectives.
+/// Calls work.template operator()<Front>(), where Front is the class above for this number of objectives.
 template <class Work>
 void dispatch_front_type(std::size_t objectives, const Work& work) {
   if (objectives == 2)
@@ -130,7 +131,8 @@ void dispatch_front_type(std::size_t objectives, const Work& work) {
 }  // namespace
 
 std::vector<std::uint32_t> lexicographic_order(const Scores& scores) {
-  // Storing the first score beside the index avoids most accesses to `scores` in comparisons.
+  // Pairs of the first score of a design and its index. Storing the score here avoids most accesses to `scores` in
+  // comparisons.
   std::vector<std::pair<double, std::uint32_t>> order(scores.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = {scores[i][0], static_cast<std::uint32_t>(i)};
   parallel_sort(order, 0, [&](const auto& a, const auto& b) {

@@ -26,31 +26,35 @@ inline constexpr std::size_t kUnlimitedObjectives = std::numeric_limits<std::siz
 
 /// The kinds of problem that an optimiser can handle. A study that needs more is rejected when it is read.
 struct Capabilities {
-  std::size_t min_objectives = 1;  ///< 0: a parameter sweep
+  std::size_t min_objectives = 1;  ///< minimum number of objectives of the study; 0 for a parameter sweep
   std::size_t max_objectives = 1;
-  const char* too_many_objectives_hint = "";  ///< added to the error message where a study has more objectives
+  /// Advice appended to the error message if the study has more objectives than `max_objectives`.
+  const char* too_many_objectives_hint = "";
   bool constraints = true;
-  bool discrete = true;         ///< supports variables with a step
-  bool needs_gradient = false;  ///< needs derivatives, which voxel counts do not have
-  bool starts = false;          ///< local search from one or several start designs
-  bool needs_front = false;     ///< starts from the Pareto front of an earlier stage
+  bool discrete = true;         ///< true if variables with a step (discrete variables) are supported
+  bool needs_gradient = false;  ///< true if derivatives are required, which studies that count voxels do not have
+  bool starts = false;          ///< true for a local search from one or several start designs
+  bool needs_front = false;     ///< true if the stage starts from the Pareto front of an earlier stage
 };
 
 /// Progress report after each batch of evaluations ("generation").
 struct Generation {
-  std::int64_t number = 0;                      ///< 0 is the initial population
+  std::int64_t number = 0;                      ///< number of the generation; 0 is the initial population
   std::size_t first_row = 0;                    ///< rows [first_row, table.size()) are new
   const EvaluationTable* table = nullptr;       ///< all evaluations of this stage so far
-  const std::vector<std::int64_t>* population;  ///< rows of the current population
-  std::int64_t best_row = -1;                   ///< best row (several objectives: compromise solution); -1: none yet
-  const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: outcomes of the finished starts
-  /// For solvers only: returns the evaluations and outcomes of starts that are not yet merged into the table, for a
-  /// checkpoint.
+  const std::vector<std::int64_t>* population;  ///< row numbers of the current population
+  /// Row number of the best design (with several objectives, of the compromise solution); -1: none yet.
+  std::int64_t best_row = -1;
+  const std::vector<StartOutcome>* starts = nullptr;  ///< outcomes of the finished starts; null unless a solver reports
+  /// Set by solvers only: returns, for a checkpoint, the evaluations and outcomes of starts that are not yet merged
+  /// into the table.
   std::function<std::vector<UnmergedRun>()> ahead = {};
-  /// Maximum number of evaluations still to be made; nullopt: the stage's limit less the evaluations made.
+  /// Maximum number of evaluations still to be made; nullopt: the evaluation limit of the stage minus the evaluations
+  /// made.
   std::optional<std::int64_t> left = {};
-  bool alone = false;  ///< reported without synchronising the ranks; they are compared only at the end of the stage
-  const Front* front = nullptr;  ///< several objectives: the Pareto front so far
+  /// True: reported without synchronising the MPI ranks, which are compared at the end of the stage only.
+  bool alone = false;
+  const Front* front = nullptr;  ///< the Pareto front so far, with several objectives; otherwise null
 };
 
 /// Receives progress reports and decides when to stop: time limits, signals, checkpoints, screen output. Called by one
@@ -58,20 +62,23 @@ struct Generation {
 class Monitor {
  public:
   virtual ~Monitor() = default;
-  /// Reports a generation. @return false to stop the stage, which then ends with StopReason::interrupted
+  /// Reports a generation.
+  /// @return false to stop the stage, which then ends with StopReason::interrupted
   virtual bool generation(const Generation& generation) = 0;
-  /// Called between generations. @return false to stop the stage, which then ends with StopReason::interrupted
+  /// Called between generations.
+  /// @return false to stop the stage, which then ends with StopReason::interrupted
   virtual bool goes_on() { return true; }
-  /// Shows a warning, one sentence, to the user.
+  /// Shows a warning, which is one sentence, to the user.
   virtual void warn(const std::string& sentence) = 0;
 };
 
 struct StageResult {
   StopReason reason = StopReason::generations;
-  std::int64_t best_row = -1;             ///< row of the stage's table
-  std::vector<StartOutcome> starts = {};  ///< solvers only
-  std::vector<UnmergedRun> ahead = {};    ///< interrupted solvers: starts not yet merged into the table
-  std::optional<Front> front = {};        ///< several objectives: the Pareto front
+  std::int64_t best_row = -1;             ///< row number of the best design in the stage's table; -1: none
+  std::vector<StartOutcome> starts = {};  ///< outcome of each start; empty unless a solver ran the stage
+  /// Evaluations of the starts that an interrupted solver has not yet merged into the table; otherwise empty.
+  std::vector<UnmergedRun> ahead = {};
+  std::optional<Front> front = {};  ///< the Pareto front, with several objectives; otherwise std::nullopt
 };
 
 /// A start design and a description of its origin ("best of stage 1").
@@ -82,8 +89,9 @@ struct StartDesign {
 
 /// Scaling data from the Pareto front of the earlier stages.
 struct PreviousFront {
-  std::vector<double> extents = {};  ///< range of each objective, > 0; the objective's absolute value if the range is 0
-  std::vector<double> reference = {};  ///< reference point of its hypervolume; empty: none
+  /// Range of each objective over the front, > 0; if the range is 0, the absolute value of the objective.
+  std::vector<double> extents = {};
+  std::vector<double> reference = {};  ///< reference point of the hypervolume of the front; empty: none
 };
 
 struct StageInput {
@@ -91,10 +99,10 @@ struct StageInput {
   Evaluator& evaluator;
   Monitor& monitor;
   std::uint64_t seed = 1;
-  std::vector<StartDesign> starts;    ///< start designs; may be empty
-  PreviousFront previous_front = {};  ///< several objectives
-  /// Resumed stage: the recorded evaluations (those of the finished starts `recorded_starts` come first), and the
-  /// evaluations of further starts that were not yet merged into the table. Otherwise null and empty.
+  std::vector<StartDesign> starts;    ///< start designs from the study or from earlier stages; may be empty
+  PreviousFront previous_front = {};  ///< empty unless the study has several objectives
+  /// Set for a resumed stage, otherwise null and empty: the recorded evaluations, in which those of the finished starts
+  /// `recorded_starts` come first, and the evaluations of further starts that were not yet merged into the table.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};
   std::vector<UnmergedRun> recorded_unmerged_runs = {};
@@ -113,9 +121,9 @@ class Optimiser {
   virtual ~Optimiser() = default;
   /// Runs the stage. `table` is empty and receives all evaluations in order.
   virtual StageResult minimise(const StageInput& input, EvaluationTable& table) const = 0;
-  /// Maximum number of evaluations of the stage, for the time estimate before a run.
+  /// Maximum number of evaluations that the stage can make. The time estimate before a run uses it.
   virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
-  /// Maximum number of concurrent evaluations.
+  /// Maximum number of designs that the stage evaluates concurrently.
   virtual std::int64_t at_once() const { return std::numeric_limits<std::int64_t>::max(); }
   /// The level of detail at which the stage needs designs to be evaluated.
   virtual Detail detail() const { return Detail::enough; }
@@ -124,8 +132,8 @@ class Optimiser {
 /// An entry of the catalogue of optimisers.
 struct OptimiserEntry {
   std::string name;
-  std::string meaning;  ///< one line
-  /// The capabilities depend on the options if these select an algorithm of a library.
+  std::string meaning;  ///< description of the optimiser, one line
+  /// Capabilities for given options: an option may select a library's algorithm, which has capabilities of its own.
   Capabilities (*capabilities)(const Options&);
   std::vector<OptionSpec> options;
   std::unique_ptr<Optimiser> (*make)(const Options&, const DesignSpace&);

@@ -29,7 +29,7 @@ bool ParetoArchive::add(std::span<const std::int64_t> rows) {
   Scores feasible{archive_.scores().objectives};
   std::vector<std::int64_t> ids;
   for (const std::int64_t row : rows) {
-    if (row < next_row_) continue;  // already added
+    if (row < next_row_) continue;  // this row was added before
     next_row_ = row + 1;
     if (table_.status[static_cast<std::size_t>(row)] != Status::feasible) continue;
     ids.push_back(row);
@@ -48,7 +48,8 @@ bool ParetoArchive::add(std::span<const std::int64_t> rows) {
 }
 
 bool ParetoArchive::fix_reference_point(const Scores& feasible) {
-  constexpr double kMargin = 0.1;             // distance from the worst value, relative to the range
+  // Distance of the reference point from the worst value, relative to the objective's range.
+  constexpr double kMargin = 0.1;
   if (feasible.objectives > 3) return false;  // hypervolumes are computed for two and three objectives
   sample_.values.insert(sample_.values.end(), feasible.values.begin(), feasible.values.end());
   if (sample_.size() < std::max<std::size_t>(min_feasible_designs_, 2)) return false;

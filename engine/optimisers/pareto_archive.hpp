@@ -11,10 +11,13 @@
 namespace pkm {
 
 struct ParetoArchivePlan {
-  std::size_t max_size = 0;              ///< maximum number of designs; 0: unlimited
-  NamedNumbers reference = {};           ///< reference point of the hypervolume, by objective; empty: automatic
-  std::size_t min_feasible_designs = 2;  ///< feasible designs required to set an automatic reference point
-  std::vector<NamedNumbers> reference_front = {};  ///< points of a known front, by objective, for IGD+
+  std::size_t max_size = 0;  ///< maximum number of designs; 0: unlimited
+  /// The value of each objective at the reference point of the hypervolume, by name; empty: chosen automatically.
+  NamedNumbers reference = {};
+  /// Number of feasible designs required before an automatic reference point is chosen.
+  std::size_t min_feasible_designs = 2;
+  /// Points of a known Pareto front, each with the values of all objectives by name, for IGD+.
+  std::vector<NamedNumbers> reference_front = {};
 };
 
 /// The feasible non-dominated designs of a stage, with their indicators.
@@ -32,7 +35,7 @@ class ParetoArchive {
   bool add(std::span<const std::int64_t> rows);
   const Front& front() const { return front_; }
   void set_spread(double spread) { front_.spread = spread; }
-  /// Row of the Chebyshev (min-max) compromise solution; -1 while no design is feasible.
+  /// Row number of the Chebyshev (min-max) compromise solution in the table; -1 while no design is feasible.
   std::int64_t compromise_row() const { return compromise_; }
 
  private:
@@ -43,10 +46,12 @@ class ParetoArchive {
   const EvaluationTable& table_;
   NonDominatedSet archive_;
   std::size_t min_feasible_designs_;
-  std::int64_t next_row_ = 0;                     // all rows before this one have been added
-  Scores sample_;                                 // feasible designs until the reference point is fixed
-  std::vector<double> reference_scores_;          // the reference point as minimised scores; empty: not yet set
-  std::vector<double> reference_front_, ranges_;  // scores of the reference front, row by row, and their ranges
+  std::int64_t next_row_ = 0;             // all rows of the table before this one have been added
+  Scores sample_;                         // scores of the feasible designs, collected until the reference point is set
+  std::vector<double> reference_scores_;  // scores of the reference point (all minimised); empty: not yet set
+  // Scores of the points of the known front, one point after another, and the range of each score over these points (1
+  // if the range is 0), by which IGD+ divides.
+  std::vector<double> reference_front_, ranges_;
   Front front_;
   std::int64_t compromise_ = -1;
 };

@@ -39,7 +39,8 @@ constexpr std::array<SobolDirection, 20> kDirections = {{
 }};
 constexpr std::size_t kSobolDimensions = kDirections.size() + 1;
 
-using GeneratorMatrix = std::array<std::uint32_t, 32>;  // column k is XORed into a point if bit k of its index is set
+// Column k is XORed into a point if bit k of the point's index is set.
+using GeneratorMatrix = std::array<std::uint32_t, 32>;
 
 GeneratorMatrix sobol_generator_matrix(std::size_t dimension) {
   GeneratorMatrix v{};

@@ -21,9 +21,10 @@ namespace {
 constexpr std::size_t kMaxGenerationSize = 1000;
 constexpr double kMaxDesigns = 1e8;
 
-using Levels = std::vector<std::vector<double>>;  // values of each variable, ascending
+using Levels = std::vector<std::vector<double>>;  // the values of each variable on the grid, ascending
 
-// Equally spaced values over each range, rounded to the lattice of a variable with a step, duplicates removed.
+// The values of each variable on the grid: equally spaced over its range, rounded to its step if the variable has one,
+// without duplicates.
 Levels grid_levels(const DesignSpace& space, std::size_t points) {
   Levels levels(space.dimension());
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -47,7 +48,8 @@ class SweepRecorder {
     if (input.problem.objectives().size() > 1) archive_.emplace(ParetoArchivePlan{}, input.problem, table);
   }
 
-  /// Evaluates and reports the rows appended since the last call. @return false if the monitor requests a stop
+  /// Evaluates and reports the rows appended since the last call.
+  /// @return false if the monitor requests a stop
   bool finish_generation() {
     input_.evaluate(table_, first_);
     for (std::size_t row = first_; row < table_.size(); ++row) {
@@ -104,7 +106,7 @@ class Sweep final : public Optimiser {
   }
 
  private:
-  // Both return false if the monitor stopped them before the last generation.
+  // The following two functions return false if the monitor stopped them before the last generation.
   bool one_at_a_time(const StageInput& input, SweepRecorder& recorder, EvaluationTable& table) const {
     const DesignSpace& space = input.problem.space();
     std::vector<double> centre(space.dimension());

@@ -29,7 +29,7 @@ void Breeder::create_children(std::uint32_t generation, std::span<const std::int
   parent_indices_.resize(2 * count);
   Stream choices(seed_, generation, 0, Stream::Use::selection);
   select_parents(plan_.selection, parents.size(), choices, parent_indices_);
-  parent_designs_.clear();  // contiguous copies: the rows of the table are far apart in memory
+  parent_designs_.clear();  // the designs are copied here because the rows of the table are far apart in memory
   for (const std::int64_t row : parents) {
     const auto design = table.design(static_cast<std::size_t>(row));
     parent_designs_.insert(parent_designs_.end(), design.begin(), design.end());
@@ -44,7 +44,8 @@ void Breeder::create_children(std::uint32_t generation, std::span<const std::int
       make_child(pool, parent_indices_[2 * k], parent_indices_[2 * k + 1], stream, child(k));
     }
   };
-  constexpr std::size_t kMinSharedChildren = 1000;  // fewer do not justify several threads: a child takes 0.2 us
+  // Fewest children for which several threads are used: one child takes only 0.2 us.
+  constexpr std::size_t kMinSharedChildren = 1000;
   if (count < kMinSharedChildren)
     make_children(0, count);
   else
@@ -70,8 +71,8 @@ void Breeder::make_child(const ParentPool& pool, std::size_t first, std::size_t 
   snap_to_space(child);
 }
 
-// Appends the child, or the row of the equal evaluated design, to `members`. Skips a duplicate that cannot be made
-// unique. Returns false if the child needs a new row and none is left.
+// Appends the row of the child to `members`: a new row, or the row of an equal design that is already evaluated. Skips
+// a duplicate that cannot be made unique. Returns false if the child needs a new row and `max_new_rows` is 0.
 bool Breeder::add_child(std::uint32_t generation, std::uint32_t individual, std::span<double> child,
                         EvaluationTable& table, std::size_t max_new_rows, std::vector<std::int64_t>& members) {
   const std::int64_t known = evaluated_.find(table, child);
@@ -88,7 +89,8 @@ bool Breeder::add_child(std::uint32_t generation, std::uint32_t individual, std:
   return true;
 }
 
-// Changes a duplicate child until it is new: first mutates one variable at a time, then draws random designs.
+// Changes a child that equals an evaluated design until it is new: mutates one variable at a time and, if this does not
+// succeed, draws random designs.
 bool Breeder::make_unique(std::uint32_t generation, std::uint32_t individual, std::span<double> child,
                           const EvaluationTable& table) {
   constexpr int kMutationTries = 10, kRandomTries = 10;

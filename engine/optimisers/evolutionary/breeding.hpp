@@ -20,8 +20,8 @@ class Breeder {
       : plan_(plan), space_(space), seed_(seed) {}
 
   /// Creates the initial population: the given designs, projected onto the design space, then space-filling samples.
-  /// @param max_new_rows  0: adds no rows; otherwise at least the population
-  /// @param members  receives the rows of the population
+  /// @param max_new_rows  maximum number of rows added to the table: 0, or at least the size of the population
+  /// @param members  receives the row numbers of the population
   void create_initial_population(const std::vector<StartDesign>& given_designs, EvaluationTable& table,
                                  std::size_t max_new_rows, std::vector<std::int64_t>& members);
 
@@ -29,8 +29,8 @@ class Breeder {
   /// by the row of that design or, if the plan requires unique children, changed until it is new. There are fewer
   /// children if a bounded number of tries finds no new design, or once `max_new_rows` rows have been added; the
   /// children created before that do not depend on `max_new_rows`.
-  /// @param parents  rows, best first
-  /// @param children  receives the rows of the children
+  /// @param parents  row numbers of the parents, best first
+  /// @param children  receives the row numbers of the children
   void create_children(std::uint32_t generation, std::span<const std::int64_t> parents, std::size_t count,
                        EvaluationTable& table, std::size_t max_new_rows, std::vector<std::int64_t>& children);
 
@@ -47,8 +47,9 @@ class Breeder {
   const DesignSpace& space_;
   std::uint64_t seed_;
   DesignHashSet evaluated_;
-  std::vector<double> parent_designs_;  // designs of the parents, best first, row by row
-  std::vector<double> child_designs_;   // designs of the children, including duplicates, row by row
+  std::vector<double> parent_designs_;  // values of the variables of all parents, one parent after another, best first
+  // Values of the variables of all children, duplicates included, one child after another.
+  std::vector<double> child_designs_;
   std::vector<std::uint32_t> parent_indices_;
 };
 

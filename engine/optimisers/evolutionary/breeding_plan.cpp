@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-// Option values, in the order of the enumerators that they denote.
+// Values of the word options below; the position of each value is the number of the enumerator that it selects.
 const std::vector<std::string> kSamplingMethods = {"sobol", "latin-hypercube", "random"};
 const std::vector<std::string> kSelections = {"tournament", "linear-ranking"};
 const std::vector<std::string> kCrossovers = {"differential", "sbx", "blend", "scattered"};

@@ -18,8 +18,8 @@ struct BreedingPlan {
   Crossover crossover;
   double crossover_probability = 0.85;
   Mutation mutation;
-  double mutation_probability = 0.05;  ///< per variable of a child
-  bool unique = true;                  ///< a child equal to an evaluated design is changed until it is new
+  double mutation_probability = 0.05;  ///< probability of each variable of a child to be mutated
+  bool unique = true;                  ///< true: a child that equals an evaluated design is changed until it is new
 };
 
 /// Specifications of the options that `breeding_plan` reads, for the catalogue entries of population-based optimisers.

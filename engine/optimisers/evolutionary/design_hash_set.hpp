@@ -26,12 +26,13 @@ class DesignHashSet {
   };
   static constexpr std::uint32_t kEmpty = 0xffffffff;
 
-  /// Linear probing: index of the first slot, beginning at the hash, that is empty or satisfies matches(slot).
+  /// Index of the first slot that is empty or satisfies matches(slot), found by linear probing from the slot of `hash`.
   template <class Predicate>
   std::size_t find_slot(std::uint32_t hash, const Predicate& matches) const;
 
   std::vector<Slot> slots_ =
-      std::vector<Slot>(64);  // open addressing; the size is a power of two, the load at most 1/2
+      // Open addressing; the number of slots is a power of two, and at most half of them are in use.
+      std::vector<Slot>(64);
   std::size_t count_ = 0;
 };
 

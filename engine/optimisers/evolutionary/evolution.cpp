@@ -70,8 +70,9 @@ class EvolutionRun {
   SurvivorSelection& survivors_;
   Breeder breeder_;
   std::int64_t generation_ = 0;
-  std::size_t evaluated_rows_ = 0;         // number of evaluated rows of the table
-  std::vector<std::int64_t> new_members_;  // rows of the initial population or of this generation's children
+  std::size_t evaluated_rows_ = 0;  // number of evaluated rows of the table
+  // Row numbers of the initial population, or of the children of the current generation.
+  std::vector<std::int64_t> new_members_;
   std::int64_t last_progress_ = 0;
 };
 

@@ -31,16 +31,18 @@ struct EvolutionPlan {
 class SurvivorSelection {
  public:
   virtual ~SurvivorSelection() = default;
-  /// Selects the next population from the current one and evaluated children (rows of the stage's table).
+  /// Selects the next population from the current one and the evaluated `children`, which are given by their row
+  /// numbers in the stage's table.
   /// @return true if the generation made progress, for the stall criterion
   virtual bool update(const std::vector<std::int64_t>& children) = 0;
-  /// Rows of the population, best first.
+  /// Row numbers of the population, best first.
   virtual const std::vector<std::int64_t>& population() const = 0;
-  /// Best row so far (several objectives: compromise solution); -1 while there is none.
+  /// Row number of the best design so far (with several objectives, of the compromise solution); -1 while there is
+  /// none.
   virtual std::int64_t best_row() const = 0;
-  /// True if the target of the study is reached; the run then stops.
+  /// Returns true if the run has reached the target that the study sets; the run then stops.
   virtual bool target_reached() const { return false; }
-  /// Several objectives: the Pareto front so far. Otherwise null.
+  /// The Pareto front so far, in runs with several objectives; null with one objective.
   virtual const Front* front() const { return nullptr; }
 };
 
@@ -53,7 +55,7 @@ std::unique_ptr<Optimiser> make_evolution(const EvolutionPlan& plan, SurvivorSel
 /// Specifications of the options that `evolution_plan` reads, for catalogue entries.
 /// @param measure  the quantity whose improvement counts as progress, for the help text of `tolerance`
 std::vector<OptionSpec> evolution_options(const std::string& measure);
-/// Reads the options; `children` is set to the population.
+/// Reads the options of an evolutionary algorithm. The number of children per generation is set to the population size.
 EvolutionPlan evolution_plan(const Options& options, const DesignSpace& space);
 
 }  // namespace pkm

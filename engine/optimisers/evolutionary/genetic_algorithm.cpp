@@ -22,7 +22,7 @@ namespace {
 
 struct GeneticPlan {
   EvolutionPlan evolution;
-  std::size_t competing_parents = 0;  ///< number of best parents that compete with the children
+  std::size_t competing_parents = 0;  ///< number of best parents that compete with the children for survival
   std::optional<double> target;
 };
 
@@ -67,10 +67,10 @@ class RankSelection final : public SurvivorSelection {
   const GeneticPlan& plan_;
   const Problem& problem_;
   const EvaluationTable& table_;
-  std::vector<RankKey> population_;  // best first
-  std::vector<std::int64_t> rows_;   // rows of the population, best first
-  RankKey best_;                     // best design of all generations
-  RankKey progress_reference_;       // best design at the last generation that made progress
+  std::vector<RankKey> population_;  // rank keys of the population, best first
+  std::vector<std::int64_t> rows_;   // row numbers of the population, in the same order
+  RankKey best_;                     // rank key of the best design of all generations
+  RankKey progress_reference_;       // rank key of the best design at the end of the last generation that made progress
 };
 
 std::unique_ptr<Optimiser> make_genetic_algorithm(const Options& options, const DesignSpace& space) {

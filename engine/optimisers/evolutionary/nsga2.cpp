@@ -77,7 +77,7 @@ class Nsga2Selection final : public SurvivorSelection {
 
   void select_by_fronts() {
     non_dominated_sort(scores_, front_index_);
-    std::vector<std::vector<std::size_t>> members;  // members of each front, as indices into feasible_rows_
+    std::vector<std::vector<std::size_t>> members;  // element k: the members of front k, as indices into feasible_rows_
     for (std::size_t i = 0; i < feasible_rows_.size(); ++i) {
       if (front_index_[i] >= members.size()) members.resize(front_index_[i] + 1);
       members[front_index_[i]].push_back(i);
@@ -93,7 +93,7 @@ class Nsga2Selection final : public SurvivorSelection {
     }
   }
 
-  /// Spacing indicator of the surviving members of the first front.
+  /// Spacing indicator of those members of the first front that survive.
   double survivor_spread(const Scores& front, const std::vector<std::uint32_t>& order) const {
     Scores survivors{front.objectives};
     for (std::size_t i = 0; i < std::min(order.size(), population_size()); ++i)
@@ -101,8 +101,8 @@ class Nsga2Selection final : public SurvivorSelection {
     return spread(survivors);
   }
 
-  /// Progress is an increase of the hypervolume. While there is no hypervolume, any change of the front counts as
-  /// progress; while no design is feasible, a reduction of the constraint violation does.
+  /// Returns true if the hypervolume has increased. As long as the hypervolume is undefined, any change of the front
+  /// counts as progress; as long as no design is feasible, any reduction of the constraint violation does.
   bool has_progressed(bool archive_changed, bool violation_reduced) {
     const double hypervolume = archive_.front().hypervolume;
     if (std::isnan(hypervolume)) return archive_changed || (violation_reduced && archive_.compromise_row() < 0);
@@ -115,10 +115,10 @@ class Nsga2Selection final : public SurvivorSelection {
   const Problem& problem_;
   const EvaluationTable& table_;
   ParetoArchive archive_;
-  std::vector<std::int64_t> rows_;           // rows of the population
-  std::vector<std::int64_t> feasible_rows_;  // feasible members of population and children
-  Scores scores_;                            // scores of feasible_rows_
-  std::vector<std::uint32_t> front_index_;   // front of each of feasible_rows_
+  std::vector<std::int64_t> rows_;           // row numbers of the population
+  std::vector<std::int64_t> feasible_rows_;  // row numbers of the feasible designs among population and children
+  Scores scores_;                            // scores of the designs in feasible_rows_, in the same order
+  std::vector<std::uint32_t> front_index_;   // front index of each design in feasible_rows_
   RankKey best_infeasible_;
   double last_hypervolume_ = -1;
 };
@@ -149,7 +149,7 @@ std::vector<OptionSpec> nsga2_options() {
   for (OptionSpec& spec : specs) {
     // Differences of members from distant parts of the front, as in differential crossover, rarely improve a design.
     if (spec.name == "crossover") spec.initial = "sbx";
-    if (spec.name == "tolerance") spec.initial = 1e-4;  // the hypervolume keeps growing slightly
+    if (spec.name == "tolerance") spec.initial = 1e-4;  // smaller than this, the hypervolume grows almost without end
     if (spec.name != "population") continue;
     spec.initial = std::int64_t{100};
     spec.meaning = "designs per generation";

@@ -14,7 +14,7 @@ void stochastic_universal_sampling(double pressure, std::size_t population, Stre
                                    std::span<std::uint32_t> parents) {
   const double n = static_cast<double>(population), count = static_cast<double>(parents.size());
   const double offset = stream.u01();
-  double reached = 0;  // cumulative expected number of draws of the members before `next`
+  double reached = 0;  // sum of the expected numbers of draws of all members before `next`
   std::size_t next = 0;
   for (std::size_t i = 0; i < parents.size(); ++i) {
     const double pointer = static_cast<double>(i) + offset;

@@ -22,7 +22,8 @@ struct Selection {
   };
   Kind kind = Kind::tournament;
   std::int64_t tournament_size = 2;
-  double pressure = 2;  ///< linear ranking: expected draws of the best relative to the average, in [1, 2]
+  /// Linear ranking: expected number of draws of the best member, relative to the average, in [1, 2].
+  double pressure = 2;
 };
 
 /// Selects parents: fills `parents` with indices in [0, population), 0 being the best.
@@ -37,9 +38,9 @@ struct Crossover {
     /// one with probability 7/8; F is uniform in [0.45, 1.35]. Each variable is changed with probability 0.9, but at
     /// least one, chosen at random; the other variables are copied from `first`.
     differential,
-    sbx,       ///< simulated binary crossover (Deb and Agrawal 1995), index `eta`; probability 1/2 per variable
-    blend,     ///< BLX-0.5: uniform on the parents' interval, extended by half of its length on both sides
-    scattered  ///< discrete recombination: each variable from either parent
+    sbx,    ///< simulated binary crossover (Deb and Agrawal 1995) with index `eta`; each variable with probability 1/2
+    blend,  ///< BLX-0.5: uniform on the parents' interval, extended by half of its length on both sides
+    scattered  ///< discrete recombination: each variable is copied from one of the two parents, chosen at random
   };
   Kind kind = Kind::differential;
   double eta = 15;
@@ -53,7 +54,7 @@ struct ParentPool {
   std::span<const double> design(std::size_t i) const { return designs.subspan(i * dimension, dimension); }
 };
 
-/// Crossover of members `first` and `second` (differential: of `first` and randomly drawn members).
+/// Crossover of the members `first` and `second`; differential evolution uses `first` and randomly drawn members.
 void recombine(const Crossover& crossover, const ParentPool& pool, std::size_t first, std::size_t second,
                Stream& stream, std::span<double> child);
 
@@ -62,14 +63,14 @@ struct Mutation {
     multiscale,  ///< normal with standard deviation sigma 10^(-4 u), u uniform in [0, 1): step sizes on all scales
     gaussian,    ///< normal with standard deviation sigma
     polynomial,  ///< polynomial mutation (Deb and Goyal 1996), distribution index `eta`
-    uniform      ///< uniform over the range
+    uniform      ///< uniformly distributed over the range of the variable
   };
   Kind kind = Kind::multiscale;
   double sigma = 0.3;
   double eta = 20;
 };
 
-/// Returns the mutated value of a variable, which may exceed its bounds.
+/// Returns the mutated value of a variable. It may lie outside the variable's bounds; the caller projects it onto them.
 double mutate(const Mutation& mutation, const Variable& variable, double value, Stream& stream);
 
 }  // namespace pkm

@@ -48,7 +48,7 @@ class IpoptProblem final : public Ipopt::TNLP {
     std::fill_n(lower, n, 0.0);
     std::fill_n(upper, n, 1.0);
     std::fill_n(g_lower, m, tighten_);
-    std::fill_n(g_upper, m, 2e19);  // no upper bound: values from 1e19 are infinite for Ipopt
+    std::fill_n(g_upper, m, 2e19);  // 2e19 is no upper bound: Ipopt treats values from 1e19 as infinite
     return true;
   }
   bool get_starting_point(Index, bool, Number* u, bool, Number*, Number*, Index, bool, Number*) override {
@@ -58,7 +58,7 @@ class IpoptProblem final : public Ipopt::TNLP {
   bool eval_f(Index, const Number* u, bool, Number& value) override {
     const NonlinearProgram::Point& point = evaluate(u);
     value = point.objective;
-    return point.usable;  // false: Ipopt reduces its step
+    return point.usable;  // Ipopt reduces its step if false is returned
   }
   bool eval_grad_f(Index, const Number* u, bool, Number* gradient) override {
     const NonlinearProgram::Point& point = evaluate(u);
@@ -71,7 +71,7 @@ class IpoptProblem final : public Ipopt::TNLP {
     return point.usable;
   }
   bool eval_jac_g(Index n, const Number* u, bool, Index m, Index, Index* row, Index* column, Number* values) override {
-    if (!values) {  // the sparsity structure: dense
+    if (!values) {  // Ipopt requests the sparsity structure, which is dense here
       for (Index k = 0; k < n * m; ++k) {
         row[k] = k / n;
         column[k] = k % n;
@@ -101,7 +101,8 @@ class IpoptProblem final : public Ipopt::TNLP {
   std::vector<double> solution_;
 };
 
-/// Sets an option of Ipopt. @return "" or an error message
+/// Sets an option of Ipopt.
+/// @return "", or an error message if Ipopt rejects the option
 std::string set_option(Ipopt::IpoptApplication& application, const std::string& name, const Setting& value) {
   using namespace Ipopt;
   const SmartPtr<const RegisteredOption> option = application.RegOptions()->GetOption(name);
@@ -120,7 +121,7 @@ std::string set_option(Ipopt::IpoptApplication& application, const std::string& 
       if (!text && option->IsValidNumberSetting(number) && options->SetNumericValue(name, number)) return "";
       return "Ipopt's option " + name + " = " + shown + " is invalid; expected a number in the option's range";
     case OT_Integer:
-      // Ipopt's integers have fewer bits.
+      // The value must fit into Ipopt's integer type, which has fewer bits.
       if (whole && std::in_range<Index>(*whole) && option->IsValidIntegerSetting(static_cast<Index>(*whole)) &&
           options->SetIntegerValue(name, static_cast<Index>(*whole)))
         return "";
@@ -138,7 +139,7 @@ std::string set_option(Ipopt::IpoptApplication& application, const std::string& 
 const char* const kReserved[] = {"hessian_approximation", "max_iter",        "output_file", "print_level", "sb",
                                  "bound_relax_factor",    "option_file_name"};
 
-/// Status message for Ipopt's return code.
+/// Status message in words for a return code of Ipopt.
 std::string status_text(Ipopt::ApplicationReturnStatus status) {
   static const std::map<Ipopt::ApplicationReturnStatus, std::string> words = {
       {Ipopt::Solve_Succeeded, "optimal solution found"},
@@ -160,14 +161,16 @@ class IpoptSolver final : public Solver {
  public:
   explicit IpoptSolver(const Options& options) : options_(options) {}
 
-  /// Creates an Ipopt application. Throws std::invalid_argument for an invalid option. The mutex must be locked.
+  /// Creates an Ipopt application. Throws std::invalid_argument if an option is invalid. The caller must have locked
+  /// the mutex.
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application() const {
     Ipopt::SmartPtr<Ipopt::IpoptApplication> app = new Ipopt::IpoptApplication(false);
     const auto options = app->Options();
-    options->SetStringValue("sb", "yes");  // no banner
+    options->SetStringValue("sb", "yes");  // Ipopt prints no banner
     options->SetIntegerValue("print_level", 0);
     options->SetStringValue("hessian_approximation", "limited-memory");
-    options->SetIntegerValue("max_iter", 1000000);  // the stage counts evaluations
+    // Practically unlimited, because the stage counts evaluations itself.
+    options->SetIntegerValue("max_iter", 1000000);
     options->SetNumericValue("bound_relax_factor", 0);
     options->SetNumericValue("tol", 1e-9);
     options->SetStringValue("mu_strategy", "adaptive");
@@ -204,7 +207,7 @@ std::unique_ptr<Optimiser> make_ipopt(const Options& options, const DesignSpace&
   const auto solver = std::make_shared<IpoptSolver>(options);
   {
     const std::lock_guard guard(ipopt_mutex);
-    solver->application();  // checks the options
+    solver->application();  // created only to check the options
   }
   plan.solver = solver;
   plan.concurrent = false;

@@ -29,7 +29,8 @@ MultistartMerger::MultistartMerger(const SolverPlan& plan, const StageInput& inp
 bool MultistartMerger::merge() {
   while (!stopped_ && next_ < starts_.size()) {
     MultistartRun& run = starts_[next_];
-    // A start that is still replaying its record is not merged: it may deviate from the record and be restarted.
+    // A start that still replays its recorded evaluations is not merged: it may deviate from the record, and is then
+    // restarted.
     if (!run.ended && run.table.size() <= run.recorded.size()) break;
     while (!stopped_ && merged_rows_ < run.table.size()) stopped_ = !append_and_report(run.table, merged_rows_++);
     if (stopped_ || !run.ended) break;
@@ -66,13 +67,14 @@ void MultistartMerger::finish(MultistartRun& run) {
   outcome.first_row = static_cast<std::int64_t>(table_.size() - run.table.size());
   outcome.end_row += outcome.first_row;
   if (!run.warning.empty()) input_.monitor.warn(run.warning);
-  if (archive_) {  // the result of the start is added to the front of the stage
+  if (archive_) {  // the result of this start is added to the Pareto front of the stage
     archive_->add(std::array{outcome.end_row});
     if (archive_->compromise_row() >= 0)
       best_ = ranked(input_.problem.objectives(), table_, static_cast<std::size_t>(archive_->compromise_row()));
   }
   finished_.push_back(std::move(outcome));
-  if (ranks::size() == 1) run.table = EvaluationTable();  // frees the copy; with several ranks the others still need it
+  // Releases the memory of the merged rows; with several ranks, the other ranks still need them.
+  if (ranks::size() == 1) run.table = EvaluationTable();
   ++next_;
   merged_rows_ = 0;
 }

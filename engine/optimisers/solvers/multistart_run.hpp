@@ -10,21 +10,21 @@ namespace pkm {
 
 struct MultistartRun {
   StartDesign start;
-  EvaluationTable table;     ///< evaluations of this run so far
-  EvaluationTable recorded;  ///< recorded evaluations of an earlier run, which are replayed
+  EvaluationTable table;     ///< evaluations of this start so far
+  EvaluationTable recorded;  ///< evaluations that an earlier, interrupted run recorded, and which are replayed
   bool ended = false;
-  bool is_local = false;      ///< true if this rank executes the run
-  StartOutcome outcome = {};  ///< row numbers refer to `table`
+  bool is_local = false;      ///< true if this MPI rank runs the start
+  StartOutcome outcome = {};  ///< its row numbers refer to `table` of this start
   std::string warning = {};
 
-  /// Evaluations to be stored in a checkpoint: `recorded` until all of it has been replayed, then `table`.
+  /// Evaluations to be stored in a checkpoint: `recorded` until all of its rows have been replayed, afterwards `table`.
   const EvaluationTable& checkpoint_table() const {
     return !ended && recorded.size() > table.size() ? recorded : table;
   }
 };
 
-/// Creates the runs of a stage, from the start designs of its input and then from Sobol points, with their recorded
-/// evaluations.
+/// Creates the starts of a stage, first from the start designs of its input, then from Sobol points, and restores the
+/// recorded evaluations of each.
 std::vector<MultistartRun> make_multistart_runs(const SolverPlan& plan, const StageInput& input);
 
 }  // namespace pkm

@@ -23,10 +23,10 @@ namespace {
 struct Algorithm {
   const char* name;
   nlopt_algorithm id;
-  bool gradient, constraints;  ///< uses gradients; handles inequality constraints
-  bool local;                  ///< can be the inner algorithm of auglag and mlsl
-  bool inner;                  ///< needs an inner local algorithm
-  bool population;             ///< has a population of selectable size
+  bool gradient, constraints;  ///< the algorithm uses gradients; it handles inequality constraints
+  bool local;                  ///< can be the inner algorithm of the algorithms auglag and mlsl
+  bool inner;                  ///< requires an inner algorithm, which is a local one
+  bool population;             ///< has a population whose size can be selected
   const char* meaning;
 };
 
@@ -81,7 +81,7 @@ double objective(unsigned n, const double* u, double* gradient, void* data) {
   return point->objective;
 }
 
-// NLopt's constraints are satisfied if <= 0.
+// Callback of a constraint. NLopt's constraints are satisfied if they are <= 0.
 double constraint(unsigned n, const double* u, double* gradient, void* data) {
   auto& callback = *static_cast<Callback*>(data);
   const NonlinearProgram::Point* point = callback.program.evaluate(u);
@@ -96,12 +96,12 @@ class NloptSolver final : public Solver {
   explicit NloptSolver(const Options& options) : options_(options) {}
 
   SolverResult solve(NonlinearProgram& program, const std::vector<double>& start, std::uint64_t seed) const override {
-    // NLopt has one random generator per thread, which is otherwise seeded from the clock.
+    // NLopt has one random number generator per thread, which it seeds from the clock unless it is seeded here.
     nlopt_srand(static_cast<unsigned long>(seed & 0xffffffff) | 1u);
     const auto n = static_cast<unsigned>(program.dimension());
     const Algorithm& outer = find_algorithm(options_.word("algorithm"));
     const Algorithm& local = find_algorithm(options_.word("inner"));
-    const auto population = static_cast<unsigned>(options_.integer("population"));  // 0: NLopt's default
+    const auto population = static_cast<unsigned>(options_.integer("population"));  // 0 selects NLopt's default size
     const double first_step = options_.number("initial_step"), tighten = options_.number("tighten");
     const Handle opt(nlopt_create(outer.id, n), nlopt_destroy);
     if (!opt) throw std::bad_alloc();
@@ -119,7 +119,7 @@ class NloptSolver final : public Solver {
       if (!inner) throw std::bad_alloc();
       set_tolerances(inner.get());  // the inner algorithm has no other stopping criteria
       if (!local.gradient) nlopt_set_initial_step1(inner.get(), first_step);
-      check_memory(nlopt_set_local_optimizer(opt.get(), inner.get()));  // copies it
+      check_memory(nlopt_set_local_optimizer(opt.get(), inner.get()));  // NLopt copies the inner algorithm
     }
     Callback objective_data{program, opt.get(), 0, 0};
     nlopt_set_min_objective(opt.get(), objective, &objective_data);

@@ -32,7 +32,8 @@ const NonlinearProgram::Point* NonlinearProgram::evaluate(const double* u) noexc
       evaluate_new_row({clamped.data(), variables});
     }
     if (stop_ == Stop::not_finite) return nullptr;
-    if (clamped != current_unit_) {  // only the epigraph variable t differs
+    // The point differs from the current one in the epigraph variable t only, which needs no evaluation.
+    if (clamped != current_unit_) {
       current_unit_ = clamped;
       update_point(row_, current_unit_.back());
     }
@@ -57,7 +58,8 @@ void NonlinearProgram::evaluate_new_row(std::span<const double> u) {
   const DesignSpace& space = context_.problem.space();
   const std::size_t row = table_.extend(1);
   const auto design = table_.design(row);
-  for (std::size_t i = 0; i < design.size(); ++i)  // use the start design itself, without rounding
+  // A coordinate of the start design is used as it is, without the rounding of a conversion.
+  for (std::size_t i = 0; i < design.size(); ++i)
     design[i] = u[i] == start_unit_[i] ? start_design_[i] : space.from_unit(i, u[i]);
   context_.evaluator.evaluate(context_.problem, table_, row);
   if (!scalarised_) scalarised_.emplace(context_.scalarisation, context_.problem, table_, row);
@@ -88,7 +90,7 @@ void NonlinearProgram::update_point(std::size_t row, double epigraph) {
   const double max_objective = max_objective_.value_or(0);
   if (point_.usable)
     max_objective_ = max_objective_ ? std::max(max_objective, point_.objective) : point_.objective;
-  else  // penalty: constant, and far worse than all objectives so far
+  else  // penalty value of a failed evaluation: far worse than all objectives so far
     point_.objective = max_objective + 10 * (1 + std::fabs(max_objective));
 }
 

@@ -31,19 +31,19 @@ struct StartLimits {
 struct StartContext {
   const Problem& problem;
   Evaluator& evaluator;
-  EvaluationTable& table;  ///< evaluations of this start only; initially empty
+  EvaluationTable& table;  ///< evaluations of this start only; initially empty, the first row is the start design
   const Scalarisation& scalarisation;
-  std::function<bool()> evaluated;  ///< called after each evaluation; returns false to stop the solver
+  std::function<bool()> evaluated;  ///< called after each evaluation; a return value of false stops the solver
 };
 
 class NonlinearProgram {
  public:
-  /// Reason why no further point is evaluated.
+  /// Reason why no further point is evaluated; `none` while evaluations continue.
   enum class Stop { none, evaluations, time, interrupted, not_finite, exception };
 
-  using Point = NlpPoint;  ///< failed evaluations: with a penalty value
+  using Point = NlpPoint;  ///< after a failed evaluation, its objective is a penalty value
 
-  /// Evaluates the start design, which defines the scaling.
+  /// Evaluates the start design. Its objective values define the scaling of the program.
   NonlinearProgram(const StartContext& context, const StartLimits& limits, std::span<const double> start);
 
   std::size_t dimension() const { return scalarised_->dimension(); }
@@ -55,10 +55,10 @@ class NonlinearProgram {
   /// Exceptions must not pass through the solver libraries: they are stored, and `rethrow` throws them after the solver
   /// has returned.
   const Point* evaluate(const double* u) noexcept;
-  /// Makes an earlier evaluation the current point, and returns its unit coordinates. `evaluate` then returns it
-  /// without a new evaluation.
+  /// Makes a row that is already evaluated the current point, and returns its coordinates in the unit cube. A call of
+  /// `evaluate` with these coordinates then needs no new evaluation.
   std::vector<double> recall(std::size_t row);
-  /// The current point: the one evaluated or recalled last.
+  /// The current point, i.e. the one that was evaluated or recalled last.
   const Point& point() const { return point_; }
   Stop stop() const { return stop_; }
   void rethrow() const {
@@ -66,11 +66,11 @@ class NonlinearProgram {
   }
 
   const ScalarisedProblem& scalarised() const { return *scalarised_; }
-  /// KKT residual of a row of this start, relative to the larger magnitude of the objective there and at the start; NaN
-  /// without derivatives.
+  /// KKT residual of a row of this start, divided by the magnitude of the objective at this row or at the start design,
+  /// whichever is larger; NaN without derivatives.
   double optimality(std::size_t row) const;
 
-  /// Best evaluation of this start, as ranked by the scalarised problem.
+  /// Rank key of the best evaluation of this start, as ranked by the scalarised problem.
   const RankKey& best() const { return best_; }
 
  private:
@@ -83,10 +83,11 @@ class NonlinearProgram {
   StartLimits limits_;
   std::chrono::steady_clock::time_point start_time_ = std::chrono::steady_clock::now();
   std::vector<double> start_design_, start_unit_, current_unit_;
-  double start_scale_ = 0;                       ///< magnitude of the objective at the start; 0: its evaluation failed
-  std::optional<ScalarisedProblem> scalarised_;  ///< set once the start design is evaluated
-  std::size_t row_ = 0;                          ///< row of the current point
-  std::optional<double> max_objective_;          ///< maximum of the objective so far
+  /// Magnitude of the objective at the start design; 0: the evaluation of the start design failed.
+  double start_scale_ = 0;
+  std::optional<ScalarisedProblem> scalarised_;  ///< set after the evaluation of the start design
+  std::size_t row_ = 0;                          ///< row number of the current point
+  std::optional<double> max_objective_;          ///< maximum of the scaled objective over the evaluations so far
   Point point_;
   RankKey best_;
   Stop stop_ = Stop::none;

@@ -10,7 +10,8 @@
 namespace pkm {
 namespace {
 
-constexpr double kActivityTolerance = 1e-7;  // relative to the variable's range
+// Distance from a bound or constraint, relative to the variable's range, within which it is active.
+constexpr double kActivityTolerance = 1e-7;
 
 double max_abs(std::span<const double> components) {
   double maximum = 0;
@@ -61,7 +62,7 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
       for (std::size_t k = 0; k < n; ++k)
         if (in_passive_set[k]) passive.push_back(k);
       const Eigen::VectorXd trial = column_matrix(columns, passive, rows).colPivHouseholderQr().solve(target);
-      double step_length = 1;  // largest step from x towards `trial` that keeps all components >= 0
+      double step_length = 1;  // length, relative to `trial` - x, of the largest step that keeps all components >= 0
       for (std::size_t k = 0; k < passive.size(); ++k) {
         const double to = trial(static_cast<Eigen::Index>(k)), from = x[passive[k]];
         if (to <= 0) step_length = std::min(step_length, from / (from - to));
@@ -102,7 +103,7 @@ Optimality evaluate_kkt(std::span<const double> u, std::span<const double> gradi
   std::vector<double> residual(gradient.begin(), gradient.end()), multipliers;
   try {
     multipliers = non_negative_least_squares(columns, residual);
-  } catch (const std::runtime_error&) {  // no multipliers: the residual is unknown
+  } catch (const std::runtime_error&) {  // the multipliers cannot be computed, therefore the residual is unknown
     return {.optimality = std::numeric_limits<double>::quiet_NaN(), .bounds = {}, .margins = {}};
   }
   for (std::size_t k = 0; k < columns.size(); ++k)
@@ -118,7 +119,8 @@ std::optional<std::vector<double>> project_onto_active_constraints(const std::ve
                                                                    std::span<const double> margins,
                                                                    std::span<const double> margin_jacobian,
                                                                    double activity_tolerance) {
-  constexpr double kRoundingAllowance = 1e-14;  // target value of active constraints, to allow for rounding errors
+  // Value at which the projection places active constraints: slightly above 0, to allow for rounding errors.
+  constexpr double kRoundingAllowance = 1e-14;
   const std::size_t n = point.size();
   std::vector<std::size_t> free, active;
   for (std::size_t i = 0; i < n; ++i)

@@ -23,16 +23,16 @@ namespace pkm {
 struct ActiveBound {
   std::size_t variable = 0;
   bool upper = false;
-  double multiplier = 0;  ///< improvement of the objective per unit by which the bound is relaxed
+  double multiplier = 0;  ///< improvement of the objective per unit by which the bound is relaxed, >= 0
 };
 
 struct ActiveConstraint {
-  std::size_t margin = 0;  ///< index of the constraint
+  std::size_t margin = 0;  ///< index of the constraint among the margins
   double multiplier = 0;   ///< improvement of the objective per unit by which the constraint is relaxed
 };
 
 struct Optimality {
-  double optimality = 0;  ///< KKT residual
+  double optimality = 0;  ///< KKT residual, the largest component of the left-hand side above
   std::vector<ActiveBound> bounds;
   std::vector<ActiveConstraint> margins;
 };
@@ -49,15 +49,16 @@ Optimality evaluate_kkt(std::span<const double> u, std::span<const double> gradi
 /// Evaluates the KKT conditions of an evaluated design, for the first objective. Multipliers are per physical unit of a
 /// variable; the residual is relative to max(size, |f|).
 /// @param design       values of the variables
-/// @param derivatives  values and derivatives, laid out as described at EvaluationShape::derivatives
-/// @param size         magnitude of the objective, for objectives that vanish at the optimum
+/// @param derivatives  values and derivatives of the design's evaluation, laid out as described at
+/// EvaluationShape::derivatives
+/// @param size         magnitude of the objective that is used if |f| is smaller, as it is if f vanishes at the optimum
 Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> derivatives,
                       double size = 0);
 
 /// Projects a point of the unit cube onto the linearised active constraints (minimum-norm Newton step). Coordinates on
 /// a bound are fixed; the other coordinates may leave the unit cube.
-/// @param activity_tolerance  length of a step within which an active constraint vanishes
-/// @return nullopt if no constraint is active or all coordinates are fixed
+/// @param activity_tolerance  a constraint is active if a step of this length can reduce it to 0
+/// @return nullopt if no constraint is active, or if all coordinates are fixed
 std::optional<std::vector<double>> project_onto_active_constraints(const std::vector<double>& point,
                                                                    std::span<const double> margins,
                                                                    std::span<const double> margin_jacobian,

@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kAugmentation = 1e-4;  // rho
+constexpr double kAugmentation = 1e-4;  // weight rho of the augmentation term in the achievement function
 
 using Kind = Scalarisation::Kind;
 
@@ -116,7 +116,7 @@ RankKey ScalarisedProblem::rank(std::size_t row) const {
   RankKey r{table_.status[row], 0, static_cast<std::int64_t>(row)};
   if (r.status == Status::failed) return r;
   const double total = violation(row);
-  // A design that worsens an objective ranks as infeasible.
+  // The result of a start must not be worse than the start design in any objective; otherwise it ranks as infeasible.
   if (r.status == Status::feasible && total > 0) r.status = Status::infeasible;
   r.value = r.status == Status::feasible ? value(row) : total;
   return r;

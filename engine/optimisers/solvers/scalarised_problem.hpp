@@ -25,17 +25,18 @@ namespace pkm {
 struct Scalarisation {
   enum class Kind { none, achievement, epsilon };
   Kind kind = Kind::none;
-  std::size_t objective = 0;         ///< epsilon-constraint: index of the minimised objective
-  std::vector<double> extents = {};  ///< the ranges r_i, > 0
+  std::size_t objective = 0;         ///< epsilon-constraint method: index of the minimised objective
+  std::vector<double> extents = {};  ///< the range r_i of each objective over the known front, > 0
 };
 
 /// Objective and constraints of the nonlinear program at a point of the unit cube.
 struct NlpPoint {
-  double objective = 0;                 ///< minimised, scaled
-  std::vector<double> gradient;         ///< gradient with respect to the unit coordinates; empty without derivatives
-  std::vector<double> margins;          ///< constraint values, satisfied if >= 0
-  std::vector<double> margin_jacobian;  ///< constraints x variables
-  bool usable = false;                  ///< false: the evaluation failed, the other members are meaningless
+  double objective = 0;          ///< objective that the solver minimises, after scaling
+  std::vector<double> gradient;  ///< gradient with respect to the unit coordinates; empty without derivatives
+  std::vector<double> margins;   ///< constraint values, satisfied if >= 0
+  /// Derivatives of the constraints with respect to the unit coordinates, one row per constraint.
+  std::vector<double> margin_jacobian;
+  bool usable = false;  ///< false: the evaluation failed, and the other members are meaningless
 };
 
 /// The scalarised problem of one start. Reads evaluations of the original problem from a table.
@@ -45,25 +46,27 @@ class ScalarisedProblem {
   ScalarisedProblem(const Scalarisation& scalarisation, const Problem& problem, const EvaluationTable& table,
                     std::size_t start);
 
-  /// True if the unit cube has the additional variable t, as its last coordinate.
+  /// Returns true if the solver has the additional variable t, which is the last coordinate of the unit cube.
   bool has_epigraph() const { return scalarisation_.kind == Scalarisation::Kind::achievement; }
   std::size_t dimension() const { return problem_.space().dimension() + (has_epigraph() ? 1 : 0); }
   std::size_t constraints() const;
 
-  /// Computes objective, constraints and derivatives of a row.
-  /// @param epigraph  unit coordinate of t; ignored if there is none
+  /// Computes objective, constraints and derivatives of the nonlinear program from an evaluated row of the table.
+  /// @param epigraph  coordinate of t in [0, 1]; ignored if the program has no variable t
   void read(std::size_t row, double epigraph, NlpPoint& point) const;
-  /// Smallest unit coordinate of t that satisfies g_i <= t for the row; 0 if there is no t.
+  /// Coordinate, in [0, 1], of the smallest t for which the objectives of this row satisfy all constraints g_i <= t; 0
+  /// if the program has no variable t.
   double epigraph(std::size_t row) const;
 
-  /// Rank of a row as the result of this start. Uses the stored objective values, not the smooth approximations that
-  /// the solver sees.
+  /// Rank key of a row as a candidate for the result of this start. It uses the objective values of the table, not the
+  /// smooth approximations that the solver minimises.
   RankKey rank(std::size_t row) const;
-  /// Total violation of the constraints of the problem and of f_i <= f_i0; 0 if all are satisfied.
+  /// Sum of the violations of all constraints of the problem and of the constraints f_i <= f_i0; 0 if all are
+  /// satisfied.
   double violation(std::size_t row) const;
-  /// Scalarised objective, from stored values.
+  /// Scalarised objective of a row, computed from the objective values of the table.
   double value(std::size_t row) const;
-  /// Magnitude relative to which differences of `value` are judged.
+  /// Magnitude by which differences of value() are divided before they are compared with a tolerance.
   double scale_of(double value) const { return has_epigraph() ? 1 : std::fabs(value); }
 
  private:
@@ -71,11 +74,11 @@ class ScalarisedProblem {
   double sign(std::size_t k) const { return problem_.objectives()[k].direction == Direction::maximise ? -1 : 1; }
   double stored_value(std::size_t row, std::size_t k) const { return sign(k) * table_.objective_row(row)[k]; }
   double smooth_value(std::size_t row, std::size_t k) const;
-  /// g_k = (f_k - f_k0) / r_k, from smooth values.
+  /// g_k = (f_k - f_k0) / r_k at a row, with smooth approximations of the objective f_k.
   double scaled_change(std::size_t row, std::size_t k) const {
     return (smooth_value(row, k) - start_values_[k]) / scalarisation_.extents[k];
   }
-  /// The variable t for a unit coordinate u in [0, 1].
+  /// The value of the variable t for its coordinate u in [0, 1].
   double t_from_unit(double u) const { return t_min() + u * (t_max() - t_min()); }
   static double t_min() { return -10; }
   double t_max() const { return start_is_feasible_ ? 0 : 10; }
@@ -85,9 +88,9 @@ class ScalarisedProblem {
   const Problem& problem_;
   const EvaluationTable& table_;
   std::size_t start_;
-  std::vector<double> start_values_;  ///< f_i0, from smooth values
-  double scale_ = 1;                  ///< factor of the single minimised objective
-  bool start_is_feasible_ = true;     ///< true: no objective may become worse
+  std::vector<double> start_values_;  ///< smooth approximations of the objectives f_i0 at the start design
+  double scale_ = 1;                  ///< factor by which the single minimised objective is multiplied
+  bool start_is_feasible_ = true;     ///< true: no objective may become worse than at the start design
 };
 
 }  // namespace pkm

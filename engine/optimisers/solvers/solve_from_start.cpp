@@ -9,12 +9,13 @@
 namespace pkm {
 namespace {
 
-constexpr double kSnapDistance = 1e-6;  // unit coordinates; bounds and constraints closer than this count as active
-constexpr double kOptimalityTolerance = 1e-6;  // KKT residual of a converged design
-constexpr int kMaxSolverRuns = 4;              // per start
+// Distance in unit coordinates below which a bound or constraint counts as active.
+constexpr double kSnapDistance = 1e-6;
+constexpr double kOptimalityTolerance = 1e-6;  // KKT residual up to which a design counts as converged
+constexpr int kMaxSolverRuns = 4;              // maximum number of solver calls for one start
 
-/// Row with the smallest KKT residual among the evaluations that are equal to the best one up to the rounding errors of
-/// a solver; without derivatives, the best row.
+/// Row number of the evaluation with the smallest KKT residual, among those whose objective equals the best one up to
+/// the rounding errors of a solver. Without derivatives, the best row.
 std::size_t most_stationary(const NonlinearProgram& program, const EvaluationTable& table) {
   constexpr double kRoundingTolerance = 1e-9;
   auto chosen = static_cast<std::size_t>(program.best().row);
@@ -82,8 +83,9 @@ SolverResult solve_repeatedly(const Solver& solver, NonlinearProgram& program, c
 /// symmetries of the variables do not cancel. At a true stationary point the difference is small compared with the
 /// second difference.
 bool has_wrong_zero_gradient(NonlinearProgram& program) {
-  constexpr double kStep = 1e-3;           // unit coordinates
-  constexpr double kRelativeNoise = 1e-7;  // relative to the objective: larger than its numerical errors
+  constexpr double kStep = 1e-3;  // step of the difference quotient, in unit coordinates
+  // Numerical errors of the objective are smaller than this, relative to its value.
+  constexpr double kRelativeNoise = 1e-7;
   const std::vector<double> start = program.recall(0);
   const NonlinearProgram::Point centre = program.point();
   const auto is_inside = [](double u) { return u >= kStep && u <= 1 - kStep; };

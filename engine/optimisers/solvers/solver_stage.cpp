@@ -26,7 +26,8 @@ class SolverStageRun {
     std::vector<std::size_t> unfinished;
     for (std::size_t k = 0; k < starts.size(); ++k)
       if (!starts[k].ended) unfinished.push_back(k);
-    if (unfinished.size() < starts.size() && is_rank_0()) merger_.merge();  // finished starts of a resumed stage
+    // Merges the starts that had finished before a stage was resumed.
+    if (unfinished.size() < starts.size() && is_rank_0()) merger_.merge();
     {
       ranks::Counter claims, stops;
       stops_ = &stops;
@@ -43,7 +44,7 @@ class SolverStageRun {
  private:
   static bool is_rank_0() { return ranks::rank() == 0; }
 
-  /// Runs one start on this thread.
+  /// Runs start number `k` on this thread.
   void run_start(std::size_t k) {
     if (merger_.stopped()) return;
     MultistartRun& run = merger_.starts()[k];
@@ -59,10 +60,10 @@ class SolverStageRun {
         run.table = run.recorded = EvaluationTable(run.table.shape());
       }
       if (!run.warning.empty()) solve(k, run, input_.evaluator);
-    } catch (const Stopped&) {  // during an evaluation, which is repeated when the study is resumed
+    } catch (const Stopped&) {  // thrown during an evaluation, which is repeated when the study is resumed
       merger_.stop();
     } catch (...) {
-      merger_.stop();  // stops the other starts
+      merger_.stop();  // the other starts stop, too
       throw;
     }
   }
@@ -93,7 +94,8 @@ class SolverStageRun {
     merge_and_check_stop();
   }
 
-  /// Called after each evaluation, with the mutex locked. @return false to stop
+  /// Merges finished rows after each evaluation. The caller must have locked the mutex.
+  /// @return false if the stage has to stop
   bool merge_and_check_stop() {
     if (ranks::size() > 1) {
       if (!is_rank_0()) {
@@ -105,7 +107,8 @@ class SolverStageRun {
         return !merger_.stopped();
       }
       while (const auto message = ranks::poll()) {
-        std::uint64_t stage = 0;  // identifies the sender's stage: messages may arrive after the end of a stage
+        // The sender's stage, identified by its seed: a message may arrive after the end of that stage.
+        std::uint64_t stage = 0;
         std::memcpy(&stage, message->data(), sizeof stage);
         if (stage == input_.seed) receive(*message, sizeof stage);
       }
@@ -114,7 +117,8 @@ class SolverStageRun {
     return !merger_.stopped();
   }
 
-  /// Exchanges the results of all ranks, and whether the stage was stopped. Collective.
+  /// Exchanges the results of all ranks, and whether the stage was stopped. A collective operation: all ranks must call
+  /// it.
   void synchronise_ranks() {
     std::string mine;
     for (std::size_t k = 0; k < merger_.starts().size(); ++k)
@@ -142,7 +146,7 @@ class SolverStageRun {
   const StageInput& input_;
   EvaluationTable& table_;
   MultistartMerger merger_;
-  ranks::Counter* stops_ = nullptr;  ///< above 0: rank 0 has stopped the stage
+  ranks::Counter* stops_ = nullptr;  ///< shared by all ranks; a count above 0 means that rank 0 has stopped the stage
   std::chrono::steady_clock::time_point last_stop_query_ = std::chrono::steady_clock::now();
 };
 

@@ -35,13 +35,13 @@ class Solver {
 
 struct SolverPlan {
   std::shared_ptr<const Solver> solver;
-  StartLimits limits;           ///< per start
-  std::int64_t starts = 1;      ///< maximum number of given start designs
+  StartLimits limits;           ///< limits of each single start
+  std::int64_t starts = 1;      ///< maximum number of start designs that are taken from the stage's input
   std::int64_t multistart = 0;  ///< number of additional starts from Sobol points
-  bool concurrent = true;       ///< the solver library may run in several threads at once
+  bool concurrent = true;       ///< true if several threads may call the solver library at once
   Detail detail = Detail::complete;
-  Scalarisation scalarisation = {};  ///< for several objectives; its extents are set from the stage's input
-  std::string objective = {};        ///< epsilon-constraint: the minimised objective; "": the first
+  Scalarisation scalarisation = {};  ///< how several objectives are combined; its ranges are set from the stage's input
+  std::string objective = {};        ///< epsilon-constraint method: name of the minimised objective; "": the first
 };
 
 std::unique_ptr<Optimiser> make_solver_stage(SolverPlan plan);
