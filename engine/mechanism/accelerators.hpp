@@ -14,8 +14,8 @@ namespace pkm {
 class ColumnAccelerator {
  public:
   virtual ~ColumnAccelerator() = default;
-  /// @return false if the generic engine has to analyse the plan. May throw std::invalid_argument with one sentence if
-  /// the generic engine does not support the plan either.
+  /// @return true if the closed form supports the plan; false if the generic engine has to analyse it. May throw
+  /// std::invalid_argument with one sentence if the generic engine does not support the plan either.
   virtual bool serves(const WorkspacePlan& plan, const ColumnOptions& columns, const FieldRequest& request) const = 0;
   virtual std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                             const FieldRequest& request) const = 0;
@@ -30,7 +30,7 @@ class VoxelAccelerator {
                                                         const FieldRequest& request) const = 0;
 };
 
-/// @return true if a plan sweeps the coordinates `default_swept`, either because it names them, or because it names no
+/// @return true if the swept coordinates of a plan are `default_swept`: the plan names exactly these, or it names no
 /// swept coordinates and fixes none of `default_swept`
 inline bool sweeps(const WorkspacePlan& plan, const std::vector<int>& default_swept) {
   if (!plan.swept.empty()) return std::ranges::is_permutation(plan.swept, default_swept);
@@ -43,7 +43,8 @@ inline bool sweeps(const WorkspacePlan& plan, const std::vector<int>& default_sw
 struct Accelerators {
   std::shared_ptr<const ColumnAccelerator> columns = {};
   std::shared_ptr<const VoxelAccelerator> voxels = {};
-  std::shared_ptr<const ForwardKinematics> forward = {};  ///< finds all assembly modes
+  /// Closed-form forward kinematics that finds all assembly modes.
+  std::shared_ptr<const ForwardKinematics> forward = {};
 };
 
 }  // namespace pkm

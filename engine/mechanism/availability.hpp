@@ -7,11 +7,11 @@
 
 namespace pkm {
 
-/// Why the conditioning is undefined at every pose of every design, with the keys of the mechanism file that define it;
-/// empty if it is defined.
+/// The reason why the conditioning is undefined at every pose of every design, with the keys of the mechanism file that
+/// would define it; empty if it is defined.
 Unsupported why_no_conditioning(const MechanismInfo& info);
 
-/// Why a pose quantity is undefined; empty if it is defined.
+/// The reason why a pose quantity is undefined for this mechanism; empty if it is defined.
 Unsupported why_unavailable(const Mechanism& mechanism, const PoseQuantity& quantity);
 
 }  // namespace pkm

@@ -12,38 +12,38 @@
 
 namespace pkm::code {
 
-/// A value or an array that a function computes; arrays are stored row by row.
+/// A scalar, vector or matrix that a generated function computes; its elements are stored row by row.
 struct Output {
-  std::string name;  ///< "J"
+  std::string name;  ///< name in the generated code, for example "J"
   std::size_t rows = 1, columns = 1;
   std::vector<expression::Node> nodes;
 };
 
-/// A function of the pose; `equations` also depends on the rates of the coordinates.
+/// A function of the pose in the generated code; `equations` also depends on the rates of the coordinates.
 struct Function {
-  std::string name;     ///< "jacobian"
-  std::string meaning;  ///< one sentence
+  std::string name;     ///< name in the generated code, for example "jacobian"
+  std::string meaning;  ///< one sentence for the generated documentation
   std::vector<Output> outputs;
 };
 
-/// Values computed by the engine at a pose.
+/// The values that the engine computes at one pose, which a test compares with those of the generated code.
 struct Sample {
   std::vector<double> pose, velocity, acceleration;
-  std::vector<double> wrench;  ///< six components
-  std::vector<double> start;   ///< a pose nearby, at which the iteration of the forward kinematics starts
+  std::vector<double> wrench;  ///< load on the platform with six components [N, N m]
+  std::vector<double> start;   ///< a nearby pose, from which the iteration of the forward kinematics starts
   std::vector<double> joints, jacobian, margins, quantities;
-  std::vector<double> forces;  ///< empty if the mechanism has no masses
+  std::vector<double> forces;  ///< forces of the joints; empty if the mechanism has no masses
 };
 
 struct Options {
   bool has_parameters = false;    ///< true: parameters are arguments of every function; false: they are constants
-  bool single_precision = false;  ///< float instead of double
+  bool single_precision = false;  ///< true: generated numbers are float; false: double
   std::size_t samples = 20;       ///< number of test poses; fewer if fewer feasible ones are found
 };
 
-/// The element of a function's arguments that corresponds to an input of the graph.
+/// The array element that the generated code uses as one of the inputs of the graph.
 struct InputPlace {
-  char array = 0;  ///< 'p': parameters, 'x': pose, 'v': rates; 0: the input is not used
+  char array = 0;  ///< array that contains the element: 'p' parameters, 'x' pose, 'v' rates; 0: the input is not used
   std::size_t index = 0;
 };
 
@@ -52,13 +52,14 @@ struct NamedUnit {
 };
 
 struct Module {
-  std::string name;   ///< an identifier: "rotary_delta"
-  std::string title;  ///< "rotary-delta, default design, mode ..; by pkmopt 0.1.0"
+  std::string name;  ///< valid identifier, for example "rotary_delta"
+  /// Title of the generated files, for example "rotary-delta, default design, mode ..; by pkmopt 0.1.0".
+  std::string title;
   Options options;
   expression::Graph graph;
-  std::vector<InputPlace> inputs;  ///< for each input of the graph
+  std::vector<InputPlace> inputs;  ///< one element for each input of `graph`
   std::vector<NamedUnit> parameters, coordinates, joints, margins, quantities;
-  std::vector<double> design;  ///< values of the parameters
+  std::vector<double> design;  ///< values of all parameters
 
   Function inverse;                   ///< outputs q, and `assembly`: values that are all >= 0 if the mechanism can be
                                       ///< assembled at the pose
@@ -66,13 +67,14 @@ struct Module {
   Function limits;                    ///< output margins
   std::optional<Function> values;     ///< output quantities
   std::optional<Function> equations;  ///< equations of motion: outputs J, Jdot_v, M, h, G, Jw
-  bool has_forward = false;           ///< true if there are as many joints as coordinates
-  std::vector<std::string> left_out;  ///< sentences on what the functions do not include
+  /// True if the mechanism has as many joints as coordinates, so that forward kinematics can be generated.
+  bool has_forward = false;
+  std::vector<std::string> left_out;  ///< sentences that describe what the generated functions omit
   std::vector<Sample> samples;
 };
 
-/// Collects the functions of a design. Throws std::invalid_argument with one sentence for mechanisms that are not
-/// described by formulas, DesignError if no feasible pose is found.
+/// Writes the functions of a design as an expression graph. Throws std::invalid_argument with one sentence if the
+/// mechanism is not described by formulas, DesignError if no feasible pose is found.
 /// @param title  title of the generated files
 Module module_of(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
                  const std::string& mode, const Options& options, const std::string& title);

@@ -18,10 +18,11 @@ bool is_finite_sample(const MotionSample& at) {
   return true;
 }
 
-/// Throws std::invalid_argument if the tangent changes between two samples by more than the curvature explains.
+/// Throws std::invalid_argument if the path of a move has a corner: its tangent changes between two samples by more
+/// than its curvature there explains.
 void refuse_corners(const MovesOfMotion::Move& move) {
-  constexpr double kCorner = 0.2;   // [rad]
-  constexpr double kExplained = 4;  // times the change by the curvature at the samples
+  constexpr double kCorner = 0.2;   // change of the tangent between two samples that is always allowed [rad]
+  constexpr double kExplained = 4;  // allowed multiple of the change that the curvature at the samples predicts
   for (std::size_t i = 1; i < move.samples.size(); ++i) {
     const MotionSample &a = move.samples[i - 1], &b = move.samples[i];
     const AxisVector<double> change = b.velocity - a.velocity;
@@ -33,14 +34,14 @@ void refuse_corners(const MovesOfMotion::Move& move) {
   }
 }
 
-/// Samples of the motion with its own time law, from rest to rest.
+/// The motion at a time, with its own time law.
 MotionSample sample_at(const Motion& motion, double time) {
   MotionSample found = motion.at(time);
   found.time = time;
   return found;
 }
 
-/// Computes the points of a move. Throws DesignError at the first that does not exist.
+/// Computes the points of a move. Throws DesignError at the first sample that cannot be assembled or is singular.
 std::vector<PathPoint<double>> points_at(const DesignWithLimits& design, std::span<const MotionSample> samples) {
   std::vector<PathPoint<double>> points;
   const std::size_t count =
@@ -53,19 +54,21 @@ std::vector<PathPoint<double>> points_at(const DesignWithLimits& design, std::sp
                     (report.reason.empty() ? "" : " (" + report.reason + ")"));
 }
 
-/// The largest factor of the squared speeds at a sample of the motion, at most `upper`.
+/// The largest factor, at most `upper`, by which the limits allow the squared speeds at a sample of the motion to be
+/// multiplied.
 double factor_at(const DesignWithLimits& design, const MotionSample& sample, double upper) {
   return largest_factor(points_at(design, {&sample, 1})[0], 1, 0, design.limits, design.mechanism.drive_trains(),
                         upper);
 }
 
-/// The largest factor of the squared speeds of a move with its own law. Local minima of the factor over the time are
-/// located by golden-section search.
+/// Computes the largest factor by which the squared speeds of a move with its own time law can be multiplied. Local
+/// minima of the factor over the time are located by golden-section search.
 void scale_own_law(const MovesOfMotion& moves, const MovesOfMotion::Move& move, const DesignWithLimits& design,
                    FastestMove& found) {
   constexpr double kCandidates = 1.05;  // minima between samples can be lower than those at samples by this factor
   constexpr double kUnbounded = 1e30;
-  constexpr double kBracketOfPeak = 1e-9;  // relative to the distance of the samples
+  // Final width of the bracket of a minimum, relative to the distance of the samples.
+  constexpr double kBracketOfPeak = 1e-9;
   const DriveTrains* const trains = design.mechanism.drive_trains();
   const auto violation = [&](const PathPoint<double>& p, double factor) {
     return largest_violation(p, factor, 0, design.limits, trains);
@@ -103,7 +106,7 @@ void scale_own_law(const MovesOfMotion& moves, const MovesOfMotion::Move& move, 
   found.duration = (move.period.end - move.period.begin) / std::sqrt(best);
 }
 
-/// The state at both ends of every interval of a move: squared path speeds, and the path acceleration between them.
+/// The squared path speeds at both ends of every interval of a move, and the constant path acceleration in it.
 template <class S>
 struct MoveStates {
   const std::vector<PathPoint<S>>* points;
@@ -146,8 +149,8 @@ S mean_square_torque(const MovesOfMotion& moves, const std::vector<MoveStates<S>
   return integral / time;
 }
 
-/// The minimum over the joints of the squared continuous torque minus the mean square of the torque; infinite without
-/// motors. Sets the joint of the minimum.
+/// The minimum over the joints of the squared continuous torque minus the mean square of the torque; infinite if there
+/// are no motors. Stores the joint of the minimum in `found`.
 double thermal_reserve(const MovesOfMotion& moves, const DesignWithLimits& design, ShortestTimes& found) {
   std::vector<MoveStates<double>> states;
   for (std::size_t k = 0; k < found.moves.size(); ++k) states.push_back(states_of(moves.moves()[k], found.moves[k]));
@@ -164,10 +167,12 @@ double thermal_reserve(const MovesOfMotion& moves, const DesignWithLimits& desig
   return minimum;
 }
 
-/// Determines the factor of the squared speeds by which the root-mean-square torques are at most the continuous ones.
+/// Determines the factor of all squared speeds for which no motor's root-mean-square torque exceeds its continuous
+/// torque.
 void limit_continuous_torque(const MovesOfMotion& moves, const DesignWithLimits& design, ShortestTimes& found) {
   constexpr double kSlowest = 1e-8;
-  constexpr double kRounding = 1e-9;  // relative: accuracy of reduce_torques()
+  // Violations up to this, relative to the squared torque, are within the accuracy of reduce_torques().
+  constexpr double kRounding = 1e-9;
   std::vector<MoveStates<double>> states;
   for (std::size_t k = 0; k < found.moves.size(); ++k) states.push_back(states_of(moves.moves()[k], found.moves[k]));
   for (std::size_t joint = 0; joint < design.limits.joints.size(); ++joint) {
@@ -189,7 +194,7 @@ void limit_continuous_torque(const MovesOfMotion& moves, const DesignWithLimits&
   }
 }
 
-/// Time-optimal profiles of all moves.
+/// Computes the time-optimal speed profiles of all moves.
 void find_profiles(const MovesOfMotion& moves, const DesignWithLimits& design, const MotionLimits& limits,
                    ShortestTimes& found) {
   for (std::size_t k = 0; k < found.moves.size(); ++k) {
@@ -229,13 +234,15 @@ void reduce_torques(const MovesOfMotion& moves, const DesignWithLimits& design, 
   }
 }
 
-/// Adds to the derivatives of the moves' total duration those of the factor of the torques or of the speeds, by
-/// implicit differentiation of the mean square torque; its derivative by the factor is a central difference.
-/// @param duration  with derivatives at a constant factor; without pauses, and before it is slowed down
+/// The continuous torque determines a factor of the torques or of the speeds. Adds the derivatives of this factor to
+/// those of the moves' total duration, by implicit differentiation of the mean square torque. The derivative of the
+/// mean square torque with respect to the factor is a central difference.
+/// @param duration  total duration of the moves without pauses, before they are slowed down, with derivatives at a
+/// constant factor
 Dual4 differentiate_thermal_factor(const MovesOfMotion& moves, const ShortestTimes& found,
                                    const DesignWithLimits& design, const std::vector<MoveStates<Dual4>>& states,
                                    const Dual4& duration) {
-  constexpr double kStep = 1e-5;  // relative
+  constexpr double kStep = 1e-5;  // step of the central difference, relative to the factor
   const DriveTrain& train = (*design.mechanism.drive_trains())[found.thermal_joint];
   const Dual4 square = mean_square_torque(moves, states, found.thermal_joint, train, Dual4(found.thermal_factor));
   struct Shifted {
@@ -356,7 +363,7 @@ Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes&
       state.squares = std::move(profile.squares);
       state.accelerations = std::move(profile.accelerations);
     } else {
-      // the limit is active at the factor: implicit differentiation, at the fixed time of the extremum
+      // The limit is active at the factor, which is differentiated implicitly, at the fixed time of the extremum.
       std::vector<PathPoint<Dual4>> at;
       path_points<Dual4>(design.mechanism, parameters, design.mode, {&result.limiting, 1}, design.wrench, at);
       const PathPoint<Dual<1>> constant = constant_point<Dual<1>>(points_at(design, {&result.limiting, 1})[0]);

@@ -21,28 +21,31 @@ namespace pkm {
 
 enum class FastestLaw { optimal, own };
 
-/// Time of a sample within a move: at least 1e-9 of its duration from both ends, beyond which the acceleration can be
-/// that of the next move or pause.
+/// Limits a time of a sample to the interior of a move, at least 1e-9 of the move's duration from both ends: at the
+/// ends, the acceleration can be that of the next move or pause.
 double time_inside(const MovePeriod& move, double time);
 
 /// The moves of a motion, prepared for many designs. Immutable and thread-safe.
 class MovesOfMotion {
  public:
-  /// Throws std::invalid_argument if the motion has no moves, values that are not finite, or a corner without a stop.
-  /// @param nodes  intervals of the path of a move, or of its time with FastestLaw::own; even, >= 4
+  /// Throws std::invalid_argument if the motion has no moves, values that are not finite, or a corner at which it does
+  /// not stop.
+  /// @param nodes  number of intervals into which the path of each move (with FastestLaw::own, its duration) is
+  /// divided; even, >= 4
   MovesOfMotion(std::shared_ptr<const Motion> motion, FastestLaw law, std::size_t nodes);
 
   struct Move {
     MovePeriod period;
-    std::shared_ptr<const GeometricPath> path;  ///< for FastestLaw::optimal
-    std::vector<MotionSample> samples;          ///< by the path parameter, or by the time
-    std::vector<double> steps;                  ///< distances of the samples in the path parameter
+    std::shared_ptr<const GeometricPath> path;  ///< path of the move, with FastestLaw::optimal; otherwise null
+    std::vector<MotionSample> samples;          ///< samples of the move at the ends of these intervals
+    /// Differences of the path parameter (FastestLaw::own: of the time) between consecutive samples.
+    std::vector<double> steps;
   };
   const std::vector<Move>& moves() const { return moves_; }
   const Motion& motion() const { return *motion_; }
   const std::shared_ptr<const Motion>& shared_motion() const { return motion_; }
   FastestLaw law() const { return law_; }
-  /// Duration of the pause before move k; for k = moves().size(), that after the last move [s].
+  /// Duration of the pause before move k [s]; for k = moves().size(), of the pause after the last move.
   double pause(std::size_t k) const;
 
  private:
@@ -51,7 +54,7 @@ class MovesOfMotion {
   std::vector<Move> moves_;
 };
 
-/// A mechanism with a design and limits.
+/// A mechanism, one of its designs in one working mode, and the limits and the load of its motion.
 struct DesignWithLimits {
   const Mechanism& mechanism;
   std::span<const double> parameters;
@@ -60,58 +63,62 @@ struct DesignWithLimits {
   const Wrench<double>& wrench;
 };
 
-/// The result for one move.
+/// The fastest execution of one move.
 struct FastestMove {
-  double duration = 0;                               ///< [s]
-  std::vector<PathPoint<double>> points;             ///< at the samples of the move
-  std::shared_ptr<const SpeedProfile> profile = {};  ///< with FastestLaw::optimal
-  double factor = 1;           ///< with FastestLaw::own: squared ratio of the speeds to those of the motion
+  double duration = 0;                    ///< duration of the move [s]
+  std::vector<PathPoint<double>> points;  ///< points of the path at the samples of the move
+  /// Time-optimal speed profile, with FastestLaw::optimal; otherwise null.
+  std::shared_ptr<const SpeedProfile> profile = {};
+  double factor = 1;           ///< with FastestLaw::own: squared ratio of the speeds to those of the given motion
   MotionSample limiting = {};  ///< with FastestLaw::own: the sample that limits the factor
-  Violation limit = {};        ///< the limit that is active there
+  Violation limit = {};        ///< with FastestLaw::own: the limit that is active at `limiting`
 };
 
-/// The shortest durations.
+/// The fastest execution of all moves, and the factors that the continuous torques of the motors impose.
 struct ShortestTimes {
   std::vector<FastestMove> moves;
-  /// Factors in (0, 1] by which the continuous torques of the motors are kept: of their peak torques (with
-  /// FastestLaw::optimal) and of all squared speeds; 1: they do not limit the motion.
+  /// Factors in (0, 1] by which the root-mean-square torque of every motor becomes at most its continuous torque:
+  /// `torque_factor` multiplies the peak torques of all motors (FastestLaw::optimal only), `thermal_factor` the squared
+  /// speeds of all moves. 1: the continuous torques do not limit the motion.
   double torque_factor = 1, thermal_factor = 1;
-  std::size_t thermal_joint = 0;  ///< the joint whose motor determines it
-  double duration = 0;            ///< of the motion, with its pauses [s]
+  std::size_t thermal_joint = 0;  ///< index of the joint whose motor determines these factors
+  double duration = 0;            ///< duration of the motion, including its pauses [s]
 };
 
-/// Throws DesignError if the mechanism does not assemble along the path, is singular there, or cannot perform the
-/// motion at any speed.
+/// Computes the shortest durations. Throws DesignError if the mechanism cannot be assembled along the path, is singular
+/// there, or cannot perform the motion at any speed.
 ShortestTimes shortest_times(const MovesOfMotion& moves, const DesignWithLimits& design);
 
-/// The duration of the motion [s] with its derivatives. @param found  shortest_times() of the design
+/// The duration of the motion [s] with its derivatives with respect to the variables of the design.
+/// @param found  result of shortest_times() for the design
 Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes& found, const DesignWithLimits& design,
                                 std::span<const Dual4> parameters);
 
-/// Limits with all peak torques of motors multiplied by a factor.
+/// Returns the limits with the peak torques and torque curves of all motors multiplied by a factor.
 MotionLimits with_torques(const MotionLimits& limits, double factor);
 
-/// "at t = 0.5 s of the motion"
+/// Text for messages, for example "at t = 0.5 s of the motion".
 std::string describe_time(const MotionSample& sample);
 
-/// A time during which a limit is active.
+/// A period of the fastest motion during which a limit is active.
 struct ActivePeriod {
   LimitOfMotion limit;
-  double begin = 0, end = 0;  ///< [s]
-  Pose<double> from, to;      ///< poses at these times
+  double begin = 0, end = 0;  ///< first and last instant of the period [s]
+  Pose<double> from, to;      ///< poses at `begin` and at `end`
 };
 
 struct FastestMotion {
-  double duration = 0;  ///< [s]
-  /// Estimate of the discretisation error of the duration [s]: the difference to twice as few nodes.
+  double duration = 0;  ///< duration of the motion, including its pauses [s]
+  /// Estimate of the discretisation error of the duration [s]: the larger of its change with half as many nodes and its
+  /// change by the corrections at the nodes; 0 with FastestLaw::own.
   double error = 0;
   std::shared_ptr<const Motion> motion;  ///< the fastest motion
-  std::vector<MovePeriod> moves;         ///< its moves
+  std::vector<MovePeriod> moves;         ///< begin and end of each move of the fastest motion
   std::vector<ActivePeriod> active;
 };
 
-/// Computes the fastest motion as a motion, whose limits hold at all nodes and at `samples` equidistant times, to
-/// rounding: where the limits are exceeded between the nodes, the move is slowed down.
+/// Computes the fastest motion. Its limits are satisfied, to rounding, at all nodes and at `samples` equidistant times;
+/// a move that exceeds a limit at one of these times is slowed down.
 FastestMotion find_fastest_motion(const MovesOfMotion& moves, const DesignWithLimits& design, std::size_t samples);
 
 }  // namespace pkm

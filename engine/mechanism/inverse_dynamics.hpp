@@ -11,35 +11,38 @@
 
 namespace pkm {
 
-/// All actuators at one sample of a motion: qdot = J Xdot, qddot = J Xddot + Jdot Xdot, tau by virtual work.
+/// State of all actuators at one sample of a motion: qdot = J Xdot, qddot = J Xddot + Jdot Xdot, and forces by virtual
+/// work.
 template <class S>
 struct ActuatorState {
-  AxisVector<S> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
+  AxisVector<S> joints, speeds, accelerations;  ///< q [m, rad] and its first and second time derivatives
   AxisVector<S> forces;                         ///< tau [N, N m]; NaN if J is singular to working precision
 
-  S power(std::size_t joint) const { return forces[joint] * speeds[joint]; }  ///< > 0: the actuator drives [W]
-  /// Torque of the joint's motor [N m]. @param train  drive train of the joint; `forces` include its reflected inertia
+  /// Power of the actuator of a joint [W]; > 0 if it drives, < 0 if it brakes.
+  S power(std::size_t joint) const { return forces[joint] * speeds[joint]; }
+  /// Torque of the joint's motor [N m].
+  /// @param train  drive train of the joint, whose reflected inertia is included in `forces`
   S torque(const DriveTrain& train, std::size_t joint) const {
     const S bare = forces[joint] - accelerations[joint] * train.reflected();
     return train.torque(bare, speeds[joint], accelerations[joint]);
   }
 };
 
-/// Scratch memory for one batch of states.
+/// Scratch memory for the computation of one batch of samples.
 template <class S>
 struct InverseDynamicsScratch {
   std::vector<MotionState<S>> states;
   std::vector<PoseDynamics<S>> dynamics;
 };
 
-/// Number of samples per call of Dynamics::equations().
+/// Maximum number of samples that one call of Dynamics::equations() evaluates.
 inline constexpr std::size_t kInverseDynamicsBatch = 32;
 
 /// Calls visit(k, ActuatorState<S>) for the samples in order, up to the first that cannot be assembled.
 /// @param parameters  all parameters of the design
 /// @param mode        one of MechanismInfo::modes
 /// @param wrench      constant load on the platform [N, N m]
-/// @return            index of the first sample that cannot be assembled; samples.size() if there is none
+/// @return            index of the first sample that cannot be assembled; samples.size() if all can be assembled
 template <class S, class Visit>
 std::size_t inverse_dynamics_along(const Dynamics& mechanism, std::span<const S> parameters, const std::string& mode,
                                    std::span<const MotionSample> samples, const Wrench<double>& wrench,

@@ -18,7 +18,7 @@ class MechanismEntry {
 
   MechanismEntry(std::string name, Make make)
       : name_(std::move(name)), made_(std::make_shared<Made>()), make_(std::move(make)) {}
-  /// A mechanism that exists already.
+  /// An entry for a mechanism that is already constructed.
   template <class M>
   MechanismEntry(std::shared_ptr<M> mechanism)
       : MechanismEntry(mechanism->info().name, [mechanism] { return mechanism; }) {}

@@ -10,12 +10,13 @@
 
 namespace pkm {
 
-/// Loads along the motion, indexed by joint and sample: speed, acceleration, and the force without the contribution of
-/// the inertia of the mechanism's present motor.
+/// The load of each joint at each sample: speed, acceleration, and the force without the contribution of the inertia of
+/// the joint's present motor.
+/// @return one vector per joint, with one element per sample
 /// @param trajectory  a trajectory with forces at all samples
 std::vector<std::vector<JointLoad>> joint_loads(const DriveTrains& trains, const Trajectory& trajectory);
 
-/// Mean over the samples of the largest dynamic coupling index, if this motor drives every joint.
+/// Mean over the samples of the largest dynamic coupling index, if every joint is driven by this motor.
 /// @param mechanism  must have dynamics and drive trains
 /// @param mode       one of MechanismInfo::modes
 double mean_coupling_index(const Motor& motor, const Mechanism& mechanism, std::span<const double> parameters,

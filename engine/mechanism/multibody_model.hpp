@@ -17,7 +17,7 @@ namespace pkm {
 
 /// All points and directions are in the base frame, with the mechanism at its reference pose. SI units.
 struct MultibodyModel {
-  /// A capsule, for drawing.
+  /// A capsule (a cylinder with hemispherical ends) that represents a part in drawings.
   struct Shape {
     Eigen::Vector3d from, to;
     double radius;
@@ -25,25 +25,26 @@ struct MultibodyModel {
   struct Body {
     std::string name;
     double mass = 0;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< centre of mass
-    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass; 0 along the line of a thin part
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of mass
+    /// Inertia matrix about the centre of mass; 0 about the line of a thin part.
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     std::vector<Shape> shapes{};
   };
   enum class JointType { fixed, prismatic, revolute, universal, ball };
   struct Drive {
     std::size_t joint;                             ///< index among MechanismInfo::joints
     double position;                               ///< position of the joint at the reference pose [m or rad]
-    std::optional<std::array<double, 2>> range{};  ///< range of the position
-    std::optional<double> peak_force{};            ///< [N or N m]
-    double inertia = 0;                            ///< inertia of the drive train at the joint [kg or kg m^2]
-    double viscous = 0, coulomb = 0;               ///< friction at the joint [N s/m or N m s/rad, N or N m]
+    std::optional<std::array<double, 2>> range{};  ///< range of the joint position [m or rad]; std::nullopt: unlimited
+    std::optional<double> peak_force{};  ///< maximum force or torque of the drive [N or N m]; std::nullopt: unlimited
+    double inertia = 0;                  ///< inertia of the drive train at the joint [kg or kg m^2]
+    double viscous = 0, coulomb = 0;     ///< friction at the joint [N s/m or N m s/rad, N or N m]
   };
   /// The joint coordinate is positive if the child has moved relative to the parent in the positive sense along or
   /// about the axis.
   struct Joint {
     std::string name;
     JointType type;
-    std::size_t parent, child;  ///< indices of bodies
+    std::size_t parent, child;  ///< indices of the two connected bodies in `bodies`
     Eigen::Vector3d point;
     std::vector<Eigen::Vector3d> axes{};  ///< unit vectors. Fixed or ball joint: none; universal joint: the axis on the
                                           ///< parent and the one on the child, perpendicular to each other; otherwise
@@ -55,12 +56,12 @@ struct MultibodyModel {
   std::vector<Body> bodies;     ///< the first is the base, which does not move
   std::vector<Joint> tree;      ///< for each body except the base, the joint whose child it is; parents before their
                                 ///< children
-  std::vector<Joint> closures;  ///< the other joints, none of which has a drive
+  std::vector<Joint> closures;  ///< the joints that close loops; none of them has a drive
   std::size_t platform = 0;     ///< index of the platform among the bodies
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();        ///< origin of the platform frame
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< rotation from the platform frame to the base frame
-  std::vector<std::pair<std::string, double>> pose;        ///< the reference pose
-  std::vector<std::string> notes;                          ///< sentences on what the model does not represent
+  std::vector<std::pair<std::string, double>> pose;  ///< names and values of the coordinates at the reference pose
+  std::vector<std::string> notes;                    ///< sentences that describe what the model omits
 };
 
 }  // namespace pkm

@@ -9,26 +9,28 @@
 
 namespace pkm {
 
-/// The margins of PoseMargins, in the same order at every pose.
+/// Interface that lists the margins of PoseMargins in an order that is the same at every pose.
 class OrderedMargins {
  public:
   virtual ~OrderedMargins() = default;
-  /// Names of the margins, in their order.
+  /// Names of the margins, in this order.
   virtual std::vector<std::string> margin_names(const LimitSpec& limits) const = 0;
-  /// Appends the margins of all poses, NaN where one does not exist; a pose that cannot be assembled has a negative one
-  /// or one that is NaN.
+  /// Appends the margins of all poses; a margin that does not exist at a pose is NaN. At a pose that cannot be
+  /// assembled, at least one margin is negative or NaN.
   /// @param mode     one of MechanismInfo::modes, or "": the first
   /// @param scratch  scratch memory of the calling thread
   virtual void append_ordered(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
                               std::span<const Pose<double>> poses, Scratch& scratch,
                               std::vector<double>& margins) const = 0;
-  /// The same with derivatives. Margins that have none (limits of quantities without a formula) are NaN.
+  /// Appends the margins with derivatives. Margins without derivatives (limits of quantities without a formula) are
+  /// NaN.
   virtual void append_ordered(std::span<const Dual4> parameters, const std::string& mode, const LimitSpec& limits,
                               std::span<const Pose<Dual4>> poses, Scratch& scratch,
                               std::vector<Dual4>& margins) const = 0;
 };
 
-/// The interface OrderedMargins of a mechanism with or without drive trains; null if the mechanism does not have it.
+/// Finds this interface of a mechanism, which may have been wrapped by with_drive_trains(); null if the mechanism does
+/// not implement it.
 const OrderedMargins* find_ordered_margins(const Mechanism& mechanism);
 
 }  // namespace pkm

@@ -29,29 +29,31 @@ enum class LimitKind {
   tool_acceleration
 };
 
-/// Name of a kind of limit, for people and JSON: "joint speed".
+/// Name of a kind of limit in reports and JSON, for example "joint speed".
 const char* name_of(LimitKind kind);
-/// True if the limit belongs to a joint, false if to the tool.
+/// Returns true if the limit belongs to a joint, false if it belongs to the tool.
 inline bool is_of_joint(LimitKind kind) {
   return kind != LimitKind::tool_speed && kind != LimitKind::tool_acceleration;
 }
 
 struct LimitOfMotion {
   LimitKind kind = LimitKind::joint_speed;
-  std::size_t joint = 0;  ///< 0 for the tool
+  std::size_t joint = 0;  ///< index of the joint; 0 if the limit belongs to the tool
   bool operator==(const LimitOfMotion&) const = default;
 };
 
 struct MotionLimits {
-  std::vector<JointLimits> joints;                                     ///< one per joint, or none
-  double tool_speed = std::numeric_limits<double>::infinity();         ///< of the vector of all lengths [m/s]
-  double tool_acceleration = std::numeric_limits<double>::infinity();  ///< [m/s^2]
+  std::vector<JointLimits> joints;  ///< limits of each joint; empty if there are none
+  /// Maximum magnitude of the velocity of all coordinates that are lengths [m/s].
+  double tool_speed = std::numeric_limits<double>::infinity();
+  /// Maximum magnitude of the acceleration of all coordinates that are lengths [m/s^2].
+  double tool_acceleration = std::numeric_limits<double>::infinity();
 };
 
-/// Why a mechanism does not support limits, as a sentence; empty if it does.
+/// The reason why a mechanism does not support the limits, as a sentence; empty if it supports them.
 Unsupported why_no_limits(const Mechanism& mechanism, const MotionLimits& limits);
 
-/// The inequality slope u + offset <= limit. `scale` > 0 is the limit to which violations are relative.
+/// The inequality slope * u + offset <= limit for the path acceleration u. Violations are divided by `scale` > 0.
 template <class S>
 struct LinearLimit {
   S slope, offset, limit;
@@ -60,16 +62,15 @@ struct LinearLimit {
   S violation(const S& u) const { return (slope * u + offset - limit) / scale; }
 };
 
-/// The inequality y <= bound.
+/// The inequality y <= bound for the squared path speed y.
 template <class S>
 struct SpeedBound {
   S bound;
 };
 
-/// Calls visit(LimitOfMotion, LinearLimit<S> or SpeedBound<S>) for every limit at a point, in an order that depends on
-/// the limits only, so that the number of the call identifies the limit. Speed bounds come first; they do not depend on
-/// y.
-/// @param trains  null: no motors
+/// Calls visit(LimitOfMotion, LinearLimit<S> or SpeedBound<S>) for every limit at a point, first the speed bounds,
+/// which do not depend on y. The order depends on the limits only; therefore the number of a call identifies its limit.
+/// @param trains  drive trains of the joints; null: there are no motors
 template <class S, class Visit>
 void visit_speed_bounds(const PathPoint<S>& p, const MotionLimits& limits, const DriveTrains* trains,
                         const Visit& visit) {
@@ -85,15 +86,16 @@ void visit_speed_bounds(const PathPoint<S>& p, const MotionLimits& limits, const
     }
   }
   bound(LimitKind::tool_speed, 0, limits.tool_speed, S(p.tool11));
-  // the part of the tool's acceleration that is normal to its velocity
+  // the component of the tool's acceleration normal to its velocity is bounded by bounding y
   if (std::isfinite(limits.tool_acceleration)) {
     const double normal = p.tool11 > 0 ? std::fmax(p.tool22 - p.tool12 * p.tool12 / p.tool11, 0) : p.tool22;
     visit(LimitOfMotion{LimitKind::tool_acceleration}, SpeedBound<S>{S(limits.tool_acceleration / std::sqrt(normal))});
   }
 }
 
-/// Of two inequalities of which one is sufficient, the one that is imposed: the weaker one if both bound u from the
-/// same side; std::nullopt if together they exclude no u. If they exclude an interval of u, the steeper one is imposed.
+/// Selects the inequality to impose if it is sufficient that one of two inequalities holds. If both bound u from the
+/// same side, the weaker one is imposed; if together they exclude no u, neither (std::nullopt); if they exclude an
+/// interval of u, the one with the steeper slope.
 template <class S>
 std::optional<LinearLimit<S>> weaker(const LinearLimit<S>& a, const LinearLimit<S>& b) {
   const auto slope = [](const LinearLimit<S>& x) { return value_of(x.slope); };
@@ -132,7 +134,7 @@ void visit_linear_limits(const PathPoint<S>& p, const S& y, const MotionLimits& 
     const double mean = 0.5 * (1 / train.efficiency + train.efficiency),
                  half = 0.5 * (1 / train.efficiency - train.efficiency);
     const S n = train.direction(speed) * half, limit = joint.motor->torque_at(S(speed * train.ratio));
-    const auto torque = [&](const S& factor, double sign) {  // sign * torque <= limit
+    const auto torque = [&](const S& factor, double sign) {  // the inequality sign * torque <= limit
       const S k = factor / train.ratio;
       return LinearLimit<S>{(p.q1[i] * J + slope * k) * sign, (p.q2[i] * y * J + force * k) * sign, limit,
                             joint.motor->peak_torque};
@@ -145,7 +147,8 @@ void visit_linear_limits(const PathPoint<S>& p, const S& y, const MotionLimits& 
     visit(which, other.value_or(LinearLimit<S>{S(0.0), S(0.0), S(1.0), 1}));
   }
   if (std::isfinite(limits.tool_acceleration) && p.tool11 > 0) {
-    // |X' u + X'' y|^2 <= a^2: an interval of u about -X'.X'' y / X'.X', as linear inequalities
+    // |X' u + X'' y|^2 <= a^2 restricts u to an interval about -X'.X'' y / X'.X', which two linear inequalities
+    // describe
     const double a = limits.tool_acceleration, tangential = std::sqrt(p.tool11);
     const double normal = std::fmax(p.tool22 - p.tool12 * p.tool12 / p.tool11, 0);
     const S half_width = sqrt_or_zero(S(a * a - y * y * normal));
@@ -156,18 +159,18 @@ void visit_linear_limits(const PathPoint<S>& p, const S& y, const MotionLimits& 
   }
 }
 
-/// The interval of path accelerations that the linear limits allow, and the numbers of the limits at its ends in the
-/// order of visit_linear_limits().
+/// The interval of path accelerations that the linear limits allow, and the numbers of the limits that determine its
+/// ends. Limits are numbered in the order of visit_linear_limits(); -1: no limit.
 template <class S>
 struct AccelerationInterval {
   S lower = S(-std::numeric_limits<double>::infinity()), upper = S(std::numeric_limits<double>::infinity());
   int at_lower = -1, at_upper = -1;
 };
-/// @param scale  factor of all limits
+/// @param scale  factor by which all limits are multiplied
 AccelerationInterval<double> acceleration_interval(const PathPoint<double>& p, double y, const MotionLimits& limits,
                                                    const DriveTrains* trains, double scale = 1);
 
-/// The end of that interval at which the linear limit of the given number is active.
+/// The end of the interval of path accelerations that the linear limit of the given number determines.
 template <class S>
 S end_of_interval(const PathPoint<S>& p, const S& y, const MotionLimits& limits, const DriveTrains* trains,
                   int number) {
@@ -179,26 +182,28 @@ S end_of_interval(const PathPoint<S>& p, const S& y, const MotionLimits& limits,
   return end;
 }
 
-/// The largest y that the limits of speed allow, infinite if there is none; and its number in the order of
-/// visit_speed_bounds().
+/// The largest squared path speed y that the speed bounds allow (infinite if there are none), and the number of the
+/// speed bound that determines it, in the order of visit_speed_bounds().
 struct LargestSquare {
   double y = std::numeric_limits<double>::infinity();
   int number = -1;
 };
 LargestSquare largest_square(const PathPoint<double>& p, const MotionLimits& limits, const DriveTrains* trains);
 
-/// The limit with the largest relative violation at (y, u): the demand divided by the limit, minus 1.
+/// The limit that is violated most at (y, u). The violation is the demand divided by the limit, minus 1; negative
+/// values satisfy the limit.
 struct Violation {
   double value = -1;
   LimitOfMotion limit;
-  bool is_speed = false;  ///< a speed bound; otherwise a linear limit
-  int number = -1;        ///< in the order of visit_speed_bounds() or visit_linear_limits(); -1: there are no limits
+  bool is_speed = false;  ///< true: `number` counts speed bounds; false: it counts linear limits
+  /// Number of the limit in the order of visit_speed_bounds() or visit_linear_limits(); -1: there are no limits.
+  int number = -1;
 };
 Violation largest_violation(const PathPoint<double>& p, double y, double u, const MotionLimits& limits,
                             const DriveTrains* trains);
 
-/// The largest factor in [0, 1] such that (factor y, factor u) satisfies the limits: a motion that is slowed down by
-/// 1 / sqrt(factor). Negative if the limits exclude even rest.
+/// The largest factor in [0, `upper`] such that (factor y, factor u) satisfies the limits: the motion is then slowed
+/// down by 1 / sqrt(factor). Negative if the limits cannot be satisfied even at rest.
 double largest_factor(const PathPoint<double>& p, double y, double u, const MotionLimits& limits,
                       const DriveTrains* trains, double upper = 1);
 

@@ -19,12 +19,13 @@ namespace pkm {
 
 template <class S>
 struct PathPoint {
-  AxisVector<S> q1, q2;                       ///< q' and q''
-  AxisVector<S> A, B, C;                      ///< empty without masses; with the reflected inertia of drive trains
-  double tool11 = 0, tool12 = 0, tool22 = 0;  ///< X'.X', X'.X'' and X''.X'' of the coordinates that are lengths
+  AxisVector<S> q1, q2;  ///< q' and q'' of each joint
+  /// Force coefficients of each joint, including the reflected inertia of drive trains; empty without masses.
+  AxisVector<S> A, B, C;
+  double tool11 = 0, tool12 = 0, tool22 = 0;  ///< X'.X', X'.X'' and X''.X'', formed by the coordinates that are lengths
 };
 
-/// The same point, with another scalar type for its constants.
+/// Converts a point to another scalar type, with zero derivatives.
 template <class T>
 PathPoint<T> constant_point(const PathPoint<double>& p) {
   const auto convert = [](const AxisVector<double>& x) {
@@ -35,7 +36,8 @@ PathPoint<T> constant_point(const PathPoint<double>& p) {
   return {convert(p.q1), convert(p.q2), convert(p.A), convert(p.B), convert(p.C), p.tool11, p.tool12, p.tool22};
 }
 
-/// Torque of a joint's motor [N m]. @param p  a point with forces
+/// Torque of a joint's motor at a point of the path [N m].
+/// @param p  a point whose force coefficients A, B, C are computed
 template <class S>
 S motor_torque(const PathPoint<S>& p, std::size_t joint, const S& y, const S& u, const DriveTrain& train) {
   const S speed = p.q1[joint] * sqrt_or_zero(y), acceleration = p.q1[joint] * u + p.q2[joint] * y;
@@ -44,7 +46,8 @@ S motor_torque(const PathPoint<S>& p, std::size_t joint, const S& y, const S& u,
 }
 
 /// Computes the points of a path up to the first at which the mechanism does not assemble or its Jacobian is singular.
-/// @param samples  pose, and its first and second derivatives by the path parameter as velocity and acceleration
+/// @param samples  poses of the path; velocity and acceleration contain the first and second derivatives of the pose
+/// with respect to the path parameter
 /// @return         number of computed points
 template <class S>
 std::size_t path_points(const Mechanism& mechanism, std::span<const S> parameters, const std::string& mode,

@@ -17,45 +17,51 @@ namespace pkm {
 /// Thresholds of the pose-level constraints, in the order of MechanismInfo::limits. A limit that is neither given nor
 /// derived keeps its inactive value.
 struct LimitSpec {
-  std::vector<std::optional<double>> given;  ///< threshold set by the study
-  std::vector<bool> derived;                 ///< computed from the design's parameters by the mechanism's formula
-  Obstacles obstacles = {};                  ///< obstacles to which a clearance limit refers, in addition to links
+  std::vector<std::optional<double>> given;  ///< threshold of each limit that the study sets; std::nullopt: not set
+  /// For each limit, true if the mechanism's formula computes the threshold from the design's parameters.
+  std::vector<bool> derived;
+  Obstacles obstacles = {};  ///< obstacles to which a clearance limit refers, in addition to links
 };
 
 /// A coordinate that is not swept: fixed at the default value of the design, at a given value, at each value of a list
 /// (the analyses are averaged), or integrated over.
 struct FixedCoordinate {
   enum class Kind { default_value, value, listed, integrated };
-  int coordinate = 0;  ///< index of MechanismInfo::coordinates
+  int coordinate = 0;  ///< index of the coordinate in MechanismInfo::coordinates
   Kind kind = Kind::default_value;
   double value = 0;
-  std::vector<double> values = {};  ///< values for Kind::listed
-  std::int64_t cells = 0;           ///< number of cells for Kind::integrated in an analysis by voxels
+  std::vector<double> values = {};  ///< values of the coordinate, for Kind::listed; otherwise empty
+  /// Number of cells along the coordinate, for Kind::integrated in an analysis by voxels; otherwise 0.
+  std::int64_t cells = 0;
 };
 
 /// Ranges of the swept coordinates, in the order of Sweep::swept; [0, 1] for axes without a swept coordinate.
 using Box = std::array<std::array<double, 2>, 3>;
 
 struct VoxelOptions {
-  std::array<std::int64_t, 3> cells{1, 1, 1};  ///< in the order of Sweep::swept; 1 for axes without a coordinate
-  std::optional<Box> box;                      ///< std::nullopt: computed for each design
+  /// Number of cells along each axis, in the order of Sweep::swept; 1 for axes without a coordinate.
+  std::array<std::int64_t, 3> cells{1, 1, 1};
+  std::optional<Box> box;  ///< box that is divided into cells; std::nullopt: computed for each design
 };
 
 struct ColumnOptions {
-  double tolerance = 1e-8;     ///< relative error of the volume
-  std::array<int, 2> nodes{};  ///< nodes per subinterval and outer coordinate; 0: adaptive, from the tolerance
-  std::optional<Box> box;      ///< restricts the workspace, if Columns::supports_box()
+  double tolerance = 1e-8;  ///< requested relative error of the volume
+  /// Number of quadrature nodes per subinterval of each outer coordinate; 0: adaptive, from the tolerance.
+  std::array<int, 2> nodes{};
+  /// Box to which the workspace is restricted, if Columns::supports_box(); std::nullopt: unrestricted.
+  std::optional<Box> box;
   /// Relative gap of certified bounds that the volume of a recorded design must satisfy; std::nullopt: not checked.
   std::optional<double> certified = {};
 };
 
 struct WorkspacePlan {
   std::variant<ColumnOptions, VoxelOptions> method;
-  std::vector<int> swept = {};         ///< all swept coordinates; empty: they are derived from `fixed`
-  std::vector<FixedCoordinate> fixed;  ///< those that the study names; all others have default values
+  std::vector<int> swept = {};  ///< all swept coordinates; empty: they are derived from `fixed`
+  /// The fixed coordinates that the study names; all others have their default values.
+  std::vector<FixedCoordinate> fixed;
   LimitSpec limits;
-  /// Only the component of the workspace that holds this pose counts: values of the swept coordinates, in the order of
-  /// Sweep::swept. std::nullopt: all components count.
+  /// A pose that selects one component of the workspace, which alone is measured: values of the swept coordinates, in
+  /// the order of Sweep::swept. std::nullopt: all components are measured.
   std::optional<std::array<double, 3>> home = {};
 
   const VoxelOptions* voxels() const { return std::get_if<VoxelOptions>(&method); }
@@ -66,13 +72,13 @@ struct WorkspacePlan {
 /// Clearance limit that no pose violates [m]: radii are at most 1 m, so two links overlap by at most 2 m.
 inline constexpr double kInactiveClearance = -2;
 
-/// @return true if a plan requires a clearance
+/// @return true if a plan sets a limit on the clearance of links
 /// @param limit  index of the clearance limit in MechanismInfo::limits
 inline bool requires_clearance(const WorkspacePlan& plan, std::size_t limit) {
   return plan.limits.given[limit].value_or(kInactiveClearance) > kInactiveClearance;
 }
 
-/// The plan's specification of a fixed coordinate; the default value if the plan does not name it.
+/// How the plan fixes a coordinate that is not swept; at its default value if the plan does not name it.
 inline FixedCoordinate how_fixed(const WorkspacePlan& plan, int coordinate) {
   for (const FixedCoordinate& fixed : plan.fixed)
     if (fixed.coordinate == coordinate) return fixed;
@@ -83,11 +89,15 @@ inline FixedCoordinate how_fixed(const WorkspacePlan& plan, int coordinate) {
 /// pass serves them all.
 struct FieldRequest {
   std::vector<const PoseQuantity*> fields;
-  bool poses = false;                           ///< also store poses; columns may omit them if no field needs inertia
-  bool every_pose = false;                      ///< voxels: store the pose of each cell, also of symmetric images
-  std::optional<double> characteristic_length;  ///< for fields that need a Jacobian [m]; std::nullopt: the mechanism's
-  std::string mode;                             ///< working mode for fields of inertia; "": the mechanism's default
-  std::vector<double> rotors;                   ///< reflected inertia of the drive train of each joint; empty: none
+  /// True: the poses of all samples are stored, too; columns may omit them if no field needs the inertia.
+  bool poses = false;
+  /// True: an analysis by voxels stores the pose of every cell, also of cells that are symmetric images of others.
+  bool every_pose = false;
+  /// Characteristic length for fields that need a Jacobian [m]; std::nullopt: the default of the mechanism.
+  std::optional<double> characteristic_length;
+  std::string mode;  ///< working mode for fields that need the inertia; "": the default of the mechanism
+  /// Inertia of the drive train of each joint, reflected to the joint [kg or kg m^2]; empty: none.
+  std::vector<double> rotors;
 
   bool has(const PoseQuantity& quantity) const { return std::ranges::find(fields, &quantity) != fields.end(); }
   void add(const PoseQuantity& quantity) {

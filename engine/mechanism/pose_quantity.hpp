@@ -15,8 +15,8 @@
 
 namespace pkm {
 
-/// Type-erased generic lambda [](const auto& M_q, auto* values) {...}: stores its instantiations for all matrix types
-/// of the joint-space inertia M_q.
+/// Stores a generic lambda [](const auto& M_q, auto* values) {...} as one type, with its instantiations for all matrix
+/// types of the joint-space inertia M_q.
 class InertiaFunction {
  public:
   constexpr InertiaFunction() = default;
@@ -52,25 +52,29 @@ struct NamedStatistic {
 struct PoseQuantity {
   enum class Worst { minimum, maximum };
 
-  const char* name;           ///< name of the field, "inertia_condition"; the name of the objective has hyphens instead
-                              ///< of underscores
-  const char* unit;           ///< SI, "1"
-  const char* meaning;        ///< "inverse condition number of the Jacobian"
-  double lower, upper;        ///< range of possible values
-  Worst worst;                ///< whether the minimum or the maximum over a workspace is the worst case
+  /// Name of the field, for example "inertia_condition". The name of the objective has hyphens instead of underscores.
+  const char* name;
+  const char* unit;           ///< SI unit; "1" if dimensionless
+  const char* meaning;        ///< short description, for example "inverse condition number of the Jacobian"
+  double lower, upper;        ///< smallest and largest possible value
+  Worst worst;                ///< which extremum over a workspace is the worst case
   double value_if_undefined;  ///< value at poses where the quantity is not finite, and for workspaces without poses
   bool per_joint = false;
-  std::array<NamedStatistic, 4> results = {};  ///< an entry without a statistic is unused
-  // The source of the values at a pose (one value, or one for each joint): exactly one of the following members is set.
-  void (*from_report)(const PoseReport&, double* values) = nullptr;  ///< from inverse kinematics: J, margins, ...
-  InertiaFunction from_inertia = {};                                 ///< from the joint-space inertia M_q
-  std::optional<std::size_t> formula = {};                           ///< index among MechanismInfo::quantities
+  /// Statistics that expressions can use; unused elements have no `statistic`.
+  std::array<NamedStatistic, 4> results = {};
+  // Function that computes the values at a pose (one value, or one for each joint). Exactly one of the following
+  // members is set.
+  /// Uses the result of the inverse kinematics: J, margins, ...
+  void (*from_report)(const PoseReport&, double* values) = nullptr;
+  InertiaFunction from_inertia = {};        ///< uses the joint-space inertia M_q
+  std::optional<std::size_t> formula = {};  ///< index of the formula among MechanismInfo::quantities
 
-  /// @return true if the quantity requires dynamics and a working mode
+  /// @return true if the values are computed from the joint-space inertia, which requires dynamics and a working mode
   bool needs_inertia() const { return !from_report && !formula; }
-  /// @return true if the quantity requires a Jacobian and may depend on a characteristic length
+  /// @return true if the values are computed from the inverse kinematics; they may then depend on a characteristic
+  /// length
   bool needs_report() const { return from_report != nullptr; }
-  /// Evaluates a quantity that does not require the joint-space inertia.
+  /// Evaluates a quantity whose values are not computed from the joint-space inertia.
   void evaluate(const PoseReport& report, double* values) const {
     if (formula)
       *values = report.quantities[*formula];
@@ -79,9 +83,9 @@ struct PoseQuantity {
   }
 };
 
-/// Makes the pose quantity of a formula. Its range is unlimited, and it is undefined (NaN) for a workspace without
-/// poses.
-/// @param index  among MechanismInfo::quantities
+/// Creates the pose quantity for a formula. The range of its values is unlimited, and its statistics are NaN for a
+/// workspace without poses.
+/// @param index  index of the formula among MechanismInfo::quantities
 std::shared_ptr<const PoseQuantity> formula_quantity(const std::string& name, const std::string& unit,
                                                      const std::string& meaning, std::size_t index);
 

@@ -8,12 +8,12 @@
 
 namespace pkm {
 
-/// A WorkspaceEvaluator that can prove bounds of a volume implements this interface, too.
+/// Interface of a WorkspaceEvaluator that can prove bounds of the volume.
 class VolumeProver {
  public:
   virtual ~VolumeProver() = default;
-  /// Bounds of the volume of a design, which hold in spite of rounding and quadrature; std::nullopt if they cannot be
-  /// proven. The parameters are exactly the given numbers.
+  /// Computes bounds between which the volume of a design lies in spite of rounding and quadrature errors; std::nullopt
+  /// if they cannot be proven. The parameters are taken as exact numbers.
   virtual std::optional<Interval> proven_volume(std::span<const double> parameters) const = 0;
 };
 

@@ -6,9 +6,10 @@
 namespace pkm {
 namespace {
 
-constexpr double kRounding = 1e-12;  // relative to the other load, with a lever arm of 1 m between forces and couples
+// Relative size of a rounding error; a lever arm of 1 m makes forces and couples comparable.
+constexpr double kRounding = 1e-12;
 
-/// Load of the joint with index `joint`.
+/// Computes peak and RMS of the force or the couple in the joint with index `joint`.
 /// @param kind  &JointReaction::force or &JointReaction::couple
 LoadSummary load_of(const Trajectory& trajectory, std::size_t joint,
                     std::array<std::optional<double>, 3> JointReaction::*kind) {

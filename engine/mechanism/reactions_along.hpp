@@ -10,7 +10,7 @@
 
 namespace pkm {
 
-/// Computes the reactions of every sample.
+/// Computes the reactions in all joints at every sample, and stores them in the trajectory.
 /// @param mechanism  its reactions() must not be null
 /// @param wrench     the load on the platform for which the trajectory was computed [N, N m]
 void add_reactions(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
@@ -19,17 +19,18 @@ void add_reactions(const Mechanism& mechanism, std::span<const double> parameter
 /// Magnitude of a joint's force or couple over the samples, computed from the components that are determined at every
 /// sample. A force or couple that is only a rounding error compared with the other one is set to zero.
 struct LoadSummary {
-  std::array<bool, 3> determined = {true, true, true};  ///< along x, y, z
-  double peak = 0, rms = 0;                             ///< maximum, and root of the mean square [N, N m]
-  std::size_t at = 0;  ///< index of the first sample that attains the maximum within rounding
+  /// For the x, y and z components: true if the component is determined at every sample.
+  std::array<bool, 3> determined = {true, true, true};
+  double peak = 0, rms = 0;  ///< maximum, and root of the mean square, of the magnitude [N, N m]
+  std::size_t at = 0;        ///< index of the first sample that attains the maximum within rounding
 };
 
 struct ReactionLoads {
-  std::string name, on;  ///< see JointReaction
+  std::string name, on;  ///< names of the joint and of the body on which the reaction acts, see JointReaction
   LoadSummary force, couple;
 };
 
-/// Loads of every joint. All samples must have reactions.
+/// Computes peak and RMS loads of every joint. All samples of the trajectory must have reactions.
 std::vector<ReactionLoads> reaction_loads(const Trajectory& trajectory);
 
 }  // namespace pkm

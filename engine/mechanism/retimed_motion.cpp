@@ -1,4 +1,4 @@
-// The fastest motion as a motion: a sequence of pauses and moves with new times.
+// Constructs the fastest motion: the pauses and moves of the original motion, with new times.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,20 +10,21 @@
 namespace pkm {
 namespace {
 
-/// Factors of squared speeds are reduced by this after a violation of limits, so that rounding does not violate them.
+/// Relative reduction of the squared speeds after a violated limit, so that rounding errors do not violate it again.
 constexpr double kInset = 1e-13;
 
 /// A move or a pause of the retimed motion.
 struct TimePiece {
-  double begin, duration;  ///< in the retimed motion
-  double original;         ///< begin in the original motion
-  bool moves = false;      ///< false: a pause
-  double end = 0;          ///< end in the original motion
-  double factor = 1;       ///< of the squared speeds of the profile, or of the motion with its own law
-  // with FastestLaw::optimal:
+  double begin, duration;  ///< begin and duration in the retimed motion [s]
+  double original;         ///< begin in the original motion [s]
+  bool moves = false;      ///< true: a move; false: a pause
+  double end = 0;          ///< end in the original motion [s], for moves
+  double factor = 1;       ///< factor of the squared speeds of the profile, or (FastestLaw::own) of the original motion
+  // The following members are set for moves with FastestLaw::optimal:
   std::shared_ptr<const GeometricPath> path = {};
   std::shared_ptr<const SpeedProfile> profile = {};
-  std::vector<double> times = {}, lengths = {};  ///< at the nodes of the profile, before the factor
+  /// Times and path lengths at the nodes of the profile, before `factor` is applied.
+  std::vector<double> times = {}, lengths = {};
 };
 
 std::vector<double> times_of_nodes(const SpeedProfile& profile) {
@@ -93,7 +94,8 @@ MotionSample sample_of(const Motion& motion, const std::vector<TimePiece>& piece
   return found;
 }
 
-/// Inputs of a mechanism would need rates by the path, which do not exist at stops.
+/// Throws std::invalid_argument if inputs of the mechanism vary with time: their derivatives with respect to the path
+/// would be undefined at stops.
 void expect_no_inputs(const MovesOfMotion& moves) {
   for (const MovesOfMotion::Move& move : moves.moves())
     for (const MotionSample& at : move.samples)
@@ -113,7 +115,8 @@ std::shared_ptr<const Motion> motion_of_pieces(const std::shared_ptr<const Motio
       write);
 }
 
-/// The largest factor of the squared speeds of a move at both ends of every interval of its profile.
+/// The largest factor, at most 1, by which the squared speeds of a move can be multiplied such that the limits hold at
+/// both ends of every interval of its profile.
 double factor_of_profile(const FastestMove& move, const DesignWithLimits& design, const MotionLimits& limits) {
   const SpeedProfile& profile = *move.profile;
   double factor = 1;
@@ -141,14 +144,14 @@ double thermal_load(const std::vector<PathPoint<double>>& points, const DesignWi
   return largest;
 }
 
-/// Slows the moves down until the limits hold at equidistant times.
+/// Slows the moves down until the limits and the continuous torques hold at equidistant times of the motion.
 class SampledLimits {
  public:
   SampledLimits(const MovesOfMotion& moves, const ShortestTimes& times, const DesignWithLimits& design,
                 std::size_t samples, std::vector<double> factors)
       : moves_(moves), times_(times), design_(design), samples_(samples), factors_(std::move(factors)) {}
 
-  /// Slows the moves down, and returns the motion.
+  /// Slows the moves down as far as necessary, and returns the resulting motion.
   std::shared_ptr<const Motion> satisfy() {
     constexpr int kMaxSteps = 100;
     for (int step = 0; step < kMaxSteps; ++step)
@@ -156,7 +159,7 @@ class SampledLimits {
     throw DesignError("the limits cannot be satisfied at all samples of the fastest motion");
   }
 
-  /// The moves of the motion.
+  /// Begin and end of each move in the resulting motion.
   std::vector<MovePeriod> periods() const {
     std::vector<MovePeriod> found;
     for (const TimePiece& piece : retime(moves_, times_.moves, factors_))
@@ -175,6 +178,7 @@ class SampledLimits {
     if (found.size() < at.size()) throw DesignError("the fastest motion leaves the reach of the mechanism");
     return found;
   }
+  /// Slows down each move in which a limit is violated.
   /// @return true if a limit was violated
   bool slow_down_moves() {
     const std::vector<MovePeriod> moves = periods();
@@ -190,7 +194,8 @@ class SampledLimits {
     }
     return factors_ != before;
   }
-  /// @return true if a continuous torque was exceeded
+  /// Slows down all moves if a continuous torque is exceeded.
+  /// @return true if one was exceeded
   bool slow_down_motion() {
     const auto scaled = [&](double factor) {
       std::vector<double> factors = factors_;
@@ -215,13 +220,13 @@ class SampledLimits {
   const ShortestTimes& times_;
   const DesignWithLimits& design_;
   std::size_t samples_;
-  std::vector<double> factors_;  ///< of the squared speeds of each move
+  std::vector<double> factors_;  ///< for each move, the factor of its squared speeds
 };
 
 /// Appends the periods of a move during which limits are active.
 void add_active_periods(const MovesOfMotion::Move& move, const FastestMove& fastest, const DesignWithLimits& design,
                         const MovePeriod& period, double factor, std::vector<ActivePeriod>& active) {
-  constexpr double kActive = 1e-6;  // relative to the limit
+  constexpr double kActive = 1e-6;  // a limit that is used to within this, relative to the limit, is active
   const double root = std::sqrt(factor);
   if (!fastest.profile) {
     const double time = period.begin + (fastest.limiting.time - move.period.begin) / root;
@@ -243,7 +248,7 @@ void add_active_periods(const MovesOfMotion::Move& move, const FastestMove& fast
   }
 }
 
-/// The duration of the moves with half as many nodes.
+/// The total duration of the moves if every other node is omitted, for an estimate of the discretisation error.
 double duration_with_half_the_nodes(const MovesOfMotion& moves, const ShortestTimes& times,
                                     const DesignWithLimits& design, const MotionLimits& limits) {
   double duration = 0;
@@ -262,13 +267,13 @@ double duration_with_half_the_nodes(const MovesOfMotion& moves, const ShortestTi
   return duration;
 }
 
-/// The profile of a move with limits that are reduced at the points at which the path acceleration exceeds them at the
-/// end of an interval, in a few iterations.
+/// Computes the profile of a move again, in a few iterations, with reduced limits at the points where the path
+/// acceleration violates the limits at the other end of its interval.
 SpeedProfile corrected_profile(const MovesOfMotion::Move& move, const FastestMove& found,
                                const DesignWithLimits& design, const MotionLimits& limits) {
   constexpr int kIterations = 8;
-  constexpr double kNegligible = 1e-5;  // relative violation
-  constexpr double kReserve = 0.02;     // of the limits, kept above what holds the pose
+  constexpr double kNegligible = 1e-5;  // relative violation of a limit that is not corrected
+  constexpr double kReserve = 0.02;  // fraction of the limits that is kept in addition to what holds the pose at rest
   const DriveTrains* const trains = design.mechanism.drive_trains();
   SpeedProfile profile = *found.profile;
   std::vector<double> scales(found.points.size(), 1.0);

@@ -5,8 +5,9 @@
 
 namespace pkm {
 
-/// Self defines `template <class S> void find_dynamics(std::span<const S> parameters, const std::string& mode,
-/// std::span<const MotionState<S>>, std::span<PoseDynamics<S>>) const`.
+/// Implements both overloads of Dynamics::equations(). Self defines `template <class S> void
+/// find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>>,
+/// std::span<PoseDynamics<S>>) const`.
 template <class Self>
 class DynamicsDispatch : public Dynamics {
  public:
@@ -20,8 +21,9 @@ class DynamicsDispatch : public Dynamics {
   }
 };
 
-/// Self defines `template <class S> void find_margins(std::span<const S> parameters, const std::string& mode,
-/// const LimitSpec&, std::span<const Pose<double>>, Scratch&, std::vector<S>&) const`.
+/// Implements both overloads of PoseMargins::append(). Self defines `template <class S> void
+/// find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec&, std::span<const
+/// Pose<double>>, Scratch&, std::vector<S>&) const`.
 template <class Self>
 class PoseMarginsDispatch : public PoseMargins {
  public:

@@ -22,31 +22,36 @@
 
 namespace pkm {
 
-/// How a value of the profile is determined: which limit is active.
+/// The limit that determines a value of the profile.
 struct BindingLimit {
   enum class By { speed, acceleration, deceleration, next, floor } by = By::floor;
-  int number = -1;  ///< of the limit (with `floor`, of the one below), in the order of visit_speed_bounds() or
-                    ///< visit_linear_limits()
+  /// Number of the limit in the order of visit_speed_bounds() or visit_linear_limits(); with By::floor, of the linear
+  /// limit at the lower end of u, which would allow more deceleration than stopping requires.
+  int number = -1;
 };
 
 struct SpeedProfile {
-  std::vector<double> steps;          ///< D_i: distances of the points
+  std::vector<double> steps;          ///< D_i: distances of consecutive points in the path parameter
   std::vector<double> squares;        ///< x_0 .. x_N [1/s^2 times the squared unit of the path]; x_0 = x_N = 0
-  std::vector<double> accelerations;  ///< u_0 .. u_(N-1)
+  std::vector<double> accelerations;  ///< path accelerations u_0 .. u_(N-1) in the intervals
   double duration = 0;                ///< sum of 2 D_i / (sqrt x_i + sqrt x_(i+1)) [s]
-  std::vector<double> controllable;   ///< c_0 .. c_N
-  /// What determines c_i: the upper and the lower end of u, or a speed bound (then `lower` is unused).
+  std::vector<double> controllable;   ///< c_0 .. c_N: largest squared speeds from which the end can be reached
+  /// The limits that determine c_i: those on the upper and the lower end of u, or a speed bound in `upper` (`lower` is
+  /// then unused).
   struct Backward {
     BindingLimit upper, lower;
   };
-  std::vector<Backward> backward;     ///< of c_0 .. c_(N-1)
-  std::vector<BindingLimit> forward;  ///< what determines u_i
+  std::vector<Backward> backward;     ///< limits that determine c_0 .. c_(N-1)
+  std::vector<BindingLimit> forward;  ///< the limit that determines u_i, for each i
 };
 
-/// @param points  N + 1 >= 3 points
-/// @param steps   distances of the points in the path parameter
-/// @param scales  factors of the limits of acceleration, force and torque at the points; empty: 1
-/// Throws DesignError if a pose cannot be held at rest or no limit bounds the motion. `where(i)` describes point i.
+/// Computes the fastest profile from rest to rest. Throws DesignError if a pose cannot be held at rest or no limit
+/// bounds the motion.
+/// @param points  N + 1 >= 3 points of the path
+/// @param steps   distances of consecutive points in the path parameter
+/// @param trains  drive trains of the joints; null: there are no motors
+/// @param where   where(i): description of point i for messages
+/// @param scales  factors of the limits of acceleration, force and torque at each point; empty: 1
 SpeedProfile fastest_profile(std::span<const PathPoint<double>> points, std::vector<double> steps,
                              const MotionLimits& limits, const DriveTrains* trains,
                              const std::function<std::string(std::size_t)>& where, std::span<const double> scales = {});

@@ -7,8 +7,8 @@
 
 namespace pkm {
 
-/// The total mass under the selected mass model [kg], without drive trains. Throws DesignError if a mass is not
-/// positive.
+/// Computes the total mass of the moving bodies under the selected mass model [kg], without drive trains. Throws
+/// DesignError if a mass is not positive.
 class TotalMass {
  public:
   virtual ~TotalMass() = default;
@@ -16,8 +16,8 @@ class TotalMass {
   virtual Dual4 total_mass(std::span<const Dual4> parameters) const = 0;
 };
 
-/// The interface TotalMass of a mechanism with or without drive trains; null if the mechanism has no masses, or does
-/// not list its bodies.
+/// Finds this interface of a mechanism, which may have been wrapped by with_drive_trains(); null if the mechanism has
+/// no masses, or does not list its bodies.
 const TotalMass* find_total_mass(const Mechanism& mechanism);
 
 }  // namespace pkm

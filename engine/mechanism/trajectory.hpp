@@ -13,31 +13,33 @@
 
 namespace pkm {
 
-/// One sample. Values that do not exist (because the mechanism cannot be assembled at the pose, or has no masses) are
-/// empty. If J is singular to working precision (engine/geometry/singular.hpp), no forces produce the motion: the
-/// sample is infeasible and has no forces. With redundant drives the forces are not unique: the sample has joint
-/// speeds, but no forces.
+/// One sample of a trajectory. Values that do not exist (because the mechanism cannot be assembled at the pose, or has
+/// no masses) are std::nullopt. If J is singular to working precision (engine/geometry/singular.hpp), no forces produce
+/// the motion: the sample is infeasible and has no forces. With redundant drives the forces are not unique: the sample
+/// has joint speeds, but no forces.
 struct TrajectoryPoint {
   MotionSample motion;
   bool feasible = false;
-  std::string reason;  ///< why it is infeasible; "" if feasible
+  std::string reason;  ///< the reason if the sample is infeasible; "" if it is feasible
   std::optional<double> conditioning;
-  std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
-  std::optional<AxisVector<double>> forces, power;          ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
-  std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, if there are drive trains [N m, rad/s]
-  std::vector<double> quantities;                           ///< values of MechanismInfo::quantities; NaN: undefined
-  std::optional<Reactions> reactions;                       ///< reactions in the joints, set by add_reactions()
+  std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot and qddot of each joint
+  std::optional<AxisVector<double>> forces, power;  ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
+  /// Torque [N m] and speed [rad/s] of each motor, if there are drive trains.
+  std::optional<AxisVector<double>> torques, motor_speeds;
+  std::vector<double> quantities;      ///< values of MechanismInfo::quantities; NaN: undefined
+  std::optional<Reactions> reactions;  ///< reactions in the joints, set by add_reactions()
 };
 
-/// Statistics for each joint, over all samples at which the value exists.
+/// Statistics over all samples at which the value exists. Vectors have one element per joint.
 struct TrajectorySummary {
-  std::size_t infeasible = 0;                    ///< number of infeasible samples
-  std::optional<AxisVector<double>> peak_speed;  ///< maximum |qdot| [m/s, rad/s]; empty if no sample has speeds
+  std::size_t infeasible = 0;                    ///< number of samples that are infeasible
+  std::optional<AxisVector<double>> peak_speed;  ///< maximum |qdot| [m/s, rad/s]; std::nullopt if no sample has speeds
   bool has_forces = false;                       ///< true if every sample has forces; otherwise the following are 0
   AxisVector<double> peak_force, rms_force;      ///< maximum |tau|; root of the mean square over the samples [N, N m]
   AxisVector<double> peak_power;                 ///< maximum |tau qdot|, driving or braking [W]
-  AxisVector<double> peak_torque, rms_torque, peak_motor_speed;  ///< of the motors of drive trains [N m, rad/s]
-  double peak_total_power = 0, min_total_power = 0;              ///< extrema of the sum over the joints [W]
+  /// Torques [N m] and speed [rad/s] of the motors of drive trains.
+  AxisVector<double> peak_torque, rms_torque, peak_motor_speed;
+  double peak_total_power = 0, min_total_power = 0;  ///< maximum and minimum of the sum of the powers of all joints [W]
   /// Time integrals by the trapezoidal rule [J]: of the total power (energy with full regeneration), and of the
   /// positive parts of the joints' powers (energy without regeneration).
   double energy = 0, energy_drawn = 0;
@@ -45,7 +47,7 @@ struct TrajectorySummary {
 
 struct Trajectory {
   double duration = 0;
-  bool periodic = false;  ///< is_periodic() holds, and the energies are those of one cycle
+  bool periodic = false;  ///< true if is_periodic() holds; the energies are then those of one cycle
   std::vector<TrajectoryPoint> points;
   TrajectorySummary summary;
 };
@@ -60,11 +62,12 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
                               const LimitSpec& limits, const Motion& motion, std::size_t count,
                               const Wrench<double>& wrench = {});
 
-/// Names and values of the quantities of a pose and motion, i.e. of all quantities except those of the design alone.
+/// Names and values of all quantities except those that depend on the design alone.
 /// @param values  values of MechanismInfo::quantities; may be empty
 NamedValues pose_quantities_of(const MechanismInfo& info, const std::vector<double>& values);
 
-/// Names and values of the inputs with their rates and accelerations, then of the quantities; undefined values are NaN.
+/// Names and values of the inputs, their rates and their accelerations, followed by the quantities; undefined values
+/// are NaN.
 NamedValues input_and_quantity_values(const MechanismInfo& info, const TrajectoryPoint& point);
 
 }  // namespace pkm

@@ -50,7 +50,7 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
     return bare_->quantities(parameters, mode, limits, at);
   }
 
-  /// Null if the mechanism's own voxels do not support rotors; then cellwise voxels are used.
+  /// Null if the mechanism's voxel analysis does not support rotors; every cell is then tested individually.
   const Voxels* voxels() const override {
     return bare_->voxels() && (!has_inertia() || bare_->voxels()->supports_rotors()) ? this : nullptr;
   }

@@ -18,10 +18,10 @@ class WorkspaceEvaluator {
  public:
   virtual ~WorkspaceEvaluator() = default;
   /// @param parameters  all parameters of the design, in the order of MechanismInfo::parameters
-  /// @param result      overwritten; reuse one per thread
+  /// @param result      its content is overwritten; one object per thread should be reused
   virtual void evaluate(std::span<const double> parameters, Scratch& scratch,
                         WorkspaceResult<double>& result) const = 0;
-  /// The same analysis with derivatives; null if there is none, see why_no_derivatives().
+  /// Returns the same analysis with derivatives; null if there is none (why_no_derivatives() returns the reason).
   virtual const GradientEvaluator* gradients() const { return nullptr; }
   virtual std::string why_no_derivatives() const { return "workspace analyses of the mechanism have no derivatives"; }
 };
@@ -29,7 +29,7 @@ class WorkspaceEvaluator {
 class GradientEvaluator {
  public:
   virtual ~GradientEvaluator() = default;
-  /// The same analysis with derivatives with respect to up to four variables. Values are bit-identical to those of
+  /// Analyses the workspace with derivatives with respect to up to four variables. Values are bit-identical to those of
   /// WorkspaceEvaluator::evaluate().
   virtual void evaluate(std::span<const Dual4> parameters, Scratch& scratch, WorkspaceResult<Dual4>& result) const = 0;
 };
@@ -37,14 +37,16 @@ class GradientEvaluator {
 /// Evaluator of a plan with voxels.
 class VoxelEvaluator : public WorkspaceEvaluator {
  public:
-  /// The feasible cells of a design. Coordinates that are integrated over are fixed at the centre of their first cell.
+  /// Finds the feasible cells of a design. Coordinates that are integrated over are fixed at the centre of their first
+  /// cell.
   virtual VoxelMap map(std::span<const double> parameters) const = 0;
   std::string why_no_derivatives() const final {
     return "voxel counts are piecewise constant and have no derivatives; set workspace.method = \"columns\"";
   }
 };
 
-/// Calls the overload of evaluate() for the scalar. @param evaluator  gradients() is not null if S is Dual4
+/// Calls the overload of evaluate() for the scalar type S.
+/// @param evaluator  its gradients() must not be null if S is Dual4
 template <class S>
 void evaluate_workspace(const WorkspaceEvaluator& evaluator, std::span<const S> parameters, Scratch& scratch,
                         WorkspaceResult<S>& result) {

@@ -13,32 +13,33 @@
 
 namespace pkm {
 
-/// Volume of the feasible set, and fields at weighted samples of it. The mean of a field is its weighted sum divided by
-/// the sum of the weights. S is double or the derivative scalar.
+/// Volume of the feasible set, and fields at weighted samples of this set. The mean of a field is its weighted sum
+/// divided by the sum of the weights. The scalar type S is double, or Dual4 for derivatives.
 template <class S>
 struct WorkspaceResult {
-  S volume{};  ///< measure of the feasible set, in the unit of volume_unit()
-  // Set by voxel analyses:
+  S volume{};  ///< volume (or area or length) of the feasible set, in the unit of volume_unit()
+  // The following members are set by voxel analyses:
   std::int64_t cells = 0;
   std::int64_t feasible_cells = 0;
   double cell_volume = 0;
   bool touches_box = false;  ///< true if a feasible cell lies in the outermost layer of the box
-  // Set by analyses by columns:
+  // The following members are set by analyses by columns:
   std::int64_t columns = 0;  ///< number of columns, or of nodes along edges, evaluated
   double error = 0;          ///< estimated relative error of the volume
-  bool is_sampled = false;   ///< parts of the workspace that lie between sampled slices may be missed
-  // One element per feasible sample, if requested; otherwise empty:
+  bool is_sampled = false;   ///< true if parts of the workspace that lie between sampled slices may have been missed
+  // The following vectors have one element per feasible sample if they were requested; otherwise they are empty:
   std::vector<S> weight;
   std::vector<Pose<S>> pose;
-  std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;  ///< one vector, or one for each joint
+  /// For each requested quantity, one vector of samples, or one for each joint.
+  std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;
 
-  /// Values of a quantity for all samples; empty if it was not requested.
+  /// Values of a quantity at all samples; empty if the quantity was not requested.
   const std::vector<S>& field(const PoseQuantity& quantity, std::size_t joint = 0) const {
     static const std::vector<S> none;
     const auto found = fields.find(&quantity);
     return found == fields.end() ? none : found->second[joint];
   }
-  /// The vectors of a quantity, to append samples; null if it was not requested.
+  /// The vectors to which the samples of a quantity are appended; null if the quantity was not requested.
   std::vector<S>* find(const PoseQuantity& quantity) {
     const auto found = fields.find(&quantity);
     return found == fields.end() ? nullptr : found->second.data();
@@ -98,10 +99,10 @@ void copy_values(const WorkspaceResult<S>& from, WorkspaceResult<double>& to) {
     for (std::size_t i = 0; i < field.size(); ++i) copy(field[i], to.fields[quantity][i]);
 }
 
-/// The feasible cells of a voxel box. The axes are in the order of Sweep::swept, the last one varies fastest; axes
-/// without a coordinate have one cell, [0, 1].
+/// The feasible cells of a box that is divided into voxels. The axes are in the order of Sweep::swept, and the last one
+/// varies fastest; an axis without a coordinate has a single cell, [0, 1].
 struct VoxelMap {
-  std::vector<std::uint8_t> feasible;  ///< 0 or 1
+  std::vector<std::uint8_t> feasible;  ///< for each cell, 1 if it is feasible, otherwise 0
   std::int64_t cells[3] = {0, 0, 0};
   double lower[3] = {0, 0, 0};
   double upper[3] = {0, 0, 0};

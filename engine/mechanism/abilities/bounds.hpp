@@ -14,17 +14,18 @@
 namespace pkm {
 
 struct BoundsOptions {
-  double gap = 1e-2;                ///< target: upper minus lower bound, relative to their mean
-  std::size_t max_boxes = 4000000;  ///< stop at this number of boxes
-  std::string* proof = nullptr;     ///< receives the text of a proof; null: no proof
+  /// Target for upper minus lower bound, divided by their mean; the search stops when it is reached.
+  double gap = 1e-2;
+  std::size_t max_boxes = 4000000;  ///< the search stops at this number of boxes
+  std::string* proof = nullptr;     ///< receives the text of a proof of the bounds; null: no proof is written
   std::function<bool()> stop = {};  ///< called often, by any thread; returns true to stop
 };
 
 struct VolumeBounds {
   double lower = 0, upper = 0;
-  int innermost = 0;         ///< index of the coordinate along columns, among MechanismInfo::coordinates
-  std::size_t boxes = 0;     ///< number of boxes whose bounds are summed
-  std::size_t examined = 0;  ///< number of boxes examined, including bisected ones
+  int innermost = 0;         ///< index, among MechanismInfo::coordinates, of the coordinate along which the columns run
+  std::size_t boxes = 0;     ///< number of boxes whose bounds are summed to the result
+  std::size_t examined = 0;  ///< number of boxes examined, including those that were bisected
   bool stopped = false;
 
   double gap() const { return upper > 0 ? 2 * (upper - lower) / (upper + lower) : 0; }
@@ -34,24 +35,27 @@ struct VolumeBounds {
 struct PropertyResult {
   enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
-  std::string detail = {};                ///< the constraint or matrix that fails or is undecided; not_examined: why
+  std::string detail = {};  ///< name of the constraint or matrix that fails or is undecided; not_examined: the reason
   std::optional<Pose<double>> pose = {};  ///< a pose at which the property fails, or near which it is undecided
-  std::optional<double> time = {};        ///< time of that pose [s], for motions
+  /// The instant of the motion at which `pose` is attained [s]; std::nullopt for a box of poses.
+  std::optional<double> time = {};
 };
 
 struct PoseCertificate {
   PropertyResult feasible;
-  PropertyResult regular;  ///< no parallel or serial singularity; not examined if a pose is infeasible
-  std::size_t boxes = 0;   ///< number of boxes examined
+  /// For the property that there is no parallel or serial singularity; not examined if a pose is infeasible.
+  PropertyResult regular;
+  std::size_t boxes = 0;  ///< number of boxes examined
   bool stopped = false;
 };
 
 /// Result of the attempt to prove that no path leads from one pose to another.
 struct Separation {
   enum class Kind { boxes, signs, undecided };
-  Kind kind = Kind::undecided;  ///< boxes without feasible poses, or signs of a determinant, separate the poses
-  std::string detail = {};      ///< Kind::signs: the matrix; Kind::undecided: what is undecided
-  std::size_t boxes = 0;        ///< number of boxes examined
+  /// What separates the poses: boxes without feasible poses, or different signs of a determinant.
+  Kind kind = Kind::undecided;
+  std::string detail = {};  ///< Kind::signs: name of the matrix; Kind::undecided: the reason
+  std::size_t boxes = 0;    ///< number of boxes examined
 };
 
 class RigorousBounds {
@@ -63,12 +67,12 @@ class RigorousBounds {
   /// The parameters are taken as exact. Throws std::invalid_argument with one sentence if the plan is not supported.
   virtual VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               const BoundsOptions& options) const = 0;
-  /// Feasibility and regularity of all poses of a box, under the plan's limits.
-  /// @param ranges  range of each coordinate; lower = upper fixes the coordinate
+  /// Tries to prove that all poses of a box are feasible under the plan's limits, and that none is singular.
+  /// @param ranges  range of each coordinate; if lower = upper, the coordinate is fixed
   virtual PoseCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
-  /// Feasibility and regularity at every instant of a motion. If the motion is infeasible, PropertyResult::time is its
-  /// first infeasible instant, to 1e-6 of the duration.
+  /// Tries to prove that all poses of a motion are feasible, and that none is singular. If the motion is infeasible,
+  /// PropertyResult::time is its first infeasible instant, to 1e-6 of the duration.
   virtual PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
                                  const Motion& motion, const BoundsOptions& options) const = 0;
   /// Tries to prove that every path from one pose to another along which only the swept coordinates of the plan vary

@@ -28,7 +28,7 @@ inline constexpr std::size_t kMaxDesignTests = 16;
 
 /// A constraint that depends on the design alone.
 struct DesignMarginInfo {
-  std::string name;  ///< name of the constraint: "rail-length"
+  std::string name;  ///< name of the constraint, for example "rail-length"
   std::string unit;
   std::string meaning;
 };
@@ -37,8 +37,8 @@ class DesignTests {
  public:
   virtual ~DesignTests() = default;
   virtual const std::vector<DesignMarginInfo>& list() const = 0;
-  /// Computes the margins, in the order of list().
-  /// @param limits  thresholds that some of the tests use
+  /// Computes the margins of a design, in the order of list(); a margin < 0 violates its constraint.
+  /// @param limits  thresholds that some of the constraints use
   virtual void test(std::span<const double> parameters, const LimitSpec& limits, std::span<double> margins) const = 0;
   virtual void test(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> margins) const = 0;
 };
@@ -47,9 +47,9 @@ class DesignTests {
 class PoseMargins {
  public:
   virtual ~PoseMargins() = default;
-  /// Unit of all margins; "" if each has its own (m, rad or 1).
+  /// The unit that all margins have; "" if their units differ (m, rad or 1).
   virtual std::string margin_unit() const = 0;
-  /// Why the margins have no derivatives under the given limits; empty if they have derivatives.
+  /// The reason why the margins have no derivatives under the given limits; empty if they have derivatives.
   virtual Unsupported why_no_derivatives(const LimitSpec&) const { return {}; }
   /// Appends the margins of all poses. They are always finite; at a pose where the mechanism cannot be assembled, at
   /// least one of them is negative.

@@ -19,11 +19,11 @@ class Dynamics {
   virtual ~Dynamics() = default;
   virtual const std::vector<std::string>& mass_models() const = 0;  ///< names of all mass models, the default first
   virtual const std::string& mass_model() const = 0;                ///< name of the selected mass model
-  /// The same mechanism with another mass model; null if there is no such model.
+  /// Returns the same mechanism with another mass model; null if it has no mass model of this name.
   virtual std::shared_ptr<const Mechanism> with_masses(const std::string& model) const = 0;
 
-  /// Equations of motion of one design at several states. PoseDynamics::assembles is false for a pose that cannot be
-  /// assembled. Throws DesignError if a mass is not positive.
+  /// Computes the equations of motion of one design at several states. PoseDynamics::assembles is false for a pose that
+  /// cannot be assembled. Throws DesignError if a mass is not positive.
   /// @param mode  one of MechanismInfo::modes
   virtual void equations(std::span<const double> parameters, const std::string& mode,
                          std::span<const MotionState<double>> states, std::span<PoseDynamics<double>> found) const = 0;

@@ -8,21 +8,21 @@
 
 namespace pkm {
 
-/// Compliance of the platform: displacement per wrench. Wrenches and displacements have six components, along and about
-/// x, y, z of the base frame, at the origin of the platform frame.
+/// Compliance of the platform: the displacement that a wrench causes. Wrenches and displacements have six components,
+/// along and about the x, y and z axes of the base frame, at the origin of the platform frame.
 struct PlatformCompliance {
   AxisMatrix<double> supported;   ///< 6 x k, orthonormal basis of the wrenches that the mechanism can balance
-  AxisMatrix<double> compliance;  ///< k x k, in the basis `supported` [m/N, rad/(N m), ..]
+  AxisMatrix<double> compliance;  ///< k x k matrix in the basis `supported` [m/N, rad/(N m), ..]
 
-  /// Whether the mechanism can balance every wrench; `supported` is then the identity. Otherwise the platform can move
-  /// freely in some direction, or the pose is singular.
+  /// Returns true if the mechanism can balance every wrench; `supported` is then the identity. Otherwise the platform
+  /// can move freely in some direction, or the pose is singular.
   bool is_complete() const { return supported.cols() == 6; }
 };
 
 class Elasticity {
  public:
   virtual ~Elasticity() = default;
-  /// @param pose  a pose that can be assembled
+  /// @param pose  the pose, at which the mechanism must be assembled
   virtual PlatformCompliance compliance(std::span<const double> parameters, const Pose<double>& pose,
                                         const std::string& mode) const = 0;
 };

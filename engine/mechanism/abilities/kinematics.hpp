@@ -17,23 +17,23 @@ namespace pkm {
 class Velocities {
  public:
   virtual ~Velocities() = default;
-  /// @return std::nullopt if the pose cannot be assembled or a coefficient is infinite
+  /// @return the coefficients at a pose; std::nullopt if the pose cannot be assembled or a coefficient is infinite
   /// @param mode  one of MechanismInfo::modes
   virtual std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                                      const std::string& mode) const = 0;
 };
 
-/// Guarantee of a list of assembly modes.
+/// States whether a list of assembly modes is complete, and how it was computed.
 struct ForwardGuarantee {
-  bool is_complete = true;  ///< the list contains every isolated solution
+  bool is_complete = true;  ///< true if the list contains every isolated solution
   std::string method = "closed form: every isolated pose";
 };
 
 class ForwardKinematics {
  public:
   virtual ~ForwardKinematics() = default;
-  /// Assembly modes for joint values [m, rad]: all of them, if guarantee().is_complete. Empty if there is no solution
-  /// or a continuum of solutions.
+  /// Finds the assembly modes, i.e. the poses that have given joint values [m, rad]: all of them if
+  /// guarantee().is_complete. Empty if there is no solution or a continuum of solutions.
   virtual std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
                                                const AxisVector<double>& joints) const = 0;
   /// Assembly modes found by a search that starts near the pose `from`. By default the same as assemblies().
@@ -42,9 +42,10 @@ class ForwardKinematics {
                                                     const Pose<double>& /*from*/) const {
     return assemblies(parameters, joints);
   }
-  /// Guarantee of assemblies(). Overridden by mechanisms whose forward kinematics is a numerical search.
+  /// States whether assemblies() finds all solutions. Overridden by mechanisms whose forward kinematics is a numerical
+  /// search.
   virtual ForwardGuarantee guarantee() const { return {}; }
-  /// Interpretation of the result of assemblies().
+  /// Status that is reported with the result `found` of assemblies(), such as NO_POSE if it is empty.
   virtual ForwardStatus status(std::span<const double> /*parameters*/, const AxisVector<double>& /*joints*/,
                                const std::vector<AssemblyMode>& found) const {
     if (found.empty()) return {"NO_POSE", "no pose assembles with these joint values"};
@@ -52,7 +53,7 @@ class ForwardKinematics {
   }
 };
 
-/// A link, and the links joined to it, from which it needs no clearance.
+/// A link, and the links to which it is joined; no clearance is required between them.
 struct JoinedLinks {
   std::string link;
   std::vector<std::string> others;
@@ -62,11 +63,12 @@ struct JoinedLinks {
 class Links {
  public:
   virtual ~Links() = default;
-  /// The links in the same order at every pose; empty if the pose cannot be assembled.
+  /// The links at a pose, in the same order for every pose; empty if the pose cannot be assembled.
   /// @param mode  one of MechanismInfo::modes
   virtual std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
                                         const std::string& mode) const = 0;
-  /// Pairs of links between which no clearance is required because they are joined, for display; empty if unspecified.
+  /// For each link, the links from which no clearance is required because they are joined to it; for display only.
+  /// Empty if this is unspecified.
   virtual std::vector<JoinedLinks> joined() const { return {}; }
 };
 

@@ -9,9 +9,9 @@
 
 namespace pkm {
 
-/// The assembly mode closest to the pose `from` (Euclidean distance, 1 m counts as 1 rad), whether usual or not, among
-/// the assembly modes that a search from this pose finds. std::nullopt if there is none, or if the mechanism has no
-/// forward kinematics.
+/// Finds the assembly mode that is closest to the pose `from` (Euclidean distance of the coordinates, in which 1 m
+/// counts as 1 rad), among those that a search from this pose finds. std::nullopt if the search finds none, or if the
+/// mechanism has no forward kinematics.
 std::optional<AssemblyMode> nearest_assembly(const Mechanism& mechanism, std::span<const double> parameters,
                                              const AxisVector<double>& joints, const Pose<double>& from);
 
