@@ -1,4 +1,4 @@
-// Keys of [[limb]].
+// Descriptions of the keys that a [[limb]] table may have.
 
 #include <algorithm>
 
@@ -46,7 +46,7 @@ OptionSpec branch_key() {
           .meaning = "solution of the limb in the default working mode"};
 }
 
-/// Keys of limbs in closed form.
+/// Keys of limbs whose inverse kinematics is in closed form, i.e. of all limbs except those with drive = "formula".
 Keys geometry_keys() {
   static const TableSpec copies = {.meaning = "rotated copies of the limb",
                                    .keys = {{.name = "number",
@@ -84,8 +84,8 @@ Keys geometry_keys() {
       formula_key("play", "m", "radial play of each passive joint at the ends of rod or leg, for `accuracy`")};
 }
 
-/// Cross-section of a leg, which determines its axial stiffness; the masses of a leg are those of `cylinder` and
-/// `piston`.
+/// Key for the cross-section of a leg, which determines its axial stiffness. The mass of a leg is given by the keys of
+/// its parts `cylinder` and `piston`.
 OptionSpec leg_section_key() {
   static const TableSpec section = {.meaning = "tube or rod of some material",
                                     .keys = {required(formula_key("outer", "m", "outer diameter")),
@@ -94,7 +94,7 @@ OptionSpec leg_section_key() {
   return table_key("leg_section", section, "cross-section and material of the leg, for its axial stiffness");
 }
 
-/// Cross-section of a slider, for its stiffness.
+/// Key for the cross-section of a slider, which determines its bending stiffness.
 OptionSpec slider_section_key() {
   static const TableSpec section = {
       .meaning = "tube or rod of some material",

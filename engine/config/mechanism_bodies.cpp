@@ -1,4 +1,4 @@
-// Reader of masses: parts of limbs, links, the platform, [[body]].
+// Reads the masses of a mechanism file: parts of limbs, links, the platform, [[body]].
 //
 // Parts of limbs and links are thin: they rotate with the line between their ends, but do not spin about it. Their
 // inertia is therefore a single number: the moment of inertia about an axis through the centre of mass, normal to that
@@ -17,7 +17,7 @@ namespace {
 using generic::BodyNodes;
 using limbs::Term, limbs::Vector3;
 
-/// Registers a mass, an inertia or a dimension that has to be positive for every design.
+/// Registers a mass, an inertia or a dimension, which must be positive for every design; if `may_vanish`, it may be 0.
 Term checked(MechanismDraft& draft, const Term& value, const std::string& name, const std::string& unit,
              bool may_vanish) {
   draft.model.masses.push_back({name, unit, value.node(), may_vanish});
@@ -26,11 +26,11 @@ Term checked(MechanismDraft& draft, const Term& value, const std::string& name, 
 
 struct Mass {
   Term mass;
-  std::optional<Term> inertia;  ///< set if it follows from a cross-section
+  std::optional<Term> inertia;  ///< moment of inertia, if it follows from a cross-section; otherwise std::nullopt
 };
 
-/// Mass and inertia of a tube or rod with a given material.
-/// @param number_of  number of parallel tubes
+/// Mass and moment of inertia of a tube or rod, from its diameters and the density of its material.
+/// @param number_of  number of parallel tubes or rods
 Mass mass_of_profile(const ConfigValue& value, const Term& length, double number_of, const std::string& what,
                      MechanismDraft& draft) {
   const ConfigValue profile = value.table();
@@ -47,13 +47,13 @@ Mass mass_of_profile(const ConfigValue& value, const Term& length, double number
   return {mass, mass * (length * length / 12 + (outer * outer + inner * inner) / 16)};
 }
 
-/// The value of a key for the mass of a part, such as "rod_inertia"; std::nullopt also if parts of this kind have no
-/// such key.
+/// The value of a key such as "rod_inertia", in which `part` is "rod" and `suffix` is "_inertia"; std::nullopt if it is
+/// absent or does not exist for this part.
 std::optional<ConfigValue> find_mass_key(const ConfigValue& table, const std::string& part, const std::string& suffix) {
   return find_named(mass_keys(part), part + suffix) ? table.find(part + suffix) : std::nullopt;
 }
 
-/// The mass of a limb's part; std::nullopt if its table gives none.
+/// The mass of a part of a limb; std::nullopt if the limb's table gives none.
 std::optional<Mass> mass_of_part(const ConfigValue& table, const LimbPart& part, const std::string& what,
                                  MechanismDraft& draft) {
   std::optional<ConfigValue> given;
@@ -112,7 +112,7 @@ std::array<Term, 3> read_inertia(const ConfigValue& value, const std::string& of
   return {one(0), one(1), one(2)};
 }
 
-/// A point mass at `centre`.
+/// A point mass at `centre`, which is a point in the base frame.
 BodyNodes body_at(const Vector3& centre, const Term& mass, const std::string& name) {
   BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
   add_square(body.centre, mass, body);
@@ -126,7 +126,8 @@ BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia,
   const Term quarter = mass * 0.25, turning = inertia / (*part.length * *part.length);
   const Vector3 centre = (part.from + part.to) * Term(draft.model.graph, 0.5);
   BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
-  if (part.on_arm && part.on_arm->is_arm) {  // measured from its pivot, which moves along the axis
+  // The velocity of the centre is relative to the arm's pivot, which moves along the rail.
+  if (part.on_arm && part.on_arm->is_arm) {
     add_square(nodes(part.from), mass, body);
     body.arm_rotations.push_back({part.on_arm->arm, (mass * 0.25 * *part.length * *part.length + inertia).node()});
     return body;

@@ -21,14 +21,14 @@ inline std::array<expression::Node, 3> nodes(const limbs::Vector3& v) {
   return {v[0].node(), v[1].node(), v[2].node()};
 }
 
-/// A part of a limb, or a link. It may have a mass; [[body]] refers to it by a name such as "arm1.crank".
+/// A part of a limb, or a [[link]]. It can have a mass, and [[body]] refers to it by a name such as "arm1.crank".
 struct LimbPart {
-  std::string name;                         ///< "crank", "rod", "slider"
-  limbs::Vector3 from, to;                  ///< ends of the part
-  std::optional<limbs::Term> length = {};   ///< length, if it is constant
-  std::optional<limbs::Vector3> line = {};  ///< vector along the part, of any length; std::nullopt: the part does not
-                                            ///< rotate
-  /// Set if `from` is the end of an arm, or the part is the arm itself.
+  std::string name;                        ///< name of the part within its limb, for example "crank", "rod" or "slider"
+  limbs::Vector3 from, to;                 ///< end points of the part in the base frame
+  std::optional<limbs::Term> length = {};  ///< length of the part; std::nullopt if it varies with the pose
+  /// Vector along the part, of any length; std::nullopt: the part does not rotate.
+  std::optional<limbs::Vector3> line = {};
+  /// Set if the part begins at the end of an arm (`from`), or is the arm itself.
   struct OnArm {
     std::size_t arm;
     limbs::Vector3 pivot;
@@ -40,54 +40,62 @@ struct LimbPart {
 
 /// A limb that has been read, under the name by which other tables refer to it.
 struct NamedLimb {
-  std::string name;                              ///< "arm2"
-  std::string group;                             ///< "arm": name of the limb in the file, which all copies share
-  std::map<std::string, limbs::Vector3> points;  ///< "A", "B", "C", "S"
+  std::string name;                              ///< name of this copy, for example "arm2"
+  std::string group;                             ///< name in the file, which all copies share, for example "arm"
+  std::map<std::string, limbs::Vector3> points;  ///< points to which other tables can refer: "A", "B", "C", "S"
   std::vector<LimbPart> parts;
 
   std::string drive = "formula";
-  std::size_t joint = 0;                        ///< index among the joints of the mechanism; for a formula limb, of its
-                                                ///< first joint
-  std::size_t joint_count = 1;                  ///< greater than 1 only for formula limbs
-  std::optional<limbs::Vector3> axis = {};      ///< axis of the crank's pivot, or direction of the slide
-  std::optional<limbs::Vector3> revolute = {};  ///< common axis of its joints, if they are parallel revolutes
-  bool has_rod = false;                         ///< a rod or telescope; false: a slide that carries the platform
-  bool has_links = false;                       ///< it has two links instead of a rod
-  std::optional<limbs::Vector3> beside = {};    ///< vector from the middle of a pair of rods to one of them
-  std::string end_on = "";                      ///< the body to which its end is attached; "": unspecified
+  /// Index of the limb's joint among the joints of the mechanism; for a limb with drive = "formula", of its first
+  /// joint.
+  std::size_t joint = 0;
+  std::size_t joint_count = 1;  ///< number of joints; greater than 1 only for limbs with drive = "formula"
+  /// Axis of the crank's pivot, or direction of the slide; std::nullopt for other drives.
+  std::optional<limbs::Vector3> axis = {};
+  /// Common direction of the axes of its joints; std::nullopt unless they are parallel revolute joints.
+  std::optional<limbs::Vector3> revolute = {};
+  bool has_rod = false;    ///< true: a rod or a telescopic leg carries the platform; false: the slider itself does
+  bool has_links = false;  ///< true: two links connect the slider to the platform, instead of a rod
+  /// Vector from the middle of a pair of rods to one of them; std::nullopt: a single rod.
+  std::optional<limbs::Vector3> beside = {};
+  std::string end_on = "";  ///< name of the body to which the end B is attached; "": unspecified
 
-  std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]
-  /// Stiffness of a round tube, axial E A [N], bending E I and torsional G J [N m^2], and its cross-section A [m^2].
+  std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]; std::nullopt: not given
+  /// Stiffnesses of a round tube: axial E A [N], bending E I and torsional G J [N m^2]; and the area A of its
+  /// cross-section [m^2].
   struct Section {
     limbs::Term EA, EI, GJ, area;
   };
-  /// Cross-section of one rod or of the leg, of the crank, and of the slider; std::nullopt: rigid.
+  /// Cross-sections of a single rod or of the leg, of the crank, and of the slider. std::nullopt: the part is rigid.
   std::optional<Section> rod_section = {}, crank_section = {}, slider_section = {};
-  std::optional<limbs::Term> slider_length = {};  ///< from the guide to the slider, along the slide [m]
-  std::optional<limbs::Vector3> universal = {};   ///< axis of its universal joints, on the drive's side of each joint
+  /// Signed distance [m], along the slide, from the guide in which the slider is clamped to the slider's end at the
+  /// rod; std::nullopt: the slider is rigid.
+  std::optional<limbs::Term> slider_length = {};
+  /// Axis of the universal joints at both ends of the rod or leg, fixed to the part on the drive's side of each joint.
+  std::optional<limbs::Vector3> universal = {};
 };
 
-/// A limb with the key `across`: the component of the vector between its ends along the normal must be the same at
-/// every pose.
+/// A limb with the key `across`, which is the vector `normal`. The component of B - A along `normal` must be the same
+/// at every pose.
 struct LimbInPlane {
   ConfigValue across;
   limbs::Vector3 A, B, normal;
 };
 
-/// A parameter of a single limb in the graph.
+/// A parameter that belongs to a single limb, such as "arm2.l_b", and its node in the expression graph.
 struct OwnParameter : LimbParameter {
   expression::Node node{};
 };
 
-/// A sign that selects the working mode: its possible values, and their texts in the names of modes.
+/// A sign that selects the working mode: its possible values, and a text for each of them in the names of modes.
 struct SignChoice {
-  std::string signs;               ///< "+-": the first is the default
-  std::vector<std::string> names;  ///< texts of the signs
-  bool is_branch = false;          ///< true: its text follows a "/" in the name of the mode, unless the sign is the
-                                   ///< default
+  std::string signs;               ///< possible values, the first of which is the default: "+-", "-+", "+" or "-"
+  std::vector<std::string> names;  ///< for each value, its text in the names of modes
+  /// True: the text follows a "/" at the end of the name of the mode, and is omitted for the default sign.
+  bool is_branch = false;
 };
 
-/// The mechanism as far as it has been read; each reader adds to it.
+/// A mechanism while its file is being read. Each reader adds to it.
 struct MechanismDraft {
   generic::Model model;
   MechanismScope scope{model};
@@ -97,30 +105,36 @@ struct MechanismDraft {
   limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
-  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< for each limb, ranges of x, y, z
-  std::vector<SignChoice> sign_choices;                                           ///< in the order of the inputs
+  /// Ranges of the platform's x, y, z within each limb's reach; std::nullopt: unknown.
+  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;
+  std::vector<SignChoice> sign_choices;  ///< the signs of the working modes, in the order of the graph's inputs
 
-  std::vector<std::optional<limbs::Term>> drive_stiffness;  ///< for each joint [N/m or N m/rad]; std::nullopt: rigid
+  /// Stiffness of the drive of each joint [N/m or N m/rad]; std::nullopt: rigid.
+  std::vector<std::optional<limbs::Term>> drive_stiffness;
   std::vector<OwnParameter> own;
-  std::optional<ConfigValue> masses;  ///< the selected alternative of [masses]
-  std::vector<ConfigValue> let;       ///< [let], and the `let` of the masses
+  /// The table of the selected mass model in [masses]; std::nullopt: there is no [masses].
+  std::optional<ConfigValue> masses;
+  std::vector<ConfigValue> let;  ///< the tables [let] of the file and of the selected mass model
 
   limbs::Term zero() { return {model.graph, 0.0}; }
-  /// Adds a sign of the working modes to the inputs of the graph. @param first  '+' or '-': the default
+  /// Adds a sign, by which the working modes differ, to the inputs of the graph.
+  /// @param first  '+' or '-': the default
+  /// @param both   false: `first` is the only possible value
   limbs::Term add_sign(char first, bool both);
 };
 
-/// Reads the model of a mechanism file. @param mass_model  one of its alternatives; "": the first
+/// Reads the model of a mechanism file.
+/// @param mass_model  name of one of its mass models; "": the first
 generic::Model read_mechanism_model(const std::string& text, const std::string& file_name,
                                     const std::vector<LimbParameter>& own, const std::string& mass_model,
                                     const StudyAdditions& study = nullptr);
 
-/// The text under a key; "" if the key is absent.
+/// The text that a table has under a key; "" if the key is absent.
 std::string text_of(const ConfigValue& table, const std::string& key);
-/// A product of SI units.
+/// Reads a unit that is a product of powers of SI units, such as "N m/rad".
 std::string si_unit(const ConfigValue& unit);
 
-/// Adds a parameter of a single limb.
+/// Adds a parameter that belongs to a single limb to the draft.
 void add_own_parameter(const LimbParameter& own, const Parameter& parameter, MechanismDraft& draft);
 /// Calls `read` with the limb's own parameters in scope, also in formulas of [let].
 void read_as_limb(const std::string& limb, const std::function<void()>& read, MechanismDraft& draft);
@@ -135,20 +149,23 @@ void read_inputs(const ConfigValue& root, MechanismDraft& draft);
 /// Reads the tables [[quantity]] of the file and, if it is not null, of a study. Their formulas may also use
 /// "NAME_rate", the time derivative of a coordinate, an input or a quantity.
 void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
-/// The force that a limb transmits to the platform, along a rod, a leg or a slide.
+/// The force that a limb transmits to the platform, along its rod or leg, or along the slide if there is no rod.
 struct LimbForce {
-  limbs::Vector3 force;  ///< unit vector
-  limbs::Term input;     ///< input transmission index
-  limbs::Vector3 end;    ///< point of the platform at which the force acts: B
+  limbs::Vector3 force;  ///< unit vector in the direction of the force
+  limbs::Term input;     ///< input transmission index of the limb
+  limbs::Vector3 end;    ///< the point B of the platform at which the force acts
 };
-/// The force of a limb; std::nullopt for limbs that are formulas or have links, which transmit more than one force.
+/// The force of a limb; std::nullopt for limbs with drive = "formula" or with two links, which do not transmit a single
+/// force.
 std::optional<LimbForce> force_of(const NamedLimb& limb);
-/// Whether a file or a study has a [[quantity]] of this name. @param study  null if there is none
+/// Returns true if a mechanism file or a study has a [[quantity]] with this name.
+/// @param study  null if there is none
 bool defines_quantity(const ConfigValue& root, const ConfigValue* study, const std::string& name);
 /// Adds the transmission indices `lti`, `lti_input` and `lti_output` as quantities, if they are defined for the limbs.
 void add_transmission(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
-/// Adds the quantities of engine/generic/performance/performance.hpp whose data are given by the file or by the study,
-/// which may be null.
+/// Adds the quantities of engine/generic/performance/performance.hpp whose data are given by the mechanism file or by
+/// the study.
+/// @param study  null if there is none
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
 /// Reads the elastic moduli of a limb's cross-sections, and the play of its joints.
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
@@ -156,19 +173,20 @@ void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& 
 limbs::Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft);
 /// Compliance of a limb's drive, measured at the joint [m/N or rad/(N m)]; for a telescope, including that of the leg.
 std::optional<limbs::Term> drive_compliance(const NamedLimb& limb, MechanismDraft& draft);
-/// The limits of quantities in a study, as a table; std::nullopt if it has none.
+/// The limits that a study sets for quantities, as a table; std::nullopt if it sets none.
 std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
-/// Adds a threshold for each limit of a quantity in the study, [workspace] limits = { NAME = { min = .. } }. It is
-/// called directly after read_limits(), because the positions of all later inputs of the graph depend on the number of
-/// limits.
+/// Adds a threshold for each limit of a quantity in the study, [workspace] limits = { NAME = { min = .. } }. It must be
+/// called directly after read_limits(), because the number of limits determines the indices of all later inputs of the
+/// graph.
 void read_quantity_limits(const ConfigValue& study, MechanismDraft& draft);
-/// Adds the margins of the limits of quantities in the study.
+/// Adds the margins of the limits that the study sets for quantities.
 void add_quantity_margins(const ConfigValue& study, MechanismDraft& draft);
 /// Reads the table [modes].
 void read_modes(const ConfigValue& root, MechanismDraft& draft);
-/// Reads the tables [[limb]]: joints, loop-closure equations, constraints, ranges, angles, links, bodies.
+/// Reads the tables [[limb]]. For each limb, adds its joints, loop-closure equations, constraints, ranges, angles,
+/// links and bodies.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
-/// Refuses `across` if the end of the limb leaves the limb's plane at some poses.
+/// Refuses the key `across` of a limb if the component of B - A along it changes with the pose.
 void refuse_changing_planes(MechanismDraft& draft);
 /// Reads the tables [[margin]] and [[design]].
 void read_margins(const ConfigValue& root, MechanismDraft& draft);
@@ -176,14 +194,14 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft);
 void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft);
 /// Reads the tables [[link]]. @return the links, under the names that [[body]] uses
 std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft);
-/// Adds the limit of the clearance, as the last limit, if there are links that could collide.
+/// Adds the limit on the clearance after all other limits, if there are links that could collide.
 void add_clearance(MechanismDraft& draft);
 /// Reads the table [survey].
 void read_survey(const ConfigValue& root, MechanismDraft& draft);
-/// Lists all combinations of the signs, the default first.
+/// Lists all combinations of the signs as working modes, the default first.
 void list_modes(MechanismDraft& draft);
 
-/// Adds the body of a limb's part, if its table gives it a mass.
+/// Adds the body of a part of a limb, if the limb's table gives the part a mass.
 void add_part_body(const ConfigValue& table, const std::string& limb, const LimbPart& part, MechanismDraft& draft);
 /// Adds the body of a thin link between two points, if its table has a `mass`.
 void add_link_body(const ConfigValue& table, const std::string& name, const limbs::Vector3& from,

@@ -10,7 +10,8 @@ namespace {
 
 using limbs::Term, limbs::Vector3;
 
-/// Reads a cross-section; std::nullopt if it is not given, or if a section that gives the mass has no Young's modulus.
+/// Reads a cross-section. std::nullopt if it is not given, or if it serves only to compute a mass and has no Young's
+/// modulus.
 std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const std::string& key,
                                                MechanismDraft& draft) {
   const auto section = table.find_table(key);
@@ -48,8 +49,8 @@ void read_slider(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draf
       length ? draft.scope.positive(*length, "m", "slider_section") : draft.model.term(draft.model.joints[limb.joint]);
 }
 
-/// Adds the compliance of a cantilever in the direction of a force at its end.
-/// @param along  component of the unit vector of the force along the beam
+/// Adds the compliance of a cantilever that a force bends and stretches at its free end.
+/// @param along  component along the beam of the unit vector of the force
 Term add_cantilever(const Term& compliance, const NamedLimb::Section& section, const Term& length, const Term& along) {
   return compliance + along * along * length / section.EA +
          (Term(length.graph(), 1.0) - along * along) * length * length * length / (section.EI * 3);

@@ -34,7 +34,7 @@ void read_names(const ConfigValue& root, MechanismDraft& draft) {
   draft.model.info.source = text_of(table, "source");
 }
 
-/// The SI unit of a parameter, inferred from its default: m for "200 mm".
+/// The SI unit of a parameter, inferred from its default value: "m" for "200 mm".
 std::string unit_of(const ConfigValue& table) {
   if (const auto unit = table.find("unit")) return si_unit(*unit);
   const ConfigValue value = table.at("default", "the default, a number or text with a unit: \"200 mm\"");
@@ -46,7 +46,7 @@ std::string unit_of(const ConfigValue& table) {
   throw value.error("a number, or text with a unit: \"200 mm\", \"40 deg\"; other units by unit = \"..\"");
 }
 
-/// A parameter of a single limb: a copy of the parameter that all limbs share, with the changes given in `table`.
+/// The parameter of a single limb: a copy of the parameter that all limbs share, with the values that `table` changes.
 Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, const std::vector<Parameter>& all) {
   const Parameter* const general = find_named(all, own.parameter);
   if (!general)
@@ -61,7 +61,7 @@ Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, cons
   return p;
 }
 
-/// Adds the parameters of a table.
+/// Adds the parameters of a table, [parameters] or that of a mass model.
 void read_parameter_table(const ConfigValue& all, MechanismDraft& draft) {
   generic::Model& model = draft.model;
   for (const std::string& name : all.dotted_keys(true)) {
@@ -165,8 +165,8 @@ void read_let(const ConfigValue& root, const ConfigValue& platform, MechanismDra
   read_origin(platform, draft);
 }
 
-/// Selects one of the mass models in [masses], which can have their own parameters and formulas. @param chosen  name of
-/// the model; "": the first
+/// Selects one of the mass models in [masses]. A mass model can have its own parameters and formulas.
+/// @param chosen  name of the model; "": the first
 void choose_masses(const ConfigValue& root, const std::string& chosen, MechanismDraft& draft) {
   generic::Model& model = draft.model;
   const auto all = root.find_table("masses");
@@ -175,7 +175,8 @@ void choose_masses(const ConfigValue& root, const std::string& chosen, Mechanism
   } else {
     if (all->keys().empty()) throw all->error("at least one alternative [masses.NAME]");
     model.mass_models = all->keys();
-    for (const std::string& name : model.mass_models) all->find_table(name);  // refuses wrong keys of all models
+    // Reading the tables of the other models refuses wrong keys in them.
+    for (const std::string& name : model.mass_models) all->find_table(name);
   }
   model.mass_model = chosen.empty() ? model.mass_models.front() : chosen;
   if (all) draft.masses = all->at(model.mass_model, "an alternative of [masses]").table();
@@ -221,8 +222,8 @@ void remove_undefined_conditioning(generic::Model& model) {
     model.info.characteristic_length.clear();
 }
 
-/// The common unit of all conditions that depend on the pose. It is "" if their units differ, or if one of them is the
-/// argument of a square root or a similar operation, whose unit is not recorded.
+/// The unit that all constraints on the pose have. It is "" if their units differ, or if one of them is the argument of
+/// a square root or a similar operation, whose unit is not recorded.
 std::string common_margin_unit(const generic::Model& model) {
   std::optional<std::string> unit;
   for (const auto* const conditions : {&model.domains, &model.margins})

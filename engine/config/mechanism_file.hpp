@@ -15,14 +15,14 @@ namespace pkm {
 
 class ConfigValue;
 
-/// A parameter of a single limb, which replaces a parameter that all limbs share: "arm2.l_b".
+/// Name of a parameter that belongs to a single limb and replaces the one that all limbs share, for example "arm2.l_b".
 struct LimbParameter {
   std::string limb, parameter;
-  SourceLocation place = {};  ///< location of its name in the input
+  SourceLocation place = {};  ///< position of the name in the input file, for messages
 
   std::string name() const { return limb + "." + parameter; }
 };
-/// Splits a name such as "arm2.l_b"; std::nullopt for other names.
+/// Splits a name such as "arm2.l_b" into limb and parameter; std::nullopt for names without a dot.
 std::optional<LimbParameter> limb_parameter(const std::string& name, const SourceLocation& place);
 
 /// The document of a study whose tables [[quantity]] and limits of quantities are added to its mechanism; null: nothing
@@ -36,8 +36,8 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
                                                      const std::vector<LimbParameter>& own = {},
                                                      const StudyAdditions& study = nullptr);
 
-/// How a mechanism file was interpreted, which analyses it supports, and why it does not support others: the text of
-/// `pkmopt check FILE`.
+/// Text of `pkmopt check FILE`: how the mechanism file was interpreted, which analyses the mechanism supports, and why
+/// it does not support others.
 std::string describe_mechanism(const Mechanism& mechanism);
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// The files of engine/config/mechanisms, which are compiled into the program.
+// Texts of the mechanism files in engine/config/mechanisms, which are compiled into the program.
 #pragma once
 
 #include <string>

@@ -28,7 +28,7 @@ using generic::BodyNodes, generic::JointNodes, generic::SolidNodes;
 using limbs::Term, limbs::Vector3;
 using Nodes = std::array<expression::Node, 3>;
 
-/// Thrown with a sentence if the file does not describe the joints completely.
+/// Exception with one sentence: the mechanism file does not describe all joints.
 struct IncompleteDescription {
   std::string why;
 };
@@ -37,7 +37,7 @@ class JointReader {
  public:
   explicit JointReader(MechanismDraft& draft) : draft_(draft), model_(draft.model) {}
 
-  /// Reads the bodies and joints that the file describes, without masses.
+  /// Reads the bodies and joints that the mechanism file describes, without masses.
   generic::JointedBodies read(const std::vector<ConfigValue>& tables) {
     add_solid("platform", {.name = "platform", .point = nodes(draft_.origin), .with_platform = true});
     for (const BodyNodes& body : model_.bodies) {
@@ -51,7 +51,7 @@ class JointReader {
     hold_pin();
     return {solids_, joints_};
   }
-  /// Adds the masses, for the forces in the joints.
+  /// Assigns the masses, which are required for the forces in the joints.
   generic::JointedBodies with_masses() {
     assign_masses();
     refuse_loose_bodies();
@@ -61,7 +61,8 @@ class JointReader {
  private:
   Vector3 vector(const Nodes& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
 
-  /// @param body  name of a body of the model, or of the platform, whose mass the solid has, completely or in part
+  /// Adds a solid, i.e. a rigid body with joints.
+  /// @param body  name of the body of the model, or "platform", whose mass the solid has completely or in part
   std::size_t add_solid(const std::string& body, SolidNodes solid) {
     made_of_[body].push_back(solids_.size());
     solids_.push_back(std::move(solid));
@@ -81,8 +82,9 @@ class JointReader {
     return joint;
   }
 
-  /// A joint of a limb: a revolute about the limb's axis, which is also free about the axes `also`, or a ball joint
-  /// that, if `line` is given, prevents the spin about it.
+  /// Makes a joint between two solids of a limb. If the limb has parallel revolute joints, it is a revolute joint about
+  /// their axis, which can also rotate about the axes `also`; otherwise it is a ball joint and, if `line` is given,
+  /// prevents the spin about that line.
   JointNodes limb_joint(const NamedLimb& limb, const std::string& name, const Vector3& point, std::size_t on,
                         std::optional<std::size_t> from, const std::optional<Vector3>& line,
                         const std::vector<Vector3>& also = {}) const {
@@ -100,14 +102,14 @@ class JointReader {
   static generic::BeamNodes beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far) {
     return {nodes(near), nodes(far), section.EA.node(), section.EI.node(), section.GJ.node(), section.area.node()};
   }
-  /// The beam of a body that the joint added last holds.
+  /// The elastic beam of a body, which is held by the joint added last.
   SolidNodes::Beam held_beam(const NamedLimb::Section& section, const Vector3& near, const Vector3& far,
                              bool is_rod) const {
     return {beam_of(section, near, far), joints_.size() - 1, is_rod};
   }
-  /// Converts the joint added last into a universal joint, if the limb has such joints: it rotates about the axis a,
-  /// fixed to the body that carries the rod, and about a x rod, and it transmits a couple normal to both.
-  /// @param solid  index of the rod
+  /// Converts the joint added last into a universal joint, if the limb has such joints. It rotates about the axis a,
+  /// which is fixed to the body that carries the rod, and about a x rod; it transmits a couple normal to both.
+  /// @param solid  index of the rod among the solids
   void make_universal(const NamedLimb& limb, const Vector3& rod, std::size_t solid, bool on_platform) {
     if (!limb.universal) return;
     const Vector3 a = on_platform && limb.end_on == "platform" ? draft_.turn * *limb.universal : *limb.universal;
@@ -222,7 +224,7 @@ class JointReader {
 
   static constexpr const char* kBase = "base";
 
-  /// Index of the solid that a value names; std::nullopt: the base.
+  /// Index of the solid that has the name given by `value`; std::nullopt: the base.
   std::optional<std::size_t> solid_called(const ConfigValue& value) const {
     std::vector<std::string> names = names_of(solids_);
     names.emplace_back(kBase);
@@ -251,8 +253,9 @@ class JointReader {
     joints_.push_back(rigid_joint(name, at, *first, second));
     joints_.back().drive = JointNodes::Drive{driven_by(*drive, along.has_value()), nodes(axis), !along};
   }
-  /// Index of the joint that is the drive of a [[joint]]; it must belong to a limb with drive = "formula".
+  /// Reads the drive of a [[joint]], which must be a joint of a limb with drive = "formula".
   /// @param slides  true if the [[joint]] is prismatic
+  /// @return index of that joint among the joints of the mechanism
   std::size_t driven_by(const ConfigValue& value, bool slides) const {
     std::vector<std::string> names;
     for (const NamedLimb& limb : draft_.limbs)
@@ -271,7 +274,7 @@ class JointReader {
     return std::ranges::any_of(joints_,
                                [&](const JointNodes& each) { return each.drive && each.drive->joint == joint; });
   }
-  /// Refuses limbs given by formulas unless each of their joints is the drive of a [[joint]].
+  /// Refuses a limb with drive = "formula" unless each of its joints is the drive of a [[joint]].
   void refuse_unknown_links() const {
     for (const NamedLimb& limb : draft_.limbs) {
       if (limb.drive != "formula") continue;
@@ -289,7 +292,8 @@ class JointReader {
   void assign_masses() {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyNodes& body = model_.bodies[i];
-      if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;  // part of its drive
+      // The drive of the limb includes this mass.
+      if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;
       std::string owner = body.part_of.empty() ? body.name : body.part_of;
       for (const NamedLimb& limb : draft_.limbs)
         for (const LimbPart& part : limb.parts)
@@ -327,7 +331,7 @@ class JointReader {
   }
   std::size_t couples_of(const JointNodes& joint) {
     if (joint.couples == JointNodes::Couples::along) return joint.axes.size();
-    std::vector<Vector3> free;  // axes about which it rotates, for the default design
+    std::vector<Vector3> free;  // axes about which the joint rotates in the default design
     for (const Nodes& axis : joint.axes)
       if (free.empty() || (free.size() < 2 && !parallel(free[0], vector(axis)))) free.push_back(vector(axis));
     return 3 - free.size();
@@ -342,7 +346,7 @@ class JointReader {
   std::vector<SolidNodes> solids_;
   std::vector<JointNodes> joints_;
   std::map<std::string, std::vector<std::size_t>>
-      made_of_;  ///< for each body of the model, by its name: indices of the solids made from it
+      made_of_;  ///< for each body of the model, by its name, the indices of the solids that have its mass
 };
 
 }  // namespace

@@ -32,7 +32,7 @@ const TableSpec& parameter_table() {
   return spec;
 }
 
-/// @param header  "[parameters]"; "" in [masses.NAME]
+/// @param header  header of the table in the file: "[parameters]"; "" for the table of the same name in [masses.NAME]
 TableSpec parameters_table(const std::string& header) {
   static const TableSpec limb = {.meaning = "parameters of this limb only",
                                  .keys = {},
@@ -47,7 +47,7 @@ TableSpec parameters_table(const std::string& header) {
           .noun = "parameter"};
 }
 
-/// @param header  "[let]"; "" in [masses.NAME]
+/// @param header  header of the table in the file: "[let]"; "" for the table of the same name in [masses.NAME]
 TableSpec let_table(const std::string& header) {
   return {.header = header,
           .meaning = "named formulas; each may use the names above it",

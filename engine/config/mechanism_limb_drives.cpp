@@ -1,4 +1,4 @@
-// Reader of [[limb]]: telescopes, sliders and cranks in closed form.
+// Reads the drive of a [[limb]] in closed form: a telescopic leg, a slider or a crank.
 
 #include <cmath>
 
@@ -11,7 +11,8 @@ namespace {
 
 using limbs::Ends, limbs::Term, limbs::Vector3;
 
-/// The sign that selects the branch of a copy. Formulas of quantities and margins refer to it as "arm1_branch".
+/// The sign that selects the solution of a copy's inverse kinematics. Formulas of quantities and margins refer to it by
+/// a name such as "arm1_branch".
 Term branch(const LimbCopy& copy) {
   const ConfigValue value = copy.table.at("branch", "\"+\" or \"-\"");
   const Term sign = copy.draft.add_sign(value.word()[0], true);

@@ -1,4 +1,4 @@
-// Reader of [[limb]] with drive = "formula": joints that are formulas of the pose.
+// Reads a [[limb]] with drive = "formula", whose joint coordinates are formulas of the pose.
 
 #include "engine/config/mechanism_limb.hpp"
 

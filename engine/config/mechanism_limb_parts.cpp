@@ -1,4 +1,4 @@
-// The parts of a limb in closed form, the links that are drawn, and its reach.
+// Computes the parts of a limb in closed form, the links that are drawn, and the reach of the limb.
 
 #include "engine/config/mechanism_limb.hpp"
 

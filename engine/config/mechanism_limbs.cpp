@@ -1,4 +1,4 @@
-// Reader of [[limb]]: copies, ends, ranges, angles of passive joints.
+// Reads the [[limb]] tables: copies, end points, ranges, angles of passive joints.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,8 @@ std::vector<std::string> names_of_drives() {
   return words;
 }
 
-/// The table of a limb, read by its description. Refuses keys of parts that the limb does not have.
+/// Reads the table of a limb as described by limb_keys(). Refuses keys for the mass of parts that the limb does not
+/// have.
 ConfigValue limb_table(const ConfigValue& table) {
   const std::string& drive = table.choice("drive", names_of_drives());
   if (const auto copies = table.find("copies"); copies && drive == "formula")
@@ -48,7 +49,7 @@ void refuse_known(const ConfigValue& table, const std::string& name, const Mecha
       throw table.find("name")->refusal("there is already a limb called '" + name + "'");
 }
 
-/// The rotation of each copy.
+/// Reads the rotation of each copy of a limb; a single one, the identity, if it has no copies.
 std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) {
   const auto number = [&draft](double x) { return Term(draft.model.graph, x); };
   const auto copies = table.find_table("copies");
@@ -104,7 +105,7 @@ limbs::Ends read_ends(const LimbCopy& copy) {
   return ends;
 }
 
-/// Adds the angle between the rod and an axis at one end, and its limits.
+/// Adds the angle between the rod and the axis of a passive joint at one of its ends, and the limits of this angle.
 void add_passive_joint(const LimbCopy& copy, const char* key, const char* called, const Vector3& from,
                        const Vector3& to) {
   const auto table = copy.table.find_table(key);
@@ -125,7 +126,7 @@ void add_passive_joint(const LimbCopy& copy, const char* key, const char* called
   draft.scope.mark_as_defined(angle.node());
 }
 
-/// Vector from the middle of a pair of rods to one of them; std::nullopt for a single rod.
+/// Reads the vector from the middle of a pair of rods to one of them; std::nullopt for a single rod.
 std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   const auto pair = copy.table.find_table("pair");
   if (!pair) return {};
@@ -144,7 +145,7 @@ std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   return side * (copy.draft.scope.positive(pair->at("spacing", "the rods' distance"), "m", copy.name) * 0.5);
 }
 
-/// The limb as other tables refer to it, with the axes of its joints.
+/// Collects what other tables can refer to by the name of the limb: points, parts, and the axes of its joints.
 NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& driven) {
   const ConfigValue& table = copy.table;
   NamedLimb limb{.name = copy.name,
@@ -170,7 +171,8 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
   return limb;
 }
 
-/// Adds the annulus of a limb's reach and the polynomial constraints that are equivalent to its range and reach.
+/// Adds the polynomial constraints that are equivalent to the range of the joint and to the reach of the limb, and the
+/// annulus of its reach.
 /// @param has_range  true if the last two margins of the model are those of the joint's range
 void add_equivalent_constraints(const limbs::Limb& limb, bool has_range, generic::Model& model) {
   std::vector<expression::Node> constraints;
@@ -223,6 +225,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   add_reach(copy, at, limb);
 }
 
+/// Reads one copy of a limb.
 /// @param number  suffix of the copy's name; "": there are no copies
 void read_copy(const LimbCopy& copy, const std::string& number) {
   refuse_known(copy.table, copy.name, copy.draft);

@@ -1,4 +1,5 @@
-// Readers of [[limit]], [[margin]] and [[design]]: thresholds of studies, constraints of poses and of designs.
+// Reads [[limit]], thresholds that a study can set; [[margin]], constraints on poses; and [[design]], constraints on
+// designs.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"

@@ -1,4 +1,4 @@
-// Reader of [[link]]: links in addition to those of the limbs, and the clearance of all links.
+// Reads [[link]], links in addition to those of the limbs, and adds the limit on the clearance of all links.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
@@ -17,7 +17,8 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
                   to = draft.scope.point(table.at("to", "a point"), name);
     const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
     std::string part = kFramePart;
-    std::vector<std::string> in, copies;  // names of groups; the name of a limb with copies refers to all of its copies
+    // Names of the groups of the link; the name of a limb with copies stands for all its copies.
+    std::vector<std::string> in, copies;
     if (const auto group = table.find("group")) {
       constexpr const char* kExpected = "a name or a list of names";
       const auto groups = group->is_list() ? group->elements(kExpected) : std::vector{*group};

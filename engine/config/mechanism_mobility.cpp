@@ -9,7 +9,7 @@ namespace pkm {
 
 std::string mobility_text(const Mechanism& mechanism, std::span<const double> parameters, const Pose<double>& pose,
                           std::size_t rank) {
-  constexpr std::size_t kBody = 6;  // degrees of freedom of a rigid body
+  constexpr std::size_t kBody = 6;  // number of degrees of freedom of a rigid body in space
   const MechanismInfo& info = mechanism.info();
   const std::size_t coordinates = info.coordinates.size();
   const std::string loose =

@@ -1,4 +1,4 @@
-// Text of the line "mobility" of `pkmopt check`.
+// Writes the line "mobility" in the output of `pkmopt check`.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace pkm {
 
-/// States how many degrees of freedom the drives determine at a pose, and whether the joints prevent all other motions
-/// of the platform.
+/// Text that states how many degrees of freedom the drives determine at a pose, and whether the joints prevent all
+/// other motions of the platform.
 /// @param rank  rank of the Jacobian at the pose
 std::string mobility_text(const Mechanism& mechanism, std::span<const double> parameters, const Pose<double>& pose,
                           std::size_t rank);

@@ -1,4 +1,4 @@
-// Reader of [modes]: signs in formulas, which together with the branches of the limbs select the working modes.
+// Reads [modes]: signs that formulas use, and which together with the branches of the limbs select the working modes.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kSigns = "[\"+\"], [\"-\"], [\"+\", \"-\"] or [\"-\", \"+\"], the default first";
 
-/// Reads the names of the values of a sign.
+/// Reads the texts that stand for the values of a sign in the names of modes.
 void read_names(const ConfigValue& table, SignChoice& choice) {
   choice.is_branch = table.flag_at("branch");
   const auto names = table.find("names");

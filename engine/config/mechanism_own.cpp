@@ -1,4 +1,4 @@
-// Parameters of single limbs: "arm2.l_b".
+// Handles parameters that belong to a single limb, such as "arm2.l_b".
 
 #include <algorithm>
 

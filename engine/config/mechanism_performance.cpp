@@ -50,7 +50,7 @@ class Performance {
   }
 
  private:
-  /// Why the Jacobian has no inverse; "" if it has one.
+  /// The reason why the Jacobian has no inverse; "" if it has one.
   std::string why_no_inverse() const {
     if (joints_ == model_.inputs.coordinates) return "";
     return "there are " + std::to_string(joints_) + " joints for " + std::to_string(model_.inputs.coordinates) +
@@ -81,7 +81,7 @@ class Performance {
     return nullptr;
   }
 
-  /// Adds J^T diag(reflected inertia) J to M_X, for the [[drive_train]]s of the study.
+  /// Adds J^T diag(I) J to M_X, where I are the reflected inertias of the study's [[drive_train]] tables.
   void add_rotors() {
     const auto gears = by_joint("gear"), leads = by_joint("lead");
     std::vector<double> inertia(joints_, 0.0);
@@ -118,9 +118,9 @@ class Performance {
       add(generic::velocity_quantities(model_, at_));
   }
 
-  // Accuracy
+  // Accuracy of the platform.
 
-  /// The table [accuracy] of the study, otherwise that of the file.
+  /// The table [accuracy] of the study or, if it has none, of the mechanism file; std::nullopt if neither has one.
   std::optional<ConfigValue> accuracy_table() const {
     if (study_)
       if (auto table = study_->find_table("accuracy")) return table;
@@ -140,7 +140,7 @@ class Performance {
     for (const Term& bound : errors_.bound) model_.joint_errors.push_back(bound.node());
     add(generic::accuracy_quantities(at_, errors_));
   }
-  /// Derivative, with respect to the joint coordinate, of the displacement of a rod's or leg's driven end along its
+  /// Derivative, with respect to the joint coordinate, of the displacement of the driven end of a rod or leg along its
   /// line.
   Term joint_motion(const NamedLimb& limb) const {
     const LimbForce force = *force_of(limb);
@@ -171,8 +171,8 @@ class Performance {
     for (std::size_t joint = 0; joint < joints_; ++joint)
       if (const auto value = by_name.find(model_.info.joints[joint].name)) read(*value, joint);
   }
-  /// Reads the errors of parameters. A parameter that all limbs share has an independent error in each limb; it affects
-  /// only the joints of that limb.
+  /// Reads the errors of parameters. If all limbs share a parameter, it has an independent error in each limb, which
+  /// affects only the joints of that limb.
   void read_parameter_errors(const ConfigValue& all) {
     for (const std::string& name : all.dotted_keys(false)) {
       const ConfigValue value = *all.find(name);
@@ -200,8 +200,8 @@ class Performance {
       if (!has_effect) throw value.refusal("an error of " + name + " has no effect: no joint depends on it");
     }
   }
-  /// Derivative of a joint coordinate with respect to a parameter: the limb's own parameter if it has one, otherwise
-  /// the one that all limbs share.
+  /// Derivative of a joint coordinate with respect to a parameter. If the limb has its own parameter of this name, that
+  /// one is used, otherwise the one that all limbs share.
   Term by_parameter(std::size_t joint, const std::string& limb, const std::string& parameter, std::size_t index) {
     expression::Node input = model_.graph.input(index, generic::Inputs::kDesign);
     for (const OwnParameter& own : draft_.own)
@@ -209,9 +209,9 @@ class Performance {
     return model_.term(expression::derivative(model_.graph, model_.joints[joint], input));
   }
 
-  // Stiffness
+  // Stiffness of the platform.
 
-  /// Values of a key of the study's [[drive_train]]s, by joint.
+  /// For each joint, the value of a key in its [[drive_train]] table of the study; std::nullopt if it is absent.
   std::vector<std::optional<ConfigValue>> by_joint(const std::string& key) const {
     std::vector<std::optional<ConfigValue>> found(joints_);
     std::vector<std::string> words = names_of(model_.info.joints);
@@ -230,7 +230,7 @@ class Performance {
     std::vector<generic::LimbSpring> springs;
     bool is_rigid = true;
     for (std::size_t joint = 0; joint < joints_; ++joint) {
-      if (given[joint])  // set by the study; takes precedence over the mechanism file
+      if (given[joint])  // the study sets it, which takes precedence over the mechanism file
         draft_.drive_stiffness[joint] =
             draft_.scope.positive(*given[joint], model_.info.joints[joint].turns() ? "N m/rad" : "N/m", "stiffness");
       springs.push_back(spring_of(joint, draft_.drive_stiffness[joint]));

@@ -16,8 +16,10 @@ namespace {
 using expression::Node;
 using generic::Inputs;
 
-constexpr std::uint32_t kDesigns = 8, kPoses = 16;  // the first design is the default
-constexpr double kConstant = 1e-9;                  // maximum change due to rounding, relative to |B - A|
+// Number of designs, the first of which is the default one, and number of poses per design.
+constexpr std::uint32_t kDesigns = 8, kPoses = 16;
+// Change of the component, relative to |B - A|, up to which it is attributed to rounding.
+constexpr double kConstant = 1e-9;
 
 std::string length_text(double length) {
   std::array<char, 32> text;
@@ -54,7 +56,7 @@ class RandomPoses {
     }
   }
 
-  /// Values of the nodes at the next pose.
+  /// Computes the values of the nodes at the next random pose.
   std::vector<double> next(const std::vector<Node>& nodes) {
     for (std::size_t i = 0; i < box_.size(); ++i)
       inputs_[model_.inputs.coordinate(i)] = between(box_[i][0], box_[i][1]);
@@ -80,7 +82,7 @@ class RandomPoses {
 }  // namespace
 
 void refuse_changing_planes(MechanismDraft& draft) {
-  std::vector<Node> nodes;  // two per limb: the component of B - A along the normal, and |B - A|^2
+  std::vector<Node> nodes;  // two nodes per limb: the component of B - A along the normal, and |B - A|^2
   for (const LimbInPlane& limb : draft.in_planes) {
     const limbs::Vector3 v = limb.B - limb.A;
     nodes.push_back(dot(v, limb.normal).node());
@@ -93,7 +95,8 @@ void refuse_changing_planes(MechanismDraft& draft) {
     for (std::uint32_t k = 0; k < kPoses; ++k) {
       const std::vector<double> values = poses.next(nodes);
       for (std::size_t i = 0; i < offsets.size(); ++i) {
-        if (!std::isfinite(values[2 * i]) || !std::isfinite(values[2 * i + 1])) continue;  // not a valid pose
+        // The limb does not exist at this pose.
+        if (!std::isfinite(values[2 * i]) || !std::isfinite(values[2 * i + 1])) continue;
         offsets[i].add(values[2 * i]);
         sizes[i].add(std::sqrt(values[2 * i + 1]));
       }

@@ -1,5 +1,5 @@
-// Readers of [inputs] and [[quantity]], named formulas of the design, the pose and its motion, and of their limits in a
-// study.
+// Reads [inputs], [[quantity]] (named formulas of the design, the pose and its motion), and the limits that a study
+// sets for quantities.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
@@ -13,19 +13,19 @@ namespace {
 using expression::Node;
 using generic::Inputs;
 
-/// Names that are already used by the output, by fields of workspaces and by formulas of studies.
+/// Names that a quantity must not have, because the output, fields of workspaces or formulas of studies use them.
 const std::vector<std::string> kTaken = {"conditioning", "dci",    "dci_worst", "inertia_condition", "volume",
                                          "clearance",    "det_Jq", "det_G",     "feasible",          "margin"};
 
-constexpr double kNoLimit = 1e30;  // threshold that no value of a quantity violates, in any unit
+constexpr double kNoLimit = 1e30;  // threshold, in any unit, that no value of a quantity violates
 
-/// A coordinate, or an input of [inputs]. Its value, its rate and its acceleration are inputs of the graph.
+/// A coordinate or an input of [inputs], with its value, rate and acceleration as inputs of the expression graph.
 struct Moving {
   std::string name;
   Node value, rate, acceleration;
 };
 
-/// The coordinates and the inputs of [inputs].
+/// All coordinates and all inputs of [inputs], with the nodes of their values, rates and accelerations.
 std::vector<Moving> moving_inputs(generic::Model& model) {
   const Inputs& at = model.inputs;
   std::vector<Moving> all;
@@ -42,7 +42,7 @@ std::vector<Moving> moving_inputs(generic::Model& model) {
 
 std::string limit_name(const std::string& quantity, const std::string& side) { return quantity + "_" + side; }
 
-/// Calls visit(name, side, value) for each limit of a quantity in a study; side is "min" or "max".
+/// Calls visit(name, side, value) for each limit that a study sets for a quantity; `side` is "min" or "max".
 template <class Visit>
 void visit_quantity_limits(const ConfigValue& study, const MechanismInfo& info, const Visit& visit) {
   const auto limits = limits_of_quantities(study);
@@ -58,7 +58,7 @@ void visit_quantity_limits(const ConfigValue& study, const MechanismInfo& info, 
 /// The margin of a limit: value - threshold for a minimum, threshold - value for a maximum. If the value is itself a
 /// minimum or maximum, this operation is moved outwards, min(a, b) - t = min(a - t, b - t), so that the polynomial
 /// normal form can eliminate it.
-/// @param most  number of minima and maxima that may still be moved outwards
+/// @param most  number of minima and maxima that may still be moved outwards; it is reduced by each of them
 Node margin_of(expression::Graph& graph, Node value, Node threshold, bool is_minimum, int& most) {
   const expression::Entry entry = graph[value];
   const auto is = [&](expression::Code code) { return entry.operation && entry.operation->code == code; };

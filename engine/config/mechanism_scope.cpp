@@ -154,7 +154,8 @@ double MechanismScope::at_default(const Term& term) const {
   for (std::size_t i = 0; i < model_.info.parameters.size(); ++i) inputs[i] = model_.info.parameters[i].nominal;
   for (std::size_t i = 0; i < model_.inputs.limits; ++i)
     inputs[model_.inputs.limit(i)] = model_.info.limits[i].inactive;
-  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)  // an arbitrary, generic pose
+  // The coordinates of an arbitrary pose without special symmetry.
+  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)
     inputs[model_.inputs.coordinate(i)] = 0.37 + 0.11 * static_cast<double>(i);
   program.run_all<double>(inputs, registers);
   return registers[program.outputs().front()];
@@ -208,7 +209,8 @@ void MechanismScope::add_domains() {
     const expression::Entry entry = model_.graph[node];
     const Term argument = model_.term(entry.arguments[0]), one(model_.graph, 1.0);
     const bool of_circle = entry.operation->name == "asin" || entry.operation->name == "acos";
-    // The mechanism may be assembled at a pose where a limited quantity is undefined.
+    // A limited quantity may be undefined at a pose at which the mechanism can be assembled; the condition is then a
+    // margin.
     (is_needed ? model_.domains : model_.margins)
         .push_back({name, "", (of_circle ? one - abs(argument) : argument).node(), consequence});
   }

@@ -44,8 +44,8 @@ class MechanismScope {
   Value formula_of_any_kind(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// Reads a formula of parameters only.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// Reads a formula of parameters whose value has to be positive. Refuses a number that is not positive; a formula may
-  /// be negative for some designs.
+  /// Reads a formula of parameters whose value has to be positive (with may_vanish, not negative). A number that
+  /// violates this is refused; a formula may violate it for some designs.
   limbs::Term positive(const ConfigValue& value, const std::string& unit, const std::string& what,
                        bool may_vanish = false);
   /// Reads three formulas, [x, y, z], or a formula whose value is a vector.
@@ -54,7 +54,7 @@ class MechanismScope {
   limbs::Vector3 point_of_design(const ConfigValue& value, const std::string& what);
   /// Reads a direction, which depends on parameters only, and normalises it.
   limbs::Vector3 direction(const ConfigValue& value, const std::string& what);
-  /// Value of a formula for the default parameters at an arbitrary pose, to test equations that must hold at every
+  /// Value of a formula for the default parameters at an arbitrary pose; used to test equations that must hold at every
   /// pose.
   double at_default(const limbs::Term& term) const;
   /// Refuses a range that is empty for the default parameters.
@@ -80,7 +80,7 @@ class MechanismScope {
   /// Registers the operations in a node that are undefined for some arguments, for add_domains().
   void register_partial_operations(expression::Node root, const std::string& what);
 
-  /// An operation that is undefined for some arguments.
+  /// An operation that is undefined for some arguments, with the names used in its message and in its constraint.
   struct PartialOperation {
     expression::Node node;
     std::string what, name;

@@ -1,4 +1,4 @@
-// Reader of [survey]: the swept coordinates, the search box, and the default values of the fixed coordinates.
+// Reads [survey]: the swept coordinates, the search box, and the default values of the fixed coordinates.
 
 #include <algorithm>
 
@@ -13,13 +13,13 @@ using limbs::Term;
 
 namespace {
 
-/// Index of the coordinate that a value names.
+/// Index of the coordinate whose name is given by `value`.
 int coordinate_named(const ConfigValue& value, const MechanismInfo& info) {
   const std::string& name = value.word(names_of(info.coordinates));
   return static_cast<int>(find_named(info.coordinates, name) - info.coordinates.data());
 }
 
-/// Reads a table of ranges by coordinate, { x = [from, to] }, whose ends are formulas of parameters.
+/// Reads a table with a range for each coordinate, such as { x = [from, to] }, whose ends are formulas of parameters.
 void read_ranges(const ConfigValue& survey, const char* key, MechanismDraft& draft,
                  std::vector<std::optional<std::array<expression::Node, 2>>>& ranges) {
   const auto value = survey.find(key);
@@ -74,7 +74,8 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         columns_along.push_back(coordinate_named(each, model.info));
     }
   }
-  // Defaults: full rotations, and positions within the reach of all limbs whose reach is known.
+  // Default ranges: full rotations for angles; for lengths, the range within the reach of all limbs whose reach is
+  // known.
   for (std::size_t i = 0; i < count; ++i) {
     if (!model.box[i] && model.rotation_axes[i]) model.box[i] = {model.graph.number(-kPi), model.graph.number(kPi)};
     if (!model.box[i])
