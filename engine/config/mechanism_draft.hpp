@@ -25,7 +25,7 @@ inline std::array<expression::Node, 3> nodes(const limbs::Vector3& v) {
 struct LimbPart {
   std::string name;                        ///< name of the part within its limb, for example "crank", "rod" or "slider"
   limbs::Vector3 from, to;                 ///< end points of the part in the base frame
-  std::optional<limbs::Term> length = {};  ///< length of the part; std::nullopt if it varies with the pose
+  std::optional<limbs::Term> length = {};  ///< length of the part, if it is constant; otherwise std::nullopt
   /// Vector along the part, of any length; std::nullopt: the part does not rotate.
   std::optional<limbs::Vector3> line = {};
   /// Set if the part begins at the end of an arm (`from`), or is the arm itself.
@@ -54,7 +54,7 @@ struct NamedLimb {
   std::optional<limbs::Vector3> axis = {};
   /// Common direction of the axes of its joints; std::nullopt unless they are parallel revolute joints.
   std::optional<limbs::Vector3> revolute = {};
-  bool has_rod = false;    ///< true: a rod or a telescopic leg carries the platform; false: the slider itself does
+  bool has_rod = false;    ///< true: a rod or a telescopic leg carries the platform; false: the slider or two links do
   bool has_links = false;  ///< true: two links connect the slider to the platform, instead of a rod
   /// Vector from the middle of a pair of rods to one of them; std::nullopt: a single rod.
   std::optional<limbs::Vector3> beside = {};

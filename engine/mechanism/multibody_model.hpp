@@ -34,8 +34,8 @@ struct MultibodyModel {
   struct Drive {
     std::size_t joint;                             ///< index among MechanismInfo::joints
     double position;                               ///< position of the joint at the reference pose [m or rad]
-    std::optional<std::array<double, 2>> range{};  ///< range of the joint position [m or rad]; std::nullopt: unlimited
-    std::optional<double> peak_force{};  ///< maximum force or torque of the drive [N or N m]; std::nullopt: unlimited
+    std::optional<std::array<double, 2>> range{};  ///< range of the joint position [m or rad]; std::nullopt: not given
+    std::optional<double> peak_force{};  ///< maximum force or torque of the drive [N or N m]; std::nullopt: not given
     double inertia = 0;                  ///< inertia of the drive train at the joint [kg or kg m^2]
     double viscous = 0, coulomb = 0;     ///< friction at the joint [N s/m or N m s/rad, N or N m]
   };
