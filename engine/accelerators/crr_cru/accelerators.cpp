@@ -6,7 +6,8 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// The one coordinate that a plan fixes while it sweeps the other three: phi by default; -1 if there is none.
+/// Index of the coordinate that a plan fixes if it sweeps three of the four coordinates; -1 if it sweeps fewer. If the
+/// plan names none, it is the index of phi.
 int fixed_coordinate(const WorkspacePlan& plan) {
   for (int coordinate = 0; coordinate < 4; ++coordinate) {
     std::vector<int> swept = {0, 1, 2, 3};
@@ -18,14 +19,14 @@ int fixed_coordinate(const WorkspacePlan& plan) {
   return -1;
 }
 
-/// The elbow signs of a mode such as "-,-,+,-", the default.
+/// Reads the elbow signs of the four limbs from the name of a mode, such as the default "-,-,+,-".
 WorkingMode working_mode(const std::string& name) {
   WorkingMode mode = {-1, -1, 1, -1};
   for (std::size_t i = 0; 2 * i < name.size(); ++i) mode[i] = name[2 * i] == '+' ? 1 : -1;
   return mode;
 }
 
-/// The analyses of one mechanism with one mass model.
+/// Prepares the workspace analyses of one mechanism with one mass model.
 class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
  public:
   Analyses(Platform platform, MassModel mass_model) : platform_(platform), mass_model_(mass_model) {}
@@ -37,8 +38,9 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
   bool serves(const WorkspacePlan& plan, const VoxelOptions&, const FieldRequest& request) const override {
     return serves(plan) && stores_poses(request);
   }
-  /// Whether the samples of the closed form include poses, if they are requested. Without inertia they do not: a sample
-  /// of the conditioning represents a whole slice, in which the conditioning is constant.
+  /// Returns true unless poses are requested that the closed form does not store. It stores poses only if the inertia
+  /// is requested; otherwise, one sample of the conditioning represents a whole slice, in which the conditioning is
+  /// constant.
   static bool stores_poses(const FieldRequest& request) { return !request.poses || request.needs_inertia(); }
   static bool serves(const WorkspacePlan& plan) {
     const int fixed = fixed_coordinate(plan);

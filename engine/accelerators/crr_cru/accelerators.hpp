@@ -8,7 +8,7 @@
 
 namespace pkm::crr_cru {
 
-/// @param mass_model  "table" or "geometry": which parameters the design has after the lengths
+/// @param mass_model  "table" or "geometry"; it determines which parameters follow the lengths in a design
 Accelerators accelerators(Platform platform, const std::string& mass_model);
 
 }  // namespace pkm::crr_cru

@@ -26,14 +26,14 @@ struct AnalysisSettings {
     std::ranges::copy(request.rotors, all.rotors.begin());
     return all;
   }
-  /// Conditioning of all positions at one phi.
+  /// The conditioning at one phi; it does not depend on the position.
   template <class S>
   S conditioning_at(const Geometry<S>& g, const S& phi) const {
     const auto [s, c] = sincos(phi);
     const S length = request.characteristic_length ? S(*request.characteristic_length) : characteristic_length(g);
     return conditioning(arms(g, s, c), length);
   }
-  /// Adds one sample that represents all positions at one phi.
+  /// Adds one sample, of the given weight, that represents all positions at one phi.
   template <class S>
   void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, WorkspaceResult<S>& workspace) const {
     if (!(value_of(weight) > 0)) return;

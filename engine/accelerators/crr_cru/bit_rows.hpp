@@ -13,28 +13,30 @@ namespace pkm::crr_cru {
 /// Parallel lines of cells and an annulus. A plain struct, so that kernels share no inline code with files that are
 /// compiled for another instruction set.
 struct AnnulusLines {
-  double lower, step, cells;  ///< lower bound, cell size and number of cells along the lines
-  const double* across;       ///< coordinate of each line, padded to a multiple of kLanes
+  double lower, step, cells;  ///< lower bound, cell size and number of cells of every line
+  const double* across;       ///< position of each line normal to the lines, padded to a multiple of kLanes
   std::size_t lines;
-  double center_along, center_across;  ///< centre of the annulus
-  double in2, out2;                    ///< squared inner and outer radius
+  double center_along, center_across;  ///< centre of the annulus: position along the lines and normal to them
+  double in2, out2;                    ///< squared inner and squared outer radius of the annulus
 };
 
 /// Clears the bits of all cells outside the annulus, i.e. exactly those for which the floating-point comparison
 /// in2 <= (across - center_across)^2 + (cell - center_along)^2 <= out2 is false.
-/// @param rows  for each line a row of `words` words
+/// @param rows  one row of bits for each line, each of `words` words
 template <InstructionSet set>
 void mask_annulus(const AnnulusLines& lines, std::size_t words, std::uint64_t* rows);
 
-/// The cells of a plane: (u, v) is feasible if bit u of u_row, bit v of v_row and bit v of row u of v_at_u are set.
+/// The cells of a plane as rows of bits. The cell (u, v) is feasible if bit u of u_row, bit v of v_row and bit v of row
+/// number u of v_at_u are set.
 struct PlaneRows {
   const std::uint64_t *u_row, *v_row, *v_at_u;
-  std::size_t u_cells, v_cells, words;  ///< words: number of words per row of v
+  /// Numbers of cells along u and v; number of words of a row whose bits are cells along v.
+  std::size_t u_cells, v_cells, words;
 };
 
 struct PlaneTally {
   std::int64_t cells;  ///< number of feasible cells
-  bool touches;        ///< a feasible cell is the first or last along u or v
+  bool touches;        ///< true if a feasible cell is the first or the last one along u or v
 };
 
 template <InstructionSet set>

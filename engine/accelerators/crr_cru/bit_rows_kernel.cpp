@@ -5,7 +5,7 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// Cells [first, end) of each line.
+/// The contiguous cells [first, end) of each line that a test selects.
 template <class L>
 struct CellRange {
   L first, end;
@@ -39,7 +39,7 @@ struct Words {
   Part part[kLanes / W];
 };
 
-/// A word for the cells [start, start + 64) in which the bits of all cells with an index >= `cell` are set.
+/// Word for the cells [start, start + 64), in which the bits of all cells with an index >= `cell` are set.
 template <int W>
 [[gnu::always_inline]] inline Words<W> bits_from(const Lanes<W>& cell, double start) {
   constexpr double kShift = 0x1p52;  // adding it to an integer below 2^52 places the integer in the lowest bits
@@ -48,7 +48,8 @@ template <int W>
   for (int i = 0; i < kLanes / W; ++i) {
     typedef typename Words<W>::Part Part;
     const Part n = (Part)skipped.part[i] & 127, half = n >> 1;
-    bits.part[i] = (Part{} + ~0ULL) << half << (n - half);  // in two steps, because a shift by 64 is undefined
+    // Shifted in two steps, because a shift by 64 is undefined in C++.
+    bits.part[i] = (Part{} + ~0ULL) << half << (n - half);
   }
   return bits;
 }
@@ -79,7 +80,7 @@ template <class L>
 
 [[gnu::always_inline]] inline PlaneTally tally_of(const PlaneRows& rows, std::size_t words) {
   std::int64_t cells = 0;
-  std::uint64_t any_first = 0, any_last = 0;  // unions over u of the first and the last words of v
+  std::uint64_t any_first = 0, any_last = 0;  // bitwise OR, over all u, of the first and of the last words along v
   for (std::size_t u_word = 0; 64 * u_word < rows.u_cells; ++u_word)
     for (std::uint64_t bits = rows.u_row[u_word]; bits != 0; bits &= bits - 1) {
       const std::size_t u = 64 * u_word + static_cast<std::size_t>(__builtin_ctzll(bits));

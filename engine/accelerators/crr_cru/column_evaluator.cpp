@@ -6,7 +6,7 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// A box of the swept coordinates as ranges of x, y, z, phi.
+/// Converts a box of the swept coordinates into ranges of x, y, z and phi.
 PoseBox pose_box(const FixedCoordinate& fixed, const std::optional<Box>& swept) {
   PoseBox box = kEverywhere;
   if (!swept) return box;
@@ -22,7 +22,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
         box_(pose_box(settings_.fixed, columns.box)),
         tolerance_(columns.tolerance),
         has_fixed_rules_(columns.nodes[0] > 0) {
-    // The numbers of nodes are in the order of the swept coordinates; phi is the last of them.
+    // ColumnOptions::nodes is in the order of the swept coordinates, of which phi is the last.
     const std::size_t outer = slice_axes(settings_.fixed).outer_is_phi ? 1 : 0;
     const int usual = settings_.request.needs_inertia() ? kInertiaNodes : kSampleNodes;
     outer_rule_ = gauss_legendre(has_fixed_rules_ ? columns.nodes[outer] : usual);
@@ -32,7 +32,8 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
  private:
   friend WithGradients<ClosedFormColumns>;
   static constexpr int kSampleNodes = 32;
-  static constexpr int kInertiaNodes = 8;  // per subinterval and coordinate
+  // Number of nodes per subinterval of each coordinate, for samples of the inertia.
+  static constexpr int kInertiaNodes = 8;
 
   template <class S>
   void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& workspace) const {
@@ -66,7 +67,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     if (settings_.with_conditioning && !per_slice) settings_.add_conditioning(g, s.fixed, workspace.volume, workspace);
   }
 
-  /// Adds samples at the nodes of a product rule over all three coordinates.
+  /// Adds samples of the inertia at the nodes of a product quadrature rule over all three swept coordinates.
   template <class S>
   void sample_inertia(const SlicedDesign<S>& s, std::span<const S> parameters, ColumnScratch<S>& scratch,
                       WorkspaceResult<S>& workspace) const {
@@ -99,7 +100,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   SlicedDesign<S> sliced(std::span<const S> parameters) const {
     return sliced_design(design(geometry(settings_.platform, parameters), settings_.limits, box_), settings_.fixed);
   }
-  /// The sliced design converted to constants of another scalar type.
+  /// Converts a design to another scalar type, with zero derivatives.
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(std::span<const To>(constants<To, kParameters>(parameters)));
@@ -108,7 +109,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   AnalysisSettings settings_;
   PoseBox box_;
   double tolerance_;
-  bool has_fixed_rules_;  ///< the numbers of nodes are given, instead of the tolerance
+  bool has_fixed_rules_;  ///< true: the plan gives the numbers of quadrature nodes; false: it gives a tolerance
   GaussRule outer_rule_, inner_rule_;
 };
 

@@ -12,7 +12,7 @@
 
 namespace pkm::crr_cru {
 
-/// Scratch memory of an analysis.
+/// Scratch memory of one workspace analysis.
 template <class S>
 struct ColumnScratch {
   std::vector<CriticalValue<S>> critical_values;
@@ -21,17 +21,19 @@ struct ColumnScratch {
   Decomposition decomposition;
 };
 
-/// A critical value found by bisection, with its derivatives. They are obtained by the implicit function theorem from
-/// the condition that two critical points of a slice coincide (README.md), and are 0 if no column or gap vanishes.
+/// Adds derivatives to a critical value that was found by bisection. They follow from the implicit function theorem,
+/// applied to the condition that two critical points of the slice coincide (README.md); they are 0 if no column and no
+/// gap vanishes at the value.
 /// @param plain     the design in double precision
-/// @param by_outer  the design as constants, for derivatives with respect to the outer coordinate
+/// @param by_outer  the design with zero derivatives, for derivatives with respect to the outer coordinate
+/// @param at        the critical value
 /// @param range     length of the range of the outer coordinate
 template <class S>
 S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
                       const SlicedDesign<Dual<1>>& by_outer, double at, double range, Decomposition& decomposition) {
   const double offset = 1e-9 * range;
   double smallest = 1e-4 * range, t = at;
-  CriticalPoint first, second;  // ends of the smallest column or gap next to `at`
+  CriticalPoint first, second;  // ends of the smallest column, or gap between columns, near `at`
   for (const double candidate : {at - offset, at + offset}) {
     const Slice<double> slice = slice_at(plain, candidate);
     decompose(slice, decomposition);
@@ -94,7 +96,7 @@ void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& 
   find_subintervals(values, signature, lift, samples, scratch.intervals);
 }
 
-/// The slice at a value of the outer coordinate; its decomposition is in scratch.decomposition.
+/// The slice at a value of the outer coordinate. Its decomposition is stored in scratch.decomposition.
 template <class S>
 Slice<S> decomposed_slice(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
   const Slice<S> slice = slice_at(s, outer);
@@ -102,14 +104,14 @@ Slice<S> decomposed_slice(const SlicedDesign<S>& s, const S& outer, ColumnScratc
   return slice;
 }
 
-/// Area of the slice at a value of the outer coordinate [m^2].
+/// Area of the slice at a value of the outer coordinate, in closed form [m^2].
 template <class S>
 S area_at(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
   const Slice<S> slice = decomposed_slice(s, outer, scratch);
   return area(slice, scratch.decomposition);
 }
 
-/// Rounding error of the integral of area_at() over the subintervals [m^3 or m^2 rad].
+/// Estimate of the rounding error of the integral of area_at() over the subintervals [m^3 or m^2 rad].
 template <class S>
 double roundoff(const SlicedDesign<S>& s, const std::vector<Subinterval<S>>& intervals) {
   if (intervals.empty()) return 0;
@@ -119,8 +121,8 @@ double roundoff(const SlicedDesign<S>& s, const std::vector<Subinterval<S>>& int
   return 4e-16 * size * size * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }
 
-/// Whether u is a turning point of a circle that bounds the column. The length of the column then behaves like a square
-/// root.
+/// Returns true if u is a turning point of a circle that bounds the column. The length of the column then varies like a
+/// square root near u.
 template <class S>
 bool has_sqrt_singularity(const Slice<S>& slice, const Column& column, double u) {
   constexpr double kRoundoff = 1e-9;
@@ -148,8 +150,8 @@ void visit_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& ru
   }
 }
 
-/// Area of the slice by a quadrature rule over u of the exact lengths of its columns [m^2].
-/// @param columns  incremented by the number of columns evaluated
+/// Area of the slice [m^2], by quadrature over u of the exact lengths of its columns.
+/// @param columns  incremented by the number of columns that are evaluated
 template <class S>
 S area_of_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                   std::int64_t& columns) {

@@ -11,8 +11,8 @@
 
 namespace pkm::crr_cru {
 
-/// The part of M_q that depends on phi alone. If J, which also depends on phi alone, is singular to working precision,
-/// it is NaN, and so is every row of M_q.
+/// The part of the joint-space inertia M_q that depends on phi alone. If J, which also depends on phi alone, is
+/// singular to working precision, this part and every row of M_q are NaN.
 template <class S>
 YawInertia<S> yaw_inertia(const Geometry<S>& g, const Masses<S>& b, const S& phi) {
   const auto [sin, cos] = sincos(phi);
@@ -23,7 +23,8 @@ YawInertia<S> yaw_inertia(const Geometry<S>& g, const Masses<S>& b, const S& phi
   const Matrix<double, 3, 3> J = {
       {1, 0, value_of(j1), 0, 1, value_of(j2), 0, 1, value_of(j4)}};  // columns x, y, phi; z is separate
   const S w = is_singular(J) ? S(std::numeric_limits<double>::quiet_NaN()) : S(S(1.0) / (j4 - j2));
-  const Vector<S, 4> X = {{j1 * w * -1.0, j2 * w * -1.0, S(0.0), w}};  // velocity per rate of rho_4
+  // Velocities of x, y, z and phi if only slide 4 moves, with unit velocity.
+  const Vector<S, 4> X = {{j1 * w * -1.0, j2 * w * -1.0, S(0.0), w}};
 
   Matrix<S, 4, 4> M = platform_inertia(g, b, sin, cos);
   YawInertia<S> f;
@@ -45,7 +46,7 @@ YawInertia<S> yaw_inertia(const Geometry<S>& g, const Masses<S>& b, const S& phi
   return f;
 }
 
-/// M_q at a feasible position [kg].
+/// The joint-space inertia M_q at a feasible position [kg].
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const YawInertia<S>& f, const Vector3<S>& at,
                               const WorkingMode& mode) {

@@ -9,13 +9,13 @@
 
 namespace pkm::crr_cru {
 
-/// A design with one coordinate fixed, which is analysed slice by slice.
+/// A design of which one coordinate is fixed, and which is analysed slice by slice along the outer coordinate.
 template <class S>
 struct SlicedDesign {
   Design<S> design;
   SliceAxes axes;
   S fixed;                   ///< value of the fixed coordinate
-  PositionSet<S> positions;  ///< set if phi is fixed
+  PositionSet<S> positions;  ///< feasible positions at the fixed phi; not set if a position is fixed
 };
 
 template <class S>
@@ -25,7 +25,7 @@ SlicedDesign<S> sliced_design(const Design<S>& d, const FixedCoordinate& fixed) 
   return s;
 }
 
-/// The slice at a value of the outer coordinate.
+/// The slice at a given value of the outer coordinate.
 template <class S>
 Slice<S> slice_at(const SlicedDesign<S>& s, const S& outer) {
   return s.axes.outer_is_phi ? slice(s.design, position_set(s.design, outer), s.axes, s.fixed)
@@ -42,7 +42,8 @@ void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<CriticalVa
   if (!(value_of(first) < value_of(last))) return;
   values.push_back({first});
   values.push_back({last});
-  // solutions of fixed + radius cos(phi + angle) = rho_min or rho_max, for a slide along the fixed coordinate
+  // adds the solutions phi of fixed + radius cos(phi + angle) = rho_min or rho_max, for a slide along the fixed
+  // coordinate
   const auto add = [&](const S& radius, const S& angle) {
     for (const S& bound : {g.rho_min, g.rho_max}) {
       const S cosine = (bound - s.fixed) / radius;
@@ -78,7 +79,7 @@ void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<CriticalValu
   };
   struct Line {
     S at;
-    bool tangent;  ///< true: tangent to a circle of limb 1
+    bool tangent;  ///< true: the line is tangent to a circle of limb 1
   };
   // For the turning points of the circles of a limb, and for their intersections with lines across the other axis,
   // calls visit(value along the first axis, whether the area has a square-root singularity there).
@@ -99,7 +100,7 @@ void add_critical_values_of_x(const SlicedDesign<S>& s, std::vector<CriticalValu
     }
   };
   std::array<Line, 15> buffer;
-  const auto find_lines = [&](std::size_t axis) {  // across y or z
+  const auto find_lines = [&](std::size_t axis) {  // finds the lines y = constant or z = constant
     std::size_t n = 0;
     const auto keep = [&](const S& at, bool tangent) {
       const bool inside = value_of(at) >= value_of(range[axis].lower) && value_of(at) <= value_of(range[axis].upper);

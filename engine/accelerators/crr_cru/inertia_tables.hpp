@@ -15,9 +15,10 @@ namespace pkm::crr_cru {
 class InertiaTables {
  public:
   /// Fills the tables for one phi.
-  /// @param coordinate  coordinate of each axis of the grid: 0 to 2, or 3 for phi, on which the tables do not depend
-  /// @param along       axis of the rows
-  /// @param fixed       value of the fixed coordinate, if it is a position
+  /// @param coordinate  for each axis of the grid, its coordinate: 0 to 2 for x, y, z; 3 for phi, on which the tables
+  /// do not depend
+  /// @param along       axis of the grid along which rows run
+  /// @param fixed       value of the fixed coordinate; used only if that coordinate is a position
   void fill(const Geometry<double>& g, const Masses<double>& b, const WorkingMode& mode, double phi,
             const VoxelGrid& grid, const std::array<std::size_t, 3>& coordinate, std::size_t along, double fixed) {
     inertia_ = yaw_inertia(g, b, phi);
@@ -55,7 +56,7 @@ class InertiaTables {
     }
   }
 
-  /// M_q of a feasible cell [kg].
+  /// Joint-space inertia M_q at a feasible cell [kg].
   Matrix<double, 4, 4> at(const Cell& cell) const {
     std::array<PlaneInertia<double>, 4> limbs;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -65,9 +66,9 @@ class InertiaTables {
     return matrix_of(joint_inertia(inertia_, limbs));
   }
 
-  /// Computes the coupling indices of cells [first, end) of a row.
+  /// Computes the coupling indices of the cells [first, end) of a row.
   /// @param row    first cell of the row
-  /// @param index  receives the indices, by joint and by number of the cell; extended if necessary
+  /// @param index  receives one vector for each joint, whose element k is the index of cell k; extended if necessary
   void coupling(const Cell& row, std::size_t first, std::size_t end, std::array<std::vector<double>, 4>& index) const {
     std::array<InertiaRow, 4> limbs;
     std::array<double*, 4> to;
@@ -84,9 +85,10 @@ class InertiaTables {
  private:
   static constexpr std::size_t kFixed = 3;  ///< number used in place of a grid axis for the fixed coordinate
   struct Table {
-    std::vector<double> pp, pq, qq;  ///< with kLanes elements after the last cell, which kernels may read
+    /// Inertia of each cell, followed by kLanes unused elements, which kernels may read.
+    std::vector<double> pp, pq, qq;
     std::array<std::size_t, 3> stride;
-    bool varies;  ///< true if the values vary along rows
+    bool varies;  ///< true if the values vary along rows of the grid
     std::size_t index(const Cell& cell) const {
       return static_cast<std::size_t>(cell[0]) * stride[0] + static_cast<std::size_t>(cell[1]) * stride[1] +
              static_cast<std::size_t>(cell[2]) * stride[2];

@@ -11,27 +11,30 @@
 
 namespace pkm::crr_cru {
 
-/// Inertia of a limb's rods at its joint C_i, in the plane of the limb: elements of a symmetric matrix along the lower
-/// and the higher world axis [kg].
+/// Inertia of the rods of a limb, reduced to its platform joint C_i, in the plane of the limb. Elements of a symmetric
+/// 2 x 2 matrix [kg]; p is the lower and q the higher of the two world axes in this plane.
 template <class S>
 struct PlaneInertia {
   S pp, pq, qq;
 };
 
-/// The part of M_q that depends on phi alone.
+/// The part of the joint-space inertia M_q that depends on phi alone.
 template <class S>
 struct YawInertia {
-  std::array<std::array<S, 3>, 4> arm;        ///< C_i - D [m]
-  std::array<std::array<S, 2>, 4> per_slide;  ///< s_i in the plane of the limb, along the lower and the higher axis
-  S xx, yy, zz, vx, vy, vz, k;                ///< platforms, and the masses that slide along the rails
-  std::array<double, 4> rotors{};             ///< inertia of drive trains at the joints [kg]
+  std::array<std::array<S, 3>, 4> arm;  ///< vector from D to the platform joint C_i of each limb [m]
+  /// Velocity s_i of C_i in the plane of each limb if slide 4 moves with unit velocity, along the lower and the higher
+  /// world axis.
+  std::array<std::array<S, 2>, 4> per_slide;
+  /// Contributions of the platforms and of the masses that slide along the rails [kg].
+  S xx, yy, zz, vx, vy, vz, k;
+  std::array<double, 4> rotors{};  ///< inertia of the drive train at each joint [kg]
 };
 
-/// M_q from the inertias of the four limbs [kg]. S can be Lanes, with the same YawInertia for all of them.
+/// Computes M_q [kg] from the inertias of the four limbs. S can be Lanes, for several poses of one phi.
 template <class S, class T>
 [[gnu::always_inline]] inline JointInertia<S> joint_inertia(const YawInertia<T>& f,
                                                             const std::array<PlaneInertia<S>, 4>& l) {
-  const auto along = [&](std::size_t i) {  // A_i s_i
+  const auto along = [&](std::size_t i) {  // product of the inertia A_i of limb i and s_i
     const auto& s = f.per_slide[i];
     return std::array<S, 2>{l[i].pp * s[0] + l[i].pq * s[1], l[i].pq * s[0] + l[i].qq * s[1]};
   };
@@ -56,14 +59,15 @@ template <class S, class T>
   return M;
 }
 
-/// Inertia of a limb along a row of voxels: one element per voxel, or a single one for all.
+/// Inertia of a limb at the voxels of a row: one element per voxel, or a single element if it does not vary along the
+/// row.
 struct InertiaRow {
   const double *pp, *pq, *qq;
   bool varies;
 };
 
-/// Computes the coupling indices of voxels [first, end) of a row, and of some more up to a multiple of kLanes; they are
-/// meaningless for voxels at which the mechanism cannot be assembled.
+/// Computes the coupling indices of the voxels [first, end) of a row. The number of computed voxels is rounded up to a
+/// multiple of kLanes. The indices are meaningless at voxels where the mechanism cannot be assembled.
 template <InstructionSet set>
 void coupling_of_row(const YawInertia<double>& inertia, const std::array<InertiaRow, 4>& limbs, std::size_t first,
                      std::size_t end, const std::array<double*, 4>& index);

@@ -9,7 +9,8 @@
 
 namespace pkm::crr_cru {
 
-/// Inertia of the rods of a limb at its joint C_i. Zero if rounding has placed a sample just outside the reach.
+/// Inertia of the rods of a limb, reduced to its platform joint C_i. It is 0 if C_i is out of reach, which can happen
+/// by rounding.
 template <class S>
 PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
   if (!limb.reaches) return {};
@@ -26,7 +27,8 @@ PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::siz
           A * v[1] * v[1] - B * 2.0 * (u[1] * v[1]) + C * u[1] * u[1]};
 }
 
-/// Adds the mass that moves with a limb's slide to M_X. @param by_phi  velocity of C_i along the rail per phidot [m]
+/// Adds the mass that moves with the slide of a limb to M_X.
+/// @param by_phi  velocity of C_i along the rail, divided by the rate of phi [m]
 template <class S>
 void add_on_rail(std::size_t e, const S& mass, const S& by_phi, Matrix<S, 4, 4>& M) {
   const S moment = mass * by_phi;
@@ -36,7 +38,8 @@ void add_on_rail(std::size_t e, const S& mass, const S& by_phi, Matrix<S, 4, 4>&
   M(3, 3) += by_phi * moment;
 }
 
-/// Adds a point mass of the moving platform to M_X. @param at  its distance from D along D-C_4 [m]
+/// Adds a point mass that is fixed to the moving platform to M_X.
+/// @param at  its distance from D along the line from D to C_4 [m]
 template <class S>
 void add_on_arm(const S& mass, const S& at, const S& sin_phi, const S& cos_phi, Matrix<S, 4, 4>& M) {
   for (std::size_t k = 0; k < 3; ++k) M(k, k) += mass;
@@ -48,7 +51,7 @@ void add_on_arm(const S& mass, const S& at, const S& sin_phi, const S& cos_phi, 
   M(3, 3) += mass * at * at;
 }
 
-/// M_X of the platforms and the payload, which depends on phi alone.
+/// The inertia M_X of the platforms and of the payload, which depends on phi alone.
 template <class S>
 Matrix<S, 4, 4> platform_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_phi, const S& cos_phi) {
   Matrix<S, 4, 4> M;

@@ -24,13 +24,13 @@ enum class MassModel { table, geometry };
 /// Order of the parameters after the lengths: first those of every mass model, then those of the selected one.
 enum ExtraIndex { kSlideMass = kParameters, kPayload, kPayloadOffset, kRadii, kFirstOfModel = kRadii + 3 };
 enum TableIndex {
-  kRodMass = kFirstOfModel,    ///< m_11, m_12, m_21, .. m_42
-  kRodInertia = kRodMass + 8,  ///< I_11, .. I_42
-  kMass = kRodInertia + 8,     ///< m
-  kInertia,                    ///< I_xx, I_yy, I_zz
-  kMass1 = kInertia + 3,       ///< m_1
-  kInertia1,                   ///< I_1xx, I_1yy, I_1zz
-  kCentre = kInertia1 + 3,     ///< c
+  kRodMass = kFirstOfModel,    ///< first of the masses of the rods: m_11, m_12, m_21, .. m_42
+  kRodInertia = kRodMass + 8,  ///< first of the moments of inertia of the rods: I_11, I_12, .. I_42
+  kMass = kRodInertia + 8,     ///< mass m of the moving platform
+  kInertia,                    ///< first of the moments of inertia of the moving platform: I_xx, I_yy, I_zz
+  kMass1 = kInertia + 3,       ///< mass m_1 of the middle platform
+  kInertia1,                   ///< first of the moments of inertia of the middle platform: I_1xx, I_1yy, I_1zz
+  kCentre = kInertia1 + 3,     ///< distance c of the centre of mass of the moving platform from D
 };
 enum GeometryIndex {
   kLambda = kFirstOfModel,
@@ -45,16 +45,18 @@ enum GeometryIndex {
 
 template <class S>
 struct Masses {
-  std::array<S, 4> m_1, m_2;       ///< rod at the slide, rod at the platform [kg]
-  std::array<S, 4> I_1, I_2;       ///< about the rod's centre, axis e_i [kg m^2]
-  S m, I_zz, c;                    ///< moving platform: mass, inertia about its centre, distance of the centre from D
-  S m_middle, I_middle;            ///< middle platform: m_1, I_1zz
-  S slide;                         ///< mass of one slide
-  S payload, c_payload;            ///< point mass on the arm D-C_4, and its distance from D
-  std::array<double, 4> rotors{};  ///< inertia of drive trains at the joints [kg], added to M_q only
+  std::array<S, 4> m_1, m_2;  ///< for each limb, mass of the rod at the slide and of the rod at the platform [kg]
+  /// Moments of inertia of these rods about an axis through the rod's centre, normal to the plane of the limb [kg m^2].
+  std::array<S, 4> I_1, I_2;
+  /// Moving platform: mass [kg], moment of inertia about its centre [kg m^2], distance of the centre from D [m].
+  S m, I_zz, c;
+  S m_middle, I_middle;            ///< middle platform: mass m_1 [kg] and moment of inertia I_1zz [kg m^2]
+  S slide;                         ///< mass of one slide [kg]
+  S payload, c_payload;            ///< point mass on the line from D to C_4 [kg], and its distance from D [m]
+  std::array<double, 4> rotors{};  ///< inertia of the drive train at each joint [kg], which is added to M_q only
 };
 
-/// Throws DesignError, with a sentence, if a mass or an inertia is not positive.
+/// Reads the masses from the parameters. Throws DesignError, with a sentence, if a mass or an inertia is not positive.
 template <class S>
 Masses<S> masses(MassModel model, std::span<const S> p) {
   Masses<S> b;

@@ -17,11 +17,11 @@ namespace pkm::crr_cru {
 template <class S>
 using Pose = SchoenfliesPose<S>;
 
-/// Whether the circle of C_1..C_3 belongs to a separate middle platform, which is jointed to the moving platform at D,
-/// or to the moving platform itself.
-enum class Platform { jointed, rigid };  // (3CRR/R)&CRU, Quadrupteron
+/// Which platform carries the joints C_1 to C_3: a separate middle platform, which is jointed to the moving platform at
+/// D, or the moving platform itself.
+enum class Platform { jointed, rigid };  // the first is (3CRR/R)&CRU, the second Quadrupteron
 
-/// Order of the parameters.
+/// Indices of the parameters of a design.
 enum ParameterIndex {
   kL11,
   kL12,
@@ -43,7 +43,7 @@ enum ParameterIndex {
   kParameters
 };
 
-/// Order of the pose-level limits.
+/// Indices of the limits on poses in a LimitSpec.
 enum LimitIndex { kSMin, kCMin, kClearanceMin, kLimits };
 
 template <class S>
@@ -53,7 +53,7 @@ using Vector3 = std::array<S, 3>;
 template <class S>
 struct Geometry {
   Platform platform;
-  std::array<S, 4> l_1, l_2;  ///< rod at the slide, rod at the platform
+  std::array<S, 4> l_1, l_2;  ///< for each limb, length of the rod at the slide and of the rod at the platform
   S r, h, l, L;
   std::array<S, 3> cos_beta, sin_beta;
   S rho_min, rho_max;
@@ -80,19 +80,20 @@ Geometry<S> geometry(Platform platform, std::span<const S> p) {
   return g;
 }
 
-/// Thresholds: a pose is feasible if |sin theta_i2| >= s_min in all limbs and kappa_p >= c_min.
+/// Thresholds of the constraints on poses: a pose is feasible if |sin theta_i2| >= s_min in all limbs and kappa_p >=
+/// c_min.
 struct Limits {
   double s_min = 0, c_min = 0;
 };
 
 inline Limits limits(const LimitSpec& spec) { return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0)}; }
 
-/// Axes of a limb: indices of the world axes along e, p and q, and the signs of p and q.
+/// Axes of a limb: indices of the world axes along its directions e (rail), p and q, and the signs of p and q.
 struct LimbAxes {
   std::size_t e, p, q;
   double p_sign, q_sign;
-  double sense;          ///< s
-  Vector3<double> rail;  ///< a / L
+  double sense;          ///< sign s of README.md, +1 or -1
+  Vector3<double> rail;  ///< position of the rail divided by the length L
 };
 inline constexpr std::array<LimbAxes, 4> kLimbs = {{
     {.e = 0, .p = 1, .q = 2, .p_sign = -1, .q_sign = 1, .sense = -1, .rail = {0, 1, 0}},
@@ -101,20 +102,20 @@ inline constexpr std::array<LimbAxes, 4> kLimbs = {{
     {.e = 1, .p = 0, .q = 2, .p_sign = -1, .q_sign = -1, .sense = -1, .rail = {1, 0, 1}},
 }};
 
-/// Components of a vector along the p and q of a limb.
+/// Components of a vector in the plane of a limb, along its directions p and q.
 template <class S>
 Vector<S, 2> in_plane(const LimbAxes& f, const Vector3<S>& v) {
   return {{v[f.p] * f.p_sign, v[f.q] * f.q_sign}};
 }
 
-/// The vector C_i - D, and whether it rotates with phi.
+/// The vector from D to the platform joint C_i of a limb, and whether it rotates with phi.
 template <class S>
 struct Arm {
   Vector3<S> to_joint;
   bool rotates;
 };
 
-/// Velocity of C_i per unit of phidot: z x arm if the arm rotates, otherwise 0.
+/// Velocity of C_i divided by the rate of phi: z x (C_i - D) if the arm rotates, otherwise 0.
 template <class S>
 Vector<S, 3> yaw_velocity(const Arm<S>& arm) {
   if (!arm.rotates) return {};
@@ -134,21 +135,23 @@ std::array<Arm<S>, 4> arms(const Geometry<S>& g, const S& sin_phi, const S& cos_
   return arm;
 }
 
-/// Elbow signs sigma_i = sign(sin theta_i2), +1 or -1.
+/// Elbow sign sigma_i = sign(sin theta_i2) of each limb, +1 or -1.
 using WorkingMode = std::array<int, 4>;
 
-/// One limb at a pose. If it does not reach, only rho, A, C and d are set.
+/// State of one limb at a pose. If the limb does not reach the pose, only rho, A, C and d are set.
 template <class S>
 struct Limb {
-  S rho;                 ///< slide position [m]
-  Vector3<S> A, B, C;    ///< the limb's joints [m]
-  Vector<S, 2> d;        ///< C - A in the limb's plane, along p and q [m]
-  Vector<S, 2> u1, u2;   ///< unit vectors along the rods, along p and q
-  S sin_2, cos_2;        ///< sine and cosine of theta_i2
-  bool reaches = false;  ///< |d| is in [|l_i1 - l_i2|, l_i1 + l_i2]
+  S rho;               ///< slide position [m]
+  Vector3<S> A, B, C;  ///< positions of the limb's joints: at the slide, between the rods, at the platform [m]
+  Vector<S, 2> d;      ///< vector from A to C in the plane of the limb, components along p and q [m]
+  /// Unit vectors along the rod at the slide and the rod at the platform, components along p and q.
+  Vector<S, 2> u1, u2;
+  S sin_2, cos_2;        ///< sine and cosine of the angle theta_i2 between the two rods
+  bool reaches = false;  ///< true if |d| is in [|l_i1 - l_i2|, l_i1 + l_i2]
 };
 
-/// The limb with its platform joint at C. @param elbow  sign of sin theta_i2
+/// Computes the state of limb i if its platform joint is at C.
+/// @param elbow  sign of sin theta_i2
 template <class S>
 Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int elbow) {
   const LimbAxes& f = kLimbs[i];
@@ -163,7 +166,7 @@ Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int el
   const double length = std::sqrt(value_of(d2)), sum = value_of(l1 + l2), difference = value_of(l1 - l2);
   limb.reaches = length <= sum && length >= std::fabs(difference);
   if (!limb.reaches) return limb;
-  // 1 - cos theta_2 and 1 + cos theta_2, without cancellation at the limits of the reach
+  // Formulas for 1 - cos theta_2 and 1 + cos theta_2 that do not cancel at the limits of the reach.
   const S twice = l1 * l2 * 2.0, one_minus_cos = ((l1 + l2) * (l1 + l2) - d2) / twice,
           one_plus_cos = (d2 - (l1 - l2) * (l1 - l2)) / twice;
   limb.cos_2 = value_of(one_minus_cos) < 1 ? S(1.0 - one_minus_cos) : S(one_plus_cos - 1.0);
@@ -172,7 +175,7 @@ Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int el
     limb.u1 = {{S(1.0), S(0.0)}};
     limb.u2 = {{S(-1.0), S(0.0)}};
   } else {
-    const S k = l1 + l2 * limb.cos_2, w = l2 * limb.sin_2;  // components of d along and across u1
+    const S k = l1 + l2 * limb.cos_2, w = l2 * limb.sin_2;  // components of d along u1 and normal to u1
     limb.u1 = {{(k * limb.d[0] + w * limb.d[1]) / d2, (k * limb.d[1] - w * limb.d[0]) / d2}};
     limb.u2 = {{(limb.d[0] - l1 * limb.u1[0]) / l2, (limb.d[1] - l1 * limb.u1[1]) / l2}};
   }

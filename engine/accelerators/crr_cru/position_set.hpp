@@ -9,26 +9,28 @@
 
 namespace pkm::crr_cru {
 
-/// Ranges of x, y, z, phi.
+/// Range of each coordinate, in the order x, y, z, phi.
 using PoseBox = std::array<std::array<double, 2>, 4>;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 inline constexpr PoseBox kEverywhere = {
     {{-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}}};
 
-/// A design and its limits, independent of phi.
+/// Quantities of a design and its limits that do not depend on phi.
 template <class S>
 struct Design {
   Geometry<S> g;
   Yaw<S> yaw;
   double c_min;
-  std::array<S, 4> in2, out2;  ///< squared radii of the annulus |C_i - A_i| where |sin theta_i2| >= s_min [m^2]
-  PoseBox box = kEverywhere;   ///< poses outside are infeasible
+  /// Squared radii, for each limb, of the annulus in which |C_i - A_i| satisfies |sin theta_i2| >= s_min [m^2].
+  std::array<S, 4> in2, out2;
+  PoseBox box = kEverywhere;  ///< box outside of which poses are infeasible
 };
 
 template <class S>
 Design<S> design(const Geometry<S>& g, const Limits& l, const PoseBox& box = kEverywhere) {
   Design<S> d{.g = g, .yaw = yaw(g), .c_min = l.c_min, .in2 = {}, .out2 = {}, .box = box};
-  const double lost = l.s_min * l.s_min / (1 + std::sqrt((1 - l.s_min) * (1 + l.s_min)));  // 1 - sqrt(1 - s_min^2)
+  // Equal to 1 - sqrt(1 - s_min^2), without cancellation.
+  const double lost = l.s_min * l.s_min / (1 + std::sqrt((1 - l.s_min) * (1 + l.s_min)));
   for (std::size_t i = 0; i < 4; ++i) {
     const S difference = g.l_1[i] - g.l_2[i], sum = g.l_1[i] + g.l_2[i], cut = g.l_1[i] * g.l_2[i] * (2 * lost);
     d.in2[i] = difference * difference + cut;
@@ -37,16 +39,16 @@ Design<S> design(const Geometry<S>& g, const Limits& l, const PoseBox& box = kEv
   return d;
 }
 
-/// Identifies the formula of an endpoint of an interval.
+/// Identifies the formula by which an endpoint of an interval is computed.
 struct EndpointLabel {
   enum Kind : std::uint8_t {
-    slide,     ///< end of the stroke of limb `index`
-    box,       ///< face of the box
-    v_bound,   ///< endpoint of interval number `index` of a slice's v
-    on_circle  ///< on a circle of the annulus of limb `index`, below or above its centre
+    slide,     ///< end of the stroke of the slide of limb number `index`
+    box,       ///< face of the box that restricts the workspace
+    v_bound,   ///< endpoint of interval number `index` of the set v of a slice
+    on_circle  ///< point of a circle of the annulus of limb number `index`, below or above the centre
   } kind;
   std::uint8_t index;
-  bool upper, outer;  ///< outer: on the outer circle
+  bool upper, outer;  ///< upper: the endpoint is an upper one; outer: the circle is the outer one of the annulus
 
   constexpr EndpointLabel(Kind k = slide, std::size_t i = 0, bool is_upper = false, bool is_outer = false)
       : kind(k), index(static_cast<std::uint8_t>(i)), upper(is_upper), outer(is_outer) {}
@@ -60,7 +62,7 @@ struct Interval {
   EndpointLabel lower_label, upper_label;
 };
 
-/// Intersects an interval with [lower, upper]. An endpoint that is moved gets the new label.
+/// Intersects an interval with [lower, upper]. An endpoint that changes gets the label of the new bound.
 template <class S>
 void intersect(Interval<S>& interval, const S& lower, const S& upper, EndpointLabel lower_label,
                EndpointLabel upper_label) {
@@ -74,12 +76,12 @@ void intersect(Interval<S>& interval, const S& lower, const S& upper, EndpointLa
   }
 }
 
-/// The positions that are feasible at one phi: those in all ranges and all annuli.
+/// The positions that are feasible at one phi: those that are in all ranges and in all annuli.
 template <class S>
 struct PositionSet {
   std::array<Interval<S>, 3> range;  ///< ranges of x, y, z
   std::array<Vector3<S>, 4> center;  ///< centre of each limb's annulus; the coordinate along e_i has no meaning
-  bool singular;                     ///< kappa_p < c_min: no position is feasible
+  bool singular;                     ///< true if kappa_p < c_min, so that no position is feasible
 };
 
 template <class S>
@@ -107,8 +109,8 @@ PositionSet<S> position_set(const Design<S>& d, const S& phi) {
   return set;
 }
 
-/// Value of the fixed coordinate. By default, phi is 0, and a position is the one at which the slide along its axis is
-/// at half stroke, apart from the offset due to the circle of C_1..C_3.
+/// Value of the fixed coordinate. The default of phi is 0. The default of a position is the one at which the slide
+/// along its axis is at half stroke, apart from the offset due to the circle of C_1..C_3.
 template <class S>
 S fixed_value(const Geometry<S>& g, const FixedCoordinate& fixed) {
   if (fixed.kind != FixedCoordinate::Kind::default_value) return S(fixed.value);
@@ -117,7 +119,8 @@ S fixed_value(const Geometry<S>& g, const FixedCoordinate& fixed) {
   return fixed.coordinate == 2 ? S(half + g.h) : half;
 }
 
-/// Axes of the planar slices: normal to the fixed position, or to x if phi is fixed; the outer coordinate is phi or x.
+/// Indices of the axes of planar slices. Slices are normal to the fixed position, and phi is the outer coordinate; if
+/// phi is fixed, they are normal to x, which is then the outer coordinate.
 struct SliceAxes {
   std::size_t normal, u, v;
   bool outer_is_phi;

@@ -31,7 +31,7 @@ void find_candidates(const Slice<double>& s, std::vector<Decomposition::Candidat
   std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.u < b.u; });
 }
 
-/// The intervals of v over u.
+/// The feasible intervals of v at a value of u.
 IntervalSet<double> column_at(const Slice<double>& s, double u) {
   IntervalSet<double> column = s.v;
   for (std::size_t i = 0; i < column.size; ++i) {
@@ -76,7 +76,7 @@ void decompose(const Slice<double>& s, Decomposition& decomposition) {
     const Interval<double>& part = s.u.interval[i];
     CriticalPoint from = CriticalPoint::end_of_u(2 * i);
     double low = part.lower;
-    bool is_adjacent = false;  // the previous column extends to `from`
+    bool is_adjacent = false;  // true if the previous column ends at `from`
     const auto add_until = [&](double high, const CriticalPoint& to) {
       if (high > low) {
         const IntervalSet<double> found = column_at(s, 0.5 * (low + high));

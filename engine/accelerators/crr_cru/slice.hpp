@@ -25,9 +25,10 @@ struct IntervalSet {
   }
 };
 
-/// Intersects a set with the annulus of a limb, on a line at some distance from its centre.
-/// @param center          centre of the annulus: coordinate along the line
-/// @param outer2, inner2  squared half chords of its circles, R^2 - distance^2
+/// Intersects a set of intervals on a line with the annulus of a limb.
+/// @param center          coordinate of the annulus' centre along the line
+/// @param outer2, inner2  squared half chords of its circles: R^2 minus the squared distance of the line from the
+/// centre
 template <class S>
 void intersect_annulus(IntervalSet<S>& set, const S& center, const S& outer2, const S& inner2, std::size_t limb) {
   using Label = EndpointLabel;
@@ -49,11 +50,11 @@ void intersect_annulus(IntervalSet<S>& set, const S& center, const S& outer2, co
   }
 }
 
-/// An annulus in the plane of a slice.
+/// An annulus, in the plane of a slice, to which a limb restricts the position.
 template <class S>
 struct Annulus {
-  S u, v;       ///< centre [m]
-  S in2, out2;  ///< squared radii [m^2]
+  S u, v;       ///< coordinates of the centre [m]
+  S in2, out2;  ///< squared inner and squared outer radius [m^2]
   std::size_t limb;
 };
 
@@ -64,7 +65,8 @@ struct Slice {
   std::size_t annuli = 0;
 };
 
-/// The slice of a position set on the plane where coordinate `axes.normal` is `at`; u or v is empty if the slice is.
+/// The slice of a position set on the plane in which coordinate number `axes.normal` has the value `at`. If the slice
+/// is empty, u or v is empty.
 template <class S>
 Slice<S> slice(const Design<S>& d, const PositionSet<S>& set, const SliceAxes& axes, const S& at) {
   Slice<S> s;
@@ -74,7 +76,8 @@ Slice<S> slice(const Design<S>& d, const PositionSet<S>& set, const SliceAxes& a
   s.v.add(set.range[axes.v]);
   for (std::size_t i = 0; i < 4; ++i) {
     const auto& center = set.center[i];
-    const bool has_u = kLimbs[i].e != axes.u, has_v = kLimbs[i].e != axes.v;  // the plane of the rods contains u, v
+    // True if the plane of the limb's rods contains the axis u, or the axis v.
+    const bool has_u = kLimbs[i].e != axes.u, has_v = kLimbs[i].e != axes.v;
     if (has_u && has_v) {
       s.annulus[s.annuli++] = {.u = center[axes.u], .v = center[axes.v], .in2 = d.in2[i], .out2 = d.out2[i], .limb = i};
       continue;
@@ -85,25 +88,26 @@ Slice<S> slice(const Design<S>& d, const PositionSet<S>& set, const SliceAxes& a
   return s;
 }
 
-/// A critical value of u, at which an endpoint of the column over u changes its formula.
+/// A critical value of u, at which an endpoint of the column at u changes its formula.
 struct CriticalPoint {
   enum class Kind : std::uint8_t { end_of_u, turning_point, intersection_with_v, intersection_of_circles };
   Kind kind = Kind::end_of_u;
   std::uint8_t first = 0;   ///< index of an endpoint of u, or of a circle: 2 annulus + (0 inner, 1 outer)
   std::uint8_t second = 0;  ///< index of an endpoint of v, or of a circle of the other annulus
-  std::int8_t sign = 1;     ///< selects one of two solutions
+  std::int8_t sign = 1;     ///< selects one of the two solutions if there are two
 
   static CriticalPoint end_of_u(std::size_t end) { return {.first = static_cast<std::uint8_t>(end)}; }
 };
 
-/// A cell of the decomposition: an interval of u over which the column of v has the same endpoints.
+/// A cell of the decomposition: an interval of u over which the column of v has endpoints of the same formulas.
 struct Column {
-  CriticalPoint lower, upper;                                        ///< ends of the interval of u
-  std::array<EndpointLabel, 2 * IntervalSet<double>::kMaxSize> end;  ///< endpoints of v: Kind v_bound or on_circle
+  CriticalPoint lower, upper;  ///< lower and upper end of the interval of u
+  /// Labels of the endpoints of v, whose kind is v_bound or on_circle: lower and upper endpoint of each interval.
+  std::array<EndpointLabel, 2 * IntervalSet<double>::kMaxSize> end;
   std::size_t ends = 0;
 };
 
-/// Cell decomposition of a slice: its non-empty columns in ascending u; adjacent ones differ in their endpoints.
+/// Cell decomposition of a slice: its non-empty columns in ascending u. Adjacent columns differ in their endpoints.
 struct Decomposition {
   std::vector<Column> columns;
   std::uint64_t signature = 0;  ///< hash of the combinatorial type; 0: the slice is empty
@@ -112,12 +116,12 @@ struct Decomposition {
     double u;
     CriticalPoint point;
   };
-  std::vector<Candidate> candidates;  ///< scratch memory
+  std::vector<Candidate> candidates;  ///< scratch memory of decompose()
 };
 
 void decompose(const Slice<double>& s, Decomposition& decomposition);
 
-/// The values of a slice with derivatives.
+/// Converts a slice with derivatives to one with values only.
 template <class S>
 Slice<double> values(const Slice<S>& s) {
   Slice<double> v;
@@ -137,20 +141,22 @@ Slice<double> values(const Slice<S>& s) {
   return v;
 }
 
-/// Endpoint number 2 interval + (0 lower, 1 upper).
+/// Endpoint of a set of intervals.
+/// @param end  2 interval + (0: lower endpoint, 1: upper endpoint)
 template <class S>
 const S& end_of(const IntervalSet<S>& set, std::size_t end) {
   return end % 2 == 0 ? set.interval[end / 2].lower : set.interval[end / 2].upper;
 }
 
-/// Squared radius of a circle. @param circle  2 annulus + (0: the inner, 1: the outer circle)
+/// Squared radius of a circle of a slice.
+/// @param circle  2 annulus + (0: inner circle, 1: outer circle)
 template <class S>
 const S& radius2(const Slice<S>& s, std::size_t circle) {
   return circle % 2 == 0 ? s.annulus[circle / 2].in2 : s.annulus[circle / 2].out2;
 }
 
-/// u of a critical point; meaningless if it does not exist.
-/// @param exists  if not null, receives whether it does
+/// The u of a critical point; meaningless if the critical point does not exist.
+/// @param exists  if not null, receives whether the critical point exists
 template <class S>
 S abscissa(const Slice<S>& s, const CriticalPoint& point, bool* exists = nullptr) {
   using Kind = CriticalPoint::Kind;
@@ -176,12 +182,12 @@ S abscissa(const Slice<S>& s, const CriticalPoint& point, bool* exists = nullptr
   return from + across * sqrt_or_zero(radicand) * sign;
 }
 
-/// Half of a circle of an annulus, below or above its centre.
+/// One half of a circle of an annulus: the points below or above the centre.
 template <class S>
 struct Arc {
   const Annulus<S>* annulus;
   const S* radius2;
-  double side;  ///< -1 below, +1 above
+  double side;  ///< -1: the half below the centre; +1: the half above it
 };
 
 template <class S>
@@ -190,13 +196,13 @@ Arc<S> arc_of(const Slice<S>& s, EndpointLabel label) {
   return {&annulus, label.outer ? &annulus.out2 : &annulus.in2, label.upper ? 1.0 : -1.0};
 }
 
-/// The constant v of an endpoint that is not on a circle.
+/// The v of an endpoint that is not on a circle; it does not depend on u.
 template <class S>
 const S& bound_of_v(const Slice<S>& s, EndpointLabel label) {
   return end_of(s.v, 2u * label.index + label.upper);
 }
 
-/// v of an endpoint of the column over u.
+/// The v, at a given u, of an endpoint of a column.
 template <class S>
 S end_at(const Slice<S>& s, EndpointLabel label, const S& u) {
   if (label.kind != EndpointLabel::on_circle) return bound_of_v(s, label);
@@ -205,8 +211,8 @@ S end_at(const Slice<S>& s, EndpointLabel label, const S& u) {
   return arc.annulus->v + sqrt_or_zero(S(*arc.radius2 - w * w)) * arc.side;
 }
 
-/// Antiderivative of sqrt(radius2 - w^2). Its derivatives are assembled explicitly, because those of its two terms are
-/// unbounded at the turning points of the circle and cancel.
+/// Antiderivative of sqrt(radius2 - w^2) with respect to w. Its derivatives are assembled explicitly, because those of
+/// its two terms are unbounded at the turning points of the circle and cancel.
 template <class S>
 S arc_antiderivative(const S& w, const S& radius2) {
   const double at = value_of(w), square = value_of(radius2);
@@ -214,7 +220,7 @@ S arc_antiderivative(const S& w, const S& radius2) {
   return S(0.5 * (at * root + square * angle)) + (w - at) * root + (radius2 - square) * (0.5 * angle);
 }
 
-/// Area [m^2].
+/// Area of a slice in closed form, from its decomposition [m^2].
 template <class S>
 S area(const Slice<S>& s, const Decomposition& decomposition) {
   S sum(0.0);

@@ -8,14 +8,14 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// The feasible cells at one phi, with their inertia if it is requested.
+/// The feasible cells at one phi, with tables of the inertia if it is requested.
 struct CellsAtPhi {
   SliceCells cells;
   InertiaTables tables;
   double conditioning = 0;
 };
 
-/// Scratch memory of one thread.
+/// Scratch memory of one thread, used for one slice at a time.
 struct VoxelWorker {
   CellsAtPhi own;
   std::vector<std::uint64_t> row;
@@ -27,10 +27,10 @@ struct GriddedSlices : GriddedDesign {
   Design<double> d;
   Masses<double> masses;
   GridAxes axes;
-  bool over_phi;                     ///< phi is the outer coordinate: each slice has its own phi
-  std::array<std::size_t, 3> swept;  ///< the coordinate of each axis of the grid, ascending
+  bool over_phi;  ///< true: phi is the outer coordinate, and each slice has its own phi; false: phi is fixed
+  std::array<std::size_t, 3> swept;  ///< the index of the coordinate of each axis of the grid, ascending
   double fixed;                      ///< value of the fixed coordinate
-  const CellsAtPhi& common;          ///< cells shared by all slices, if phi is fixed
+  const CellsAtPhi& common;          ///< the cells that all slices share if phi is fixed
 };
 
 class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
@@ -51,7 +51,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
                 WorkspaceResult<double>& workspace) const override {
     GridEvaluator::evaluate(parameters, scratch, workspace);
     if (!settings_.with_conditioning || !workspace.weight.empty()) return;
-    const Geometry<double> g = geometry(settings_.platform, parameters);  // phi is fixed: one sample
+    // Phi is fixed, so one sample represents all cells.
+    const Geometry<double> g = geometry(settings_.platform, parameters);
     settings_.add_conditioning(g, fixed_value(g, settings_.fixed), workspace.volume, workspace);
   }
 
@@ -73,7 +74,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     return s;
   }
 
-  /// @return false if no cell is feasible
+  /// Finds the feasible cells at one phi.
+  /// @return false if there are none
   bool fill(const GriddedSlices& s, double phi, CellsAtPhi& to) const {
     if (!to.cells.fill(s.d, settings_.fixed, s.grid, phi)) return false;
     if (!settings_.request.needs_inertia()) return true;
@@ -81,7 +83,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     if (settings_.with_conditioning) to.conditioning = settings_.conditioning_at(s.d.g, phi);
     return true;
   }
-  /// The cells of a slice; null if there are none.
+  /// The feasible cells of a slice; null if there are none.
   const CellsAtPhi* cells_of(const GriddedSlices& s, std::size_t block, VoxelWorker& worker) const {
     if (!s.over_phi) return &s.common;
     return fill(s, s.grid.centre(s.axes.outer, static_cast<std::int64_t>(block)), worker.own) ? &worker.own : nullptr;
@@ -104,7 +106,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
                                  static_cast<double>(plane.cells) * s.cell_volume, to);
   }
 
-  /// Adds the cells of a run as samples with their inertia.
+  /// Adds each cell of a run of feasible cells as a sample with its inertia.
   void sample(const GriddedSlices& s, const CellsAtPhi& at, const CellRun& run, std::array<std::vector<double>, 4>& dci,
               WorkspaceResult<double>& to) const {
     count_cells(s.grid, run, to);
@@ -137,7 +139,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
                    [&](const CellRun& run) { for_each_cell(run, visit); });
   }
 
-  /// Calls visit(run) for the runs of feasible cells along v of slice number k, in ascending u.
+  /// Calls visit(run) for each run of feasible cells along v in slice number k, in the order of ascending u.
   /// @param row  scratch memory
   template <class Visit>
   void visit_runs(const GriddedSlices& s, const CellsAtPhi& at, std::int64_t k, std::vector<std::uint64_t>& row,
@@ -156,7 +158,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 
   AnalysisSettings settings_;
   VoxelOptions voxels_;
-  bool beyond_coupling_;  ///< true if fields of the inertia other than coupling indices are requested
+  bool beyond_coupling_;  ///< true if fields of the inertia other than the coupling indices are requested
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace pkm::crr_cru {
 
-/// Axes of the grid along the outer coordinate and along u and v of SliceAxes.
+/// Axes of the grid that correspond to the outer coordinate and to the axes u and v of SliceAxes.
 struct GridAxes {
   std::size_t outer, u, v;
 };
@@ -25,8 +25,8 @@ inline GridAxes grid_axes(const FixedCoordinate& fixed) {
 /// A box that contains every feasible pose, from the ranges of the slides and kappa_p >= 0.
 Box default_box(const Design<double>& d, const FixedCoordinate& fixed);
 
-/// Feasible cells along one coordinate, for every cell along another one: rows of bits, padded to whole words, and
-/// empty rows up to a multiple of kLanes.
+/// Rows of bits that mark feasible cells along one coordinate, one row for every cell along another coordinate. Rows
+/// are padded to whole words; empty rows are added up to a multiple of kLanes.
 struct BitTable {
   std::size_t words = 0;  ///< number of words per row
   std::vector<std::uint64_t> bits;
@@ -34,15 +34,16 @@ struct BitTable {
   std::span<const std::uint64_t> row(std::size_t i) const { return {bits.data() + i * words, words}; }
 };
 
-/// The feasible cells at one phi, in planes normal to the coordinate n. Threads can share a filled object.
+/// The feasible cells at one phi, in planes normal to one coordinate, n. Several threads can use a filled object.
 class SliceCells {
  public:
-  /// Fills the tables. @return false if one of them is empty: then no cell is feasible
+  /// Finds the feasible cells.
+  /// @return false if a table is empty, so that no cell is feasible
   bool fill(const Design<double>& d, const FixedCoordinate& fixed, const VoxelGrid& grid, double phi);
 
-  /// Calls visit(u) for every column along v with feasible cells.
-  /// @param n    number of the plane; 0 if the coordinate normal to it is fixed
-  /// @param row  receives the bits of the column
+  /// Calls visit(u) for every u at which a column along v has feasible cells.
+  /// @param n    number of the plane along its normal; 0 if the coordinate normal to the plane is fixed
+  /// @param row  receives the bits of the column before each call
   template <class Visit>
   void visit_columns(std::size_t n, std::vector<std::uint64_t>& row, const Visit& visit) const {
     const auto u_row = u_at_n_.row(n), v_row = v_at_n_.row(n);
@@ -57,7 +58,7 @@ class SliceCells {
   PlaneTally count(std::size_t n) const;
 
  private:
-  /// The cells along a coordinate, with their centres padded to a multiple of kLanes.
+  /// The cells along one coordinate; the list of their centres is padded to a multiple of kLanes.
   struct Axis {
     std::vector<double> center;
     double lower = 0, step = 0;
@@ -65,8 +66,8 @@ class SliceCells {
   };
   static void fill_axis(Axis& axis, const VoxelGrid& grid, std::size_t which);
 
-  /// Fills, for each cell of coordinate a, the row of feasible cells of coordinate b, from the ranges of both and the
-  /// annuli in their plane.
+  /// Fills a table: for each cell of coordinate a, the row of feasible cells of coordinate b, from the ranges of both
+  /// coordinates and from the annuli in their plane.
   /// @return false if the table is empty
   bool fill_table(const Design<double>& d, const PositionSet<double>& set, std::size_t a, const Axis& across,
                   std::size_t b, const Axis& along, BitTable& table);

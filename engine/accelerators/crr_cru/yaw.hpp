@@ -7,11 +7,11 @@
 
 namespace pkm::crr_cru {
 
-/// rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0
+/// Coefficients of the equation rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0, which determines phi.
 template <class S>
 struct Yaw {
-  S a_s, a_c, a_0;  ///< [m]
-  S R;              ///< hypot(a_s, a_c) [m]
+  S a_s, a_c, a_0;  ///< coefficients of the equation [m]
+  S R;              ///< amplitude of its terms in phi: hypot(a_s, a_c) [m]
 };
 
 template <class S>
@@ -22,19 +22,20 @@ Yaw<S> yaw(const Geometry<S>& g) {
   return {a_s, -across, S(0.0), sqrt_or_zero(S(a_s * a_s + across * across))};
 }
 
-/// delta, in (-pi, pi].
+/// The angle delta of README.md, by which phi is shifted, in (-pi, pi].
 template <class S>
 S offset(const Yaw<S>& y) {
   return atan2(y.a_c, y.a_s);
 }
 
-/// kappa_p = det J / R = cos(phi + delta), in [-1, 1]: 0 at a parallel singularity, > 0 on the nominal branch.
+/// kappa_p = det J / R = cos(phi + delta), in [-1, 1]. It is 0 at a parallel singularity and positive on the nominal
+/// branch.
 template <class S>
 S parallel_index(const Yaw<S>& y, const S& sin_phi, const S& cos_phi) {
   return (y.a_s * cos_phi - y.a_c * sin_phi) / y.R;
 }
 
-/// Default characteristic length, by which the phi column of J is divided: l, or l + r [m].
+/// Default characteristic length, by which the column of J for phi is divided: l or, with Platform::rigid, l + r [m].
 template <class S>
 S characteristic_length(const Geometry<S>& g) {
   return g.platform == Platform::jointed ? g.l : S(g.l + g.r);

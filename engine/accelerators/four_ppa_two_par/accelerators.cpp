@@ -10,9 +10,9 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-constexpr int kY = 1;  ///< index of the coordinate y, which is fixed
+constexpr int kY = 1;  ///< index of the coordinate y, which these analyses fix or integrate over
 
-/// The y coordinate of the plane of an analysis [m]; by default the middle of the range of y.
+/// The value of y at which a plan fixes the platform [m]; by default, the middle of the range of y.
 template <class S>
 S plane(const Geometry<S>& g, const FixedCoordinate& y) {
   return y.kind == FixedCoordinate::Kind::value ? S(y.value) : S(g.L0 * 0.5);
@@ -78,8 +78,8 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     }
     const Subinterval<S> half{l.h_min, g.L0 * 0.5, true, false};
     if (!(value_of(half.upper) > value_of(half.lower))) return;
-    // If y is integrated over, every node represents eight poses. If these are separate samples, a coarser rule is
-    // sufficient.
+    // If y is integrated over, every node represents eight poses. If each of these is a separate sample, a coarser
+    // quadrature rule is sufficient.
     static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);
     const GaussRule &inner = wanted.distinguishes_images() ? coarse : inner_rule_,
                     &outer = wanted.distinguishes_images() ? coarse : theta_rule_;
@@ -102,7 +102,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
                                    : plane_volume(d, columns_.tolerance, scratch);
   }
 
-  /// The volume by a fixed number of nodes per interval of theta, without an error estimate.
+  /// The volume by a fixed number of quadrature nodes per interval of theta, without an error estimate.
   template <class S>
   Integral<S> fixed_rule(const SlicedDesign<S>& d, ColumnScratch<S>& scratch) const {
     find_theta_intervals(d, scratch.critical_values, scratch.intervals);
@@ -141,8 +141,8 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     Geometry<double> g;
     Limits<double> l;
     std::optional<ClearanceTest> test;
-    const std::vector<FixedCells>& all_y;  ///< cells of y, if y is integrated over
-    double y;                              ///< value of y otherwise
+    const std::vector<FixedCells>& all_y;  ///< the cells along y, if y is integrated over; otherwise empty
+    double y;                              ///< value of y, if y is fixed
     SampleContents<double> wanted;
 
     VoxelPlane operator[](std::size_t number) const {
@@ -173,10 +173,10 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     planes.blocks = counts(planes) ? counter_.tiles(largest) : counter_.blocks(largest);
     return planes;
   }
-  /// Whether only the number of cells is needed.
+  /// Returns true if only the number of feasible cells is needed, and cells need no clearance test.
   bool counts(const GriddedPlanes& planes) const { return !planes.test && !request_.needs_samples(); }
-  /// The part of a plane to search. A pose can represent its mirror images, because they all have the same
-  /// conditioning.
+  /// The part of the grid on a plane that has to be searched. A pose can represent its mirror images, because all of
+  /// them have the same conditioning.
   GridPart representative_part(const GriddedPlanes& planes, const VoxelPlane& at) const {
     return planes.test || planes.wanted.distinguishes_images() ? counter_.whole() : counter_.representative_part(at);
   }
@@ -254,7 +254,8 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
 
  private:
   static bool serves(const WorkspacePlan& plan, const FieldRequest& request) {
-    // Samples also represent mirror images, in which the two sliders of a rail are exchanged.
+    // Samples also represent mirror images, in which the two sliders of a rail are exchanged; this requires equal
+    // rotors.
     const std::vector<double>& rotors = request.rotors;
     const bool unequal = !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]);
     return sweeps(plan, {0, 2, 3}) && (request.mode.empty() || request.mode == "lower,lower") &&

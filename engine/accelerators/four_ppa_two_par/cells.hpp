@@ -12,30 +12,32 @@ namespace pkm::four_ppa_two_par {
 /// The columns of the first x of a grid at kLanes consecutive thetas. A plain struct, so that kernels share no inline
 /// code with files that are compiled for another instruction set.
 struct ColumnsAtThetas {
-  double a, b, l_u, l_d, d, L0;        ///< as in Geometry
-  double sin_par_min, cos_theta_min;   ///< as in Limits
-  double x_min, x_max, z_low, z_high;  ///< as in Ranges
+  double a, b, l_u, l_d, d, L0;        ///< lengths of the design, see Geometry
+  double sin_par_min, cos_theta_min;   ///< thresholds, see Limits
+  double x_min, x_max, z_low, z_high;  ///< ranges of lengths, see Ranges
   double y;
   double x_lower, x_step, z_lower, z_step;  ///< lower bounds and steps of the grid
   double z_cells;
   const double *sines, *cosines;  ///< sines and cosines of kLanes thetas
-  std::int64_t thetas;            ///< number of thetas with cells, from the first
-  std::int64_t columns;           ///< number of x, from the first
+  std::int64_t thetas;            ///< number of thetas that have cells; they come first in the arrays
+  std::int64_t columns;           ///< number of columns at each theta, beginning with the first x of the grid
 };
 
-/// Numbers of feasible cells, by theta.
+/// Numbers of feasible cells; element k of each array belongs to theta number k of the batch.
 struct CellTally {
-  double cells[kLanes], in_first[kLanes], in_last[kLanes];  ///< in all columns, in the first one, in the last one
-  bool lowest, highest;  ///< whether a column contains the lowest or the highest cell
+  /// Number of cells in all columns, in the first and in the last column.
+  double cells[kLanes], in_first[kLanes], in_last[kLanes];
+  bool lowest, highest;  ///< true if a column contains the lowest (highest) cell of the grid along z
 };
-/// Counts the cells with x indices [from, to).
+/// Counts the feasible cells of the columns with x indices [from, to).
 template <InstructionSet set>
 CellTally tally(const ColumnsAtThetas& columns, std::int64_t from, std::int64_t to);
 
-/// Cells [first, end) of z, at index x * kLanes + theta, for the x indices [x_begin, x_end); there are none elsewhere.
+/// Feasible cells along z of the columns with x indices [x_begin, x_end). The element for a column has the index x *
+/// kLanes + theta. All other columns have no feasible cells.
 struct ColumnBlock {
   std::int64_t x_begin = 0, x_end = 0;
-  std::vector<double> first, end;  ///< integers; end <= first: none
+  std::vector<double> first, end;  ///< the feasible cells of a column are [first, end); integers; none if end <= first
 };
 template <InstructionSet set>
 void fill(const ColumnsAtThetas& columns, ColumnBlock& block);

@@ -10,11 +10,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The columns of kLanes thetas, with the limits solved for z, so that one evaluation yields all cells of a column.
 template <class L>
 struct ColumnLimits {
-  double l_d2, x_min, x_max, parallel, bottom;  ///< bottom: maximum of -z_c; parallel: l_d^2 sin_par_min
-  double x_step, cells, per_cell, offset;       ///< along z; offset: z = -d in cells, relative to the first centre
-  L x_0, w;                                     ///< x_1 of the first column; x_1 + x_2
-  L top_1, top_2;                               ///< minimum of -z_c of each limb; infinite if the theta has no poses
-  std::int64_t x_begin, x_end;                  ///< columns outside have no cells at any theta
+  double l_d2, x_min, x_max, parallel, bottom;  ///< parallel: l_d^2 sin_par_min; bottom: maximum of -z_c
+  /// Grid along x and z. per_cell: number of cells per length of z; offset: position of z = -d in cells, relative to
+  /// the centre of the first cell.
+  double x_step, cells, per_cell, offset;
+  L x_0, w;                     ///< x_1 of the first column; the sum w = x_1 + x_2
+  L top_1, top_2;               ///< minimum of -z_c of each limb; infinite if no pose is feasible at this theta
+  std::int64_t x_begin, x_end;  ///< columns outside this range have no feasible cells at any theta of the batch
 
   explicit ColumnLimits(const ColumnsAtThetas& at) {
     l_d2 = at.l_d * at.l_d;
@@ -49,7 +51,7 @@ struct ColumnLimits {
     x_end = index(high / x_step + 2);
   }
 
-  /// Cells of z in column i.
+  /// The feasible cells along z of column number i, for each theta of the batch.
   struct Cells {
     L first, end;
     decltype(L() < L()) exist;
@@ -57,7 +59,8 @@ struct ColumnLimits {
   [[gnu::always_inline]] Cells operator[](std::int64_t i) const {
     const L x_1 = x_0 + static_cast<double>(i) * x_step, x_2 = w - x_1;
     const L sigma_1 = sqrt_or_zero(l_d2 - x_1 * x_1), sigma_2 = sqrt_or_zero(l_d2 - x_2 * x_2);
-    // in cells: from the first centre at or above the lower end to the last centre at or below the upper end
+    // The following heights are counted in cells: from the first centre at or above the lower end to the last centre at
+    // or below the upper end.
     const L low = offset - (bottom + lesser(sigma_1, sigma_2)) * per_cell;
     const L high = offset - greater(top_1 + sigma_1, top_2 + sigma_2) * per_cell;
     const L first = ceil(lesser(greater(low, L(0.0)), L(cells)));

@@ -55,7 +55,7 @@ Slice<double> slice_of(const SlicedDesign<double>& d, double theta, bool over_y)
   const auto [s, c] = sincos(theta);
   if (!over_y) return slice(d, s, c);
   Slice<double> t = slice_range(d, s, c);
-  t.depth = {d.z_low - d.z_high, d.z_low - d.z_high};  // not limited by the stroke, which limits y instead
+  t.depth = {d.z_low - d.z_high, d.z_low - d.z_high};  // the stroke does not limit z here, because it limits y instead
   return t;
 }
 
@@ -83,11 +83,13 @@ Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const Clear
 
 Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch) {
-  constexpr double kInnerTolerance = 0.02;  // relative to the outer one; larger errors look like kinks to the outer
-                                            // rule
+  // Tolerance of the inner quadrature relative to that of the outer one; larger errors of the inner integral would look
+  // like kinks to the outer rule.
+  constexpr double kInnerTolerance = 0.02;
   const Quadrature outer{.regularity = Regularity::kinks}, inner{.regularity = Regularity::kinks, .depth = 12};
   static const GaussRule coarse = gauss_legendre(5);
-  const Integral<double> guess = clear_volume_by_rule(d, test, over_y, coarse, coarse, scratch);  // finds the intervals
+  // Estimate of the result, which also finds the intervals.
+  const Integral<double> guess = clear_volume_by_rule(d, test, over_y, coarse, coarse, scratch);
   double range = 0;
   for (const Subinterval<double>& interval : scratch.intervals) range += interval.upper - interval.lower;
   const double aim = std::fmax(tolerance, kFinestClearTolerance);
@@ -95,7 +97,7 @@ Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest
   // links.
   const double negligible = 1e-9 * d.g.l_d * d.g.l_u * (over_y ? d.g.L0 : 1);
   const double inner_error = std::fmax(negligible, kInnerTolerance * aim * guess.value / (2 * range));
-  double worst = 0;  // maximum error of a slice
+  double worst = 0;  // maximum error of a single slice
   std::int64_t columns = guess.evaluations;
   const auto area_at = [&](double theta) {
     const Slice<double> t = slice_of(d, theta, over_y);
@@ -118,7 +120,7 @@ Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest
   };
   Integral<double> result =
       integrate<double>(area_at, scratch.intervals, aim, negligible * range, scratch.integrals, outer);
-  result.value *= 2;  // even in theta
+  result.value *= 2;  // the volume of theta < 0 equals that of theta > 0
   result.error = 2 * (result.error + worst * range);
   result.evaluations = columns;
   return result;

@@ -11,14 +11,16 @@
 
 namespace pkm::four_ppa_two_par {
 
-inline constexpr double kFinestClearTolerance = 1e-4;  ///< relative
+inline constexpr double kFinestClearTolerance = 1e-4;  ///< smallest relative tolerance of clear_volume()
 
-/// Volume on the plane of the design [m^2 rad], or, for a design at y = L0/2, integrated over y [m^3 rad].
-/// @param tolerance  relative
+/// Volume of the clear poses on the plane of the design [m^2 rad] or, for a design at y = L0/2, integrated over y [m^3
+/// rad].
+/// @param over_y     true: integrates over y
+/// @param tolerance  requested relative error
 Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch);
 
-/// The volume of clear_volume() by fixed quadrature rules in theta and delta, without an error estimate.
+/// Computes the same volume as clear_volume() by fixed quadrature rules in theta and delta, without an error estimate.
 Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y,
                                       const GaussRule& theta_rule, const GaussRule& inner_rule,
                                       ColumnScratch<double>& scratch);

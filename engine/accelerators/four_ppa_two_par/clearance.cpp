@@ -5,14 +5,14 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Whether a group consists of lower bars or a lower connector. The other groups of a limb are in the plane of its
-/// rail.
+/// Returns true for the groups of lower bars and lower connectors. The links of all other groups of a limb are in the
+/// plane of its rail.
 bool is_lower(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kLowerBars || kind == kLowerConnector);
 }
 
-/// Whether the links of a group move relative to all other links when z changes: sliders and upper bars.
+/// Returns true if a change of z moves the links of a group relative to all other links: sliders and upper bars.
 bool moves(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kSliders || kind == kUpperBars);
@@ -24,8 +24,8 @@ double radius(const Geometry<double>& g, int group) {
   return group % kGroupsPerLimb == kSliders ? g.R_s : g.R_u;
 }
 
-/// Whether the distance of a pair is the same at every pose, namely its lower bound. If that is too small, no pose is
-/// clear.
+/// Returns true if the distance of a pair is the same at every pose, i.e. equals its lower bound. If this distance is
+/// too small, no pose is clear.
 bool is_constant(const Geometry<double>& g, const GroupPair& pair) {
   if (pair.first == kPlatform) return is_lower(pair.second) && g.d_d <= g.d;
   return pair.first == group_of(0, kLowerConnector) && pair.second == group_of(1, kLowerConnector);
@@ -61,7 +61,7 @@ ClearanceTest::ClearanceTest(const Geometry<double>& g, double min_clearance) : 
   const double infinity = std::numeric_limits<double>::infinity();
   // The segments of two sliders are 2 h - 2 (d_0 + d_u/2 - R_s) apart, or overlap; they are points if R_s is larger.
   if (min_clearance > -2 * g.R_s) h_min_ = std::fmax(0.0, std::fmax(g.d_0 + g.d_u / 2, g.R_s) + min_clearance / 2);
-  const double below = g.d_d - g.d;  // depth of E_j below the platform
+  const double below = g.d_d - g.d;  // depth of the point E_j below the platform
   for (const GroupPair& pair : kPairs) {
     if (pair.first == pair.second || clearance_lower_bound(g, pair) >= min_clearance) continue;
     const bool platform_and_lower = pair.first == kPlatform && is_lower(pair.second);
@@ -69,7 +69,7 @@ ClearanceTest::ClearanceTest(const Geometry<double>& g, double min_clearance) : 
       h_min_ = infinity;
     } else if (platform_and_lower && below <= g.l_d) {
       const double radii = min_clearance + g.R_p + g.R_d;
-      if (radii > g.d) h_min_ = infinity;  // D_j is d above the platform
+      if (radii > g.d) h_min_ = infinity;  // no pose is clear: the point D_j is only d above the platform
       sin_beta_min_ = radii / below;
     } else {
       (moves(pair.first) || moves(pair.second) ? moving_pairs_ : suspended_pairs_).push_back(pair);

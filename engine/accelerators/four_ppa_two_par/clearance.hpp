@@ -26,28 +26,29 @@ double clearance_lower_bound(const Geometry<double>& g, const GroupPair& pair);
 
 class ClearanceTest {
  public:
-  /// @param min_clearance  required of all pairs [m]
+  /// @param min_clearance  clearance required between the links of every pair [m]
   ClearanceTest(const Geometry<double>& g, double min_clearance);
 
-  /// Smallest h at which the two sliders of each rail do not collide [m]; infinite if they collide at every pose.
+  /// The smallest h (half the distance of the two sliders of a rail) at which these sliders do not collide [m];
+  /// infinite if they collide at every pose.
   double h_min() const { return h_min_; }
-  /// Minimum of sin(beta) that keeps lower bars and platform clear.
+  /// The smallest sin(beta) at which the lower bars keep their clearance from the platform.
   double sin_beta_min() const { return sin_beta_min_; }
-  /// Whether h_min() and sin_beta_min() imply the clearance. If so, no pair has to be tested.
+  /// Returns true if the limits h_min() and sin_beta_min() imply the clearance, so that no pair has to be tested.
   bool complete() const { return suspended_pairs_.empty() && moving_pairs_.empty(); }
 
-  /// Margin of the clearance at a pose [m]. If positive, it is only a lower bound of the actual margin.
+  /// Actual minus required clearance at a pose [m]. If it is positive, it is only a lower bound.
   double excess(const Placement<double>& p) const;
 
-  /// Finds the intervals of [low, high], along the delta of a half slice, in which the suspended links are clear.
-  /// @return scratch.clear
+  /// Finds the intervals of delta, within [low, high] of a half slice, in which the suspended links are clear.
+  /// @return scratch.clear, which contains the intervals
   const std::vector<ClosedInterval>& clear_deltas(const SlicedDesign<double>& d, const Slice<double>& t,
                                                   const HalfSlice<double>& h, std::size_t leaning, double low,
                                                   double high, ClearanceScratch& scratch) const;
 
-  /// Finds the intervals of a column in which all links are clear, as heights above its lower end [m]. The delta of the
-  /// column must be in an interval found by clear_deltas().
-  /// @return scratch.clear
+  /// Finds the intervals of a column in which all links are clear, as heights above the column's lower end [m]. The
+  /// delta of the column must be in an interval found by clear_deltas().
+  /// @return scratch.clear, which contains the intervals
   const std::vector<ClosedInterval>& clear_heights(const SlicedDesign<double>& d, const Slice<double>& t,
                                                    const Column<double>& column, ClearanceScratch& scratch) const;
 
@@ -63,8 +64,8 @@ class ClearanceTest {
   std::vector<GroupPair> moving_pairs_;     ///< pairs whose distance depends on z
 };
 
-/// Replaces the clearance limit of `l`: conditions on h and beta become l.h_min and l.sin_beta_min, and all others are
-/// combined in a test of poses; std::nullopt if no test is needed.
+/// Splits the clearance limit of `l`. Conditions on h and beta replace l.h_min and l.sin_beta_min; all other conditions
+/// are combined in the returned test of poses, which is std::nullopt if there are none.
 std::optional<ClearanceTest> reduce_clearance(const Geometry<double>& g, Limits<double>& l);
 
 }  // namespace pkm::four_ppa_two_par

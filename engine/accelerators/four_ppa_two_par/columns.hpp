@@ -12,25 +12,26 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// Scratch memory of an analysis.
+/// Scratch memory of one workspace analysis.
 template <class S>
 struct ColumnScratch {
   std::vector<CriticalValue<S>> critical_values;
-  std::vector<Subinterval<S>> intervals;  ///< subintervals of theta
+  std::vector<Subinterval<S>> intervals;  ///< intervals of theta on which the area of the slice is smooth
   std::vector<QuadratureCell<S>> integrals;
-  std::vector<Subinterval<S>> deltas, heights;  ///< intervals of delta, of z
+  std::vector<Subinterval<S>> deltas, heights;  ///< intervals of delta within a slice, and of z within a column
   ClearanceScratch clearance;
   ColumnConditioning<S> poses;
   std::array<std::vector<S>, 2> inertia;  ///< values of fields at a pose and at its mirror image in x = b/2
 };
 
-/// Rounding error of the area of a slice [m^2], a difference of terms of the size l_d (l_d + l_u).
+/// Estimate of the rounding error of the area of a slice [m^2], which is a difference of terms of the size l_d (l_d +
+/// l_u).
 template <class S>
 double area_roundoff(const Geometry<S>& g) {
   return 1e-15 * value_of(g.l_d) * (value_of(g.l_d) + value_of(g.l_u));
 }
 
-/// Volume of the workspace on one plane y [m^2 rad].
+/// Volume of the workspace on the plane y of the design [m^2 rad].
 template <class S>
 Integral<S> plane_volume(const SlicedDesign<S>& d, double tolerance, ColumnScratch<S>& scratch) {
   find_theta_intervals(d, scratch.critical_values, scratch.intervals);
@@ -39,7 +40,7 @@ Integral<S> plane_volume(const SlicedDesign<S>& d, double tolerance, ColumnScrat
     return area(d, slice(d, s, c));
   };
   Integral<S> result = integrate<S>(slice_area, scratch.intervals, tolerance, area_roundoff(d.g), scratch.integrals);
-  result.value *= S(2.0);  // even in theta
+  result.value *= S(2.0);  // the volume of theta < 0 equals that of theta > 0
   result.error *= 2;
   return result;
 }
@@ -68,15 +69,16 @@ S area_over_y(const SlicedDesign<S>& d, Slice<S> t, const GaussRule& rule) {
     if (!(value_of(end) > 0)) continue;
     const S rest = d.z_low - end, above = d.z_high + end;
     if (value_of(rest) > value_of(d.z_high)) {
-      add_stroke(sqrt_or_zero(S((g.l_u - rest) * (g.l_u + rest))));     // Delta_j = end
-      add(sqrt_or_zero(S((g.l_u - above) * (g.l_u + above))) + shift);  // Delta_2 - Delta_1 = end, H_2 inactive
+      add_stroke(sqrt_or_zero(S((g.l_u - rest) * (g.l_u + rest))));  // value at which Delta_j equals the end of delta
+      // Value at which Delta_2 - Delta_1 equals the end of delta, while stroke 2 does not limit z.
+      add(sqrt_or_zero(S((g.l_u - above) * (g.l_u + above))) + shift);
     }
-    const auto offset = [&](const S& width) {  // H of the midpoint of a chord with components (width, end)
+    const auto offset = [&](const S& width) {  // H of the midpoint of a chord whose components are (width, end)
       const S square = width * width + end * end;
       return S(end * sqrt_or_zero(S(g.l_u * g.l_u / square - 0.25)));
     };
-    add(offset(S(shift * 2.0)));                  // H_2 - H_1 = 2 shift
-    add(middle - offset(S(g.L0 - shift * 2.0)));  // H_1 + H_2 = L0 - 2 shift
+    add(offset(S(shift * 2.0)));                  // value at which H_2 - H_1 = 2 shift
+    add(middle - offset(S(g.L0 - shift * 2.0)));  // value at which H_1 + H_2 = L0 - 2 shift
   }
   add(middle - shift);
   if (!(value_of(middle) > value_of(from))) return S(0.0);
@@ -101,7 +103,7 @@ S area_over_y(const SlicedDesign<S>& d, Slice<S> t, const GaussRule& rule) {
   return sum;
 }
 
-/// Volume integrated over y [m^3 rad]: 4 times that of theta >= 0 and y <= L0/2, by symmetry.
+/// Volume integrated over y [m^3 rad]. By symmetry, it is 4 times the volume of theta >= 0 and y <= L0/2.
 template <class S>
 Integral<S> volume_over_y(const Geometry<S>& g, const Limits<S>& l, double tolerance, ColumnScratch<S>& scratch) {
   static const GaussRule rule = gauss_legendre(20);
@@ -154,8 +156,9 @@ void visit_halves(const SlicedDesign<S>& d, const Slice<S>& t, const ClearanceTe
   }
 }
 
-/// Finds the feasible intervals of z in a column: the whole one, or the parts of it in which links are clear.
-/// @param scratch  receives them in `heights`
+/// Finds the feasible intervals of z in a column: the whole column or, with a clearance test, the parts in which the
+/// links are clear.
+/// @param scratch  receives the intervals in `heights`
 template <class S>
 void find_height_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const Column<S>& column,
                            const ClearanceTest* test, ColumnScratch<S>& scratch) {
@@ -170,14 +173,14 @@ void find_height_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const Co
   scratch.heights.push_back({S(0.0), column.length, true, true});
 }
 
-/// The values that samples contain, and the data to compute them.
+/// Selects the values that samples contain, with the data to compute them.
 template <class S>
 struct SampleContents {
   bool conditioning = false, poses = false, inertia = false;
-  S gamma{};           ///< a / (2 L_c)
-  Masses<S> masses{};  ///< if inertia is requested
+  S gamma{};           ///< ratio a / (2 L_c), with the characteristic length L_c
+  Masses<S> masses{};  ///< masses of the design; set only if the inertia is requested
 
-  /// Whether mirrored poses need separate samples.
+  /// Returns true if mirrored poses need separate samples, because their inertia or coordinates differ.
   bool distinguishes_images() const { return inertia || poses; }
 };
 
@@ -186,11 +189,11 @@ template <class S>
 struct SampleTarget {
   explicit SampleTarget(WorkspaceResult<S>& to) : workspace(to), conditioning(to.find(kConditioning)) {}
   WorkspaceResult<S>& workspace;
-  std::vector<S>* conditioning;  ///< null if it is not requested
+  std::vector<S>* conditioning;  ///< values of the conditioning; null if it is not requested
 };
 
-/// Adds one sample.
-/// @param inertia   result of inertia_values()
+/// Adds one sample to the result.
+/// @param inertia   result of inertia_values() at the pose
 /// @param mirrored  see add_inertia()
 template <class S>
 void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S>& pose, const S& conditioning,
@@ -201,7 +204,7 @@ void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S
   if (contents.inertia) add_inertia(inertia, mirrored, to.workspace);
 }
 
-/// Which planes are sampled: y (near), L0 - y (far) or both, where y <= L0/2 is the plane of the design.
+/// Selects the planes to be sampled: y (near), L0 - y (far) or both, where y <= L0/2 is the plane of the design.
 enum class Planes { near, far, both };
 
 /// Adds weighted samples of one plane or of both planes: the nodes of a Gauss rule in theta, delta and z on every
@@ -213,7 +216,7 @@ enum class Planes { near, far, both };
 /// plane y at theta. All images have the same conditioning, so one sample with their total weight is sufficient. If
 /// inertia or poses are requested, every image is a separate sample, because the inertia is permuted among the joints,
 /// and the poses differ.
-/// @param test  clearance test of poses, or null
+/// @param test  clearance test of poses; null: links may collide
 template <class S>
 void sample(const SlicedDesign<S>& d, const SampleContents<S>& contents, Planes planes, const S& weight,
             const GaussRule& theta_rule, const GaussRule& inner_rule, const ClearanceTest* test,

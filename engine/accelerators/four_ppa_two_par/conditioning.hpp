@@ -15,12 +15,12 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// Quantities that all poses of one column share.
+/// Quantities that are the same for all poses of one column.
 template <class S>
 struct ColumnPoses {
-  S l_u, gamma;  ///< gamma = a / (2 L_c)
+  S l_u, gamma;  ///< length of the upper bars [m]; gamma = a / (2 L_c), with the characteristic length L_c
   S sin_theta, cos_theta;
-  std::array<S, 2> x, sigma;  ///< x_j and sigma_j of both limbs [m], lower branch
+  std::array<S, 2> x, sigma;  ///< x_j and sigma_j of both limbs [m] in the mode lower,lower
 };
 
 /// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length; 0 if J_q or G is
@@ -28,7 +28,7 @@ struct ColumnPoses {
 template <class S, class T>
 [[gnu::always_inline]] inline S conditioning(const ColumnPoses<T>& column, const std::array<S, 2>& z_c) {
   constexpr double kRoot2 = 1.41421356237309504880;
-  Rows3<S> m;  // columns x, z, theta
+  Rows3<S> m;  // rows of J, with columns for x, z and theta
   m[0] = {S(0.0), S(0.0), S(column.gamma * column.cos_theta * 2.0)};
   for (std::size_t j = 0; j < 2; ++j) {
     const S h = sqrt_or_zero(S((column.l_u - z_c[j]) * (column.l_u + z_c[j])));
@@ -39,7 +39,8 @@ template <class S, class T>
     m[j + 1] = {S(scale * column.x[j]), S(scale * column.sigma[j] * -sign),
                 S(scale * column.x[j] * column.gamma * column.sin_theta * sign)};
   }
-  return inverse_condition(m, S(4.0));  // J is diag(2) and this 3 x 3 matrix
+  // The complete J consists of this 3 x 3 block and a separate row and column for y, which add a singular value of 2.
+  return inverse_condition(m, S(4.0));
 }
 
 /// Computes the conditioning of `count` poses in SIMD batches; the arrays are padded to a multiple of kLanes.
@@ -47,7 +48,7 @@ template <InstructionSet set>
 void conditioning_of_poses(const ColumnPoses<double>& column, const double* z_c1, const double* z_c2, std::size_t count,
                            double* result);
 
-/// Heights of the poses of one column, and their conditioning.
+/// z_c of both limbs at the poses of one column, and the conditioning of these poses
 template <class S>
 struct ColumnConditioning {
   std::array<std::vector<S>, 2> z_c;

@@ -8,13 +8,14 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// M_q [kg]. It is finite inside the workspace: 0 < sigma_j, 0 < h_j, z_cj < 0, 0 < cos theta, 0 < sin(beta_1 +
-/// beta_2). NaN if cos theta or sin(beta_1 + beta_2) vanishes to working precision, because J is singular there.
-/// @param x, sigma, z_c  of the two limbs [m], lower branch
+/// Computes the joint-space inertia M_q [kg]. It is finite inside the workspace, where 0 < sigma_j, 0 < h_j, z_cj < 0,
+/// 0 < cos theta and 0 < sin(beta_1 + beta_2). It is NaN if cos theta or sin(beta_1 + beta_2) vanishes to working
+/// precision, because J is then singular.
+/// @param x, sigma, z_c  values of both limbs [m], in the lower branch
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_theta, const S& cos_theta,
                               const std::array<S, 2>& x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c) {
-  using Row = Vector<S, 4>;  // the coefficients of q' in a velocity
+  using Row = Vector<S, 4>;  // the coefficients of the four slider velocities in a velocity
   std::array<Row, 2> y, h, z_cj, x_j;
   std::array<S, 2> t, h2;
   for (std::size_t j = 0; j < 2; ++j) {
@@ -59,7 +60,8 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S&
   return M;
 }
 
-/// Computes the values of all requested inertia fields at a pose, in the order of the fields.
+/// Computes the values of all requested fields of the inertia at a pose, in the order in which the fields were
+/// requested.
 template <class S>
 void inertia_values(const Matrix<S, 4, 4>& M_q, WorkspaceResult<S>& workspace, std::vector<S>& values) {
   values.clear();
@@ -67,8 +69,9 @@ void inertia_values(const Matrix<S, 4, 4>& M_q, WorkspaceResult<S>& workspace, s
                    [&](auto&, std::span<const S> of) { values.insert(values.end(), of.begin(), of.end()); });
 }
 
-/// Appends the values computed by inertia_values() to the inertia fields.
-/// @param mirrored  the pose is the mirror image (theta -> -theta), with the two sliders of each rail exchanged
+/// Appends the values computed by inertia_values() to the fields of the inertia.
+/// @param mirrored  true: for the mirror image of the pose (theta -> -theta), in which the two sliders of each rail are
+/// exchanged
 template <class S>
 void add_inertia(const std::vector<S>& values, bool mirrored, WorkspaceResult<S>& workspace) {
   auto value = values.begin();

@@ -11,14 +11,14 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// Position of the limbs at a pose, relative to the platform's y; it determines the positions of all links.
+/// Positions of the limbs at a pose, relative to the platform's y. They determine the positions of all links.
 template <class S>
 struct Placement {
   S sin_theta;
-  std::array<S, 2> x, drop, z_c, h;  ///< [m]; drop: height of C_j above D_j
+  std::array<S, 2> x, drop, z_c, h;  ///< one value per limb [m]; drop is the height of C_j above D_j
 };
 
-/// The limbs in the mode lower,lower; meaningless if a limb does not reach.
+/// Placement of the limbs in the mode lower,lower. It is meaningless if a limb does not reach the pose.
 inline Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta,
                                          double cos_theta) {
   const double half = g.a * cos_theta * 0.5;
@@ -34,10 +34,10 @@ inline Placement<double> lower_placement(const Geometry<double>& g, double x, do
 // Groups of links. Each limb has, in the plane of its rail, two sliders, four upper bars and the upper connector's side
 // along y; in the plane y = y_j the upper connector's upright side with two lower bars, and the lower connector.
 enum LinkGroup { kSliders, kUpperBars, kConnectorSide, kLowerBars, kLowerConnector, kGroupsPerLimb };
-inline constexpr int kPlatform = 2 * kGroupsPerLimb;  ///< last group
+inline constexpr int kPlatform = 2 * kGroupsPerLimb;  ///< index of the platform's group, which is the last one
 inline constexpr int kGroups = kPlatform + 1;
 
-/// Index of a group of limb 0 or 1.
+/// Index of a group of links of limb 0 or 1.
 constexpr int group_of(int limb, LinkGroup group) { return limb * kGroupsPerLimb + group; }
 
 /// Range [first, end) of the links of one group in the list of all links.
@@ -66,7 +66,7 @@ Links<S> links(const Geometry<S>& g, const Placement<S>& p) {
   const S zero(0.0), shift = g.a * p.sin_theta * 0.5, half_u = g.d_u * 0.5;
   const S slider = max(zero, S(g.d_0 + half_u - g.R_s));
   const S connector = max(g.d, g.d_d);  // length of the lower connector below D_j
-  std::array<Point3<S>, 2> joint;       // P_1, P_2
+  std::array<Point3<S>, 2> joint;       // positions of the joints P_1 and P_2
   for (std::size_t j = 0; j < 2; ++j) {
     const S rail = j == 0 ? zero : g.b, y = j == 0 ? S(-shift) : shift;
     const S x_d = j == 0 ? p.x[0] : S(g.b - p.x[1]), z_c = p.z_c[j], z_d = z_c - p.drop[j];
@@ -93,7 +93,8 @@ struct GroupPair {
   int first, second;
 };
 inline constexpr std::size_t kGroupPairs = 35;
-/// First the sliders of each rail, then the platform with groups of both limbs, then groups of different limbs.
+/// All pairs: first the sliders of each rail, then the platform with groups of both limbs, then groups of different
+/// limbs.
 inline constexpr std::array<GroupPair, kGroupPairs> kPairs = [] {
   std::array<GroupPair, kGroupPairs> pairs{};
   std::size_t n = 0;
@@ -106,7 +107,7 @@ inline constexpr std::array<GroupPair, kGroupPairs> kPairs = [] {
   return pairs;
 }();
 
-/// Calls visit(i, k) for every pair of links of a pair of groups.
+/// Calls visit(i, k) for every pair of links of which i belongs to the first group of a pair and k to the second.
 template <class Visit>
 void visit_links(const GroupPair& pair, const Visit& visit) {
   const GroupRange a = links_of(pair.first), b = links_of(pair.second);

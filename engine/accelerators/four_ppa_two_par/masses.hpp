@@ -7,26 +7,26 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// Order of the parameters that follow the lengths.
+/// Indices of the parameters that follow the lengths in a design.
 enum MassIndex {
   kLambdaU = kParameters,
   kLambdaD,
   kLambdaS,
   kLambdaP,
-  kJoints,  ///< m_c
+  kJoints,  ///< mass m_c of the joints
   kKappa,
   kKappaP,
-  kPayload,        ///< m_p
-  kPayloadOffset,  ///< c_p
+  kPayload,        ///< mass m_p of the payload
+  kPayloadOffset,  ///< offset c_p of the payload
   kAllParameters
 };
 
 template <class S>
 struct Masses {
   S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< mass of each link [kg]
-  S I_upper, I_lower;              ///< inertia of a bar about its centre, axis normal to the bar [kg m^2]
-  S I_platform;                    ///< about its centre, axis z [kg m^2]
-  S c_payload;                     ///< [m]
+  S I_upper, I_lower;  ///< moment of inertia of a bar about an axis through its centre, normal to the bar [kg m^2]
+  S I_platform;        ///< moment of inertia of the platform about its centre, for rotation about z [kg m^2]
+  S c_payload;         ///< offset of the payload [m]
   std::array<double, 4> rotors{};  ///< inertia of drive trains at the sliders [kg], added to M_q only
 };
 

@@ -11,7 +11,7 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<do
   const double sine = (q[2] + q[3] - q[0] - q[1]) / (2 * g.a);
   constexpr double kRoundoff = 1e-12;
   if (!(std::fabs(sine) <= 1 + kRoundoff) || h[0] < 0 || h[1] < 0)
-    return modes;  // the sliders of a rail keep their order
+    return modes;  // all modes in which the two sliders of a rail keep their order
   double z_c[2];
   for (int j = 0; j < 2; ++j) {
     const double under = (g.l_u - h[j]) * (g.l_u + h[j]);
@@ -21,12 +21,14 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<do
   const double theta = asin(std::clamp(sine, -1.0, 1.0));
 
   const auto intersect = [&](double angle, double z1, double z2, const char* above) {
-    // the platform's (x, z) is on two circles of radius l_d, with centres (x1, z1 - d) and (x2, z2 - d)
+    // (x, z) of the platform is an intersection of two circles of radius l_d, with centres (x1, z1 - d) and (x2, z2 -
+    // d)
     const double c = sincos(angle).cos;
     const double x1 = g.a * c / 2, x2 = g.b - g.a * c / 2, w = x2 - x1, rise = z2 - z1;
     const double distance2 = w * w + rise * rise;
     const double under = g.l_d * g.l_d - distance2 / 4;
-    if (!(distance2 > 0) || under < -kRoundoff * g.l_d * g.l_d) return;  // concentric: no isolated solution
+    // The circles are concentric or do not intersect: there is no isolated solution.
+    if (!(distance2 > 0) || under < -kRoundoff * g.l_d * g.l_d) return;
     const double t = std::sqrt(std::fmax(0.0, under) / distance2);
     for (const int side : {-1, 1}) {
       const double x = 0.5 * (x1 + x2) - side * t * rise, z = 0.5 * (z1 + z2) - g.d + side * t * w;
@@ -39,7 +41,8 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<do
   static constexpr const char* kNames[2][2] = {{"below,below", "below,above"}, {"above,below", "above,above"}};
   for (int up1 = 0; up1 < 2; ++up1)
     for (int up2 = 0; up2 < 2; ++up2) {
-      if ((up1 && z_c[0] == 0) || (up2 && z_c[1] == 0)) continue;  // above and below are the same pose
+      // C_j is on its rail: the solutions above and below coincide.
+      if ((up1 && z_c[0] == 0) || (up2 && z_c[1] == 0)) continue;
       for (const double angle : {theta, kPi - theta}) {
         intersect(angle, up1 ? -z_c[0] : z_c[0], up2 ? -z_c[1] : z_c[1], kNames[up1][up2]);
         if (kPi - theta == theta) break;

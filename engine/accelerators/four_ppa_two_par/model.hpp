@@ -17,13 +17,13 @@ namespace pkm::four_ppa_two_par {
 template <class S>
 using Pose = SchoenfliesPose<S>;
 
-/// Order of the parameters.
+/// Indices of the parameters of a design.
 enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kRp, kRs, kParameters };
 
-/// Order of the pose-level limits.
+/// Indices of the limits on poses in a LimitSpec.
 enum LimitIndex { kAlphaMin, kBetaMin, kBetaMax, kHMin, kSinParMin, kCosThetaMin, kClearanceMin, kLimits };
 
-/// Lengths [m], names as in the paper; kAll has them in the order of the parameters.
+/// Lengths of a design [m], with the names of the paper; kAll lists them in the order of the parameters.
 template <class S>
 struct Geometry {
   S a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s;
@@ -40,17 +40,17 @@ Geometry<S> geometry(std::span<const S> p) {
   return g;
 }
 
-/// Thresholds of the pose-level constraints, as sines and cosines of the angles.
+/// Thresholds of the constraints on poses; angles are given by their sines and cosines.
 template <class S>
 struct Limits {
   S sin_alpha_min, cos_alpha_min;
   S sin_beta_min, cos_beta_min;
   S sin_beta_max, cos_beta_max;
-  S h_min;               ///< [m]
-  S sin_par_min;         ///< sin(phi), minimum of sin(beta_1 + beta_2)
+  S h_min;               ///< minimum of h [m]
+  S sin_par_min;         ///< minimum of sin(beta_1 + beta_2), which is sin(phi)
   S sin_half, cos_half;  ///< sine and cosine of phi/2
   S cos_theta_min;
-  std::optional<double> clearance_min;  ///< [m]
+  std::optional<double> clearance_min;  ///< minimum clearance of links [m]; std::nullopt: no limit
 
   using L = Limits;
   static constexpr std::array<S L::*, 11> kAll = {
@@ -58,7 +58,7 @@ struct Limits {
       &L::h_min,         &L::sin_par_min,   &L::sin_half,     &L::cos_half,     &L::cos_theta_min};
 };
 
-/// Converts a Geometry or Limits to constants of another scalar.
+/// Converts a Geometry or Limits to another scalar type, with zero derivatives.
 template <class To, template <class> class Values, class From>
 Values<To> constant(const Values<From>& from) {
   Values<To> to{};
@@ -66,7 +66,8 @@ Values<To> constant(const Values<From>& from) {
   return to;
 }
 
-/// Thresholds given by the study, or derived from the sizes of bars and sliders (eqs 17 and 19).
+/// Computes the thresholds: those that the study gives, and those derived from the sizes of bars and sliders (eqs 17
+/// and 19).
 template <class S>
 Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
   const auto given = [&](int i) { return sincos(S(spec.given[static_cast<std::size_t>(i)].value_or(0))); };
@@ -92,8 +93,8 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
           .clearance_min = spec.given[kClearanceMin]};
 }
 
-/// All assembly modes, at most 16 (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its rail,
-/// both intersections of two circles. Those with both C_j below the rails come first.
+/// Finds all assembly modes, at most 16 (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its
+/// rail, and both intersections of two circles. Modes with both C_j below the rails come first.
 std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& q);
 
 }  // namespace pkm::four_ppa_two_par

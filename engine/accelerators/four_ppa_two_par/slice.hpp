@@ -24,13 +24,14 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// Ranges of lengths that the limits allow in the mode lower,lower [m].
+/// Ranges to which the limits restrict lengths in the mode lower,lower [m].
 template <class S>
 struct Ranges {
   S x_min, x_max;   ///< range of x_j: l_d sin(beta_min), l_d sin(beta_max)
   S z_low, z_high;  ///< maximum and minimum of -z_cj for unlimited stroke: sqrt(l_u^2 - h_min^2), l_u sin(alpha_min)
-  S stroke_free;    ///< l_u cos(alpha_min): a larger stroke does not limit z
-  S chord_min, chord_max;  ///< of 2 l_d sin p, 2p = beta_1 + beta_2, for sin_par_min = sin(phi): 2 l_d sin, cos(phi/2)
+  S stroke_free;    ///< stroke l_u cos(alpha_min) from which on the stroke does not limit z
+  /// Range of 2 l_d sin p, with 2p = beta_1 + beta_2, for sin_par_min = sin(phi): 2 l_d sin(phi/2) to 2 l_d cos(phi/2).
+  S chord_min, chord_max;
 };
 template <class S>
 Ranges<S> ranges(const Geometry<S>& g, const Limits<S>& l) {
@@ -43,16 +44,16 @@ Ranges<S> ranges(const Geometry<S>& g, const Limits<S>& l) {
           .chord_max = g.l_d * 2.0 * l.cos_half};
 }
 
-/// A design and its limits on a plane y.
+/// A design with its limits, on a plane of constant y.
 template <class S>
 struct SlicedDesign : Ranges<S> {
   Geometry<S> g;
   Limits<S> l;
-  S y;         ///< the plane, mirrored to y <= L0/2 [m]
-  bool empty;  ///< no pose is feasible
+  S y;         ///< y of the plane, mirrored to y <= L0/2 [m]
+  bool empty;  ///< true if no pose is feasible on the plane
 };
 
-/// @param y  plane [m]; the workspace on L0 - y is the mirror image (y -> L0 - y, theta -> -theta)
+/// @param y  y of the plane [m]; the workspace on the plane L0 - y is its mirror image (y -> L0 - y, theta -> -theta)
 template <class S>
 SlicedDesign<S> sliced_design(const Geometry<S>& g, const Limits<S>& l, const S& y) {
   SlicedDesign<S> d{ranges(g, l), g, l, min(y, S(g.L0 - y)), false};
@@ -61,20 +62,20 @@ SlicedDesign<S> sliced_design(const Geometry<S>& g, const Limits<S>& l, const S&
   return d;
 }
 
-/// The limit that gives the upper bound of delta.
+/// The limit that determines the upper bound of delta.
 enum class EndKind { beta_max, beta_min, parallel };
 
 template <class S>
 struct Slice {
   S w;  ///< b - a cos(theta) [m]
   S sin_theta, cos_theta;
-  std::array<S, 2> depth;  ///< Delta_1, Delta_2 [m]; <= 0: the limb has no feasible z
-  S delta_low, delta_end;  ///< range of delta, without the effect of the depths [m]
+  std::array<S, 2> depth;  ///< Delta_1 and Delta_2 [m]; if one is <= 0, its limb has no feasible z
+  S delta_low, delta_end;  ///< range of delta, without the effect of `depth` [m]
   EndKind end = EndKind::beta_max;
-  bool empty = true;  ///< no x is feasible
+  bool empty = true;  ///< true if no x is feasible
 };
 
-/// The slice without its depths, which are 0.
+/// The slice at one theta, with depths that are not yet set (0).
 template <class S>
 Slice<S> slice_range(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_theta) {
   const Geometry<S>& g = d.g;
@@ -87,13 +88,14 @@ Slice<S> slice_range(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_
   if (!(value_of(t.w) > 2 * value_of(d.x_min) && value_of(t.w) < 2 * value_of(d.x_max) &&
         value_of(t.w) < value_of(d.chord_max)))
     return t;
-  // upper bound of delta: beta_max of the leaning limb, beta_min of the other one, or sin_par_min
+  // The upper bound of delta is determined by beta_max of the leaning limb, by beta_min of the other limb, or by
+  // sin_par_min.
   const S x_lean = t.w - d.x_min;
   if (value_of(x_lean) > value_of(d.x_max)) {
     const S x_other = t.w - d.x_max;
     t.delta_end = sqrt_or_zero(S((g.l_d - x_other) * (g.l_d + x_other))) - g.l_d * d.l.cos_beta_max;
     t.end = EndKind::beta_max;
-  } else {  // l_d cos(beta_min) - sqrt(l_d^2 - x_lean^2) without the cancellation
+  } else {  // the difference l_d cos(beta_min) - sqrt(l_d^2 - x_lean^2) without cancellation
     const S sum = g.l_d * d.l.cos_beta_min + sqrt_or_zero(S((g.l_d - x_lean) * (g.l_d + x_lean)));
     t.delta_end = t.w * (t.w - d.x_min * 2.0) / sum;
     t.end = EndKind::beta_min;
@@ -108,7 +110,8 @@ Slice<S> slice_range(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_
   return t;
 }
 
-/// Depth of one limb for a stroke of H on its shorter side [m]; the stroke limits it if H < l_u cos(alpha_min).
+/// Depth Delta_j of one limb [m] if its stroke on the shorter side is H. The stroke limits the depth if H < l_u
+/// cos(alpha_min).
 template <class S>
 S depth(const SlicedDesign<S>& d, const S& H) {
   if (value_of(H) >= value_of(d.stroke_free)) return d.z_low - d.z_high;
@@ -116,21 +119,21 @@ S depth(const SlicedDesign<S>& d, const S& H) {
   return S(0.0);
 }
 
-/// Strokes H_1, H_2 of the limbs on their shorter sides [m]; bit-identical for both limbs on the middle plane.
+/// Strokes H_1 and H_2 of the limbs on their shorter sides [m]. On the middle plane they are bit-identical.
 template <class S>
 std::array<S, 2> strokes(const SlicedDesign<S>& d, const S& y, const S& sin_theta) {
   const S shift = d.g.a * sin_theta * 0.5, rest = d.g.L0 - y;
   return {min(S(y - shift), S(rest + shift)), min(S(y + shift), S(rest - shift))};
 }
 
-/// Sets the depths of both limbs on the plane y.
+/// Computes the depths of both limbs on the plane y.
 template <class S>
 void set_depths(const SlicedDesign<S>& d, const S& y, Slice<S>& t) {
   const std::array<S, 2> H = strokes(d, y, t.sin_theta);
   t.depth = {depth(d, H[0]), depth(d, H[1])};
 }
 
-/// The slice on the plane of the design.
+/// The slice at one theta, with the depths on the plane of the design.
 template <class S>
 Slice<S> slice(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_theta) {
   Slice<S> t = slice_range(d, sin_theta, cos_theta);
@@ -138,12 +141,12 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_theta)
   return t;
 }
 
-/// The half of a slice in which one limb is the leaning one. The length of the z interval at delta is
-/// min(flat, slope - delta) for delta in [low, end].
+/// The half of a slice in which one given limb is the leaning one. The length of the z interval at a delta in [low,
+/// end] is min(flat, slope - delta).
 template <class S>
 struct HalfSlice {
   S flat, slope;
-  S low, knee, end;  ///< knee: up to this delta, the length is `flat`
+  S low, knee, end;  ///< range [low, end] of delta; up to the delta `knee`, the length is `flat` [m]
   bool empty = true;
 };
 
@@ -160,7 +163,7 @@ HalfSlice<S> half_slice(const Slice<S>& t, std::size_t leaning) {
   return h;
 }
 
-/// sin p, cos p and u at one delta.
+/// sin p, cos p and u at one value of delta.
 template <class S>
 struct Chord {
   S sin_p, cos_p, u;
@@ -176,15 +179,16 @@ Chord<S> chord(const SlicedDesign<S>& d, const Slice<S>& t, const S& delta) {
   return c;
 }
 
-/// The feasible z at one x of a half slice.
+/// The feasible z interval at one x of a half slice.
 template <class S>
 struct Column {
   std::array<S, 2> x, sigma;  ///< x_j and sigma_j of both limbs [m]
   S length;                   ///< length of the z interval [m]
-  S derivative;               ///< du / d(delta)
+  S derivative;               ///< derivative of u with respect to delta
   std::size_t leaning;
 
-  /// z_c of limb j at a height above the lower end of the interval, at which the z_c of the leaning limb is -Z_low.
+  /// z_c of limb j at the height `rise` above the lower end of the interval, at which z_c of the leaning limb is
+  /// -Z_low.
   S z_c(const SlicedDesign<S>& d, const S& rise, std::size_t j) const {
     const S lean = rise - d.z_low;
     return j == leaning ? lean : S(lean + (sigma[j] - sigma[leaning]));
@@ -208,7 +212,7 @@ Column<S> column(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>
   return c;
 }
 
-/// Area of one half [m^2].
+/// Area of one half of a slice [m^2].
 template <class S>
 S half_area(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>& h) {
   const Chord<S> low = chord(d, t, h.low);
@@ -223,7 +227,7 @@ S half_area(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>& h) 
   return area;
 }
 
-/// Area of the slice [m^2].
+/// Area of the whole slice [m^2].
 template <class S>
 S area(const SlicedDesign<S>& d, const Slice<S>& t) {
   if (t.empty) return S(0.0);

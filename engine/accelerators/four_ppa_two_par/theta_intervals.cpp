@@ -5,8 +5,8 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Root of a switching function between two theta at which it has different signs, to rounding accuracy; 0 counts as
-/// negative.
+/// Root of a switching function between two values of theta at which it has different signs, to rounding accuracy. The
+/// value 0 counts as negative.
 double switching_root(const SlicedDesign<double>& d, std::size_t index, double low, double at_low, double high,
                       double at_high) {
   const auto negated = [&](double theta) { return -switching_function(d, index, theta); };

@@ -33,13 +33,13 @@ S switching_function(const SlicedDesign<S>& d, std::size_t index, const S& theta
   return switching_functions(slice(d, s, c))[index];
 }
 
-/// The cases that select the formula of the area, apart from the signs of the switching functions.
+/// The cases that, together with the signs of the switching functions, select the formula of the area.
 struct Formula {
   EndKind end;
-  bool low;                         ///< delta_low > 0
-  bool stroke_limits_1;             ///< the stroke limits the depth of limb 1
-  bool stroke_limits_2;             ///< the stroke limits the depth of limb 2
-  bool stroke_limits_2_at_far_end;  ///< it is the stroke to the far end of the rail
+  bool low;                         ///< true if delta_low > 0
+  bool stroke_limits_1;             ///< true if the stroke limits the depth of limb 1
+  bool stroke_limits_2;             ///< true if the stroke limits the depth of limb 2
+  bool stroke_limits_2_at_far_end;  ///< true if the stroke that limits limb 2 is the one to the far end of the rail
   bool operator==(const Formula&) const = default;
 };
 /// Combinatorial type of a slice.
@@ -58,52 +58,53 @@ struct Signature {
 
 Signature signature(const SlicedDesign<double>& d, double theta);
 
-/// A root of a switching function.
+/// A root of one of the switching functions.
 struct Crossing {
   double theta;
   std::size_t function;
 };
-/// The first root in (low, high], to rounding accuracy, of those switching functions that differ in sign between two
-/// signatures of the same formula.
+/// Finds the first root in (low, high], to rounding accuracy, of those switching functions whose signs differ between
+/// two signatures with the same formula.
 Crossing find_crossing(const SlicedDesign<double>& d, double low, const Signature& at_low, double high,
                        const Signature& at_high);
 
-/// The design converted to constants of another scalar type.
+/// Converts a design to another scalar type, with zero derivatives.
 template <class To, class From>
 SlicedDesign<To> constant_design(const SlicedDesign<From>& d) {
   return sliced_design(constant<To>(d.g), constant<To>(d.l), To(value_of(d.y)));
 }
 
-/// The theta of a crossing with its derivatives, by the implicit function theorem.
+/// The theta of a root of a switching function, with derivatives by the implicit function theorem.
 template <class S>
 S lift_crossing(const SlicedDesign<S>& d, const Crossing& crossing) {
   if constexpr (!std::is_same_v<S, double>) {
     const S value = switching_function(d, crossing.function, S(crossing.theta));
     const auto by_theta = Dual<1>::variable(crossing.theta, 0);
     const double derivative = switching_function(constant_design<Dual<1>>(d), crossing.function, by_theta).v[0];
-    // A zero derivative means a double root, which belongs to an interval of length 0.
+    // A zero derivative means a double root, which bounds an interval of length 0.
     return implicit_root(crossing.theta, value, derivative);
   } else {
     return crossing.theta;
   }
 }
 
-/// Adds the critical values with a closed form, unsorted.
+/// Adds the critical values of theta that have a closed form, in no particular order.
 template <class S>
 void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = d.g;
   const Limits<S>& l = d.l;
-  // add values of w or of shift, with flags: whether the area has a square-root singularity below and above them
+  // Adds the theta of a value of w or of `shift`. The flags tell whether the area has a square-root singularity below
+  // and above it.
   const auto at_w = [&](const S& w, bool root_below, bool root_above) {
     const S c = (g.b - w) / g.a;
     if (value_of(c) > 0 && value_of(c) < 1) values.push_back({acos(c), root_below, root_above});
   };
-  const auto at_shift = [&](const S& shift, bool root_below, bool root_above) {  // shift = (a/2) sin theta
+  const auto at_shift = [&](const S& shift, bool root_below, bool root_above) {  // here shift = (a/2) sin theta
     const S s = shift * 2.0 / g.a;
     if (value_of(s) > 0 && value_of(s) < 1) values.push_back({asin(s), root_below, root_above});
   };
   const auto root = [](const S& x) { return sqrt_or_zero(x); };
-  // bounds of w
+  // the bounds of w
   at_w(d.x_min * 2.0, false, false);
   at_w(d.x_max * 2.0, true, false);
   at_w(d.chord_max, true, false);
@@ -133,12 +134,12 @@ void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<Criti
   if (value_of(upper) > 0) at_w(root(upper), false, false);
   const S lower = (d.chord_min - depth) * (d.chord_min + depth);
   if (parallel && value_of(lower) > 0) at_w(root(lower), false, false);
-  // the stroke begins to limit z (a square root on that side), or leaves a limb no z
+  // The stroke begins to limit z (with a square-root singularity on that side), or leaves a limb no feasible z.
   at_shift(d.y - d.stroke_free, false, true);
   at_shift(d.stroke_free - d.y, true, false);
   at_shift(g.L0 - d.stroke_free - d.y, false, true);
   at_shift(d.y - l.h_min, false, false);
-  at_shift(g.L0 * 0.5 - d.y, false, false);  // the nearer end of the rail changes
+  at_shift(g.L0 * 0.5 - d.y, false, false);  // here the other end of the rail becomes the nearer one
 }
 
 /// Calls split(critical value, signature below it) at the roots of the switching functions between two critical values
@@ -149,7 +150,9 @@ template <class S, class Split>
 Signature split_at_crossings(const SlicedDesign<S>& d, const SlicedDesign<double>& plain, double low, double high,
                              const Signature& middle, const Split& split) {
   constexpr int kSamples = 8;
-  constexpr double kInset = 1e-7;  // from the endpoints, where a switching function can be 0 up to rounding
+  // Distance of the outer samples from the endpoints, relative to the interval; at an endpoint, rounding can change the
+  // sign of a switching function.
+  constexpr double kInset = 1e-7;
   Signature now = middle;
   double at = low;
   bool has_sample = false;
@@ -158,7 +161,7 @@ Signature split_at_crossings(const SlicedDesign<S>& d, const SlicedDesign<double
     const double next = low + (high - low) * share;
     const Signature then = signature(plain, next);
     if (then.formula != middle.formula) continue;
-    for (int more = 0; has_sample && more < 6 && !(now == then); ++more) {  // several signs can change
+    for (int more = 0; has_sample && more < 6 && !(now == then); ++more) {  // repeated because several signs can change
       const Crossing crossing = find_crossing(plain, at, now, next, then);
       split(CriticalValue<S>{lift_crossing(d, crossing)}, now);
       at = crossing.theta + 1e-12;
@@ -190,10 +193,10 @@ void find_theta_intervals(const SlicedDesign<S>& d, std::vector<CriticalValue<S>
   const auto in_order = [](const CriticalValue<S>& a, const CriticalValue<S>& b) {
     return value_of(a.at) < value_of(b.at);
   };
-  for (auto next = values.begin(); next != values.end(); ++next)  // std::stable_sort allocates
+  for (auto next = values.begin(); next != values.end(); ++next)  // insertion sort, because std::stable_sort allocates
     std::rotate(std::upper_bound(values.begin(), next, *next, in_order), next, next + 1);
 
-  constexpr double kMergeDistance = 1e-13;  // rad
+  constexpr double kMergeDistance = 1e-13;  // closer critical values are merged [rad]
   const auto changes = [&](double low, double high, const auto& split) {
     const Signature middle = signature(plain, 0.5 * (low + high));
     if (!middle || !(middle.formula->stroke_limits_1 || middle.formula->stroke_limits_2)) return middle;

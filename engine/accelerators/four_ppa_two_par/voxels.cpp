@@ -72,7 +72,7 @@ void VoxelCounter::count(const VoxelPlane& plane, const GridPart& part, std::siz
   if (k_block >= part.thetas || from >= part.xs) return;
   const ColumnsAtThetas at = columns(plane, k_block, part);
   const CellTally t = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });
-  double total = 0;  // an integer
+  double total = 0;  // number of cells; always an integer
   bool touches = t.lowest || t.highest;
   for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k) {
     const std::int64_t lane = k - k_block;

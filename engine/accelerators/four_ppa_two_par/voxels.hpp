@@ -15,23 +15,23 @@ namespace pkm::four_ppa_two_par {
 /// A box that contains every feasible pose: x in [0, b], z in [-(l_u + l_d + d), -d], theta in [-pi/2, pi/2].
 Box default_box(const Geometry<double>& g);
 
-/// A plane of one design and the grid on it.
+/// A plane y = constant of one design, and the voxel grid on it.
 struct VoxelPlane {
   const Geometry<double>& g;
   const Limits<double>& l;
-  const ClearanceTest* test;  ///< clearance test of poses, or null
-  double y;                   ///< as given, not mirrored
-  const VoxelGrid& grid;      ///< with the cells and the theta range of the VoxelCounter
+  const ClearanceTest* test;  ///< clearance test of poses; null: links may collide
+  double y;                   ///< y of the plane as given by the plan, not mirrored to y <= L0/2
+  const VoxelGrid& grid;      ///< its numbers of cells and its theta range are those of the VoxelCounter
 };
 
 /// The part of a grid that represents all cells by symmetry. On the middle plane both limbs have the same stroke, so
 /// that the workspace is symmetric in theta and in x; the grid need not be.
 struct GridPart {
-  std::int64_t xs, thetas;  ///< number of x and theta, from the first
+  std::int64_t xs, thetas;  ///< numbers of x and of theta values, beginning with the first of the grid
   bool mirrored_x = false, mirrored_theta = false;
-  bool centre_x = false, centre_theta = false;  ///< the last x or theta is its own mirror image
+  bool centre_x = false, centre_theta = false;  ///< true if the last x (theta) is its own mirror image
 
-  /// Number of columns that the column at x index i and theta index k represents.
+  /// Number of columns that the column at x index i and theta index k represents, including itself.
   int images(std::int64_t i, std::int64_t k) const {
     return (mirrored_x && !(centre_x && i == xs - 1) ? 2 : 1) *
            (mirrored_theta && !(centre_theta && k == thetas - 1) ? 2 : 1);
@@ -42,24 +42,24 @@ struct GridPart {
 struct VoxelWorker {
   ColumnBlock columns;
   ColumnConditioning<double> poses;
-  std::vector<double> inertia;  ///< values of fields at a pose
+  std::vector<double> inertia;  ///< values of the inertia fields at a pose
 };
 
-/// Finds and counts feasible cells of grids with given numbers of cells.
+/// Finds and counts the feasible cells of grids that have the same numbers of cells and the same range of theta.
 class VoxelCounter {
  public:
-  /// @param cells    numbers along x, z, theta
+  /// @param cells    numbers of cells along x, z and theta
   /// @param theta    range of theta [rad], the same for every design
   VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::array<double, 2>& theta);
 
   GridPart representative_part(const VoxelPlane& plane) const;
   GridPart whole() const { return {.xs = cells_[0], .thetas = cells_[2]}; }
 
-  /// Number of blocks of kLanes thetas.
+  /// Number of blocks into which the thetas are divided, each of kLanes values.
   std::size_t blocks(const GridPart& part) const {
     return static_cast<std::size_t>((part.thetas + kLanes - 1) / kLanes);
   }
-  /// Number of tiles for count(): kLanes thetas by kColumns x, about a microsecond of work.
+  /// Number of tiles for count(). A tile has kLanes thetas and kColumns values of x, about a microsecond of work.
   std::size_t tiles(const GridPart& part) const { return blocks(part) * static_cast<std::size_t>(tiles_per_block()); }
 
   /// Adds the feasible cells that a tile represents, without the clearance test.
@@ -102,7 +102,7 @@ class VoxelCounter {
 
   std::array<std::int64_t, 3> cells_;
   std::vector<double> sin_, cos_;  ///< sine and cosine of every theta, padded to a whole block
-  bool even_;                      ///< the theta grid is symmetric about 0
+  bool even_;                      ///< true if the theta grid is symmetric about 0
 };
 
 }  // namespace pkm::four_ppa_two_par

@@ -11,11 +11,11 @@
 namespace pkm::hybrid {
 namespace {
 
-constexpr int kY = 1;  ///< index of the coordinate y, which is fixed
+constexpr int kY = 1;  ///< index of the coordinate y, which these analyses fix or integrate over
 
 struct AnalysisSettings {
   WorkingMode signs;
-  int branch;  ///< required sign of N2, +1 or -1
+  int branch;  ///< required sign of N2 (README.md), +1 or -1
   WorkspacePlan plan;
   FieldRequest request;
 };
@@ -30,8 +30,8 @@ S stroke_factor(const Limits<S>& l, const WorkspacePlan& plan) {
   return S(y.value >= value_of(l.s_min[1]) && y.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
 }
 
-/// Adds columns along x as samples; the conditioning does not depend on x. Without derivatives, the conditioning of all
-/// samples is computed at the end, in SIMD batches.
+/// Adds columns along x as samples. The conditioning does not depend on x. If derivatives are not requested, the
+/// conditioning of all samples is computed at the end, in SIMD batches.
 template <class S>
 class ColumnSamples {
  public:
@@ -64,7 +64,7 @@ class ColumnSamples {
     }
   }
 
-  /// To be called after the last add().
+  /// Computes the remaining values; must be called after the last add().
   void finish() {
     if constexpr (std::is_same_v<S, double>) {
       if (!index_) return;
@@ -84,7 +84,7 @@ class ColumnSamples {
   ConditioningDesign<S> design_;
   PoseList& poses_;
   WorkspaceResult<S>& workspace_;
-  std::vector<S>* index_;  ///< null if it is not requested
+  std::vector<S>* index_;  ///< values of the conditioning; null if it is not requested
   double beta_ = 0;        ///< beta of the previous column
   SinCosOf<double> sincos_{0, 1};
 };
@@ -101,7 +101,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
 
  private:
   friend WithGradients<ClosedFormColumns>;
-  static constexpr int kSampleNodes = 8;  // per strip of z and interval of beta
+  static constexpr int kSampleNodes = 8;  // number of nodes per strip of z and per interval of beta
 
   template <class S>
   void run(std::span<const S> parameters, Scratch& memory, WorkspaceResult<S>& workspace) const {
@@ -130,7 +130,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
     samples.finish();
   }
 
-  /// The design converted to constants of another scalar type.
+  /// Converts a design to another scalar type, with zero derivatives.
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(settings_, std::span<const To>(constants<To, kParameters>(parameters)));
@@ -138,7 +138,8 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
 
   AnalysisSettings settings_;
   ColumnOptions columns_;
-  bool has_fixed_rules_ = columns_.nodes[0] > 0;  ///< the numbers of nodes are given, instead of the tolerance
+  /// True: the plan gives the numbers of quadrature nodes; false: it gives a tolerance.
+  bool has_fixed_rules_ = columns_.nodes[0] > 0;
   GaussRule z_rule_ = gauss_legendre(has_fixed_rules_ ? columns_.nodes[0] : kSampleNodes),
             beta_rule_ = gauss_legendre(has_fixed_rules_ ? columns_.nodes[1] : kSampleNodes);
 };
@@ -154,7 +155,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
 
   struct Worker {
     PoseList poses;
-    CellRuns runs;  ///< at one beta
+    CellRuns runs;  ///< runs of feasible cells at one beta
   };
   using Buffers = GridBuffers<VoxelHeights, Worker>;
 
@@ -225,7 +226,8 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
                                                 const FieldRequest& request) const override {
     return std::make_unique<ClosedFormVoxels>(settings(plan, request), voxels);
   }
-  /// The mode contains the signs of n1, n2, n3, and "/-" after them if N2 < 0 is required. Default: "+,-,-".
+  /// Reads the working mode. Its name contains the signs of n1, n2, n3, followed by "/-" if N2 < 0 is required.
+  /// Default: "+,-,-".
   static AnalysisSettings settings(const WorkspacePlan& plan, const FieldRequest& request) {
     const std::string mode = request.mode.empty() ? "+,-,-" : request.mode;
     const auto sign = [&](std::size_t i) { return mode[i] == '+' ? 1 : -1; };

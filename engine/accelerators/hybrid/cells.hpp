@@ -10,18 +10,19 @@
 
 namespace pkm::hybrid {
 
-/// The columns at one beta. A plain struct, so that kernels share no inline code with files that are compiled for
-/// another instruction set.
+/// The columns along x at one beta. A plain struct, so that kernels share no inline code with files that are compiled
+/// for another instruction set.
 struct ColumnsAtBeta {
-  Product<double> C, Q, P, L, H;  ///< curves of the slice: bounds of x, squared
-  double sign, lo_C, hi_C;        ///< limb C: sign of n3, constants of its bounds of x
-  double z_high, hole_end;        ///< maximum z of columns, and of the hole
+  Product<double> C, Q, P, L, H;  ///< squares of the roots in the curves that bound x in the slice
+  double sign, lo_C, hi_C;        ///< limb C: sign of n3, and the constants of its two bounds of x
+  double z_high, hole_end;        ///< maximum z of all columns, and maximum z of the hole
   double x_lower, x_step, cells;
-  const double *z, *left, *right;  ///< z, and the range of x that limbs A and B allow there; padded
-  std::size_t first_z, end_z;      ///< range of indices of z
+  /// Each z, and the range of x that limbs A and B allow there; padded to a multiple of kLanes.
+  const double *z, *left, *right;
+  std::size_t first_z, end_z;  ///< columns exist for the indices [first_z, end_z) of z
 };
 
-/// Feasible cells of x for each z, as integers: [first, hole) and [after, end).
+/// Feasible cells along x for each z: the cells [first, hole) and [after, end), as integers.
 struct CellRuns {
   std::vector<double> first, hole, after, end;
 };
@@ -31,7 +32,8 @@ struct CellTally {
   bool touches;  ///< true if a feasible cell is the first or the last of its column
 };
 
-/// Computes the runs for indices of z [first_z, end_z), and for some more up to a multiple of kLanes.
+/// Computes the runs for the z indices [first_z, end_z). The number of computed columns is rounded up to a multiple of
+/// kLanes.
 template <InstructionSet set>
 CellTally fill(const ColumnsAtBeta& columns, CellRuns& runs);
 

@@ -14,7 +14,8 @@ template <InstructionSet set>
 CellTally fill(const ColumnsAtBeta& at, CellRuns& runs) {
   using L = LanesOf<set>;
   const double per_cell = 1 / at.x_step, offset = -at.x_lower * per_cell - 0.5;
-  // in cells: the first centre not below x, and the one after the last centre not above x
+  // The following positions are counted in cells: the first centre not below x, and the centre after the last one not
+  // above x.
   const auto ceiling = [&](const L& x) { return ceil(lesser(greater(x * per_cell + offset, L(0.0)), L(at.cells))); };
   const auto floor_and_one = [&](const L& x) {
     return floor(lesser(greater(x * per_cell + offset, L(-1.0)), L(at.cells - 1))) + 1.0;
@@ -27,7 +28,7 @@ CellTally fill(const ColumnsAtBeta& at, CellRuns& runs) {
     const L last = floor_and_one(lesser(lesser(L::load(at.right + j), at.hi_C + n3), chain));
     const L end = select(z <= at.z_high, greater(first, last), first);
     L hole = end, after = end;
-    if (at.z[j] < at.hole_end) {  // true for at least one of the lanes
+    if (at.z[j] < at.hole_end) {  // true if at least one z of the batch is below the end of the hole
       const L half = sqrt_or_zero(square(at.H, z));
       const L from = greater(floor_and_one(-half), first), to = lesser(ceiling(half), end);
       const auto there = (z < at.hole_end) & (from < to);

@@ -10,18 +10,19 @@
 
 namespace pkm::hybrid {
 
-/// Scratch memory of an analysis.
+/// Scratch memory of one workspace analysis.
 template <class S>
 struct ColumnScratch {
   CriticalValueScratch beta;
-  std::vector<Subinterval<S>> intervals;  ///< one for each of beta.intervals
+  std::vector<Subinterval<S>> intervals;  ///< subintervals of beta, one for each element of beta.intervals
   std::vector<QuadratureCell<S>> integrals;
   StripScratch strips;
-  Decomposition decomposition;  ///< used for a beta outside the intervals
+  Decomposition decomposition;  ///< decomposition of a slice at a beta outside of all intervals
   PoseList poses;
 };
 
-/// The decomposition of a slice. If the previous slice in the same interval of beta has one, it is updated if possible.
+/// Computes the decomposition of a slice. If the previous slice was in the same interval of beta, its decomposition is
+/// updated if possible.
 template <class S>
 const Decomposition& decomposition_of(const Slice<double>& s, double beta, ColumnScratch<S>& scratch) {
   const auto contains = [&](const Subinterval<S>& p) { return value_of(p.lower) < beta && beta < value_of(p.upper); };
@@ -58,14 +59,14 @@ void find_outer_intervals(const SlicedDesign<S>& d, const SlicedDesign<double>& 
   }
 }
 
-/// Area of the slice at a beta [m^2].
+/// Area of the slice at one beta, in closed form [m^2].
 template <class S>
 S area_at(const SlicedDesign<S>& d, const S& beta, ColumnScratch<S>& scratch) {
   const Slice<S> s = slice(d, beta);
   return area(s, decomposition_of(values(s), value_of(beta), scratch));
 }
 
-/// Rounding error of the integral of area_at() over the intervals [m^2 rad].
+/// Estimate of the rounding error of the integral of area_at() over the intervals of beta [m^2 rad].
 template <class S>
 double roundoff(const SlicedDesign<S>& d, const std::vector<Subinterval<S>>& intervals) {
   if (intervals.empty()) return 0;
@@ -74,14 +75,14 @@ double roundoff(const SlicedDesign<S>& d, const std::vector<Subinterval<S>>& int
   return 4e-16 * size * value_of(d.z_high) * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }
 
-/// Integral of the areas of slices over beta [m^2 rad].
+/// Volume of (x, z, beta): the integral of the areas of slices over beta [m^2 rad].
 template <class S>
 Integral<S> volume(const SlicedDesign<S>& d, double tolerance, ColumnScratch<S>& scratch) {
   return integrate<S>([&](const S& beta) { return area_at(d, beta, scratch); }, scratch.intervals, tolerance,
                       roundoff(d, scratch.intervals), scratch.integrals, {.rule = patterson_rule()});
 }
 
-/// Calls visit(z, length of the column of x, weight) at the nodes of a quadrature rule over z in every strip of the
+/// Calls visit(z, length of the column of x, weight) at the nodes of a quadrature rule over z, in every strip of the
 /// slice.
 template <class S, class Visit>
 void visit_columns(const SlicedDesign<S>& d, const S& beta, const GaussRule& rule, ColumnScratch<S>& scratch,

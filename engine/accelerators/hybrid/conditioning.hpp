@@ -12,9 +12,9 @@
 
 namespace pkm::hybrid {
 
-/// Poses given by z and beta; conditioning does not depend on x and y.
+/// A list of poses, each given by z and beta; the conditioning depends on neither x nor y.
 struct PoseList {
-  std::vector<double> z, sine, cosine;  ///< [m], sine and cosine of beta
+  std::vector<double> z, sine, cosine;  ///< z [m], sine and cosine of beta, for each pose
 
   void clear() {
     for (auto* list : {&z, &sine, &cosine}) list->clear();
@@ -22,16 +22,16 @@ struct PoseList {
   std::size_t size() const { return z.size(); }
 };
 
-/// The properties of a design on which conditioning depends. A plain struct, as in cells.hpp.
+/// The values of a design on which the conditioning depends. A plain struct, for the reason given in cells.hpp.
 template <class S>
 struct ConditioningDesign {
-  S L1, L2, L3, d, e;           ///< as in Geometry [m]
+  S L1, L2, L3, d, e;           ///< lengths of the design, see Geometry [m]
   std::array<double, 3> signs;  ///< signs of n1, n2, n3
   S length;                     ///< characteristic length [m]
 };
 
-/// Inverse condition number; 0 if the mechanism cannot be assembled at the pose or is serially singular there. S is
-/// Lanes or the scalar of the design.
+/// Inverse condition number of the Jacobian at a pose; 0 if the mechanism cannot be assembled there or is serially
+/// singular. S is Lanes or the scalar of the design.
 template <class S, class T>
 [[gnu::always_inline]] inline S conditioning(const ConditioningDesign<T>& g, const S& z, const S& sin_b,
                                              const S& cos_b) {

@@ -21,7 +21,7 @@ Degeneracy vanishing_strip(const Strip& strip) {
           .right = p.second};
 }
 
-/// The degeneracy between two slices of different types; std::nullopt if none is identified.
+/// Finds the degeneracy at which the type of the slice changes between two samples; std::nullopt if none is identified.
 std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const SampledSlice& upper) {
   using Kind = StripBound::Kind;
   const Slice<double>&s = lower.slice, &t = upper.slice;
@@ -31,7 +31,8 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
   const auto heights = [](const StripBound& first, const StripBound& second) {
     return Degeneracy{Degeneracy::Kind::heights, first, second};
   };
-  const auto changes = [&](const StripBound& first, const StripBound& second) {  // whether their order differs
+  // Returns true if two bounds have different orders in the two samples.
+  const auto changes = [&](const StripBound& first, const StripBound& second) {
     const Degeneracy candidate = heights(first, second);
     return (distance(s, candidate) >= 0) != (distance(t, candidate) >= 0);
   };
@@ -52,7 +53,7 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
     for (std::size_t i = 0; i < edge.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
-        // the chain's bounds -x and x intersect only where a root vanishes
+        // the edges -x and x of one chain curve intersect only where the root vanishes
         const bool opposite = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
         if (!opposite)
           return Degeneracy{.kind = Degeneracy::Kind::edges, .first = at, .left = edge[j], .right = edge[i]};
@@ -80,8 +81,8 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
   return found;
 }
 
-/// Whether the heights of a degeneracy belong to a sample, i.e. whether each intersection is a bound of one of its
-/// strips.
+/// Returns true if the intersections in a degeneracy belong to a sample, i.e. if each of them is a bound of one of the
+/// sample's strips.
 bool has_heights(const SampledSlice& sample, const Degeneracy& degeneracy) {
   const auto has = [&](const StripBound& end) {
     return end.kind != StripBound::Kind::intersection ||
@@ -91,8 +92,8 @@ bool has_heights(const SampledSlice& sample, const Degeneracy& degeneracy) {
   return degeneracy.kind == Degeneracy::Kind::edges || (has(degeneracy.first) && has(degeneracy.second));
 }
 
-/// x of an edge and its first two derivatives with respect to z. x and the first derivative also have derivatives with
-/// respect to beta.
+/// The x of an edge, with its first two derivatives with respect to z. The value x and the first derivative also have
+/// derivatives with respect to beta.
 struct EdgeDerivatives {
   Dual<1> x, derivative;
   double curvature;
@@ -105,16 +106,16 @@ EdgeDerivatives edge_derivatives(const Slice<Dual<1>>& s, const Edge& edge, doub
           sign * (value_of(c.curvature()) - derivative.a * derivative.a) / root.a};
 }
 
-/// The height of a bound and its derivative with respect to beta. For an intersection, the height results from one
-/// Newton step.
+/// The height (z) of a bound of a strip, with its derivative with respect to beta. The height of an intersection is
+/// improved by one Newton step.
 Dual<1> newton_height(const Slice<Dual<1>>& s, const StripBound& end) {
   if (end.kind != StripBound::Kind::intersection) return height(s, end);
   const EdgeDerivatives first = edge_derivatives(s, end.first, end.z), second = edge_derivatives(s, end.second, end.z);
   return end.z - (second.x - first.x) / (second.derivative.a - first.derivative.a);
 }
 
-/// One step of Newton's method for a degeneracy, in beta and the heights of intersections.
-/// @return  the step in beta
+/// Performs one step of Newton's method for a degeneracy, in beta and in the heights of intersections.
+/// @return the step in beta
 double newton_step(const Slice<Dual<1>>& s, Degeneracy& degeneracy) {
   if (degeneracy.kind == Degeneracy::Kind::edges) {
     const Dual<1> difference = distance(s, degeneracy);
@@ -128,7 +129,7 @@ double newton_step(const Slice<Dual<1>>& s, Degeneracy& degeneracy) {
     degeneracy.second.z = second.a + second.v[0] * step;
     return step;
   }
-  // a tangency: the distance of the edges and its derivative with respect to z are 0
+  // At a tangency, the distance of the edges and its derivative with respect to z are 0.
   const EdgeDerivatives left = edge_derivatives(s, degeneracy.left, degeneracy.first.z),
                         right = edge_derivatives(s, degeneracy.right, degeneracy.first.z);
   const Dual<1> difference = right.x - left.x, derivative = right.derivative - left.derivative;
@@ -138,10 +139,10 @@ double newton_step(const Slice<Dual<1>>& s, Degeneracy& degeneracy) {
   return (derivative.a * derivative.a - curvature * difference.a) / determinant;
 }
 
-/// Finds a degeneracy between two beta by Newton's method.
-/// @param width  step that ends the iteration; the next step would be below rounding
+/// Finds a degeneracy between two values of beta by Newton's method.
+/// @param width  a step smaller than this ends the iteration, because the next one would be below rounding
 /// @param beta   initial value, and result
-/// @return false if it does not converge
+/// @return false if the iteration does not converge
 bool refine(const SlicedDesign<Dual<1>>& by_beta, double lower, double upper, double width, double& beta,
             Degeneracy& degeneracy) {
   if (degeneracy.kind == Degeneracy::Kind::tangency)
@@ -159,13 +160,13 @@ class CriticalValueSearch {
   CriticalValueSearch(const SlicedDesign<double>& plain, const SlicedDesign<Dual<1>>& by_beta,
                       CriticalValueScratch& scratch)
       : design_(plain), by_beta_(by_beta), scratch_(scratch) {
-    constexpr std::size_t kSamples = 192;  // narrower components and gaps can be missed
+    constexpr std::size_t kSamples = 192;  // number of samples of beta; narrower components and gaps can be missed
     const double low = plain.l.beta_min, high = plain.l.beta_max;
     scratch_.count = 0;
     range_ = high - low;
     if (plain.empty || !(range_ > 0)) return;
     offset_ = 1e-7 * range_;
-    used_ = 2;  // the first two are the adjacent samples of this loop
+    used_ = 2;  // elements 0 and 1 of the samples are the adjacent samples of this loop
     fill(low + offset_, sample_number(0));
     begin(low, {}, sample_number(0));
     for (std::size_t k = 1; k <= kSamples; ++k) {
@@ -194,7 +195,7 @@ class CriticalValueSearch {
     return s;
   }
 
-  /// Begins an interval, with a sample slightly above its lower endpoint.
+  /// Begins an interval of beta, given a sample slightly above its lower endpoint.
   void begin(double at, const std::optional<Degeneracy>& degeneracy, const SampledSlice& above) {
     open_ = !above.decomposition.strips.empty();
     if (!open_) return;
@@ -211,7 +212,7 @@ class CriticalValueSearch {
     s.at_upper = degeneracy;
   }
 
-  /// Finds the critical values between two samples.
+  /// Finds all critical values of beta between two samples, recursively.
   void bisect(const SampledSlice& low, const SampledSlice& high, int depth) {
     if (same_type(low.decomposition, high.decomposition)) return;
     const double length = high.beta - low.beta;

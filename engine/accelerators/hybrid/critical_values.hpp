@@ -15,47 +15,48 @@
 
 namespace pkm::hybrid {
 
-/// A slice of a design in double precision.
+/// A slice of a design at one beta, in double precision.
 struct SampledSlice {
   double beta = 0;
   Slice<double> slice;
   Decomposition decomposition;
 };
 
-/// The degeneracy of a slice at a critical value.
+/// The degeneracy of a slice at a critical value of beta.
 struct Degeneracy {
   enum class Kind : std::uint8_t {
-    heights,  ///< `first` and `second` coincide
-    edges,    ///< `left` and `right` intersect at `first`, a bound of z
-    tangency  ///< `left` and `right` are tangent at the height of `first`, between two strips or where one vanishes
+    heights,  ///< the bounds of z `first` and `second` coincide
+    edges,    ///< the edges `left` and `right` intersect at the bound of z `first`
+    /// The edges `left` and `right` are tangent at the height of `first`, where two strips meet or one vanishes.
+    tangency
   } kind = Kind::heights;
   StripBound first, second;
   Edge left, right;
 };
 
-/// An interval of beta on which slices have one type.
+/// An interval of beta on which all slices have the same combinatorial type.
 struct BetaInterval {
   double lower = 0, upper = 0;
-  std::optional<Degeneracy> at_lower, at_upper;  ///< degeneracies at the endpoints, if known
-  Decomposition decomposition;                   ///< near the lower endpoint
+  std::optional<Degeneracy> at_lower, at_upper;  ///< degeneracies at the endpoints; std::nullopt: not identified
+  Decomposition decomposition;                   ///< decomposition of a slice near the lower endpoint
 };
 
 /// Scratch memory of find_beta_intervals().
 struct CriticalValueScratch {
   std::vector<BetaInterval> intervals;
-  std::size_t count = 0;  ///< number of intervals in use
+  std::size_t count = 0;  ///< number of elements of `intervals` that are in use
   std::deque<SampledSlice> samples;
   StripScratch strips;
 };
 
-/// Finds the intervals on which slices are not empty, in ascending order.
+/// Finds the intervals of beta on which slices are not empty, in ascending order.
 /// @param plain    the design in double precision
-/// @param by_beta  the design as constants, for derivatives with respect to beta
-/// @param scratch  receives them in `intervals`
+/// @param by_beta  the design with zero derivatives, for derivatives with respect to beta
+/// @param scratch  receives the intervals in `intervals`
 void find_beta_intervals(const SlicedDesign<double>& plain, const SlicedDesign<Dual<1>>& by_beta,
                          CriticalValueScratch& scratch);
 
-/// The curve whose root vanishes at a bound of z; kCurves if there is none.
+/// Index of the curve whose root vanishes at a bound of z; kCurves if there is none.
 inline std::size_t vanishing_curve(const StripBound& end) {
   if (end.kind == StripBound::Kind::hole) return kCurveH;
   if (end.kind == StripBound::Kind::intersection) return kCurves;
@@ -64,23 +65,24 @@ inline std::size_t vanishing_curve(const StripBound& end) {
   return end.index == kEndQ && end.kind == StripBound::Kind::lower ? std::size_t{kCurveQ} : std::size_t{kCurves};
 }
 
-/// x of an edge at a bound of z, at which its root may vanish.
+/// The x of an edge at a bound of z, at which the root of the edge may vanish.
 template <class S>
 S edge_at_end(const Slice<S>& s, const Edge& edge, const StripBound& end) {
   return edge.curve == vanishing_curve(end) ? S(0.0) : edge_at(s, edge, height(s, end));
 }
 
-/// Whether the derivative of the area has a square-root singularity at a degeneracy, i.e. the area behaves like the
-/// power 3/2 of the distance: at a tangency, or at a bound of z at which the radicand of a root is zero.
+/// Returns true if the derivative of the area with respect to beta has a square-root singularity at a degeneracy, so
+/// that the area varies like the power 3/2 of the distance: at a tangency, or at a bound of z at which the radicand of
+/// a root is zero.
 inline bool has_sqrt_singularity(const Degeneracy& degeneracy) {
   return degeneracy.kind == Degeneracy::Kind::tangency || vanishing_curve(degeneracy.first) != kCurves ||
          (degeneracy.kind == Degeneracy::Kind::heights && vanishing_curve(degeneracy.second) != kCurves);
 }
 
-/// Distance of the degenerating features: 0 at the critical value.
+/// Distance of the features that coincide at the critical value, where it is 0.
 template <class S>
 S distance(const Slice<S>& s, const Degeneracy& degeneracy) {
-  if (degeneracy.kind == Degeneracy::Kind::tangency) {  // the minimum or maximum over z
+  if (degeneracy.kind == Degeneracy::Kind::tangency) {  // the distance is the minimum or maximum over z
     const S z(degeneracy.first.z);
     return edge_at(s, degeneracy.right, z) - edge_at(s, degeneracy.left, z);
   }
@@ -89,7 +91,7 @@ S distance(const Slice<S>& s, const Degeneracy& degeneracy) {
   return height(s, degeneracy.second) - height(s, degeneracy.first);
 }
 
-/// The beta of a degeneracy with its derivatives, by the implicit function theorem.
+/// The beta of a degeneracy, with derivatives by the implicit function theorem.
 template <class S>
 S lift_critical_value(const SlicedDesign<S>& d, const SlicedDesign<Dual<1>>& by_beta, double at,
                       const Degeneracy& degeneracy) {

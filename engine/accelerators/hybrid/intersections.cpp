@@ -7,18 +7,18 @@
 namespace pkm::hybrid {
 namespace {
 
-/// Intersection of two edges of the chain on one side.
+/// The z at which two edges of the chain intersect that are on the same side.
 double chain_intersection(const Slice<double>& s, const Edge& first, const Edge& second) {
   const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
   return (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
 }
 
-/// Difference of x of two edges at one z.
+/// Difference of the x of two edges at one z, with its derivative.
 struct Gap {
   double value, derivative;
-  double second;  ///< bound of the second derivative
+  double second;  ///< bound of the magnitude of the second derivative
   double step() const { return -value / derivative; }
-  /// Whether Newton's method has converged to rounding accuracy after this step.
+  /// Returns true if, after this step, Newton's method has converged to the rounding accuracy of the height z.
   bool is_last(double z) const {
     constexpr double kRelative = 1e-17;
     return step() * step() * second <= kRelative * z * std::fabs(derivative);
@@ -35,18 +35,18 @@ Gap gap(const Slice<double>& s, const Edge& first, const Edge& second, double z)
   return Gap{a.value - b.value, a.derivative - b.derivative, a.second + b.second};
 }
 
-/// Intersection of two circular edges between two heights; if there are two, the one closer to z. kNoIntersection if
-/// there is none, if an edge is not circular, or if the circles are tangent to working precision.
+/// The z at which two circular edges intersect between two heights; if there are two intersections, the one closer to
+/// z. kNoIntersection if there is none, if an edge is not circular, or if the circles are tangent to working precision.
 double circle_intersection(const Slice<double>& s, const Edge& first, const Edge& second, double z, double low,
                            double high) {
   const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
   if (!circle(first) || !circle(second)) return kNoIntersection;
-  // centres and radii
+  // centres and radii of the two circles
   const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
   const double z1 = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
   const double dx = s.constant(second) - s.constant(first), dz = 0.5 * (d.a - d.b) - z1,
                inverse2 = 1 / (dx * dx + dz * dz);
-  // relative to the distance of the centres
+  // components along and across the line of centres, relative to the distance of the centres
   const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * inverse2), across2 = r1 * r1 * inverse2 - along * along;
   constexpr double kTangent = 1e-4;
   if (!(across2 >= kTangent * along * along)) return kNoIntersection;
@@ -79,7 +79,7 @@ double intersection_near(const Slice<double>& s, const Edge& first, const Edge& 
   if (const double at = circle_intersection(s, first, second, z, 0, kUnbounded); at == at) return at;
   constexpr int kMaxSteps = 8;
   Gap here{};
-  double first_derivative = 0;  // derivative of the gap at z
+  double first_derivative = 0;  // derivative of the gap with respect to z, at z
   const auto step = [&](double at) {
     here = gap(s, first, second, at);
     if (first_derivative == 0) first_derivative = here.derivative;

@@ -9,8 +9,8 @@ namespace pkm::hybrid {
 
 inline constexpr double kNoIntersection = std::numeric_limits<double>::quiet_NaN();
 
-/// Whether two edges on the same side are bounds by the auxiliary chain. Such edges intersect where two of Q, P, lw_max
-/// cos(phi_max) and lw_min cos(phi_max), which are linear in z, are equal.
+/// Returns true if two edges on the same side are bounds due to the auxiliary chain. Such edges intersect where two of
+/// Q, P, lw_max cos(phi_max) and lw_min cos(phi_max), which are linear in z, are equal.
 inline bool are_bounds_of_chain(const Edge& first, const Edge& second) {
   return first.curve >= kCurveQ && second.curve >= kCurveQ && first.side == second.side;
 }
@@ -19,7 +19,7 @@ inline bool are_bounds_of_chain(const Edge& first, const Edge& second) {
 /// Newton's method safeguarded by bisection. Edges of the chain intersect at bit-identical heights on both sides.
 double intersection(const Slice<double>& s, const Edge& first, const Edge& second, double p, double q);
 
-/// z of an intersection near a given z; kNoIntersection if Newton's method does not converge there.
+/// The z, near a given z, at which two edges intersect; kNoIntersection if Newton's method does not converge there.
 double intersection_near(const Slice<double>& s, const Edge& first, const Edge& second, double z);
 
 }  // namespace pkm::hybrid

@@ -7,10 +7,10 @@
 
 namespace pkm::hybrid {
 
-/// Relative rounding error. A smaller radicand counts as 0; the limb is then normal to its rail.
+/// Relative rounding error: a radicand smaller than this counts as 0, and the limb is then normal to its rail.
 inline constexpr double kRoundoff = 1e-12;
 
-/// (a + a_z z) (b + b_z z)
+/// The product (a + a_z z) (b + b_z z) of two linear functions of z.
 template <class S>
 struct Product {
   S a, a_z, b, b_z;
@@ -18,11 +18,12 @@ struct Product {
 
 template <class S>
 struct Limbs {
-  S n1, n2, n3;  ///< components of the links along the rails [m]
-  S k, N1, N2;   ///< [m], [m], [m^2]
+  S n1, n2, n3;  ///< component of the link of each limb along its rail [m]
+  S k, N1, N2;   ///< terms of the loop-closure equations (README.md) [m], [m], [m^2]
 };
 
-/// Solves the loop-closure equations of the limbs at a pose. @param g  lengths L1, L2, L3, d, e [m]
+/// Solves the loop-closure equations of the limbs at a pose.
+/// @param g     lengths L1, L2, L3, d, e [m]
 /// @param root  root(n_i^2, L_i, i) returns n_i in the working mode, and any number for a limb out of reach
 template <class S, class Lengths, class Root>
 [[gnu::always_inline]] inline Limbs<S> limbs(const Lengths& g, const S& z, const S& sin_b, const S& cos_b,
@@ -37,7 +38,8 @@ template <class S, class Lengths, class Root>
   return j;
 }
 
-/// J of (s1, s3, s4) with respect to (x, z, beta length), without y, which is a separate block with the gain 1.
+/// Jacobian of (s1, s3, s4) with respect to (x, z, beta length). The coordinate y is separate: its drive has the gain
+/// 1.
 template <class S>
 [[gnu::always_inline]] inline std::array<std::array<S, 3>, 3> homogeneous_jacobian(const S& z, const Limbs<S>& j,
                                                                                    const S& length) {

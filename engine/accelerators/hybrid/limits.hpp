@@ -12,7 +12,7 @@
 
 namespace pkm::hybrid {
 
-/// Order of the pose-level limits that a study may set.
+/// Indices of the limits on poses that a study may set.
 enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
 
 /// Thresholds of the pose-level constraints, named as in README.md: strokes s, minimum height z_clear of O'' and C'
@@ -20,11 +20,11 @@ enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
 /// carriages A and B, length lw of the shaft.
 template <class S>
 struct Limits {
-  std::array<S, 4> s_min, s_max;  ///< [m]
-  S z_clear, beta_min, beta_max;  ///< [m], [rad]
+  std::array<S, 4> s_min, s_max;  ///< minimum and maximum stroke of each drive [m]
+  S z_clear, beta_min, beta_max;  ///< minimum height [m], and range of beta [rad]
   S tau_s, tau_p, tau_c;
   SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< sine and cosine of the maximum angles
-  S gap, lw_min, lw_max;                 ///< [m]
+  S gap, lw_min, lw_max;  ///< minimum distance of carriages A and B, and range of the length of the shaft [m]
 };
 
 template <class S>
@@ -51,7 +51,7 @@ Limits<S> limits(std::span<const S> p, const LimitSpec& spec) {
           .lw_max = p[kLwMax]};
 }
 
-/// The sign of sin(lambda) at beta = 0, the side of the constraint singularity on which the robot stays.
+/// Sign of sin(lambda) at beta = 0. It identifies the side of the constraint singularity on which the robot stays.
 template <class S>
 double home_side(const Geometry<S>& g) {
   return value_of(g.d) < value_of(g.e) ? -1 : 1;

@@ -14,7 +14,7 @@
 
 namespace pkm::hybrid {
 
-/// Order of the parameters: geometry, limits of the poses (limits.hpp), radii of the links.
+/// Indices of the parameters of a design: geometry, limits of the poses (limits.hpp), radii of the links.
 enum ParameterIndex {
   kA,
   kB1,
@@ -46,11 +46,11 @@ enum ParameterIndex {
   kPhiMax,
   kLwMin,
   kLwMax,
-  kRadii,  ///< five
+  kRadii,  ///< first of the five radii of the links
   kParameters = kRadii + 5
 };
 
-/// Lengths [m], names as in the source (f' is fp); kAll has them in the order of the parameters.
+/// Lengths of a design [m], with the names of the source (f' is fp); kAll lists them in the order of the parameters.
 template <class S>
 struct Geometry {
   S a, b1, b2, c, d, e, L1, L2, L3;

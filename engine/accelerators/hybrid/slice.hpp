@@ -13,18 +13,18 @@
 
 namespace pkm::hybrid {
 
-/// A design with its limits and working mode, and quantities that all its slices share.
+/// A design with its limits and its working mode, and quantities that are the same for all its slices.
 template <class S>
 struct SlicedDesign {
   Geometry<S> g;
   Limits<S> l;
   WorkingMode signs;
-  int branch;               ///< required sign of N2, +1 or -1
-  std::array<S, 3> lo, hi;  ///< s_min and s_max of limbs A, B, C with their offsets [m]
+  int branch;               ///< required sign of N2 (README.md), +1 or -1
+  std::array<S, 3> lo, hi;  ///< s_min and s_max of limbs A, B, C, plus the offsets of their carriages [m]
   S sine_s, cot_c;          ///< sqrt(1 - tau_s^2), sqrt(1 - tau_c^2) / tau_c
   S tan_phi, cot_phi;
   S z_low, z_high;    ///< range of z allowed by the limits that depend on z only [m]
-  bool empty = true;  ///< the range of z is empty, or the branch is N2 < 0
+  bool empty = true;  ///< true if the range of z is empty, or if the required sign of N2 is -1
 };
 
 /// Computes the members z_low, z_high and empty.
@@ -34,9 +34,9 @@ void find_heights(SlicedDesign<S>& d) {
   const Limits<S>& l = d.l;
   d.z_low = max(l.z_clear, max(S(g.L1 * l.psiA.cos), S(g.L2 * l.psiA.cos)));
   d.z_high = min(g.L1, g.L2) * d.sine_s;
-  std::array<S, 5> values = {d.z_low, d.z_high};  // at which a limit becomes active
+  std::array<S, 5> values = {d.z_low, d.z_high};  // the values of z at which a limit becomes active
   std::size_t n = 2;
-  const auto add = [&](const S& z) {  // in ascending order
+  const auto add = [&](const S& z) {  // inserts z in ascending order
     if (!(value_of(z) > value_of(d.z_low) && value_of(z) < value_of(d.z_high))) return;
     std::size_t i = n++;
     for (; value_of(values[i - 1]) > value_of(z); --i) values[i] = values[i - 1];
@@ -44,11 +44,11 @@ void find_heights(SlicedDesign<S>& d) {
   };
   const S sum = g.L1 * g.L1 + g.L2 * g.L2, product = g.L1 * g.L2;
   const S cosine = sqrt_or_zero(S((1.0 - l.tau_p) * (1.0 + l.tau_p)));
-  for (const double sign : {-1.0, 1.0}) {  // sine of the angle between links A and B = tau_p
+  for (const double sign : {-1.0, 1.0}) {  // here the sine of the angle between links A and B equals tau_p
     const S base2 = sum + product * cosine * (2 * sign);
     if (value_of(base2) > 0) add(l.tau_p * product / sqrt(base2));
   }
-  const S apart = l.gap - g.a * 2.0;  // n1 - n2 at the minimum distance of carriages A and B
+  const S apart = l.gap - g.a * 2.0;  // n1 - n2 where carriages A and B have their minimum distance
   if (value_of(apart) != 0) {
     const S n1 = (apart + (g.L1 - g.L2) * (g.L1 + g.L2) / apart) * 0.5;
     add(sqrt_or_zero(S((g.L1 - n1) * (g.L1 + n1))));
@@ -88,25 +88,26 @@ SlicedDesign<S> sliced_design(const Geometry<S>& g, const Limits<S>& l, const Wo
   return d;
 }
 
-/// Bounds of x, in the order of Slice::curve.
+/// Indices of the curves that bound x, in the order of Slice::curve.
 enum CurveIndex { kCurveA, kCurveB, kCurveC, kCurveQ, kCurveP, kCurveL, kCurveH, kCurves };
 
-/// The square root of a product of two linear functions of z.
+/// The square root of a product of two linear functions of z; a bound of x is a constant plus or minus such a root.
 template <class S>
 struct Curve : Product<S> {
   using Product<S>::a, Product<S>::a_z, Product<S>::b, Product<S>::b_z;
 
   S root(const S& z) const { return sqrt_or_zero(S((a + a_z * z) * (b + b_z * z))); }
   S curvature() const { return a_z * b_z; }  ///< coefficient of z^2 under the root
-  /// Derivative of the root by z.
+  /// Derivative of the root with respect to z.
+  /// @param root  value of the root at z
   S derivative(const S& z, const S& root) const { return (a_z * (b + b_z * z) + b_z * (a + a_z * z)) / (root * 2.0); }
 };
 
-/// Whether a bound of x is a lower (left) or an upper (right) one.
+/// Which side of the feasible x an edge bounds: kLeft is a lower bound, kRight an upper one.
 enum Side : std::uint8_t { kLeft, kRight };
 inline constexpr std::size_t kSides = 2;
 
-/// A bound of x as a function of z: a curve of a slice on one side.
+/// A bound of x as a function of z: one curve of a slice, on one side.
 struct Edge {
   std::uint8_t curve = 0;
   Side side = kLeft;
@@ -114,18 +115,20 @@ struct Edge {
 };
 
 inline constexpr std::size_t kLowerEnds = 9, kUpperEnds = 9;  ///< numbers of bounds of z
-/// Bounds of z at which the root of a curve vanishes: P at two, L at an upper, Q at a lower one.
+/// Indices of those bounds of z at which the root of a curve vanishes: two for P, one (upper) for L, one (lower) for Q.
 inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
 
 template <class S>
 struct Slice {
   std::array<Curve<S>, kCurves> curve;
-  std::array<std::array<double, kCurves>, kSides> signs;  ///< signs of the roots in the bounds of x
-  std::array<std::array<S, kCurves>, kSides> constants;   ///< added to the roots [m]
-  std::array<S, kLowerEnds> lower;                        ///< bounds of z [m]; inactive ones have values out of reach
+  /// Sign of the root in the bound of x, for each side and curve.
+  std::array<std::array<double, kCurves>, kSides> signs;
+  /// Constant that is added to the root, for each side and curve [m].
+  std::array<std::array<S, kCurves>, kSides> constants;
+  std::array<S, kLowerEnds> lower;  ///< lower bounds of z [m]; inactive ones have values below all z in reach
   std::array<S, kUpperEnds> upper;
-  S hole_end;  ///< x has a hole for all z up to this value
-  /// For curves Q, P, L, H: the squares of x are ((m + m_z z) / cos(phi_max))^2 minus a common term.
+  S hole_end;  ///< maximum z at which the feasible x has a hole
+  /// Coefficients of curves Q, P, L, H: the square of x is ((m + m_z z) / cos(phi_max))^2 minus a common term.
   std::array<double, 4> m, m_z;
 
   double sign(const Edge& e) const { return signs[e.side][e.curve]; }
@@ -136,7 +139,7 @@ template <class S>
 Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   const Geometry<S>& g = d.g;
   const Limits<S>& l = d.l;
-  const S none(-1.0), all(1e4), zero(0.0), one(1.0);  // bounds below and above all z in reach
+  const S none(-1.0), all(1e4), zero(0.0), one(1.0);  // none and all: bounds below and above all z in reach
   const auto [sin_b, cos_b] = sincos(beta);
   const S lift = g.e * sin_b;                          // N1 = z + lift
   const S width = (g.d - g.e * cos_b) * home_side(g);  // D; < 0 beyond the constraint singularity
@@ -147,7 +150,8 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   const bool beyond = value_of(width) < 0;
   Slice<S> s;
 
-  // bounds of z: factor z >= right is a lower or an upper bound, depending on the sign of the factor
+  // Sets bound number i of z from the inequality factor * z >= right, which is a lower or an upper bound, depending on
+  // the sign of the factor.
   const auto set = [&](std::size_t i, const S& factor, const S& right) {
     const double sign = value_of(factor);
     s.lower[i] = sign > 0 ? S(right / factor) : value_of(right) > 0 && sign == 0 ? all : none;
@@ -174,8 +178,8 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   s.hole_end = value_of(hole2) > 0 ? S(sqrt(hole2) - Q0) : none;
   s.upper[kEndQ] = all;
 
-  // bounds of x
-  const auto circle = [&](const S& radius, const S& foot) {  // with its centre at z = foot
+  // the bounds of x
+  const auto circle = [&](const S& radius, const S& foot) {  // a circle with its centre at z = foot
     return Curve<S>{{radius + foot, S(-1.0), radius - foot, one}};
   };
   s.curve = {circle(g.L1, zero),
@@ -197,7 +201,7 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   return s;
 }
 
-/// The values of a slice with derivatives.
+/// Converts a slice with derivatives to one with values only.
 inline const Slice<double>& values(const Slice<double>& s) { return s; }
 template <class S>
 Slice<double> values(const Slice<S>& s) {

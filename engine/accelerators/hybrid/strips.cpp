@@ -8,11 +8,12 @@
 namespace pkm::hybrid {
 namespace {
 
-constexpr int kDepth = 16;  // bisections: a component missed in 2^-16 of a range changes the area by about 1e-15
+// Maximum number of bisections: a component missed in 2^-16 of a range changes the area by about 1e-15, relatively.
+constexpr int kDepth = 16;
 
-constexpr double kRootTolerance = 1e-13;  // [m] accuracy of heights computed in two ways
+constexpr double kRootTolerance = 1e-13;  // accuracy of heights that are computed in two ways [m]
 
-/// The roots of all curves at one z.
+/// The roots of all curves at one value of z.
 struct Node {
   double z;
   std::array<double, kCurves> root;
@@ -68,7 +69,7 @@ double possible_intersection(const Slice<double>& s, const Edge& above, const Ed
   return p.z + std::fmin(std::fmax(along, 0.1 * width), 0.9 * width);
 }
 
-/// The envelope of the curves of one side over an interval of z.
+/// The envelope of the curves of one side over an interval of z, as intervals on which one curve is active.
 class Envelope {
  public:
   Envelope(const Slice<double>& s, Side side, std::size_t curves, const Node& low, const Node& high,
@@ -93,7 +94,7 @@ class Envelope {
     return best;
   }
 
-  /// Divides the interval from p, where curve i is active, to q, where j is.
+  /// Divides the interval between p, where curve i is active, and q, where curve j is active.
   void divide(const Node& p, std::size_t i, const Node& q, std::size_t j, int depth) {
     if (i != j) {
       const Node n = node_at(s_, intersection(s_, edge(i), edge(j), p.z, q.z));
@@ -131,7 +132,7 @@ StripBound intersection_at(double z, const Edge& first, const Edge& second) {
   return {.z = z, .kind = StripBound::Kind::intersection, .first = first, .second = second};
 }
 
-/// A candidate for a bound of a strip, with the values of the curves there.
+/// A possible bound of a strip, with the values of the curves at its height.
 struct Candidate {
   StripBound end;
   Node node;
@@ -155,7 +156,7 @@ void add_positive(const Slice<double>& s, const Edge& left, const Edge& right, c
                    : p.positive ? possible_intersection(s, right, left, p.node, q.node)
                                 : possible_intersection(s, left, right, p.node, q.node);
   if (z > low && z < high) {
-    Candidate middle{intersection_at(z, left, left), node_at(s, z), false};  // not a bound if the strip continues
+    Candidate middle{intersection_at(z, left, left), node_at(s, z), false};  // not a bound if a strip continues there
     middle.positive = x_at(s, right, middle.node) >= x_at(s, left, middle.node);
     add_positive(s, left, right, p, middle, depth - 1, strips);
     add_positive(s, left, right, middle, q, depth - 1, strips);
@@ -199,7 +200,8 @@ void find_strips(const Slice<double>& s, std::size_t curves, const StripBound& l
 
 /// Subtracts the strips `inner` from `outer`.
 void subtract(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
-  const auto same = [](const StripBound& p, const StripBound& q) {  // equal within the accuracy of the heights
+  // Returns true if two heights are equal within their accuracy.
+  const auto same = [](const StripBound& p, const StripBound& q) {
     return same_type(p, q) && std::fabs(p.z - q.z) < kRootTolerance;
   };
   strips.clear();
@@ -224,7 +226,8 @@ void subtract(const std::vector<Strip>& outer, const std::vector<Strip>& inner, 
   }
 }
 
-/// Indices of the active lower and upper bound of z.
+/// Indices of the active lower and the active upper bound of z: the maximum of the lower and the minimum of the upper
+/// ones.
 std::array<std::size_t, 2> active_ends(const Slice<double>& s) {
   const auto low = std::max_element(s.lower.begin(), s.lower.end()),
              high = std::min_element(s.upper.begin(), s.upper.end());
@@ -242,8 +245,9 @@ bool track(const Slice<double>& s, Decomposition& decomposition) {
   const double low = s.lower[lower], high = s.upper[upper];
   if (lower != decomposition.lower || upper != decomposition.upper || hole_of(s, low, high) != decomposition.hole)
     return false;
-  if (decomposition.strips.empty()) return false;  // a gap with unknown critical values: strips can exist beside it
-  StripBound from, to;                             // bounds of the previous strip, before its update
+  // The slice is empty, but strips can exist in slices beside it, because the critical values of the gap are unknown.
+  if (decomposition.strips.empty()) return false;
+  StripBound from, to;  // bounds of the previous strip before they were updated
   const Strip* before = nullptr;
   const auto follow = [&](StripBound& end) {
     const auto was = [&end](const StripBound& other) { return same_type(end, other) && end.z == other.z; };

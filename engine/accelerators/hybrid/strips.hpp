@@ -18,13 +18,13 @@
 
 namespace pkm::hybrid {
 
-/// A bound of a strip: a bound of z of the slice, or the intersection of two edges.
+/// A bound of a strip in z: one of the slice's bounds of z, or the intersection of two edges.
 struct StripBound {
   enum class Kind : std::uint8_t { lower, upper, hole, intersection };
   double z = 0;
   Kind kind = Kind::intersection;
-  std::uint8_t index = 0;  ///< index of the bound of z
-  Edge first, second;      ///< the edges of an intersection
+  std::uint8_t index = 0;  ///< index of the bound among the slice's bounds of z; unused for an intersection
+  Edge first, second;      ///< the two edges that intersect; unused for a bound of z
 };
 
 struct Strip {
@@ -32,7 +32,7 @@ struct Strip {
   Edge left, right;
 };
 
-/// Equality of the combinatorial types, ignoring numerical values.
+/// Returns true if the combinatorial types are equal, ignoring numerical values.
 inline bool same_type(const StripBound& p, const StripBound& q) {
   return p.kind == q.kind && p.index == q.index && p.first == q.first && p.second == q.second;
 }
@@ -41,8 +41,9 @@ inline bool same_type(const Strip& p, const Strip& q) {
 }
 
 struct Decomposition {
-  std::vector<Strip> strips;         ///< non-empty, in ascending z; two over the same interval beside a hole
-  std::size_t lower = 0, upper = 0;  ///< indices of the active bounds of z
+  /// Non-empty strips in ascending z; beside a hole, two strips have the same interval of z.
+  std::vector<Strip> strips;
+  std::size_t lower = 0, upper = 0;                        ///< indices of the active lower and upper bound of z
   enum class Hole { none, below, all } hole = Hole::none;  ///< part of the z range in which x has a hole
 };
 inline bool same_type(const Decomposition& p, const Decomposition& q) {
@@ -51,7 +52,7 @@ inline bool same_type(const Decomposition& p, const Decomposition& q) {
 
 /// Scratch memory of decompose().
 struct StripScratch {
-  struct EnvelopeInterval {  ///< interval of z on which one curve is active
+  struct EnvelopeInterval {  ///< an interval of z on which one curve is the envelope
     double from, to;
     std::uint8_t curve;
   };
@@ -62,16 +63,16 @@ struct StripScratch {
 void decompose(const Slice<double>& s, StripScratch& scratch, Decomposition& decomposition);
 
 /// Updates the heights of a decomposition for a nearby slice of the same type. Additional strips are not detected.
-/// @return false if the type differs; then the heights are meaningless
+/// @return false if the type of the slice differs; the heights are then meaningless
 bool track(const Slice<double>& s, Decomposition& decomposition);
 
-/// x of an edge at z.
+/// The x of an edge at a height z.
 template <class S>
 S edge_at(const Slice<S>& s, const Edge& edge, const S& z) {
   return s.constant(edge) + s.curve[edge.curve].root(z) * s.sign(edge);
 }
 
-/// Integral of x along an edge over z.
+/// Integral of the x of an edge over z.
 template <class S>
 S edge_integral(const Slice<S>& s, const Edge& edge, const S& from, const S& to) {
   const Curve<S>& c = s.curve[edge.curve];
@@ -80,7 +81,7 @@ S edge_integral(const Slice<S>& s, const Edge& edge, const S& from, const S& to)
          sqrt_quadratic_integral(length, c.root(from), c.root(to), c.curvature()) * s.sign(edge);
 }
 
-/// z of a bound of a strip with its derivatives; those of an intersection by the implicit function theorem.
+/// The z of a bound of a strip, with derivatives; for an intersection, they follow from the implicit function theorem.
 template <class S>
 S height(const Slice<S>& s, const StripBound& end) {
   if (end.kind == StripBound::Kind::lower) return s.lower[end.index];
@@ -96,7 +97,7 @@ S height(const Slice<S>& s, const StripBound& end) {
   return implicit_root(end.z, apart, by_z);
 }
 
-/// A bound of z of a slice.
+/// The strip bound for one of the slice's bounds of z.
 inline StripBound end_of_z(const Slice<double>& s, StripBound::Kind kind, std::size_t index = 0) {
   StripBound end{.kind = kind, .index = static_cast<std::uint8_t>(index)};
   end.z = height(s, end);

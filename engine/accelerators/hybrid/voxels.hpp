@@ -12,24 +12,24 @@
 
 namespace pkm::hybrid {
 
-/// A box in x, z, beta that contains every feasible pose, or any box if there is none.
+/// A box in x, z, beta that contains every feasible pose. If no pose is feasible, it is arbitrary.
 Box default_box(const SlicedDesign<double>& d);
 
-/// Quantities that depend on z only; with kLanes elements after the last cell, which kernels may read.
+/// Quantities that depend on z only, followed by kLanes unused elements, which kernels may read.
 struct VoxelHeights {
-  std::vector<double> z, left, right;  ///< z, and the range of x that limbs A and B allow there [m]
+  std::vector<double> z, left, right;  ///< each z, and the range of x that limbs A and B allow there [m]
 
   void fill(const SlicedDesign<double>& d, const VoxelGrid& grid);
 };
 
-/// A design on its grid, column by column along x.
+/// A design on its grid, which is evaluated column by column along x.
 struct VoxelColumns : GriddedDesign {
   SlicedDesign<double> design;
-  const VoxelHeights& heights;  ///< heights of this design and grid
+  const VoxelHeights& heights;  ///< quantities that depend on z only, for this design and grid
 
   /// Number of feasible cells at beta number k.
   /// @param runs     scratch memory
-  /// @param touches  set to true if a feasible cell is at a boundary of the box
+  /// @param touches  set to true if a feasible cell is at a boundary of the box; otherwise unchanged
   std::int64_t count(std::int64_t k, CellRuns& runs, bool& touches) const;
 
   /// Calls visit(run) for every run of feasible cells along x at beta number k.
@@ -47,7 +47,7 @@ struct VoxelColumns : GriddedDesign {
   }
 
  private:
-  /// The columns at one beta.
+  /// The columns along x at one beta.
   struct Columns {
     std::size_t first_z = 0, end_z = 0;
     CellTally tally{0, false};
