@@ -30,9 +30,8 @@ class DesignHashSet {
   template <class Predicate>
   std::size_t find_slot(std::uint32_t hash, const Predicate& matches) const;
 
-  std::vector<Slot> slots_ =
-      // Open addressing; the number of slots is a power of two, and at most half of them are in use.
-      std::vector<Slot>(64);
+  // Open addressing; the number of slots is a power of two, and at most half of them are in use.
+  std::vector<Slot> slots_ = std::vector<Slot>(64);
   std::size_t count_ = 0;
 };
 
