@@ -21,13 +21,13 @@ std::vector<std::string> names_of(const List&... lists) {
   return names;
 }
 
-/// Whether the list contains the value.
+/// Returns true if the list contains the value.
 template <class List, class Value>
 bool contains(const List& list, const Value& value) {
   return std::ranges::find(list, value) != list.end();
 }
 
-/// The element called `name`, or null.
+/// The element whose name is `name`; null if there is none.
 template <class List>
 auto find_named(const List& list, std::string_view name) -> decltype(&list[0]) {
   for (const auto& element : list)

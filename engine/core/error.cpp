@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMaxFile = 300, kMaxKey = 160, kMaxFound = 160, kMaxExpected = 1000, kMaxName = 80,
                       kMaxSentence = 1450, kMaxMessage = 1950;
 
-/// External text as it appears in a message: printable and at most `max_size` bytes long.
+/// Text from outside the program as it is shown in a message: printable, and at most `max_size` bytes long.
 std::string displayed(std::string_view text, std::size_t max_size) {
   return excerpt(printable(excerpt(text, max_size)), max_size);
 }
@@ -33,7 +33,7 @@ std::string prefix(const SourceLocation& place) {
   return text;
 }
 
-/// Levenshtein distance, by dynamic programming on one row.
+/// Levenshtein distance of two texts, by dynamic programming that stores one row of the table.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -79,9 +79,10 @@ std::string message_of(const std::exception& error) {
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   std::string best;
   if (name.size() > kMaxName) return best;
-  std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);  // a larger distance is not a misspelling
+  // At this distance or more, a known name is no likely correction.
+  std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);
   for (const auto& candidate : known) {
-    if (candidate.size() > 2 * kMaxName) continue;  // too long to be displayed in a message
+    if (candidate.size() > 2 * kMaxName) continue;  // a name this long would not fit into a message
     std::size_t distance = edit_distance(name, candidate);
     if (name.size() > 1 && candidate.starts_with(name)) distance = std::min<std::size_t>(distance, 1);
     if (distance < best_distance) {

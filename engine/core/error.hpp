@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// Source location of an input value: file, line and key path, or a command-line option.
+/// Location of an input value: file, line and key path, or the command-line option that gives the value.
 struct SourceLocation {
   std::string file;  ///< "" if the value does not come from a file
   int line = 0;      ///< 1-based; 0 if unknown
@@ -21,7 +21,7 @@ struct SourceLocation {
 class ConfigError : public std::runtime_error {
  public:
   ConfigError(SourceLocation place, std::string_view found, std::string_view expected, std::string_view nearest = {});
-  /// For errors that do not have the form "found X; expected Y": the location is followed by `sentence`.
+  /// Makes an error whose message does not have the form "found X; expected Y": the location, followed by `sentence`.
   ConfigError(SourceLocation place, std::string_view sentence);
   const SourceLocation& place() const { return place_; }
 
@@ -51,7 +51,7 @@ std::string message_of(const std::exception& error);
 /// similar enough to be a likely misspelling.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// "a, b, c": the words with the separator between them, for messages.
+/// Joins words for messages: "a, b, c" with the separator ", ".
 std::string join(const std::vector<std::string>& words, std::string_view separator = ", ");
 
 /// Prints the violated precondition of PKM_EXPECTS and aborts.

@@ -9,7 +9,8 @@ namespace pkm {
 std::string formatted(const char* format, double value) {
   if (std::isnan(value)) return "-";
   std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value + 0.0);  // no "-0"
+  // Adding 0.0 turns -0 into 0, so that "-0" is not printed.
+  std::snprintf(buffer.data(), buffer.size(), format, value + 0.0);
   return buffer.data();
 }
 

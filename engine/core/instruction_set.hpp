@@ -13,22 +13,24 @@
 
 namespace pkm {
 
-enum class InstructionSet { baseline, avx2, avx512 };  ///< each includes the ones before it; baseline: any x86-64
+/// Vector instruction sets; each includes all sets before it. `baseline` runs on every x86-64 processor.
+enum class InstructionSet { baseline, avx2, avx512 };
 
 inline constexpr std::array<std::string_view, 3> kInstructionSets = {"baseline", "avx2", "avx512"};
 
 inline std::string_view name_of(InstructionSet set) { return kInstructionSets[static_cast<std::size_t>(set)]; }
 
-/// The widest set that the processor and the operating system support.
+/// The largest instruction set that the processor and the operating system support.
 InstructionSet widest_instruction_set();
 
-/// The set in use: the widest, unless use_instruction_set() chose another.
+/// The instruction set in use: the largest that is supported, unless use_instruction_set() has selected another one.
 InstructionSet instruction_set();
 
-/// Selects the set for the whole program. Throws std::invalid_argument if the processor does not support it.
+/// Selects the instruction set for the whole program. Throws std::invalid_argument if the processor does not support
+/// it.
 void use_instruction_set(InstructionSet set);
 
-/// Calls kernel.template operator()<set>() for the set in use, for example
+/// Calls the instantiation of a kernel for the instruction set in use, kernel.template operator()<set>(). Example:
 ///   with_instruction_set([&]<InstructionSet set> { return tally<set>(columns); })
 template <class Kernel>
 decltype(auto) with_instruction_set(const Kernel& kernel) {

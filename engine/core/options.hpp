@@ -48,50 +48,54 @@ inline constexpr const char* kUnitOfEntry = "";
 /// or objectives, which are substituted when the study is read.
 enum class FieldNames { listed, variables, objectives };
 
-/// One option. A `number` has an SI unit ("m", "rad", "s", ... or "1"); its value is stored in that unit.
+/// Description of one option. A `number` has an SI unit ("m", "rad", "s", ... or "1"); its value is stored in that
+/// unit.
 struct OptionSpec {
   std::string name;
   OptionKind kind = OptionKind::number;
   std::string unit = "1";
-  std::optional<OptionValue> initial;  ///< default value, if any
-  bool required = false;               ///< an option that has no default and is not required may be absent
-  double lower = -std::numeric_limits<double>::infinity();  ///< minimum (numbers and integers)
-  double upper = std::numeric_limits<double>::infinity();   ///< maximum
-  std::vector<std::string> choices;                         ///< valid words (words only); empty: any text
+  std::optional<OptionValue> initial;  ///< default value; std::nullopt: none
+  bool required = false;  ///< true: the option must be given; false: it may be absent, even if it has no default
+  double lower = -std::numeric_limits<double>::infinity();  ///< minimum of a number or an integer
+  double upper = std::numeric_limits<double>::infinity();   ///< maximum of a number or an integer
+  std::vector<std::string> choices;                         ///< valid words, if the option is a word; empty: any text
   std::string meaning;                                      ///< one-line description for `pkmopt list`
-  std::vector<std::pair<std::string, std::string>> fields =
-      {};  ///< list_of_numbers, named_numbers: valid names and their units; named_numbers: any name if empty
-  FieldNames field_names = FieldNames::listed;  ///< FieldNames::objectives: a value is required for every objective
+  /// For list_of_numbers and named_numbers: the valid names and their units. If empty, named_numbers accepts any
+  /// name.
+  std::vector<std::pair<std::string, std::string>> fields = {};
+  FieldNames field_names = FieldNames::listed;  ///< FieldNames::objectives: every objective must have a value
 
-  bool positive = false;               ///< numbers have to be > 0
-  std::size_t count = 0;               ///< number of elements of a list; 0: any
-  std::vector<OptionSpec> parts = {};  ///< list: one spec for all elements; any_of: the alternatives
-  const TableSpec* table = nullptr;    ///< keys of the table (tables only)
+  bool positive = false;  ///< true: numbers must be > 0
+  std::size_t count = 0;  ///< number of elements of a list; 0: any number
+  /// List: one element, which describes all elements of the list; any_of: the alternatives.
+  std::vector<OptionSpec> parts = {};
+  const TableSpec* table = nullptr;  ///< description of the keys of a table; null for options that are not tables
 };
 
-/// The keys of a table for one value of TableSpec::choice.
+/// The additional keys of a table for one value of the key TableSpec::choice.
 struct TableVariant {
   std::string word, meaning;
   std::vector<OptionSpec> keys;
-  std::vector<OptionSpec> named = {};  ///< see TableSpec::named
+  std::vector<OptionSpec> named = {};  ///< as TableSpec::named, for this value only
 };
 
 /// A TOML table: the keys that it may always have, and those that it may have only for one value of its key `choice`
 /// (for example "drive", "shape" or "type").
 struct TableSpec {
-  std::string header;  ///< "[[region]]"; "" for inline tables
+  std::string header;  ///< header in the file, for example "[[region]]"; "" for inline tables
   std::string meaning;
   std::vector<OptionSpec> keys;
-  std::string choice = {};  ///< key that selects one of the variants; "": there are none
+  std::string choice = {};  ///< name of the key that selects a variant; "": the table has no variants
   std::vector<TableVariant> variants = {};
-  std::vector<OptionSpec> named = {};  ///< at most one: describes the keys whose names the user chooses
-  std::string noun = "key";            ///< what a key is, for messages: "coordinate", "parameter", "table"
+  /// Description of the keys whose names the user chooses; empty if there are none, otherwise one element.
+  std::vector<OptionSpec> named = {};
+  std::string noun = "key";  ///< word for a key in messages: "coordinate", "parameter", "table"
 
-  /// The key called `name`, of the table or of one of its variants; null if there is none.
+  /// Finds the description of the key `name`, in the table or in one of its variants; null if there is none.
   const OptionSpec* find(const std::string& name) const;
 };
 
-/// Validated values of one entry's options, defaults included.
+/// Validated values of the options of one catalogue entry, including default values.
 class Options {
  public:
   void set(const std::string& name, OptionValue value) { values_[name] = std::move(value); }
@@ -115,10 +119,10 @@ class Options {
   std::map<std::string, OptionValue> values_;
 };
 
-/// The default values of `specs`. Options without a default are absent.
+/// Options with the default values of `specs`. Options without a default are absent.
 Options default_options(const std::vector<OptionSpec>& specs);
 
-/// An option's value in the syntax of a study file (TOML).
+/// Writes the value of an option in the syntax of a study file (TOML).
 std::string to_text(const OptionValue& value);
 
 /// Shortest decimal form of a double that reads back to the same bits ("0.1", "1e-08", "inf").

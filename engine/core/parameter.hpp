@@ -7,17 +7,17 @@
 
 namespace pkm {
 
-/// One parameter of a mechanism. The mechanism defines their order.
+/// A parameter of a mechanism. The mechanism defines the order of its parameters.
 struct Parameter {
-  std::string name;     ///< symbol in the mechanism's document, with "_" before an index: "l_u"
-  std::string unit;     ///< SI: "m", "rad", "kg", ... or "1"
+  std::string name;     ///< symbol in the document of the mechanism, with "_" before an index, for example "l_u"
+  std::string unit;     ///< SI unit: "m", "rad", "kg", ... or "1"
   double nominal = 0;   ///< default value
   double lower = 0;     ///< minimum; the model is defined on [lower, upper]
   double upper = 0;     ///< maximum
   std::string meaning;  ///< one-line description
 };
 
-/// One design variable of a study.
+/// A design variable of a study.
 struct Variable {
   std::string name;
   std::string unit;
@@ -36,12 +36,12 @@ class DesignSpace {
   const std::vector<Variable>& variables() const { return variables_; }
   const Variable& operator[](std::size_t i) const { return variables_[i]; }
 
-  /// Value of variable i (in its unit) at the normalised coordinate u in [0, 1], rounded to the lattice if the variable
-  /// has a step.
+  /// Value of variable i, in its unit, at the normalised coordinate u in [0, 1]. If the variable has a step, the value
+  /// is rounded to the nearest value that the step allows.
   double from_unit(std::size_t i, double u) const;
-  /// Normalised coordinate in [0, 1] of a value of variable i.
+  /// Normalised coordinate, in [0, 1], of a value of variable i.
   double to_unit(std::size_t i, double value) const;
-  /// The admissible value of variable i (within the bounds, on the lattice) that is nearest to `value`.
+  /// The allowed value of variable i, within its bounds and on its steps, that is nearest to `value`.
   double nearest(std::size_t i, double value) const;
 
  private:

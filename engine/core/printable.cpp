@@ -5,10 +5,10 @@
 namespace pkm {
 namespace {
 
-/// A decoded UTF-8 character.
+/// A character decoded from UTF-8.
 struct Character {
   char32_t code = 0;
-  std::size_t length = 0;  ///< in bytes; 0: not valid UTF-8
+  std::size_t length = 0;  ///< number of bytes; 0: the bytes are not valid UTF-8
 };
 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
@@ -32,7 +32,7 @@ Character decode_first(std::string_view text) {
   return overlong || surrogate || code > 0x10FFFF ? Character{} : Character{code, length};
 }
 
-/// C0 and C1 control characters, line and paragraph separators, and the bidirectional controls.
+/// Returns true for C0 and C1 control characters, line and paragraph separators, and bidirectional controls.
 bool is_control(char32_t code) {
   return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x200E && code <= 0x200F) ||
          (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);

@@ -12,11 +12,11 @@ namespace pkm {
 /// @param keep  control characters that are not escaped, such as "\n"
 std::string printable(std::string_view text, std::string_view keep = "");
 
-/// The text abbreviated to at most `max_size` bytes: if it is longer, its beginning, "..." and its end. Multi-byte
-/// characters are not split.
+/// Abbreviates a text to at most `max_size` bytes: a longer text is replaced by its beginning, "..." and its end.
+/// Multi-byte characters are not split.
 std::string excerpt(std::string_view text, std::size_t max_size);
 
-/// Number of bytes at the end of the text that are an incomplete UTF-8 character, which following text may complete.
+/// Number of bytes at the end of a text that are the beginning of a UTF-8 character, which following text may complete.
 std::size_t incomplete_character_size(std::string_view text);
 
 }  // namespace pkm

@@ -19,19 +19,19 @@
 namespace pkm::ranks {
 namespace {
 
-/// The host of a rank and its affinity mask: the cores that it may use.
+/// Host of a rank, and the processor cores that it may use according to its affinity mask.
 struct Location {
   std::string host;
   std::set<int> cores;
 };
 
-std::unique_ptr<Backend> group;     // null: there is only this process
-std::vector<Location> locations;    // by rank
-double seconds_in_collectives = 0;  // time in s spent in collective functions
+std::unique_ptr<Backend> group;     // null if there is only this process
+std::vector<Location> locations;    // element k: location of rank k
+double seconds_in_collectives = 0;  // time spent in collective functions [s]
 std::mutex mailbox_mutex;
 std::deque<std::string> mailbox;  // messages that rank 0 has posted to itself
 
-/// The value of an environment variable that begins with a decimal number.
+/// The integer with which the value of an environment variable begins; std::nullopt if there is none.
 std::optional<int> env_integer(const char* variable) {
   const char* const text = std::getenv(variable);
   if (!text || *text < '0' || *text > '9') return {};
@@ -74,7 +74,7 @@ Location own_location() {
   return location;
 }
 
-/// Collective: the locations of all ranks.
+/// Collects the locations of all ranks. Collective.
 std::vector<Location> gather_locations() {
   const Location own = own_location();
   std::string message = own.host;
@@ -99,7 +99,7 @@ int threads_of(const Location& location) {
   return std::max(1, static_cast<int>(share + 1e-6));
 }
 
-/// RAII timer: adds its lifetime to seconds_in_collectives.
+/// Adds the time between its construction and its destruction to seconds_in_collectives.
 class CommunicationTimer {
  public:
   ~CommunicationTimer() { seconds_in_collectives += std::chrono::duration<double>(Clock::now() - begin_).count(); }
@@ -240,7 +240,8 @@ int threads() {
 }
 
 std::optional<std::string> oversubscription_warning(int threads) {
-  std::map<std::string, std::pair<int, std::set<int>>> hosts;  // number of ranks and set of cores
+  // For each host, the number of its ranks and the set of cores that they may use.
+  std::map<std::string, std::pair<int, std::set<int>>> hosts;
   for (const Location& location : locations) {
     auto& [ranks, cores] = hosts[location.host];
     ++ranks;

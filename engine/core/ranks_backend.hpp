@@ -14,10 +14,11 @@ namespace pkm::ranks {
 
 class Backend {
  public:
-  virtual ~Backend() = default;  ///< collective; leaves the group of processes
+  virtual ~Backend() = default;  ///< leaves the group of processes; collective
   int rank = 0, size = 1;
   virtual void broadcast(char* bytes, std::size_t count) = 0;
-  /// Concatenates the bytes of all ranks in `all`. @param sizes  number of bytes of each rank
+  /// Concatenates the bytes of all ranks in `all`.
+  /// @param sizes  number of bytes of each rank
   virtual void all_gather(const char* mine, const std::vector<std::size_t>& sizes, char* all) = 0;
   virtual std::unique_ptr<Counter::Shared> counter() = 0;
   virtual void post(const std::string& message) = 0;
@@ -25,7 +26,7 @@ class Backend {
   [[noreturn]] virtual void abort(int exit_code) = 0;
 };
 
-/// Name and version of the library, "Open MPI 4.1.4"; "" in a build without MPI.
+/// Name and version of the library, for example "Open MPI 4.1.4"; "" in a build without MPI.
 std::string library();
 /// Connects the processes that the launcher has started. Throws std::runtime_error if the library has no thread
 /// support, and std::logic_error in a build without MPI.

@@ -57,7 +57,7 @@ class SharedCounters {
   SharedCounters(const SharedCounters&) = delete;
   SharedCounters& operator=(const SharedCounters&) = delete;
 
-  /// Allocates a counter, sets it to 0 on all ranks and returns its index. Collective.
+  /// Allocates a counter with the value 0, and returns its index. Collective.
   std::size_t allocate() {
     index_ = (index_ + 1) % kMaxCounters;
     if (rank_ == 0) std::atomic_ref(data_[index_ * kStride]).store(0);
@@ -75,20 +75,21 @@ class SharedCounters {
     barrier();
     return index_;
   }
-  /// Releases a counter that no rank uses any more. Collective.
+  /// Releases one counter, which no rank uses any more. Collective.
   void release() {
-    // No barrier if an exception ends the run: other ranks may not reach this point.
+    // There is no barrier if an exception ends the run, because other ranks may not reach this point.
     if (!one_host_ && std::uncaught_exceptions() == 0) barrier();
     if (--open_ == 0) server_ = {};
   }
-  /// Atomic fetch-and-add.
+  /// Adds `by` to a counter and returns its previous value, as one atomic operation.
   std::int64_t add(std::size_t index, std::int64_t by) {
     if (one_host_ || rank_ == 0) return std::atomic_ref(data_[index * kStride]).fetch_add(by);
     return request_from_rank_0({static_cast<std::int64_t>(index), by, 0});
   }
 
  private:
-  static constexpr std::size_t kMaxCounters = 16, kStride = 8;  // one cache line per counter
+  // Distance of two counters in elements: each has a cache line of its own.
+  static constexpr std::size_t kMaxCounters = 16, kStride = 8;
 
   struct Request {
     std::int64_t index, by, tag;
@@ -111,7 +112,8 @@ class SharedCounters {
     return number;
   }
 
-  /// On rank 0: serves all pending requests. @return false if there were none
+  /// On rank 0: serves all pending requests.
+  /// @return false if there were none
   bool serve_requests() {
     const std::lock_guard lock(mpi_mutex);
     for (bool any = false;; any = true) {
@@ -126,7 +128,8 @@ class SharedCounters {
     }
   }
 
-  /// Non-blocking barrier, so that the serving thread of rank 0 can call MPI meanwhile.
+  /// Waits until all ranks have called this function. The barrier is non-blocking, so that the serving thread of rank 0
+  /// can call MPI meanwhile.
   void barrier() {
     MPI_Request all_arrived = MPI_REQUEST_NULL;
     {
@@ -261,7 +264,7 @@ class Mpi final : public Backend {
   }
 
   [[noreturn]] void abort(int exit_code) override {
-    MPI_Abort(MPI_COMM_WORLD, exit_code);  // without the lock: another thread may block in MPI for ever
+    MPI_Abort(MPI_COMM_WORLD, exit_code);  // called without the lock, because another thread may block in MPI for ever
     std::_Exit(exit_code);
   }
 
@@ -271,7 +274,7 @@ class Mpi final : public Backend {
     MPI_Request request = MPI_REQUEST_NULL;
   };
 
-  /// Broadcasts from rank `from`, in messages of at most kMaxMessage bytes.
+  /// Broadcasts `count` bytes of the rank `from`, in messages of at most kMaxMessage bytes.
   void broadcast_chunks(char* bytes, std::size_t count, int from) {
     for (std::size_t chunk = 0; count > 0; bytes += chunk, count -= chunk) {
       chunk = std::min(count, kMaxMessage);
@@ -279,7 +282,7 @@ class Mpi final : public Backend {
     }
   }
 
-  /// Removes the messages whose transfer is complete.
+  /// Removes those pending messages whose transfer is complete.
   void release_completed() {
     std::erase_if(pending_, [](PendingSend& each) {
       int done = 0;
@@ -291,7 +294,7 @@ class Mpi final : public Backend {
   bool initialized_here_ = true, one_host_ = true;
   MPI_Comm group_ = MPI_COMM_NULL, mail_ = MPI_COMM_NULL;
   std::optional<SharedCounters> counters_;
-  std::list<PendingSend> pending_;  ///< messages in transfer, whose buffers MPI may still read
+  std::list<PendingSend> pending_;  ///< messages that are being transferred, whose buffers MPI may still read
 };
 
 }  // namespace
@@ -301,7 +304,7 @@ std::string library() {
   int length = 0;
   MPI_Get_library_version(text, &length);
   const std::string version(text, static_cast<std::size_t>(length));
-  // Formats: "Open MPI v4.1.4, package: ..", "MPICH Version:\t4.0.2\nMPICH Release date: .."
+  // The text is, for example, "Open MPI v4.1.4, package: .." or "MPICH Version:\t4.0.2\nMPICH Release date: ..".
   return version.substr(0, version.find_first_of(",\n"));
 }
 

@@ -12,7 +12,7 @@ namespace pkm {
 /// own.
 class Scratch {
  public:
-  /// The object of type T. The first call default-constructs it; later calls return the same object.
+  /// Returns the object of type T. The first call default-constructs it; later calls return the same object.
   template <class T>
   T& get() {
     for (const auto& holder : holders_)
@@ -25,7 +25,7 @@ class Scratch {
 
  private:
   template <class T>
-  static constexpr char kType = 0;  // its address identifies the type
+  static constexpr char kType = 0;  // its address, which is different for each type, identifies the type
 
   struct HolderBase {
     explicit HolderBase(const char* type_id) : type(type_id) {}

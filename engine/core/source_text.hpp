@@ -7,7 +7,7 @@ namespace pkm {
 
 struct SourceText {
   std::string text;
-  std::string file_name;  ///< as shown in error messages
+  std::string file_name;  ///< name of the file, as it is shown in error messages
 };
 
 }  // namespace pkm

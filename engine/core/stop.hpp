@@ -15,25 +15,25 @@ namespace pkm {
 /// Thrown by check_stop(). Not derived from std::exception, so that error handlers do not catch it.
 struct Stopped {};
 
-/// RAII: while an instance exists, check_stop() in this thread throws as soon as the instance's condition is true or
-/// its time limit is exceeded.
+/// While an instance exists, check_stop() in this thread throws as soon as the condition of the instance is true or its
+/// time limit is exceeded.
 class StopScope {
  public:
   /// @param is_requested  returns true to stop; called frequently, by any thread of the team, possibly concurrently
   /// @param seconds       time limit from now [s]
   explicit StopScope(std::function<bool()> is_requested, double seconds = std::numeric_limits<double>::infinity());
-  /// A time limit only.
+  /// Opens a scope that has a time limit only [s].
   explicit StopScope(double seconds) : StopScope({}, seconds) {}
   ~StopScope() { current_ = outer_; }
   StopScope(const StopScope&) = delete;
   StopScope& operator=(const StopScope&) = delete;
 
-  /// Whether this scope or an enclosing one requests a stop.
+  /// Returns true if this scope or an enclosing one requests a stop.
   bool is_requested() const;
-  /// Whether an enclosing scope requests a stop: then the limits of this scope are not the cause.
+  /// Returns true if an enclosing scope requests a stop, so that the limits of this scope are not the cause.
   bool is_requested_by_outer_scope() const { return outer_ && outer_->is_requested(); }
 
-  /// The innermost scope of this thread; null if there is none.
+  /// The innermost scope of this thread; null if this thread has none.
   static const StopScope* current() { return current_; }
 
   /// While an instance exists, this thread is subject to a scope of another thread.
@@ -53,7 +53,7 @@ class StopScope {
 
   const StopScope* outer_;
   std::function<bool()> is_requested_;
-  double deadline_;  ///< [s], on the monotonic clock
+  double deadline_;  ///< time on the monotonic clock at which the limit is exceeded [s]
 };
 
 /// While an instance exists: calls `notify` once if the computation of this thread, which must call check_stop(), takes
@@ -66,12 +66,12 @@ class SlowStepNotice {
 
  private:
   std::function<void()> notify_;
-  std::atomic<bool> done_ = false;  ///< `notify` has been called
-  double deadline_;                 ///< [s], on the monotonic clock
+  std::atomic<bool> done_ = false;  ///< true after `notify` has been called
+  double deadline_;                 ///< time on the monotonic clock at which `notify` is due [s]
   StopScope scope_;
 };
 
-/// Whether a scope of this thread requests a stop.
+/// Returns true if a scope of this thread requests a stop.
 inline bool stop_requested() { return StopScope::current() && StopScope::current()->is_requested(); }
 
 /// Throws Stopped if a scope of this thread requests a stop. Takes 10 to 20 ns within a scope and 1 ns otherwise; to be

@@ -27,10 +27,10 @@ namespace {
 
 class ThreadPool;
 
-// Number of threads that execute the loops of this thread, itself included: the team size for the thread that runs the
-// body of with_team(), otherwise 1.
+// Number of threads, this one included, that execute the loops of this thread: the size of the team for the thread that
+// runs the body of with_team(), otherwise 1.
 thread_local std::size_t thread_count = 1;
-// The pool in which these threads wait.
+// The pool in which the other threads of the team wait; null without a team.
 thread_local ThreadPool* pool = nullptr;
 // True while this thread executes an iteration of parallel_for_nested(). Its inner loops are then shared only with
 // threads for which no iteration of parallel_for_nested() is left.
@@ -53,7 +53,7 @@ void check_environment() {
 /// have work to do (benchmarks/README.md).
 void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
   constexpr auto kSpinTime = std::chrono::microseconds(100);
-  constexpr int kSpins = 64;  // loads between two readings of the clock
+  constexpr int kSpins = 64;  // number of loads of the value between two readings of the clock
   const auto end = std::chrono::steady_clock::now() + kSpinTime;
   do {
     for (int i = 0; i < kSpins; ++i) {
@@ -80,7 +80,8 @@ class SharedLoop {
     next_.store(loop_id << 32, std::memory_order_release);
   }
 
-  /// Claims and executes chunks until no iteration is left. @param threads  number of threads of the team
+  /// Claims and executes chunks until no iteration is left.
+  /// @param threads  number of threads of the team
   void execute_chunks(std::uint32_t threads) {
     const SerialScope serial;
     const auto worker = static_cast<std::size_t>(omp_get_thread_num());
@@ -90,7 +91,7 @@ class SharedLoop {
       const std::uint32_t total = iterations_.load(std::memory_order_acquire), begin = static_cast<std::uint32_t>(next);
       if (begin >= total) return;
       const std::uint32_t count = std::max<std::uint32_t>(1, (total - begin) / (2 * threads));
-      // Also fails if the loop has ended meanwhile: the values read above may then belong to another loop.
+      // The exchange also fails if the loop has ended meanwhile: the values read above may then belong to another loop.
       if (!next_.compare_exchange_weak(next, next + count, std::memory_order_acquire, std::memory_order_acquire))
         continue;
       try {
@@ -106,7 +107,7 @@ class SharedLoop {
     }
   }
 
-  /// Waits until all iterations are complete. Rethrows an exception of one of them.
+  /// Waits until all iterations are complete. Rethrows an exception that one of them has thrown.
   void finish() {
     const std::uint32_t iterations = iterations_.load(std::memory_order_relaxed);
     for (std::uint32_t done = done_.load(std::memory_order_acquire); done != iterations;
@@ -119,14 +120,15 @@ class SharedLoop {
   static constexpr std::uint32_t kNoIteration = 0xffffffff;
 
  private:
-  std::atomic<std::uint64_t> next_ = kNoIteration;  ///< number of the loop << 32 | first unclaimed iteration
+  /// (number of the loop << 32) | index of the first unclaimed iteration.
+  std::atomic<std::uint64_t> next_ = kNoIteration;
   std::atomic<const WorkRef*> work_ = nullptr;
-  std::atomic<const StopScope*> scope_ = nullptr;  ///< scope of the thread that started the loop
+  std::atomic<const StopScope*> scope_ = nullptr;  ///< StopScope of the thread that started the loop
   std::atomic<std::uint32_t> iterations_ = 0, done_ = 0;
   std::exception_ptr failure_ = nullptr;
 };
 
-/// Pool of threads without work of their own, which execute iterations of the loops that other threads start.
+/// Pool of threads that have no work of their own, and execute iterations of the loops that other threads start.
 class ThreadPool {
  public:
   /// @param tasks  number of tasks; the waiting threads are released when all of them have ended
@@ -169,7 +171,7 @@ class ThreadPool {
   }
 
   std::atomic<std::size_t> unfinished_;
-  std::vector<SharedLoop> loops_;  ///< by thread number
+  std::vector<SharedLoop> loops_;  ///< the loop that each thread starts, by thread number
   std::atomic<std::uint32_t> changes_ = 0;
   std::atomic<int> waiting_ = 0;
 };
@@ -180,7 +182,7 @@ class ThreadPool {
 /// task limit of a container is left depends on other processes, and how much of RLIMIT_AS a thread needs depends on
 /// its stack, its malloc arena and the existing mappings.
 void require_threads(int size) {
-  static std::atomic<int> tested = 1;  // size of the largest team that could be started
+  static std::atomic<int> tested = 1;  // size of the largest team that could be started so far
   if (size <= tested.load(std::memory_order_relaxed)) return;
   std::latch done(1);
   std::vector<std::thread> threads;
@@ -223,7 +225,7 @@ void with_team(int threads, WorkRef body) {
     pool = &own_pool;
     try {
       body(0, 1, 0);
-    } catch (...) {  // exceptions must not leave a parallel region
+    } catch (...) {  // an exception must not leave an OpenMP parallel region
       failure = std::current_exception();
     }
     thread_count = 1;
@@ -276,7 +278,7 @@ void parallel_for_nested(std::size_t iterations, WorkRef work) {
     pool = previous_pool;
     thread_count = previous_count;
   };
-  pool->run_loop(team, serve);  // one iteration per thread
+  pool->run_loop(team, serve);  // one iteration for each thread of the team
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -45,7 +45,7 @@ int team_size(int threads);
 /// started.
 void with_team(int threads, WorkRef body);
 
-/// While an instance exists, this thread executes its loops alone.
+/// While an instance exists, the loops of this thread are executed by this thread alone.
 class SerialScope {
  public:
   SerialScope();
@@ -57,12 +57,12 @@ class SerialScope {
   std::size_t previous_;
 };
 
-/// Whether parallel_for() uses more than one thread here.
+/// Returns true if a parallel_for() called by this thread uses more than one thread.
 bool has_team();
 
-/// Maximum number of workers of parallel_for() here, for allocating data per worker.
+/// Maximum number of workers of a parallel_for() called by this thread, for allocating data for each worker.
 std::size_t workers();
-/// Index of this thread among the workers of parallel_for(), less than workers().
+/// Index of this thread among the workers of the parallel_for() that it executes; less than workers().
 std::size_t worker();
 
 /// Parallel loop: executes each of the iterations [0, iterations) once, by calls work(begin, end) or work(begin, end,

@@ -15,7 +15,7 @@ namespace pkm {
 /// no two elements are equivalent under `less`.
 template <class T, class Less = std::less<>>
 void parallel_sort(std::vector<T>& all, std::size_t first = 0, const Less& less = {}) {
-  constexpr std::size_t kMinRunSize = 5000;  // elements; smaller runs are not worth a thread
+  constexpr std::size_t kMinRunSize = 5000;  // minimum number of elements that a thread sorts
   const std::size_t count = all.size() - first;
   const std::size_t runs = has_team() ? std::bit_floor(std::min(workers(), count / kMinRunSize)) : 0;
   const auto begin_of = [&](std::size_t run) {

@@ -19,7 +19,8 @@ std::size_t width_of(const std::string& text) {
 
 /// Aligns the decimal points of a numeric column by indenting its cells; leaves other columns unchanged.
 void align_decimal_points(Rows& rows, std::size_t column) {
-  const bool has_heading = rows[0].size() != 2 || rows[0][0].empty();  // false: a list of names and values
+  // False: the table is a list of names and values, which has no heading.
+  const bool has_heading = rows[0].size() != 2 || rows[0][0].empty();
   std::size_t max_position = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (column >= rows[r].size()) continue;
@@ -44,7 +45,8 @@ std::optional<std::size_t> decimal_point_index(std::string_view text) {
   double value = 0;
   const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (read.ec != std::errc() || read.ptr != digits.data() + digits.size()) return {};
-  if (std::ranges::none_of(digits, [](unsigned char c) { return std::isdigit(c) != 0; })) return {};  // "inf"
+  // The text is not a number with digits, such as "inf".
+  if (std::ranges::none_of(digits, [](unsigned char c) { return std::isdigit(c) != 0; })) return {};
   return std::min(text.find_first_of(".e", begin), end);
 }
 

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kPi = 3.141592653589793238462643383279502884;
 
-using Dimension = std::array<int, 4>;  // exponents of m, kg, s, rad
+using Dimension = std::array<int, 4>;  // exponents of the base units m, kg, s, rad
 
-/// A unit: a number in this unit is number * multiply / divide in SI.
+/// A unit. A number in this unit is converted to SI by multiplying it by `multiply` and dividing it by `divide`.
 struct Unit {
   Dimension dimension{};
   double multiply = 1;
@@ -47,7 +47,8 @@ constexpr Symbol kSymbols[] = {
     {"Hz", {kFrequency, 1, 1}},
 };
 
-/// Whether a byte may be part of a unit symbol; true for all bytes of non-ASCII characters, such as the degree sign.
+/// Returns true if a byte may be part of a unit symbol. This includes all bytes of non-ASCII characters, such as the
+/// degree sign.
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80;
 }
@@ -67,7 +68,7 @@ bool read_unit(std::string_view text, Visit visit) {
       text.remove_prefix(1);
       continue;
     }
-    if (text[0] == '1') {  // "1", "1/s"
+    if (text[0] == '1') {  // a unit that begins with 1: "1" or "1/s"
       text.remove_prefix(1);
     } else {
       std::size_t length = 0;
@@ -100,7 +101,8 @@ std::optional<Unit> unit_of(std::string_view text) {
   return known ? std::optional(product) : std::nullopt;
 }
 
-/// Splits a text into a finite number and the text that follows it, trimmed.
+/// Splits a text into a finite number and the rest of the text without leading and trailing blanks; std::nullopt if the
+/// text does not begin with a number.
 std::optional<std::pair<double, std::string_view>> split_quantity(std::string_view text) {
   std::string_view rest = trimmed(text);
   if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
@@ -110,8 +112,8 @@ std::optional<std::pair<double, std::string_view>> split_quantity(std::string_vi
   return std::pair(number, trimmed(rest.substr(static_cast<std::size_t>(end - rest.data()))));
 }
 
-/// The symbols that can replace the factors of `unit`, i.e. those with the same dimension: for "m^2 rad" all units of
-/// length, then all units of angle.
+/// All unit symbols that have the dimension of a factor of `unit`: for "m^2 rad", all units of length followed by all
+/// units of angle.
 std::vector<std::string> related_units(std::string_view unit) {
   std::vector<std::string> names;
   std::vector<Dimension> listed;

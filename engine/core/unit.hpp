@@ -12,16 +12,16 @@
 
 namespace pkm {
 
-/// Parses a quantity. Text without a unit is in `unit`. Does not depend on the locale.
+/// Parses a quantity, independently of the locale. A number without a unit is in `unit`.
 /// @param unit  SI unit: "m", "rad", "s", "kg", "N", "kg m^2", ... or "1"
-/// @return its value in `unit`; std::nullopt if `text` is not a finite number, has another dimension, has an unknown
-///         unit, or contains anything else. quantity_hint() describes what is expected.
+/// @return its value in `unit`; std::nullopt if `text` is not a finite number, or has another dimension, an unknown
+/// unit or further text. quantity_hint() describes what is expected.
 std::optional<double> parse_quantity(std::string_view text, std::string_view unit);
 
 /// Describes the dimension of a text with a number and a unit: "an angle", "a length", or "a quantity in kg/m".
 /// @return "" for any other text, including numbers without a unit
 std::string kind_of_quantity(std::string_view text);
-/// Describes the dimension of a unit in the form of kind_of_quantity(): "an angle".
+/// Describes the dimension of a unit in the words of kind_of_quantity(), for example "an angle".
 std::string kind_of_unit(std::string_view unit);
 
 /// Maximum magnitude of an angle in the input [rad]. For larger angles, the remainder modulo 2 pi has fewer than 11
@@ -29,24 +29,25 @@ std::string kind_of_unit(std::string_view unit);
 /// (engine/math/portable.hpp).
 inline constexpr double kMaxAngle = 1e5;
 
-/// For error messages: the allowed range, if `value` is an angle whose magnitude exceeds kMaxAngle; otherwise "".
+/// The allowed range as text for an error message, if `value` is an angle whose magnitude exceeds kMaxAngle; otherwise
+/// "".
 std::string angle_hint(double value, std::string_view unit);
 
-/// If `unit` is rad, the value in degrees as text to append to the number: " (75 deg)". "" for other units and for NaN.
+/// The value in degrees, as text that can follow the number: " (75 deg)". "" if `unit` is not rad, and for NaN.
 std::string in_degrees(double value, std::string_view unit);
-/// Formats a number with its unit, angles also in degrees: "1.5 rad (85.9437 deg)", "2 m".
+/// Formats a number with its unit; an angle also in degrees: "1.5 rad (85.9437 deg)", "2 m".
 std::string with_degrees(double value, std::string_view unit);
-/// Formats a range: "0 .. 2 m", "0 (0 deg) .. 1.5 rad (85.9437 deg)".
+/// Formats a range; angles also in degrees: "0 .. 2 m", "0 (0 deg) .. 1.5 rad (85.9437 deg)".
 std::string format_range(double lower, double upper, std::string_view unit);
 
 /// Parses an integer in decimal digits: "-12", "0".
 /// @return std::nullopt for any other text, such as "010", "1e3", " 1" or "+1", and for integers that exceed 64 bits
 std::optional<std::int64_t> parse_integer(std::string_view text);
 
-/// The text without leading and trailing blanks and tabs.
+/// The text without blanks and tabs at its beginning and end.
 std::string_view trimmed(std::string_view text);
 
-/// Whether `unit` is a product of known coherent SI units, such as "m", "m^2 rad", "N m/rad" or "1".
+/// Returns true if `unit` is a product of known coherent SI units, such as "m", "m^2 rad", "N m/rad" or "1".
 bool is_si_unit(std::string_view unit);
 
 /// Describes the valid input for a quantity in `unit`, for messages: "a number in m, or text with a unit made of um,

@@ -6,7 +6,7 @@
 
 namespace pkm {
 
-/// Why a request is not supported, as one sentence; empty if it is supported.
+/// The reason why a request is not supported, as one sentence; empty if it is supported.
 using Unsupported = std::optional<std::string>;
 
 }  // namespace pkm
