@@ -14,7 +14,7 @@
 
 namespace pkm {
 
-/// The dynamic coupling index of each joint.
+/// Computes the dynamic coupling index of each joint from the joint-space inertia M_q.
 template <SmallMatrix M>
 auto coupling_indices(const M& M_q) {
   using S = typename M::Scalar;

@@ -18,14 +18,14 @@ struct JointInertia {
   S m00, m11, m22, m33, m01, m02, m03, m12, m13, m23;
 };
 
-/// The index 1 - exp(-off / own) from the sum `off` of the off-diagonal magnitudes of a row and its diagonal element
-/// `own`.
+/// The coupling index 1 - exp(-off / own) of a joint. `off` is the sum of the magnitudes of the off-diagonal elements
+/// in its row of M_q, `own` is the diagonal element.
 template <class S>
 [[gnu::always_inline]] inline S coupling_index(const S& off, const S& own) {
   return S(1.0) - exp(S(off / own * -1.0));
 }
 
-/// The coupling indices of four joints. S can be Lanes (SIMD).
+/// Computes the coupling indices of four joints. S can be Lanes, for several poses at once (SIMD).
 template <class S>
 [[gnu::always_inline]] inline std::array<S, 4> coupling_indices(const JointInertia<S>& M) {
   const S m01 = magnitude(M.m01), m02 = magnitude(M.m02), m03 = magnitude(M.m03), m12 = magnitude(M.m12),

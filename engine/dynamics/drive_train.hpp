@@ -19,27 +19,28 @@
 namespace pkm {
 
 struct DriveTrain {
-  double ratio = 1;       ///< g: motor speed over joint speed [1 or rad/m]
+  double ratio = 1;       ///< transmission ratio g: motor speed divided by joint speed [1 or rad/m]
   double rotor = 0;       ///< inertia of the motor's rotor [kg m^2]
-  double shaft = 0;       ///< inertia of the other parts on the motor shaft: screw, coupling, gear [kg m^2]
-  double efficiency = 1;  ///< eta, of the transmission
-  double coulomb = 0;     ///< F_c, at the joint [N, N m]
-  double viscous = 0;     ///< b, at the joint [N s/m, N m s/rad]
-  double slow = 1e-3;     ///< v_0: below this speed, friction and losses decrease to 0 [m/s, rad/s]
+  double shaft = 0;       ///< inertia of all other parts on the motor shaft: screw, coupling, gear [kg m^2]
+  double efficiency = 1;  ///< efficiency eta of the transmission, in (0, 1]
+  double coulomb = 0;     ///< Coulomb friction F_c at the joint [N, N m]
+  double viscous = 0;     ///< coefficient b of the viscous friction at the joint [N s/m, N m s/rad]
+  double slow = 1e-3;     ///< joint speed v_0 below which friction and losses decrease to 0 [m/s, rad/s]
 
-  /// Inertia J = rotor + shaft reflected to the joint [kg, kg m^2].
+  /// Inertia of rotor and shaft, reflected to the joint: J g^2 [kg, kg m^2].
   double reflected() const { return (rotor + shaft) * ratio * ratio; }
-  /// n, the smoothed sign of the joint speed.
+  /// The smoothed sign n of the joint speed, in (-1, 1).
   template <class S>
   S direction(const S& speed) const {
     return speed / sqrt(S(speed * speed + slow * slow));
   }
-  /// Friction force; a positive value opposes a positive joint speed [N, N m].
+  /// Friction force at the joint, as a function of its speed [N, N m]. A positive value opposes a positive speed.
   template <class S>
   S friction(const S& speed) const {
     return direction(speed) * coulomb + speed * viscous;
   }
-  /// Torque T of the motor [N m]. @param force  tau: joint force without friction and without the reflected inertia
+  /// Torque T of the motor [N m].
+  /// @param force  tau: joint force without friction and without the reflected inertia
   template <class S>
   S torque(const S& force, const S& speed, const S& acceleration) const {
     const S load = force + friction(speed);
@@ -48,10 +49,10 @@ struct DriveTrain {
   }
 };
 
-/// One drive train per joint.
+/// Drive train of each joint.
 using DriveTrains = std::vector<DriveTrain>;
 
-/// The reflected inertias of all drive trains: their contribution to the diagonal of M_q.
+/// The reflected inertia of each drive train, which is added to the diagonal element of M_q.
 inline std::vector<double> reflected(const DriveTrains& trains) {
   std::vector<double> all;
   for (const DriveTrain& train : trains) all.push_back(train.reflected());

@@ -12,20 +12,21 @@ namespace pkm {
 
 /// A point of the curve of peak torque over speed.
 struct TorqueAtSpeed {
-  double speed = 0, torque = 0;  ///< [rad/s, N m]
+  double speed = 0, torque = 0;  ///< speed [rad/s] and peak torque at this speed [N m]
 };
 
 /// Ratings of a motor.
 struct Motor {
   std::string name;
-  double continuous_torque = 0, peak_torque = 0;  ///< > 0 [N m]
-  double speed = 0;                               ///< maximum speed, > 0 [rad/s]
-  double rotor = 0;                               ///< inertia of the rotor [kg m^2]
+  /// Largest root-mean-square torque and largest torque of the motor, > 0 [N m].
+  double continuous_torque = 0, peak_torque = 0;
+  double speed = 0;  ///< maximum speed, > 0 [rad/s]
+  double rotor = 0;  ///< inertia of the rotor [kg m^2]
   /// Curve of the peak torque over the speed, linear between its points and constant outside of them; speeds increase
   /// strictly. Empty: the peak torque is constant.
   std::vector<TorqueAtSpeed> curve = {};
 
-  /// Peak torque at a speed of either sign [N m].
+  /// The peak torque at a speed [N m]; the sign of the speed has no influence.
   template <class S>
   S torque_at(const S& speed_of_motor) const {
     if (curve.empty()) return S(peak_torque);
@@ -39,17 +40,18 @@ struct Motor {
   }
 };
 
-/// Force, speed and acceleration of a joint at one time.
+/// Force, speed and acceleration of a joint at one instant of a motion.
 struct JointLoad {
-  double force;                ///< without friction and without reflected inertia [N, N m]
-  double speed, acceleration;  ///< [m/s, rad/s; m/s^2, rad/s^2]
+  double force;                ///< force of the joint without friction and without reflected inertia [N, N m]
+  double speed, acceleration;  ///< speed [m/s, rad/s] and acceleration [m/s^2, rad/s^2] of the joint
 };
 
-/// The demand on a motor, and its reserve.
+/// The demand of a motion on a motor, compared with the motor's ratings.
 struct MotorFit {
-  double peak_torque = 0, rms_torque = 0, speed = 0;  ///< required [N m, N m, rad/s]
-  double reserve = 0;      ///< minimum ratio of rating to demand; the motor is sufficient if >= 1
-  std::string bounded_by;  ///< the rating with the minimum ratio: "peak torque", "continuous torque" or "speed"
+  /// Peak torque [N m], root-mean-square torque [N m] and motor speed [rad/s] that the motion requires.
+  double peak_torque = 0, rms_torque = 0, speed = 0;
+  double reserve = 0;      ///< minimum ratio of a rating to the demand; the motor is sufficient if it is >= 1
+  std::string bounded_by;  ///< rating that has this minimum ratio: "peak torque", "continuous torque" or "speed"
 };
 
 /// Compares the demand of a motion with the ratings of a motor.

@@ -14,10 +14,10 @@ using Eigen::Index;
 
 Eigen::Vector3d eigen(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// A joint and its columns in the equations: three forces, followed by its couples.
+/// A joint and the columns of its unknowns in the equations: three forces, followed by the couples.
 struct JointColumns {
   const Joint& joint;
-  Index first, couples;  ///< first column of the forces and of the couples
+  Index first, couples;  ///< indices of the first column of the forces and of the first column of the couples
   Index couple_count;
 };
 std::vector<JointColumns> columns_of(const NewtonEuler& system) {
@@ -30,13 +30,13 @@ std::vector<JointColumns> columns_of(const NewtonEuler& system) {
   return columns;
 }
 
-/// A component of a joint's force or couple along a direction, as a linear combination of consecutive unknowns.
+/// A component of a joint's force or couple, as a linear combination of consecutive unknowns of the equations.
 struct Component {
   Index first;
   Eigen::VectorXd weights;
 
   double in(const Eigen::VectorXd& solution) const { return weights.dot(solution.segment(first, weights.size())); }
-  /// True if the component is unique: no unit vector of the null space changes it by more than the tolerance.
+  /// Returns true if the component is unique: no unit vector of the null space changes it by more than the tolerance.
   bool is_determined(const MinNormSolution& solution) const {
     if (solution.null_space.cols() == 0 || weights.size() == 0) return true;
     const auto rows = solution.null_space.middleRows(first, weights.size());
@@ -53,7 +53,7 @@ Component couple_along(const JointColumns& at, const Eigen::Vector3d& direction)
     component.weights[k] = direction.dot(eigen(at.joint.couples[static_cast<std::size_t>(k)]));
   return component;
 }
-/// The component of a joint's force or couple that is exerted by its actuator.
+/// The component of a joint's force or couple that its actuator exerts.
 Component actuation(const JointColumns& at) {
   const Eigen::Vector3d axis = eigen(at.joint.actuator->axis);
   return at.joint.actuator->turns ? couple_along(at, axis) : force_along(at, axis);
@@ -66,7 +66,7 @@ LinearEquations equations(const NewtonEuler& system) {
   const auto rows = static_cast<Index>(6 * system.bodies.size());
   const Index unknowns = columns.empty() ? 0 : columns.back().couples + columns.back().couple_count;
   LinearEquations e{Eigen::MatrixXd::Zero(rows, unknowns), Eigen::VectorXd(rows)};
-  // adds the columns of a joint to the rows of a body; sign is -1 for the body on which the opposite loads act
+  // Adds the columns of a joint to the rows of a body. `sign` is -1 for the body on which the opposite loads act.
   const auto add_joint = [&](const JointColumns& at, std::size_t body, double sign) {
     const auto row = static_cast<Index>(6 * body);
     const Eigen::Vector3d r = eigen(at.joint.point - system.bodies[body].centre) * sign;
@@ -102,7 +102,7 @@ MinNormSolution min_norm_solution(const NewtonEuler& system) {
   LinearEquations e = equations(system);
   const std::vector<JointColumns> columns = columns_of(system);
   const double length = couple_length(system);
-  // divide moments and couples by the length, so that A is dimensionless
+  // Moment equations are divided by the length, and couples are multiplied by it, so that A is dimensionless.
   for (Index row = 3; row < e.A.rows(); row += 6) {
     e.A.middleRows<3>(row) /= length;
     e.b.segment<3>(row) /= length;

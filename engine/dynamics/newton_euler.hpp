@@ -23,24 +23,25 @@
 
 namespace pkm {
 
-/// Marks a component of a joint's force or couple as exerted by an actuator. Components with the same `joint` add up to
-/// one drive force.
+/// Marks the component of a joint's force or couple that an actuator exerts. The components of all marks with the same
+/// `joint` are added to one drive force.
 struct Actuator {
-  std::size_t joint;       ///< index among the mechanism's actuated joints
-  Vector<double, 3> axis;  ///< unit vector of the positive direction
-  /// Additional drive force for a slide between the actuator and the joint that is not modelled as a body: the mass of
-  /// the slide times (acceleration - g) along the axis [N].
+  std::size_t joint;       ///< index of the actuated joint in MechanismInfo::joints
+  Vector<double, 3> axis;  ///< direction of a positive drive force, unit vector
+  /// Additional drive force [N] for a slide between the actuator and the joint that is not modelled as a body: the mass
+  /// of the slide times (acceleration - g) along the axis.
   double on_slide = 0;
-  bool turns = false;  ///< true for a rotary actuator, which exerts a couple instead of a force
+  bool turns = false;  ///< true: a rotary actuator, which exerts a couple; false: a linear one, which exerts a force
 };
 
-/// A joint between two bodies, or a body and the ground. It transmits forces in all directions.
+/// A joint between two bodies, or between a body and the ground. It transmits forces in all directions.
 struct Joint {
   std::string name;
-  Vector<double, 3> point;                 ///< [m]
-  std::size_t on;                          ///< index of the body that the force and the couples act on
-  std::optional<std::size_t> from;         ///< index of the body on which the opposites act; std::nullopt: the ground
-  std::vector<Vector<double, 3>> couples;  ///< unit vectors of the couples that the joint transmits
+  Vector<double, 3> point;  ///< position of the joint in the world frame [m]
+  std::size_t on;           ///< index of the body on which the force and the couples act
+  /// Index of the body on which the opposite force and couples act; std::nullopt: the ground.
+  std::optional<std::size_t> from;
+  std::vector<Vector<double, 3>> couples;  ///< axes of the couples that the joint transmits, unit vectors
   std::optional<Actuator> actuator;
 };
 
@@ -51,26 +52,27 @@ struct NewtonEuler {
   std::vector<Joint> joints;
 };
 
-/// A x = b, with forces in N, couples in N m and lengths in m.
+/// The equations A x = b, with forces in N, couples in N m and lengths in m.
 struct LinearEquations {
   Eigen::MatrixXd A;
   Eigen::VectorXd b;
 };
 LinearEquations equations(const NewtonEuler& system);
 
-/// Minimum-norm solution, and the null space of the equations.
+/// The minimum-norm solution of the equations, and a basis of their null space.
 struct MinNormSolution {
-  Eigen::VectorXd x;           ///< the unknowns in column order [N, N m]
-  Eigen::MatrixXd null_space;  ///< orthonormal columns; units: forces 1 N, couples couple_length() N m
+  Eigen::VectorXd x;  ///< the unknowns, in the order of the columns of NewtonEuler [N, N m]
+  /// Orthonormal columns. Components for forces are in units of 1 N, for couples in units of couple_length() N m.
+  Eigen::MatrixXd null_space;
   int rank = 0;
 };
 
-/// Characteristic length [m] that makes couples comparable with forces: root mean square distance of the joints from
-/// the centres of mass of the bodies that they act on; 1 m if all distances are 0. The minimum-norm solution depends on
-/// it, the determined components do not.
+/// Characteristic length [m] by which couples are made comparable with forces: root mean square distance of the joints
+/// from the centres of mass of the bodies on which they act; 1 m if all distances are 0. The minimum-norm solution
+/// depends on it, but not its determined components.
 double couple_length(const NewtonEuler& system);
 
-inline constexpr double kRankTolerance = 1e-10;  ///< relative to the largest pivot: smaller pivots count as 0
+inline constexpr double kRankTolerance = 1e-10;  ///< smaller pivots, relative to the largest one, count as 0
 /// Solves the equations by complete orthogonal decomposition.
 MinNormSolution min_norm_solution(const NewtonEuler& system);
 
@@ -79,7 +81,7 @@ AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd
 
 /// A force component is determined if unit vectors of the null space change it by less than this tolerance.
 inline constexpr double kUniqueTolerance = 1e-9;
-/// Joint reactions and drive forces, as far as the equations determine them.
+/// Computes joint reactions and drive forces, as far as the equations determine them.
 Reactions reactions(const NewtonEuler& system);
 
 }  // namespace pkm

@@ -20,7 +20,7 @@
 
 namespace pkm {
 
-inline constexpr double kGravity = 9.81;  ///< [m/s^2], along -z
+inline constexpr double kGravity = 9.81;  ///< gravitational acceleration along -z [m/s^2]
 
 /// External force and moment on the platform [N, N m]: Fx, Fy, Fz, Mx, My, Mz.
 template <class S>
@@ -31,23 +31,24 @@ inline const std::vector<std::string>& wrench_names() {
   return names;
 }
 
-/// Pose and velocity at which the equations of motion are evaluated.
+/// The pose and the velocity of the platform at which the equations of motion are evaluated.
 template <class S>
 struct MotionState {
   Pose<S> pose;
-  AxisVector<S> velocity;  ///< Xdot [m/s, rad/s]
+  AxisVector<S> velocity;  ///< Xdot: rates of the platform coordinates [m/s, rad/s]
 };
 
 /// The equations of motion in the coordinates of the platform.
 template <class S>
 struct PoseDynamics {
-  bool assembles = false;  ///< false: the mechanism cannot be assembled at the pose, and nothing below is set
+  /// False: the mechanism cannot be assembled at the pose, and the following members are not set.
+  bool assembles = false;
   AxisVector<S> q;         ///< joint positions [m, rad]
-  AxisMatrix<S> J;         ///< joints x coordinates: qdot = J Xdot
-  AxisVector<S> J_rate_X;  ///< Jdot Xdot
+  AxisMatrix<S> J;         ///< Jacobian, joints x coordinates: qdot = J Xdot
+  AxisVector<S> J_rate_X;  ///< product Jdot Xdot, the joint accelerations for Xddot = 0
   AxisMatrix<S> M_X;       ///< inertia matrix: kinetic energy = Xdot^T M_X Xdot / 2
   AxisVector<S> h_X;       ///< centrifugal and Coriolis forces at the given velocity
-  AxisVector<S> G_X;       ///< gravity: gradient of the potential energy
+  AxisVector<S> G_X;       ///< gravity forces: gradient of the potential energy with respect to X
   /// Jacobian J_w of the point where a wrench acts: its velocity and angular velocity are J_w Xdot.
   MatrixUpTo<S, 6, kMaxJoints> J_wrench;
 };
@@ -56,17 +57,18 @@ struct PoseDynamics {
 template <class S>
 struct JointSpace {
   AxisMatrix<S> M_q;       ///< inertia matrix [kg, kg m, kg m^2]
-  AxisVector<S> c_q, G_q;  ///< Coriolis and centrifugal forces, gravity [N, N m]
+  AxisVector<S> c_q, G_q;  ///< Coriolis and centrifugal forces; gravity forces [N, N m]
 };
 
-/// A matrix of the same size whose elements are NaN, for quantities that do not exist at singularities.
+/// A matrix of the same size whose elements are NaN. It stands for quantities that do not exist at singularities.
 template <SmallMatrix M>
 M undetermined(M like) {
   for (auto& element : like) element = typename M::Scalar(std::numeric_limits<double>::quiet_NaN());
   return like;
 }
 
-/// Joint forces J^-T f for forces f in the coordinates of the platform; NaN if J is singular to working precision.
+/// Joint forces J^-T f that are equivalent to forces f in the coordinates of the platform; NaN if J is singular to
+/// working precision.
 template <class S>
 AxisVector<S> at_joints(const PoseDynamics<S>& d, const AxisVector<S>& f) {
   auto eliminated = transpose(d.J);
@@ -99,7 +101,7 @@ AxisMatrix<S> joint_inertia(const PoseDynamics<S>& d) {
   return M;
 }
 
-/// Transforms the equations of motion to joint space.
+/// Transforms the equations of motion from the platform coordinates to joint space.
 template <class S>
 JointSpace<S> joint_space(const PoseDynamics<S>& d) {
   return {joint_inertia(d), at_joints<S>(d, d.h_X - d.M_X * solve(d.J, d.J_rate_X)), at_joints<S>(d, d.G_X)};
@@ -112,7 +114,7 @@ AxisVector<S> acceleration(const PoseDynamics<S>& d, const std::type_identity_t<
   return solve(d.M_X, transpose(d.J) * tau + transpose(d.J_wrench) * wrench - d.h_X - d.G_X);
 }
 
-/// Kinetic energy [J].
+/// Kinetic energy of the mechanism [J].
 template <class S>
 S kinetic_energy(const PoseDynamics<S>& d, const std::type_identity_t<AxisVector<S>>& velocity) {
   return dot(velocity, d.M_X * velocity) * S(0.5);

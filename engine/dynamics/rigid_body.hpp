@@ -7,17 +7,17 @@
 
 namespace pkm {
 
-/// Inertia of a point mass about a point at distance `offset` [kg m^2]: the parallel-axis term.
+/// Inertia matrix of a point mass about a point from which it has the distance vector `offset` [kg m^2].
 inline Matrix<double, 3, 3> point_inertia(double mass, const Vector<double, 3>& offset) {
   return (Matrix<double, 3, 3>::identity() * dot(offset, offset) - offset * transpose(offset)) * mass;
 }
 
-/// A body in motion; vectors in world axes.
+/// A rigid body and its state of motion. Vectors are in world axes.
 struct RigidBody {
   std::string name;
-  double mass = 0;               ///< [kg]
-  Matrix<double, 3, 3> inertia;  ///< about the centre of mass [kg m^2]
-  Vector<double, 3> centre;      ///< centre of mass [m]
+  double mass = 0;               ///< mass [kg]
+  Matrix<double, 3, 3> inertia;  ///< inertia matrix about the centre of mass [kg m^2]
+  Vector<double, 3> centre;      ///< position of the centre of mass [m]
   Vector<double, 3> a;           ///< acceleration of the centre of mass [m/s^2]
   Vector<double, 3> omega;       ///< angular velocity [rad/s]
   Vector<double, 3> epsilon;     ///< angular acceleration [rad/s^2]

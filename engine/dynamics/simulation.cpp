@@ -44,7 +44,8 @@ class Integrator {
  public:
   explicit Integrator(const SimulationSetup& setup) : setup_(setup) {}
 
-  /// Integrates one time step. @return "" if successful, otherwise why the step failed
+  /// Integrates one time step.
+  /// @return "" if successful, otherwise the reason why the step failed
   std::string step(const SimulationState& from, double end, SimulationState& to) const {
     const double h = end - from.time;
     std::array<Stage, kStages> stages;
@@ -64,8 +65,8 @@ class Integrator {
     return complete(to);
   }
 
-  /// Computes acceleration and kinetic energy of a state. @return "" if successful, otherwise why they do not exist, or
-  /// which limit is violated
+  /// Computes the acceleration and the kinetic energy of a state.
+  /// @return "" if successful, otherwise the reason why they do not exist, or the limit that is violated
   std::string complete(SimulationState& state) const {
     const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
     if (!d.assembles) return at(state.time) + kOutOfReach;
@@ -78,8 +79,8 @@ class Integrator {
   }
 
  private:
-  /// Solves the implicit stage equations by fixed-point iteration on the accelerations. @return "" if successful,
-  /// otherwise why it failed
+  /// Solves the implicit stage equations by fixed-point iteration on the accelerations.
+  /// @return "" if successful, otherwise the reason why it failed
   std::string solve_stages(const SimulationState& from, double h, std::array<Stage, kStages>& stages) const {
     double previous_change = INFINITY;
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -101,7 +102,7 @@ class Integrator {
         stages[i] = now;
       }
       if (!std::isfinite(scale)) break;
-      // after convergence, continue until rounding errors stop the decrease
+      // After convergence, the iteration continues until rounding errors stop the decrease.
       const bool converged = change <= 1e-12 * std::fmax(scale, kGravity);
       if (change == 0 || (converged && change >= previous_change)) return {};
       previous_change = change;
@@ -116,7 +117,8 @@ class Integrator {
     const AxisVector<double> friction = setup_.friction ? setup_.friction(d.J * velocity) : tau * 0.0;
     return {tau - friction, friction};
   }
-  /// Evaluates a stage. @return false if the mechanism cannot be assembled at the pose
+  /// Evaluates the equations of motion at a stage.
+  /// @return false if the mechanism cannot be assembled at the pose
   bool evaluate(double time, const AxisVector<double>& pose, const AxisVector<double>& velocity, Stage& stage) const {
     const PoseDynamics<double> d = setup_.dynamics({pose, velocity});
     if (!d.assembles) return false;

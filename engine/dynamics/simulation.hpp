@@ -17,35 +17,37 @@
 
 namespace pkm {
 
-/// State at one time. Vectors have one element per coordinate.
+/// State of a simulation at one time. Vectors have one element per coordinate.
 struct SimulationState {
   double time = 0;  ///< [s]
   AxisVector<double> pose, velocity, acceleration;
-  double kinetic_energy = 0;                                          ///< [J]
-  double work_of_drives = 0, work_of_weight = 0, work_of_wrench = 0;  ///< since the start [J]
-  double work_of_friction = 0;                                        ///< since the start, <= 0 [J]
+  double kinetic_energy = 0;  ///< kinetic energy at this time [J]
+  /// Work done since the start by the drives, the weight and the wrench [J].
+  double work_of_drives = 0, work_of_weight = 0, work_of_wrench = 0;
+  double work_of_friction = 0;  ///< work done by friction since the start, <= 0 [J]
 };
 
 struct SimulationSetup {
-  /// The equations of motion of the mechanism.
+  /// Evaluates the equations of motion of the mechanism at a pose and velocity.
   std::function<PoseDynamics<double>(const MotionState<double>&)> dynamics;
   std::function<AxisVector<double>(double time)> forces;  ///< actuator forces tau [N, N m]
   /// Friction forces as a function of the joint speeds; positive values oppose positive speeds [N, N m]. Empty: no
   /// friction.
   std::function<AxisVector<double>(const AxisVector<double>& speeds)> friction;
-  Wrench<double> wrench;  ///< constant load on the platform
-  /// Returns "" or a sentence why the simulation stops at a pose, for example a violated limit; empty: no such check.
+  Wrench<double> wrench;  ///< constant load on the platform [N, N m]
+  /// Returns the reason why the simulation must stop at a pose, for example a violated limit, as a sentence; otherwise
+  /// "". An empty function: no such check.
   std::function<std::string(const Pose<double>&)> refuse;
-  double duration = 0;      ///< [s], > 0
-  double step = 0;          ///< [s], > 0; the last step is shortened to end at the duration
+  double duration = 0;      ///< duration of the simulation, > 0 [s]
+  double step = 0;          ///< time step, > 0 [s]; the last step is shortened so that it ends at `duration`
   double tolerance = 1e-9;  ///< maximum energy error, relative to Simulation::turned_over
 };
 
 struct Simulation {
   std::vector<SimulationState> states;  ///< the initial state and the state after every step
-  std::string stopped;                  ///< one sentence why it stopped early; "" if it did not
-  double imbalance = 0;                 ///< maximum difference between kinetic energy and work [J]
-  double turned_over = 0;               ///< initial kinetic energy plus the sum of |work| of all steps [J]
+  std::string stopped;                  ///< the reason if the simulation stopped early, one sentence; "" if it did not
+  double imbalance = 0;    ///< maximum difference between the change of the kinetic energy and the work [J]
+  double turned_over = 0;  ///< initial kinetic energy plus the sum of |work| of all steps [J]
 };
 
 /// Simulates a motion from an initial pose and velocity.
