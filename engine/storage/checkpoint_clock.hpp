@@ -14,14 +14,14 @@
 
 namespace pkm {
 
-/// @return time of the system's steady clock [s]; its origin is arbitrary
+/// Time of the system's steady clock [s]; its origin is arbitrary.
 double steady_seconds();
 
 class CheckpointClock {
  public:
   static constexpr double kMaxShare = 0.02;  ///< maximum share of the run time spent on checkpoints
 
-  /// @param every  fixed period [s], >= 0; std::nullopt: adaptive
+  /// @param every  fixed time between checkpoints [s], >= 0; std::nullopt: adapted to the duration of checkpoints
   /// @param now    clock to use; default: steady_seconds()
   explicit CheckpointClock(std::optional<double> every = {}, std::function<double()> now = {});
 
@@ -32,16 +32,16 @@ class CheckpointClock {
   /// Writes a checkpoint and measures its duration. Exceptions of `write` are passed on.
   void checkpoint(const std::function<void()>& write);
 
-  /// @return share of the time since the first write that was spent on checkpoints; 0 before
+  /// Share of the time since the first write that was spent on checkpoints; 0 before the first write.
   double share() const;
 
  private:
   std::optional<double> every_;
   std::function<double()> now_;
-  double start_ = 0;          ///< end of the first write
-  double last_end_ = 0;       ///< end of the last write
-  double last_duration_ = 0;  ///< c: duration of the last write
-  double total_ = 0;          ///< s: total duration of all checkpoints
+  double start_ = 0;          ///< time at the end of the first write [s]
+  double last_end_ = 0;       ///< time at the end of the last write [s]
+  double last_duration_ = 0;  ///< duration c of the last write [s]
+  double total_ = 0;          ///< total duration s of all checkpoints [s]
 };
 
 }  // namespace pkm

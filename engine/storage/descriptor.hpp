@@ -16,7 +16,8 @@ class Descriptor {
   Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   Descriptor& operator=(Descriptor&&) = delete;
   int get() const { return fd_; }
-  /// Closes the descriptor early and returns the result of close(2): network file systems report write errors there.
+  /// Closes the descriptor before the destructor does, and returns the result of close(2). Network file systems report
+  /// write errors there.
   int close() {
     const int result = ::close(fd_);
     fd_ = -1;

@@ -20,17 +20,17 @@ std::string xxh64_hex(const std::string& text);
 /// @return true if the HDF5 signature stands at byte `at`
 bool has_hdf5_signature(const std::string& file, std::size_t at);
 
-/// @return true if the file, of which `beginning` holds the first bytes, starts with the signature of a study file
+/// @return true if a file that begins with these bytes has the signature of a study file
 bool has_study_header(const std::string& beginning);
 
-/// Fills the first kHeaderBytes bytes of `file`, whose remaining bytes are final, with the header.
+/// Writes the header into the first kHeaderBytes bytes of `file`. The other bytes must not change afterwards.
 void seal(std::string& file, int schema);
 
 /// Verifies signature, schema, size and checksum. Throws StorageError with a specific sentence for each way in which
 /// the file is invalid.
 /// @param file  all bytes of the file
 /// @param path  path of the file, for messages
-/// @param newest_schema  files with a higher schema version are rejected
+/// @param newest_schema  highest schema version that is accepted
 /// @return the schema version of the file
 int verify_header(const std::string& file, const std::string& path, int newest_schema);
 

@@ -10,15 +10,16 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
-constexpr std::size_t kMemoryIncrement = std::size_t{1} << 16;  // bytes; small, because HDF5 zeroes each increment
+// Size in bytes by which the memory grows; small, because HDF5 zeroes each increment.
+constexpr std::size_t kMemoryIncrement = std::size_t{1} << 16;
 
 /// Callback of H5Ewalk2: copies the description of the first error that it is called with and ends the walk.
 extern "C" herr_t copy_description(unsigned, const H5E_error2_t* error, void* text) {
   *static_cast<std::string*>(text) = error->desc ? error->desc : "";
-  return 1;  // ends the walk
+  return 1;  // a positive value ends the walk
 }
 
-/// "12 x 2"
+/// Text of an extent for messages, for example "12 x 2".
 std::string text_of(const Extent& extent) {
   std::string text;
   for (const std::size_t n : extent) text += (text.empty() ? "" : " x ") + std::to_string(n);

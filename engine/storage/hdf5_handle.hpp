@@ -11,7 +11,7 @@
 
 namespace pkm::hdf5 {
 
-/// Disables HDF5's automatic printing of errors during its lifetime.
+/// While an instance exists, HDF5 does not print its errors.
 class ErrorPrintingOff {
  public:
   ErrorPrintingOff();
@@ -25,14 +25,14 @@ class ErrorPrintingOff {
 };
 
 /// Throws ImageError with the innermost message of HDF5's error stack.
-/// @param what  the object that was accessed
+/// @param what  the object that was being accessed, for the message
 [[noreturn]] void fail(const std::string& what);
 /// Throws ImageError if the result of an HDF5 call indicates a failure.
 inline void check(int result, const std::string& what) {
   if (result < 0) fail(what);
 }
 
-/// Owns an HDF5 identifier; a leaked identifier would keep the file open.
+/// Owner of an HDF5 identifier, which it releases. An identifier that is not released would keep the file open.
 class Handle {
  public:
   /// Throws ImageError if `id` is negative.
@@ -53,24 +53,24 @@ class Handle {
   int (*close_)(std::int64_t);
 };
 
-/// HDF5 identifiers of a data type as stored in the file and of the same type in memory.
+/// The HDF5 identifiers of one data type: of the values in the file and of the values in memory.
 struct TypePair {
   std::int64_t file, memory;
 };
-/// Type of a number; little-endian in the file on every machine.
+/// The data type of numbers of type T, which are little-endian in the file on every machine.
 /// T: double, float, std::int64_t, std::uint64_t or std::uint8_t
 template <class T>
 TypePair number_type();
-/// Type of text in attributes: UTF-8 of variable length, which h5py returns as str.
+/// Data type of text attributes: UTF-8 of variable length, which the Python package h5py returns as str.
 Handle attribute_text_type();
 
-/// Access properties of a file in memory (core driver, never written to disk).
+/// Access properties for a file that is kept in memory and never written to disk (core driver of HDF5).
 Handle access_in_memory(const std::string& what);
-/// A new name for a file in memory. HDF5 treats two open files in memory with the same name as one file, so that two
-/// threads would read each other's data.
+/// Creates a new name for a file in memory. HDF5 treats two open files in memory with the same name as one file, so
+/// that two threads would read each other's data.
 std::string new_name_in_memory();
 
-/// Throws ImageError: the extent of a dataset differs from the expected one.
+/// Throws ImageError with the message that the extent of a dataset differs from the expected one.
 [[noreturn]] void throw_size_mismatch(const Leaf& leaf, const Extent& present, const Extent& expected);
 
 }  // namespace pkm::hdf5

@@ -12,24 +12,27 @@
 
 namespace pkm {
 
-/// An HDF5 call failed, or a file image is invalid. The message begins with the path of the object:
+/// Exception for a failed HDF5 call or an invalid file image. The message begins with the path of the object:
 /// "/stages/1/evaluations/design: ...".
 class ImageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A dataset: its path and the metadata that is stored as its attributes.
+/// Description of a dataset: its path, and the metadata that are stored as its attributes.
 struct Leaf {
   std::string path;
   std::string description;
-  std::vector<std::string> units = std::vector<std::string>(1, "1");  ///< one for all values, or one per column
-  std::vector<std::string> columns = {};  ///< names along the last dimension; empty: unnamed
+  /// One unit for all values, or one unit for each column.
+  std::vector<std::string> units = std::vector<std::string>(1, "1");
+  /// Names of the columns, i.e. of the indices of the last dimension; empty: unnamed.
+  std::vector<std::string> columns = {};
 };
 
-/// Sizes of the dimensions of a dataset, slowest first; {}: a scalar.
+/// Sizes of the dimensions of a dataset, the one that varies slowest first; {}: a scalar.
 using Extent = std::vector<std::size_t>;
-/// First size of an Extent that stands for any number of rows: the number of values determines it.
+/// Value of the first size of an Extent for datasets with any number of rows, which then follows from the number of
+/// values.
 inline constexpr std::size_t kAnyRows = static_cast<std::size_t>(-1);
 
 /// Builds a file image. All functions throw ImageError.
@@ -51,8 +54,8 @@ class ImageWriter {
   void list_attribute(const std::string& group, const std::string& name, const std::vector<T>& values);
   /// Writes a text attribute as ASCII of fixed length, as the VTKHDF format requires.
   void ascii_attribute(const std::string& group, const std::string& name, const std::string& text);
-  /// Writes a dataset: chunked, extensible along the first dimension, with the shuffle and deflate filters; a scalar is
-  /// stored contiguously.
+  /// Writes a dataset: chunked, extensible along the first dimension, and compressed by the filters shuffle and
+  /// deflate. A scalar is stored contiguously instead.
   template <class T>
   void array(const Leaf& leaf, const std::vector<T>& values, const Extent& extent);
   /// @return the bytes of the complete file. Must be the last call.
@@ -72,7 +75,7 @@ class ImageReader {
   /// @param schema  schema version of the file, as schema() returns it
   ImageReader(const std::string& file, int schema);
   ~ImageReader();
-  /// Throws ImageError if the group does not exist.
+  /// Checks that a group exists. Throws ImageError if it does not.
   void group(const std::string& path, const std::string& description) const;
   bool has(const std::string& path) const;
   /// @return number of groups and datasets directly in the group
@@ -80,7 +83,7 @@ class ImageReader {
   int schema() const { return schema_; }
   template <class T>
   void attribute(const std::string& group, const std::string& name, T& value) const;
-  /// @param extent  required extent; a first size of kAnyRows accepts any number of rows
+  /// @param extent  extent that the dataset must have; a first size of kAnyRows accepts any number of rows
   template <class T>
   void array(const Leaf& leaf, std::vector<T>& values, const Extent& extent) const;
 

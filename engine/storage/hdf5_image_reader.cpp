@@ -15,7 +15,7 @@ using namespace hdf5;
 Handle open_image(const std::string& file) {
   const std::string what = "the HDF5 data";
   const Handle access = access_in_memory(what);
-  // HDF5 copies the bytes.
+  // HDF5 copies the bytes; it does not modify them.
   check(H5Pset_file_image(access.get(), const_cast<char*>(file.data()), file.size()), what);
   return {H5Fopen(new_name_in_memory().c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose, what};
 }
@@ -55,10 +55,10 @@ void check_storage(hid_t dataset, const std::string& what) {
   }
 }
 
-/// Size of the values of a dataset in memory [bytes]. Throws ImageError if it exceeds what deflate can have compressed
-/// into the stored bytes, so that a forged extent cannot cause a huge allocation.
+/// Size in bytes of the values of a dataset in memory. Throws ImageError if deflate cannot have compressed so many
+/// values into the stored bytes, so that a forged extent cannot cause a huge allocation.
 std::size_t checked_size(hid_t dataset, const Extent& extent, std::size_t value_bytes, const std::string& what) {
-  constexpr std::size_t kMaxCompressionRatio = 1032;  // upper limit for deflate
+  constexpr std::size_t kMaxCompressionRatio = 1032;  // largest ratio that deflate can achieve
   if (std::ranges::find(extent, std::size_t{0}) != extent.end()) return 0;
   const std::size_t max_bytes = H5Dget_storage_size(dataset) * kMaxCompressionRatio;
   std::size_t bytes = value_bytes;
@@ -69,8 +69,8 @@ std::size_t checked_size(hid_t dataset, const Extent& extent, std::size_t value_
   return bytes;
 }
 
-/// Throws ImageError if the class of a type (integer, float) differs. Other widths and byte orders, as other programs
-/// may have written them, are converted by HDF5.
+/// Throws ImageError if a type is of another class (integer, float) than expected. Other widths and byte orders, as
+/// other programs may have written them, are allowed, because HDF5 converts them.
 void check_type(hid_t stored, hid_t expected, const std::string& what) {
   if (H5Tget_class(stored) != H5Tget_class(expected)) throw ImageError(what + ": has values of another type");
 }
@@ -87,7 +87,7 @@ void reject_links_and_external_data(hid_t file) {
     try {
       Visited& result = *static_cast<Visited*>(data);
       (is_hard ? result.paths.emplace_back() : result.link) = std::string("/") + name;
-    } catch (...) {  // exceptions must not propagate through C code
+    } catch (...) {  // an exception must not propagate through C code
       return -1;
     }
     return is_hard ? 0 : 1;

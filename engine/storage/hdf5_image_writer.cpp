@@ -15,9 +15,12 @@ namespace {
 using namespace hdf5;
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 17;
-constexpr std::size_t kMinDeflatedBytes = 1024;   // smaller chunks stay uncompressed: deflate allocates 256 kB
-constexpr std::size_t kMaxAttributeTexts = 4000;  // 16 bytes each, at most 64 kB per attribute
-constexpr unsigned kDeflateLevel = 1;             // twice as fast as level 6, and files are a few per cent larger
+// Smaller chunks are not compressed, because deflate allocates 256 kB for each.
+constexpr std::size_t kMinDeflatedBytes = 1024;
+// Maximum number of texts of an attribute: each takes 16 bytes, and HDF5 allows 64 kB.
+constexpr std::size_t kMaxAttributeTexts = 4000;
+// Level 1 is twice as fast as level 6, and its files are only a few per cent larger.
+constexpr unsigned kDeflateLevel = 1;
 
 /// Type of text in datasets: UTF-8 of fixed length, padded with NUL. Unlike text of variable length it is compressed
 /// and stored within the dataset.
@@ -35,7 +38,7 @@ std::size_t product(const Extent& extent) {
   return count;
 }
 
-/// Dataspace of an extent, unlimited along the first dimension.
+/// Dataspace with the given extent, of which the first dimension is unlimited.
 Handle make_space(const Extent& extent, const std::string& what) {
   if (extent.empty()) return {H5Screate(H5S_SCALAR), H5Sclose, what};
   const std::vector<hsize_t> size(extent.begin(), extent.end());
@@ -48,7 +51,8 @@ Handle make_space(const Extent& extent, const std::string& what) {
 /// Creation properties of a dataset: chunking and filters.
 Handle dataset_properties(const Extent& extent, std::size_t value_bytes, const std::string& what) {
   Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
-  check(H5Pset_obj_track_times(properties.get(), false), what);  // no timestamps: equal contents give equal bytes
+  // Without timestamps, so that equal contents give equal bytes.
+  check(H5Pset_obj_track_times(properties.get(), false), what);
   if (extent.empty()) return properties;
   std::vector<hsize_t> chunk(extent.begin(), extent.end());
   std::size_t row_bytes = value_bytes;
@@ -61,7 +65,7 @@ Handle dataset_properties(const Extent& extent, std::size_t value_bytes, const s
   return properties;
 }
 
-/// @param size  length of a one-dimensional attribute; std::nullopt: a scalar
+/// @param size  number of elements of a one-dimensional attribute; std::nullopt: a scalar
 void write_attribute(hid_t object, const std::string& name, std::optional<hsize_t> size, const TypePair& type,
                      const void* data, const std::string& what) {
   const Handle space(size ? H5Screate_simple(1, &*size, nullptr) : H5Screate(H5S_SCALAR), H5Sclose, what);
@@ -74,7 +78,8 @@ void write_texts(hid_t object, const std::string& name, std::optional<hsize_t> s
                  const std::vector<std::string>& texts, const std::string& what) {
   const Handle type = attribute_text_type();
   std::vector<const char*> pointers;
-  pointers.reserve(texts.size() + 1);  // HDF5 rejects a null pointer even if there are no texts
+  // At least one element is allocated, because HDF5 rejects a null pointer even if there are no texts.
+  pointers.reserve(texts.size() + 1);
   for (const std::string& text : texts) pointers.push_back(text.c_str());
   write_attribute(object, name, size, {type.get(), type.get()}, pointers.data(), what);
 }
@@ -88,7 +93,7 @@ Handle create_file(std::size_t user_block) {
   const Handle access = access_in_memory(what);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
   check(H5Pset_userblock(creation.get(), user_block), what);
-  check(H5Pset_istore_k(creation.get(), 4), what);  // small index nodes: most datasets have one chunk
+  check(H5Pset_istore_k(creation.get(), 4), what);  // small index nodes, because most datasets have a single chunk
   check(H5Pset_obj_track_times(creation.get(), false), what);
   return {H5Fcreate(new_name_in_memory().c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, what};
 }

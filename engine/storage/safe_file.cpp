@@ -42,7 +42,7 @@ std::size_t transfer_all(std::size_t size, const std::string& path, const char* 
   return done;
 }
 
-/// Compares the contents of the file with `bytes`.
+/// Reads the file again, and throws StorageError if its contents differ from `bytes`.
 void verify_written(int fd, const std::string& bytes, const std::string& path) {
   std::string block(std::size_t{1} << 18, '\0');
   const auto same = [&](std::size_t done) {
@@ -58,14 +58,16 @@ std::string folder_of(const std::string& path) {
   return parent.empty() ? "." : parent.string();
 }
 
-/// Makes the rename durable. File systems that cannot sync a folder report EINVAL or EROFS, which is ignored.
+/// Syncs the folder of a file, so that the rename of the file survives a crash. File systems that cannot sync a folder
+/// report EINVAL or EROFS, which is ignored.
 void sync_folder(const std::string& path) {
   const Descriptor fd(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.get() < 0) return;  // the folder is writable but not readable
+  if (fd.get() < 0) return;  // the folder can be written but not read
   if (::fsync(fd.get()) != 0 && errno != EINVAL && errno != EROFS) fail(path, "its folder cannot be synced", errno);
 }
 
-/// @return the status of the file behind all symbolic links; empty if it does not exist or is not accessible
+/// Status of a file, after all symbolic links have been resolved; std::nullopt if it does not exist or is not
+/// accessible.
 std::optional<struct stat> file_status(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return {};
@@ -99,7 +101,8 @@ int rename_into_place(const std::string& temporary, const std::string& target, E
   if (existing == Existing::replaced) return std::rename(temporary.c_str(), target.c_str());
   const int renamed = ::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE);
   if (renamed == 0 || (errno != EINVAL && errno != ENOSYS)) return renamed;
-  if (::link(temporary.c_str(), target.c_str()) != 0) return -1;  // for file systems without RENAME_NOREPLACE
+  // Fallback for file systems that do not support RENAME_NOREPLACE.
+  if (::link(temporary.c_str(), target.c_str()) != 0) return -1;
   return ::unlink(temporary.c_str());
 }
 
@@ -107,7 +110,7 @@ int rename_into_place(const std::string& temporary, const std::string& target, E
 
 std::string link_target(const std::string& path) {
   namespace fs = std::filesystem;
-  constexpr int kMaxLinks = 40;  // the limit of Linux
+  constexpr int kMaxLinks = 40;  // maximum number of symbolic links, as on Linux
   if (path.find('\0') != std::string::npos)
     throw StorageError(std::string(path.c_str()) + ": the file name contains a NUL character after this point");
   fs::path target = path;
@@ -116,7 +119,7 @@ std::string link_target(const std::string& path) {
     if (!fs::is_symlink(fs::symlink_status(target, error))) return target.string();
     const fs::path next = fs::read_symlink(target, error);
     if (error) fail(path, "is a symbolic link that cannot be read", error.value());
-    target = target.parent_path() / next;  // the result is `next` if that is absolute
+    target = target.parent_path() / next;  // the operator `/` gives `next` itself if that is an absolute path
   }
   fail(path, "cannot be opened", ELOOP);
 }
@@ -125,7 +128,7 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
   std::set<std::filesystem::path> known;
   for (const std::string& output : outputs) {
     if (output.empty()) continue;
-    std::error_code error;  // an inaccessible path is reported when the file is written
+    std::error_code error;  // ignored here: an inaccessible path is reported when the file is written
     if (!known.insert(std::filesystem::weakly_canonical(link_target(output), error)).second && !error)
       throw ConfigError({output, 0, ""}, "is given for two outputs");
     const auto present = file_status(output);
@@ -163,7 +166,8 @@ void write_file(const std::string& path, const std::string& bytes, Existing exis
 }
 
 std::string read_file(const std::string& path, std::size_t max_bytes) {
-  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // do not block on a pipe
+  // O_NONBLOCK prevents that opening a pipe blocks.
+  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) fail(path, "cannot be opened", errno);
   struct stat status {};
   if (::fstat(fd.get(), &status) != 0) fail(path, "cannot be read", errno);

@@ -10,13 +10,12 @@ namespace pkm {
 /// What to do if the output file already exists: report an error, or replace it.
 enum class Existing { refused, replaced };
 
-/// The policy that the command line flag --force selects.
+/// The policy for existing files that the command-line flag --force selects.
 inline Existing if_forced(bool force) { return force ? Existing::replaced : Existing::refused; }
 
-/// Resolves symbolic links.
-/// @return the path that the links lead to, which need not exist; `path` itself if it is not a link
-/// Throws StorageError for circular links, and for a path that contains a NUL character: the system calls would ignore
-/// the rest of it.
+/// Resolves symbolic links. Throws StorageError for circular links, and for a path that contains a NUL character,
+/// because the system calls would ignore the rest of it.
+/// @return the path to which the links lead, which need not exist; `path` itself if it is not a link
 std::string link_target(const std::string& path);
 
 /// Checks output paths before a long computation. Throws ConfigError if an output is the same file as an input or as
@@ -32,7 +31,7 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
 void write_file(const std::string& path, const std::string& bytes, Existing existing);
 
 /// Reads a regular file. Throws StorageError with the operating system's error.
-/// @param max_bytes  number of bytes to read from the beginning of the file, if it is longer
+/// @param max_bytes  maximum number of bytes to read, from the beginning of the file
 std::string read_file(const std::string& path, std::size_t max_bytes = std::string::npos);
 
 }  // namespace pkm

@@ -42,7 +42,7 @@ void describe_problem(Archive& archive, Study& study) {
                 Field{"unit", &OutputInfo::unit, "1", "Unit"}, Field{"meaning", &OutputInfo::meaning, "1", "Meaning"});
 }
 
-/// Names and units of the columns of `slope`: "workspace-ratio", "d workspace-ratio / d a", ...
+/// Names and units of the columns of the dataset `slope`: "workspace-ratio", "d workspace-ratio / d a", ...
 template <class Problem>
 std::vector<OutputInfo> slope_columns(const Problem& problem) {
   std::vector<OutputInfo> columns;
@@ -91,7 +91,7 @@ void describe_optimality(Archive& archive, const std::string& group, Record& rec
 template <class Archive, class Problem, class Table>
 void describe_evaluations(Archive& archive, const std::string& group, const Problem& problem, Table& table) {
   archive.group(group, "Every evaluation of the stage, one row each, in the order of the optimiser's requests");
-  Detail detail = table.shape().detail;  // schema 1: always Detail::enough
+  Detail detail = table.shape().detail;  // in files of schema 1, it is always Detail::enough
   if (has_items_since(archive, 2)) visit_enum(archive, group, "detail", detail);
   if constexpr (Archive::kReads) table = EvaluationTable(problem.shape(detail));
   const Leaf status{group + "/status", "0 feasible, 1 infeasible, 2 rejected before the workspace analysis, 3 failed"};
@@ -325,7 +325,7 @@ void describe_functions(Archive& archive, Functions& functions) {
 template <class Archive, class Study>
 void describe(Archive& archive, Study& study) {
   archive.group("/", "pkmopt study; engine/storage/README.md documents its schema");
-  if constexpr (!Archive::kReads) {  // for other programs; pkmopt reads both from the header
+  if constexpr (!Archive::kReads) {  // written for other programs; pkmopt reads both values from the header
     archive.attribute("/", "format", std::string("pkmopt-study"));
     archive.attribute("/", "schema", std::int64_t{kStudySchema});
   }

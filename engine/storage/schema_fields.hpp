@@ -15,7 +15,7 @@
 
 namespace pkm::schema {
 
-// Stored names of the enumerators, in their order.
+// The names under which enumerators are stored, in the order of the enumerators.
 constexpr std::array<const char*, 2> enum_names(Direction) { return {"minimise", "maximise"}; }
 constexpr std::array<const char*, 3> enum_names(StudyState) { return {"running", "interrupted", "finished"}; }
 constexpr std::array<const char*, 3> enum_names(Detail) { return {"enough", "complete", "derivatives"}; }
@@ -43,7 +43,7 @@ void from_stored(T& value, const Stored& stored, const std::string& where) {
   }
 }
 
-/// An enumeration, stored as a text attribute.
+/// Writes or reads an enumeration, which is stored as a text attribute.
 template <class Archive, class Enum>
 void visit_enum(Archive& archive, const std::string& group, const std::string& name, Enum& value) {
   std::string text = to_stored(value);
@@ -71,7 +71,7 @@ bool visit_optional(Archive& archive, const std::string& group, Optional& item) 
   return item.has_value();
 }
 
-/// A member of a record type: name of its dataset, pointer to member, unit and description.
+/// A member of a record type: the name of its dataset, the pointer to the member, its unit and its description.
 template <class Record, class Member>
 struct Field {
   const char* name;
@@ -83,8 +83,8 @@ struct Field {
 template <class Record, class Member>
 Field(const char*, Member Record::*, const char*, const char*) -> Field<Record, Member>;
 
-/// One member of all records, stored as one dataset.
-/// @param first  true for the first member; its dataset determines the number of records to be read
+/// Writes or reads one member of all records, which is stored as one dataset.
+/// @param first  true for the first member, whose dataset determines the number of records to be read
 template <class Archive, class Items, class Record, class Member>
 void visit_member(Archive& archive, const std::string& group, Items& items, bool first,
                   const Field<Record, Member>& field) {
@@ -98,7 +98,8 @@ void visit_member(Archive& archive, const std::string& group, Items& items, bool
   }
 }
 
-/// A list of records, stored as a group with one dataset per member, which MATLAB and NumPy can read directly.
+/// Writes or reads a list of records, which is stored as a group with one dataset per member. MATLAB and NumPy can read
+/// this form directly.
 template <class Archive, class Items, class... Fields>
 void visit_records(Archive& archive, const std::string& group, const std::string& description, Items& items,
                    const Fields&... fields) {
@@ -107,10 +108,10 @@ void visit_records(Archive& archive, const std::string& group, const std::string
   ((visit_member(archive, group, items, first, fields), first = false), ...);
 }
 
-/// A dataset with one named column per item (variable, objective, margin ..).
+/// Writes or reads a dataset with one named column for each item (variable, objective, margin ..).
 /// @param items   their names and units label the columns
-/// @param values  row by row
-/// @param extent  {number of rows}; {}: a single row, stored as a one-dimensional dataset
+/// @param values  one row after the other
+/// @param extent  {number of rows}; {}: a single row, which is stored as a one-dimensional dataset
 template <class Archive, class Items, class Values>
 void visit_matrix(Archive& archive, const std::string& path, const char* description, const Items& items,
                   Values&& values, Extent extent = {}) {
@@ -123,7 +124,7 @@ void visit_matrix(Archive& archive, const std::string& path, const char* descrip
   archive.array(leaf, values, extent);
 }
 
-/// A C array of three values, as in VoxelMap; the archives handle vectors only.
+/// Writes or reads an array of three values, as in VoxelMap; the archives handle vectors only.
 template <class Archive, class Array>
 void visit_array_of_three(Archive& archive, const Leaf& leaf, Array& values) {
   std::vector copy(std::begin(values), std::end(values));

@@ -11,7 +11,8 @@
 namespace pkm {
 namespace {
 
-/// @param problem  what is wrong if the condition is false
+/// Throws ImageError if the condition is false.
+/// @param problem  text of the message: what is wrong
 void require(bool condition, const std::string& where, const char* problem) {
   if (!condition) throw ImageError(where + ": " + problem);
 }
@@ -140,7 +141,8 @@ StudyContents parse_study(const std::string& bytes, int schema) {
 }
 
 StudyContents read_study(const std::string& path) {
-  constexpr std::size_t kProbeBytes = std::size_t{1} << 16;  // enough to recognise a foreign file of any size
+  // Number of bytes that suffices to recognise a file of another format, however large it is.
+  constexpr std::size_t kProbeBytes = std::size_t{1} << 16;
   std::string bytes = read_file(path, kProbeBytes);
   if (bytes.size() == kProbeBytes && has_study_header(bytes)) bytes = read_file(path);
   const int schema = verify_header(bytes, path, kStudySchema);

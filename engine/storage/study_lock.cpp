@@ -25,7 +25,7 @@ bool locking_disabled() {
 constexpr std::string_view kLockSignature = "pkmopt-lock ";
 constexpr std::size_t kMaxBytes = 256;
 
-/// @return the first kMaxBytes bytes of the lock file
+/// Reads the first kMaxBytes bytes of the lock file.
 std::string read_text(int fd) {
   char text[kMaxBytes];
   const ssize_t n = ::pread(fd, text, sizeof text, 0);
@@ -39,10 +39,11 @@ bool is_lock_file(int fd) {
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink > 1) return false;
   if (status.st_size > static_cast<off_t>(kMaxBytes)) return false;
   const std::string text = read_text(fd);
-  return text.starts_with(kLockSignature) || kLockSignature.starts_with(text);  // a full disk may have truncated it
+  // A full disk may have truncated the signature.
+  return text.starts_with(kLockSignature) || kLockSignature.starts_with(text);
 }
 
-/// The process named in the lock file.
+/// The process whose name the lock file contains.
 std::string holder_of(int fd) {
   const std::string text = read_text(fd);
   return text.starts_with(kLockSignature) ? "process " + text.substr(kLockSignature.size()) : "another process";
@@ -54,8 +55,8 @@ std::string process_name() {
   return std::to_string(::getpid()) + (host[0] ? " on " + std::string(host) : "");
 }
 
-/// @return true if `path` still refers to the file opened as `fd`. Its previous holder may have removed it between our
-/// open and our flock.
+/// Returns true if `path` still refers to the file that is open as `fd`. Between our open and our flock, the previous
+/// holder may have removed it.
 bool is_current_file(int fd, const std::string& path) {
   struct stat ours {
   }, named{};
@@ -82,7 +83,8 @@ StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(stu
       const std::string by = holder_of(fd);
       ::close(fd);
       if (error == EINTR) continue;
-      if (error == EWOULDBLOCK && std::exchange(retry, false)) {  // holder() also locks it, for some microseconds
+      // Retried once, because holder() also locks the file, for some microseconds.
+      if (error == EWOULDBLOCK && std::exchange(retry, false)) {
         ::usleep(10000);
         continue;
       }

@@ -22,7 +22,7 @@ class StudyLock {
   StudyLock(const StudyLock&) = delete;
   StudyLock& operator=(const StudyLock&) = delete;
 
-  /// @return the process that holds the lock of a study: "process 12 on host"; empty if no process holds it
+  /// The process that holds the lock of a study, for example "process 12 on host"; std::nullopt if no process holds it.
   static std::optional<std::string> holder(const std::string& study_path);
 
   /// @return false if the lock file has been removed or replaced since construction: another process may then hold the

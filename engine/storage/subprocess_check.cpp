@@ -28,9 +28,9 @@ namespace pkm {
 namespace {
 
 constexpr int kInvalidExit = 1, kOutOfMemoryExit = 4;  // exit codes of the checking process
-constexpr unsigned kMaxSeconds = 20;                   // valid files of 100 MB take 1 s
-constexpr rlim_t kBaseMemory = rlim_t{2} << 30,
-                 kMemoryPerByte = 32;  // memory limit: base + per byte of the file
+constexpr unsigned kMaxSeconds = 20;                   // time limit [s]; a valid file of 100 MB takes 1 s
+// Memory limit of the checking process: a base, and an amount per byte of the file.
+constexpr rlim_t kBaseMemory = rlim_t{2} << 30, kMemoryPerByte = 32;
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 11;
 
 std::vector<std::string>& check_command() {
@@ -42,7 +42,7 @@ std::vector<std::string>& check_command() {
   throw StorageError(path + ": " + what + " (" + std::strerror(error) + ")");
 }
 
-/// Sends all bytes and closes the sending direction; stops early if the receiver has ended.
+/// Sends all bytes and closes the sending direction; stops early if the receiving process has ended.
 void send_all(int socket, const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t n = ::send(socket, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
@@ -53,7 +53,7 @@ void send_all(int socket, const std::string& bytes) {
   ::shutdown(socket, SHUT_WR);
 }
 
-/// Starts the checking process with the given descriptors as standard input and output and default signal handling.
+/// Starts the checking process. It has the given descriptors as standard input and output, and default signal handling.
 pid_t spawn(int input, int output, const std::string& path) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -105,7 +105,7 @@ bool is_crash(int signal) {
   return std::ranges::find(kCrashes, signal) != std::end(kCrashes);
 }
 
-/// Sets the soft limit of a resource.
+/// Sets the soft limit of a resource of this process.
 void limit(decltype(RLIMIT_AS) resource, rlim_t value) {
   rlimit limits{};
   if (::getrlimit(resource, &limits) != 0) return;
@@ -113,7 +113,7 @@ void limit(decltype(RLIMIT_AS) resource, rlim_t value) {
   ::setrlimit(resource, &limits);
 }
 
-/// Sanitizers reserve shadow memory beyond any useful limit.
+/// True in sanitizer builds, which need no memory limit: they reserve shadow memory beyond any useful limit.
 constexpr bool kSanitized =
 #ifdef PKM_SANITIZED
     true;
@@ -127,7 +127,9 @@ void set_check_command(std::vector<std::string> command) { check_command() = std
 
 void check_in_subprocess(const std::string& bytes, const std::string& path) {
   if (check_command().empty()) return;
-  int input[2], output[2];  // [0] is ours, [1] of the subprocess; not a file, which RLIMIT_FSIZE could truncate
+  // Ends of a socket pair and of a pipe: [0] belongs to this process, [1] to the subprocess. Files are not used,
+  // because RLIMIT_FSIZE could truncate them.
+  int input[2], output[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input) != 0) cannot_check(path, "cannot be checked", errno);
   const Descriptor sending(input[0]);
   Descriptor receiving(input[1]);
