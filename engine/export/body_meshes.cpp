@@ -6,7 +6,8 @@
 namespace pkm {
 namespace {
 
-constexpr std::uint32_t kAround = 24, kRings = 6;  // vertices of a circle; circles of a hemisphere, including its pole
+// Number of vertices of a circle, and of circles of a hemisphere including its pole.
+constexpr std::uint32_t kAround = 24, kRings = 6;
 
 Point3<double> scaled(const Point3<double>& v, double by) { return {v[0] * by, v[1] * by, v[2] * by}; }
 
@@ -26,7 +27,7 @@ void add_shape(const Capsule<double>& capsule, Isosurface& surface) {
   const auto [u, v, w] = frame_along(capsule.axis);
   const auto first = static_cast<std::uint32_t>(surface.vertices.size());
   for (std::uint32_t ring = 0; ring < 2 * kRings; ++ring) {
-    const bool end = ring >= kRings;  // which end of the segment
+    const bool end = ring >= kRings;  // false: the hemisphere at axis.from; true: the one at axis.to
     const double latitude =
         std::numbers::pi / 2 * (static_cast<double>(end ? ring - kRings : ring) / (kRings - 1) - (end ? 0 : 1));
     const double out = ring == 0 || ring == 2 * kRings - 1 ? 0 : capsule.radius * std::cos(latitude);
@@ -51,7 +52,7 @@ void add_shape(const Capsule<double>& capsule, Isosurface& surface) {
     }
 }
 
-/// Adds two triangles for each face, oriented outwards.
+/// Adds two triangles for each face of a box, oriented outwards.
 void add_shape(const SolidBox& box, Isosurface& surface) {
   const auto first = static_cast<std::uint32_t>(surface.vertices.size());
   for (std::size_t bits = 0; bits < 8; ++bits) {
@@ -59,7 +60,8 @@ void add_shape(const SolidBox& box, Isosurface& surface) {
     for (std::size_t i = 0; i < 3; ++i) corner[i] += bits >> i & 1 ? box.half[i] : -box.half[i];
   }
   for (std::uint32_t i = 0; i < 3; ++i) {
-    const std::uint32_t u = 1U << (i + 1) % 3, v = 1U << (i + 2) % 3;  // u, v and the axis i are right-handed
+    // The bits of the axes u and v, which form a right-handed frame (u, v, i) with the axis i.
+    const std::uint32_t u = 1U << (i + 1) % 3, v = 1U << (i + 2) % 3;
     for (const std::uint32_t side : {0U, 1U}) {
       const std::uint32_t a = first + side * (1U << i), b = a + (side ? u : v), c = a + (side ? v : u);
       surface.triangles.push_back({a, b, a + u + v});

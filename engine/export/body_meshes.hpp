@@ -9,15 +9,15 @@
 
 namespace pkm {
 
-/// Meshes of several bodies, in one list of triangles.
+/// The meshes of several bodies as one list of triangles.
 struct BodyMeshes {
   struct Body {
-    std::string name, part;  ///< see PlacedLink
-    std::size_t end;         ///< index after the last triangle of the body
+    std::string name, part;  ///< names of the link and of its part, as in PlacedLink
+    std::size_t end;         ///< index after the last triangle of the body in the common list
   };
 
   Isosurface all;
-  std::vector<Body> bodies;  ///< in the order of the triangles
+  std::vector<Body> bodies;  ///< the bodies, in the order of their triangles
 };
 
 /// Triangulates capsules as tubes with hemispherical ends (spheres if the axis is a point), and the faces of boxes.

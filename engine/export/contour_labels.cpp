@@ -7,8 +7,9 @@
 namespace pkm {
 namespace {
 
-constexpr double kLabelDistance = 44, kOutlineDistance = 9;  // minimum distance of labels, and from outline [pixel]
-constexpr double kMinStraight = 0.97;  // minimum distance of a label's ends, relative to the arc length between them
+// Minimum distance of a label from other labels, and from the outline [pixel].
+constexpr double kLabelDistance = 44, kOutlineDistance = 9;
+constexpr double kMinStraight = 0.97;  // minimum ratio of the distance of a label's ends to the arc length between them
 constexpr double kClearance = 8;       // minimum distance between a label and the ends of its line [pixel]
 constexpr double kGap = 3;             // gap between a label and the rest of its line [pixel]
 constexpr double kStep = 6;            // distance between candidate positions [pixel]
@@ -19,7 +20,7 @@ bool is_near(const PlanePoint& at, const std::vector<PlanePoint>& others, double
   return std::ranges::any_of(others, [&](const PlanePoint& other) { return distance(at, other) < limit; });
 }
 
-/// A polyline with the arc length up to each of its points.
+/// A polyline, with the arc length from its beginning to each of its points.
 class MeasuredLine {
  public:
   explicit MeasuredLine(const std::vector<PlanePoint>& points) : points_(points), along_({0}) {

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// Whether a spreadsheet would execute the text as a formula (CSV injection). Numbers such as -7 are harmless.
+/// Returns true if a spreadsheet would execute the text as a formula (CSV injection). Numbers such as -7 are harmless.
 bool is_spreadsheet_formula(const std::string& text) {
   if (text.empty() || std::string_view("=+-@\t\r").find(text[0]) == std::string_view::npos) return false;
   const char* const begin = text.data() + (text[0] == '+' ? 1 : 0);
@@ -40,7 +40,7 @@ void CsvTable::add(double value) {
   if (std::isinf(value))
     add_cell(value > 0 ? "inf" : "-inf");
   else
-    add_cell(std::isnan(value) ? "" : shortest(value + 0.0));  // + 0.0 turns -0 into 0
+    add_cell(std::isnan(value) ? "" : shortest(value + 0.0));  // adding 0.0 turns -0 into 0
 }
 
 void CsvTable::add(const std::string& text) {

@@ -20,19 +20,20 @@ class CsvTable {
   explicit CsvTable(const std::vector<std::string>& columns);
 
   void begin_row();
-  /// Starts a row with these cells; further cells can be added.
+  /// Starts a row that begins with these cells; further cells can be added to it.
   template <class... Cells>
   void row(const Cells&... cells) {
     begin_row();
     (add(cells), ...);
   }
-  void add(double value);  ///< NaN is written as an empty cell, infinities as "inf" and "-inf"
+  /// Adds a cell with a number. NaN is written as an empty cell, infinities as "inf" and "-inf".
+  void add(double value);
   void add(std::integral auto number) { add_cell(std::to_string(number)); }
   void add(const std::string& text);
   void add_empty(std::size_t cells);
   void add(std::span<const double> values);
 
-  /// The complete file.
+  /// The text of the complete file.
   std::string text() const { return text_ + '\n'; }
 
  private:

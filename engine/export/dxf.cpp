@@ -7,17 +7,17 @@
 namespace pkm {
 namespace {
 
-/// A DXF group: its code and its value, on a line each.
+/// A group of a DXF file: its code and its value, each on a line of its own.
 std::string group(int code, const std::string& value) { return std::to_string(code) + '\n' + value + '\n'; }
 
-/// The three groups of a point: x has `code`, y code + 10 and z code + 20.
+/// The three groups of a point: x has the group code `code`, y has code + 10, and z has code + 20.
 std::string point(int code, const Point3<double>& at) {
   std::string text;
   for (int i = 0; i < 3; ++i) text += group(code + 10 * i, formatted("%.12g", at[static_cast<std::size_t>(i)]));
   return text;
 }
 
-/// A valid layer name: release 12 allows only letters, digits and underscores.
+/// Converts the name of a part to a valid layer name: release 12 of DXF allows only letters, digits and underscores.
 std::string layer_name(std::string part) {
   for (char& c : part)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';

@@ -6,8 +6,9 @@
 namespace pkm {
 namespace {
 
-constexpr double kTail = 0.02;       // maximum share of the values beyond an open end of the scale
-constexpr double kConstant = 1e-9;   // relative range below which a field counts as constant: rounding errors
+constexpr double kTail = 0.02;  // maximum share of the values that may lie beyond an open end of the scale
+// A field whose range is smaller than this, relative to its values, counts as constant.
+constexpr double kConstant = 1e-9;
 constexpr double kMinIntervals = 7;  // minimum number of intervals of a scale
 
 /// Divides polygons into triangles around their centres. A point on an edge of a triangle is identified by the indices
@@ -94,14 +95,15 @@ class TriangleField {
     return region_of(join_edges(std::move(edges)), 0);
   }
 
-  std::vector<PlanePoint> points_;  ///< vertices of the mesh, then centres of polygons
-  std::vector<double> values_;      ///< field values at the points
+  std::vector<PlanePoint> points_;  ///< vertices of the mesh, followed by the centres of the polygons
+  std::vector<double> values_;      ///< value of the field at each of the points
   std::vector<MeshPolygon> defined_, undefined_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<PathEdge> boundary_;  ///< boundary of the polygons in which the field is defined
+  std::vector<PathEdge> boundary_;  ///< boundary edges of the polygons in which the field is defined
 };
 
-/// The largest of 1, 2 or 5 times a power of ten that divides a length into at least kMinIntervals.
+/// The largest number that is 1, 2 or 5 times a power of ten and divides a length into at least kMinIntervals
+/// intervals.
 double round_step(double length) {
   const double most = length / kMinIntervals, power = std::pow(10, std::floor(std::log10(most)));
   return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);

@@ -14,12 +14,13 @@ namespace pkm {
 
 /// Ascending field values at which the colour of a map changes.
 struct ContourLevels {
-  std::vector<double> values;  ///< round numbers, from the lower to the upper end of the scale; a single value if the
-                               ///< field is constant
-  bool open_below = false, open_above = false;  ///< whether the field has values beyond the ends
-  double minimum = 0, maximum = 0;              ///< extreme values of the field
+  /// Round numbers from the lower to the upper end of the scale; a single value if the field is constant.
+  std::vector<double> values;
+  /// True if the field has values beyond the lower (upper) end of the scale.
+  bool open_below = false, open_above = false;
+  double minimum = 0, maximum = 0;  ///< smallest and largest value of the field
 
-  /// The levels that separate two colours.
+  /// Those levels that separate two colours, ascending.
   std::vector<double> thresholds() const;
 };
 
@@ -28,21 +29,23 @@ struct ContourLevels {
 /// @return no levels if no value is finite
 ContourLevels contour_levels(std::span<const double> values);
 
-/// The region in which the field is at or above a threshold.
+/// The region in which a field is at or above a threshold.
 struct FieldRegion {
-  std::vector<SliceOutline::Loop> loops;          ///< boundary, closed, oriented as in SliceOutline
-  std::vector<std::vector<PlanePoint>> contours;  ///< parts of the boundary that are contour lines; a closed line
-                                                  ///< repeats its first point
-  double area = 0;                                ///< in the product of the axes' units
+  std::vector<SliceOutline::Loop> loops;  ///< closed polygons that bound the region, oriented as in SliceOutline
+  /// Those parts of the boundary that are contour lines. A closed line repeats its first point.
+  std::vector<std::vector<PlanePoint>> contours;
+  double area = 0;  ///< area of the region, in the product of the units of both axes
 };
 
 struct FieldMap {
-  FieldRegion defined;               ///< where the field is defined; without contour lines
-  FieldRegion undefined;             ///< the rest of the mesh; without contour lines
-  std::vector<FieldRegion> regions;  ///< for each threshold, ascending; each region contains the following ones
+  FieldRegion defined;    ///< region in which the field is defined; it has no contour lines
+  FieldRegion undefined;  ///< the rest of the mesh; it has no contour lines
+  /// One region for each threshold, ascending; each region contains those of all higher thresholds.
+  std::vector<FieldRegion> regions;
 };
 
-/// @param values  one per vertex of the mesh
+/// Computes the regions and contour lines of a field.
+/// @param values  value of the field at each vertex of the mesh
 FieldMap map_field(const SliceMesh& mesh, std::span<const double> values, std::span<const double> thresholds);
 
 }  // namespace pkm

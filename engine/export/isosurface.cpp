@@ -15,8 +15,8 @@ namespace {
 using Point = std::array<double, 3>;
 using Index = std::array<std::size_t, 3>;
 
-/// Grid of nodes. Along each axis, there is one node at the centre of each cell. On each face of the box there are two
-/// coincident layers of nodes, the outer of which is infeasible.
+/// Grid of the nodes of marching tetrahedra. Along each axis, there is one node at the centre of each cell. On each
+/// face of the box there are two additional, coincident layers of nodes, the outer of which is infeasible.
 class Nodes {
  public:
   explicit Nodes(const WorkspaceFields& workspace)
@@ -27,21 +27,21 @@ class Nodes {
     }
   }
 
-  Index size{};  ///< nodes along each axis
+  Index size{};  ///< number of nodes along each axis
 
   std::size_t number(const Index& n) const { return (n[0] * size[1] + n[1]) * size[2] + n[2]; }
-  /// The cell from which a node takes its margin.
+  /// Number of the cell that gives a node its margin.
   std::size_t cell(const Index& n) const {
     return (nearest(n, 0) * cells_[1] + nearest(n, 1)) * cells_[2] + nearest(n, 2);
   }
-  /// True if the node is in the outer of the two layers on a face.
+  /// Returns true if the node is in the outer of the two layers on a face of the box.
   bool is_outer(const Index& n) const {
     for (std::size_t i = 0; i < 3; ++i)
       if (n[i] == 0 || n[i] == size[i] - 1) return true;
     return false;
   }
   double margin(const Index& n) const { return is_outer(n) ? -1 : margin_[cell(n)]; }
-  /// Centre of the cell from which a node takes its margin.
+  /// Centre of the cell that gives a node its margin.
   Point centre(const Index& n) const {
     Point at;
     for (std::size_t i = 0; i < 3; ++i) at[i] = grid_.centre(i, static_cast<std::int64_t>(nearest(n, i)));
@@ -59,7 +59,7 @@ class Nodes {
  private:
   static constexpr std::size_t kLayers = 2;  ///< number of layers on each face of the box
 
-  /// Index of the nearest cell along an axis.
+  /// Index, along an axis, of the cell that is nearest to a node.
   std::size_t nearest(const Index& n, std::size_t axis) const {
     return std::clamp(n[axis], kLayers, size[axis] - kLayers - 1) - kLayers;
   }
@@ -69,14 +69,14 @@ class Nodes {
   Index cells_{};
 };
 
-/// A vertex of a cube or tetrahedron.
+/// A vertex of a cube, or of a tetrahedron, of the grid.
 struct Corner {
   Index node;
   std::size_t direction;  ///< bit i is set if the node is one step along axis i from the cube's first corner
   double margin;
 };
 
-/// Marching tetrahedra.
+/// Builds the surface by marching tetrahedra.
 class SurfaceBuilder {
  public:
   explicit SurfaceBuilder(const Nodes& nodes)
@@ -99,10 +99,12 @@ class SurfaceBuilder {
       cut({&corner[0], &corner[kPaths[path][0]], &corner[kPaths[path][1]], &corner[7]}, path >= 3);
   }
 
-  /// Moves the vertices to the sign change of the pose's margin by bisection, except those on the faces of the box.
+  /// Moves the vertices, except those on the faces of the box, to the sign change of the margin of the pose by
+  /// bisection.
   void refine(const WorkspaceFields& workspace, const PoseMargin& margin) {
-    constexpr std::size_t kBlock = 256;          // vertices per work item
-    constexpr double kEdgeFraction = 1.0 / 128;  // accuracy, relative to the edge
+    constexpr std::size_t kBlock = 256;  // number of vertices of a work item
+    // Accuracy of the position of a vertex, relative to the length of its edge.
+    constexpr double kEdgeFraction = 1.0 / 128;
     const std::size_t count = edges_.size();
     std::vector<Scratch> scratch(workers());
     parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end, std::size_t worker) {
@@ -111,7 +113,8 @@ class SurfaceBuilder {
         const auto is_inside = [&](double fraction) {
           return margin(workspace.pose(edges_[k].at(fraction)), scratch[worker]) >= 0;
         };
-        if (is_inside(1)) continue;  // the surface is a singularity, beyond which a component does not count
+        // The margin has no sign change here: the surface is a singularity, beyond which a component is not counted.
+        if (is_inside(1)) continue;
         const Bracket bracket = bisect(is_inside, {.with = 0, .without = 1}, kEdgeFraction);
         surface_.vertices[k] = edges_[k].at(bracket.middle());
         if (bracket.with > 0) surface_.inside[k] = edges_[k].at(bracket.with);
@@ -161,7 +164,8 @@ class SurfaceBuilder {
 
   void add(std::array<std::uint32_t, 3> triangle, bool left_handed) {
     const auto [a, b, c] = triangle;
-    if (a == b || b == c || c == a) return;  // a degenerate triangle between the coincident layers on the box
+    // Omits degenerate triangles between the coincident layers on a face of the box.
+    if (a == b || b == c || c == a) return;
     if (left_handed) std::swap(triangle[1], triangle[2]);
     surface_.triangles.push_back(triangle);
   }
@@ -169,7 +173,7 @@ class SurfaceBuilder {
   /// The edge on which a vertex lies, from its feasible to its infeasible node.
   struct Edge {
     Point from, to;
-    bool on_box;  ///< the infeasible node is an outer one
+    bool on_box;  ///< true if the infeasible node is in an outer layer on a face of the box
 
     Point at(double fraction) const {
       Point point;
@@ -179,9 +183,9 @@ class SurfaceBuilder {
   };
 
   const Nodes& nodes_;
-  std::vector<Edge> edges_;  ///< one per vertex
-  /// Index of the vertex on each edge, by 8 * (index of the edge's first node) + direction; direction 0: at the node
-  /// itself.
+  std::vector<Edge> edges_;  ///< the edge on which each vertex lies
+  /// Index of the vertex on each edge. The key of an edge is 8 * (number of its first node) + direction; with direction
+  /// 0, the vertex is at the node itself.
   std::vector<std::uint32_t> vertex_of_edge_;
   Isosurface surface_;
 };

@@ -17,19 +17,21 @@
 namespace pkm {
 
 struct Isosurface {
-  std::vector<std::array<double, 3>> vertices;  ///< in the order of WorkspaceFields::axes
-  std::vector<std::array<double, 3>> inside;    ///< per vertex: a feasible point nearby, where fields have values
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<std::array<double, 3>> vertices;  ///< coordinates of each vertex, in the order of WorkspaceFields::axes
+  std::vector<std::array<double, 3>> inside;  ///< for each vertex, a feasible point nearby, at which fields have values
+  /// Indices of three vertices, counter-clockwise seen from outside.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Reports why a workspace has no surface, unless three coordinates are swept.
+/// The reason why a workspace has no surface, unless three coordinates are swept; empty if it has one.
 /// @param swept  names of the swept coordinates
 Unsupported surface_unsupported(const std::vector<std::string>& swept);
 
-/// The surface; empty if no cell is feasible. Throws std::invalid_argument if surface_unsupported() gives a reason.
-/// @param margin  margin function of the same design. If given, each vertex is located on its edge by bisection of the
-///                margin to 1/128 of a cell, in parallel on the caller's threads; if null, by linear interpolation of
-///                the margins of the two cells
+/// Computes the surface; it is empty if no cell is feasible. Throws std::invalid_argument if surface_unsupported()
+/// gives a reason.
+/// @param margin  margin function of the same design, or null. If given, each vertex is located on its edge by
+/// bisection of the margin to 1/128 of a cell, in parallel on the caller's threads; if null, by linear interpolation of
+/// the margins of the two cells
 Isosurface isosurface(const WorkspaceFields& workspace, const PoseMargin* margin = nullptr);
 
 }  // namespace pkm

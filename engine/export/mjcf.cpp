@@ -1,4 +1,4 @@
-// A multibody model as MJCF.
+// Writes a multibody model as MJCF, the format of the simulation program MuJoCo.
 #include <algorithm>
 
 #include <Eigen/Geometry>
@@ -35,7 +35,7 @@ std::string mjcf_joint(const MultibodyModel::Joint& joint) {
   return text;
 }
 
-/// The body with its children, except for the base, whose element is <worldbody>.
+/// The element of a body with all its children; for the base, this is the element <worldbody>.
 std::string mjcf_body(const MultibodyModel& model, std::size_t index, const std::string& indent) {
   const MultibodyModel::Body& body = model.bodies[index];
   const Vector3d origin = frame_origin(model, index);
@@ -86,7 +86,7 @@ std::string mjcf_closure(const MultibodyModel& model, const MultibodyModel::Join
 }  // namespace
 
 std::string mjcf_text(const MultibodyModel& of_mechanism, const std::string& title) {
-  constexpr double kTimestep = 0.0005;  // [s]
+  constexpr double kTimestep = 0.0005;  // time step of the simulation [s]
   MultibodyModel model = without_universal_closures(for_simulators(of_mechanism));
   model.notes.insert(
       model.notes.begin(),

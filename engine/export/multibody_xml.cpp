@@ -18,9 +18,9 @@ using Body = MultibodyModel::Body;
 using Joint = MultibodyModel::Joint;
 using Type = MultibodyModel::JointType;
 
-constexpr double kMinimumMass = 1e-6;  // minimum mass of a body, relative to the total mass
+constexpr double kMinimumMass = 1e-6;  // smallest mass of a body, relative to the total mass
 
-/// The minimum mass and moment of inertia of a body.
+/// The smallest mass and the smallest moment of inertia that a body may have.
 struct Minimum {
   double mass, inertia;
 };
@@ -31,12 +31,13 @@ Minimum minimum_of(const MultibodyModel& model) {
   return {kMinimumMass * total, kMinimumMass * total * size * size};
 }
 
-/// Raises principal moments to a minimum, and then the two smaller ones by equal amounts until the largest does not
-/// exceed their sum. @return true if a moment has changed
+/// Raises principal moments of inertia to a minimum, and then the two smaller ones by equal amounts until the largest
+/// does not exceed their sum.
+/// @return true if a moment has changed
 bool make_physical(Eigen::Matrix3d& inertia, double minimum) {
-  constexpr double kRounding = 1e-9;  // relative
+  constexpr double kRounding = 1e-9;  // relative allowance for rounding errors
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
-  Vector3d moments = solver.eigenvalues();  // ascending
+  Vector3d moments = solver.eigenvalues();  // in ascending order
   moments = moments.cwiseMax(minimum);
   if (const double lack = moments[2] - moments[0] - moments[1]; lack > 0)
     moments.head<2>().array() += lack / 2 + kRounding * moments[2];
@@ -53,7 +54,7 @@ void add_note_on_small_bodies(double mass, MultibodyModel& model) {
       xml_number(mass) + " kg each.");
 }
 
-/// A name with only valid characters that is not in `used`; it is added to `used`.
+/// Makes a name of valid characters that is not in `used`, and adds it to `used`.
 std::string distinct(const std::string& name, std::set<std::string>& used) {
   std::string candidate = plain_name(name);
   for (int k = 2; !used.insert(candidate).second; ++k) candidate = plain_name(name) + '_' + std::to_string(k);

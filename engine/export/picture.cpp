@@ -11,8 +11,8 @@
 namespace pkm {
 namespace {
 
-/// Axis i of the plot. Its range is the extent of the outline plus a margin of 10 %, or the whole range of the
-/// workspace axis if nothing is feasible.
+/// Axis i of the plot. Its range is the extent of the outline plus a margin of 10 % or, if nothing is feasible, the
+/// whole range of the workspace axis.
 PlotAxis plot_axis(const SliceOutline& outline, std::size_t i) {
   const WorkspaceAxis& axis = outline.axes[i];
   const bool angle = axis.unit == "rad";
@@ -29,9 +29,10 @@ PlotAxis plot_axis(const SliceOutline& outline, std::size_t i) {
   return plot;
 }
 
-/// Divides a text at blanks into lines of limited width.
+/// Divides a text at blanks into lines that are at most `width` pixels wide.
 std::vector<std::string> wrapped(const std::string& text, double width) {
-  constexpr double kUnit = 1.35;  // pixels per unit of the stroke font: width of an average letter of 13 pixels
+  // Number of pixels per unit of the stroke font; with it, an average letter is as wide as one of 13 pixels.
+  constexpr double kUnit = 1.35;
   std::vector<std::string> lines = {""};
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
@@ -70,10 +71,13 @@ std::vector<SliceOutline::Loop> PlotFrame::to_pixels(const std::vector<SliceOutl
 
 PlotFrame plot_frame(const SliceOutline& outline, const std::vector<std::string>& lines, double right) {
   using Anchor = Picture::Anchor;
-  constexpr double kLeft = 90, kBelow = 64, kLine = 20, kMaxLength = 560, kMinLength = 160, kMinText = 460;  // pixels
+  // Space to the left of the frame and below it, height of a text line, and limits of the frame and the text width
+  // [pixel].
+  constexpr double kLeft = 90, kBelow = 64, kLine = 20, kMaxLength = 560, kMinLength = 160, kMinText = 460;
   PlotAxis across = plot_axis(outline, 0), up = plot_axis(outline, 1);
   double width = kMaxLength, height = 0.75 * kMaxLength;
-  if (outline.axes[0].unit == outline.axes[1].unit) {  // same scale on both axes, unless the drawing becomes too thin
+  // Both axes have the same scale, unless the drawing would become too thin.
+  if (outline.axes[0].unit == outline.axes[1].unit) {
     const double wide = across.upper - across.lower, high = up.upper - up.lower, longer = std::max(wide, high);
     width = std::max(kMaxLength * wide / longer, kMinLength);
     height = std::max(kMaxLength * high / longer, kMinLength);
@@ -107,7 +111,7 @@ PlotFrame plot_frame(const SliceOutline& outline, const std::vector<std::string>
 }
 
 Picture draw_slice(const SliceOutline& outline, const std::vector<std::string>& lines) {
-  constexpr double kRight = 30;  // pixels
+  constexpr double kRight = 30;  // space to the right of the frame [pixel]
   PlotFrame plot = plot_frame(outline, lines, kRight);
   plot.picture.outline = plot.to_pixels(outline.loops);
   return plot.picture;

@@ -16,13 +16,15 @@ namespace {
 
 using Anchor = Picture::Anchor;
 
-constexpr double kTolerance = 0.05;                             // tolerance of simplified lines [pixel]
-constexpr double kLetterUnit = 1.5;                             // pixels per unit of the stroke font
-constexpr double kRight = 150;                                  // space for the colour bar [pixel]
-constexpr double kBarGap = 24, kBarWidth = 18, kBarArrow = 14;  // dimensions of the colour bar [pixel]
+constexpr double kTolerance = 0.05;  // maximum deviation of simplified lines [pixel]
+constexpr double kLetterUnit = 1.5;  // number of pixels per unit of the stroke font, for the widths of labels
+constexpr double kRight = 150;       // width of the space for the colour bar [pixel]
+// Distance from the frame, width, and height of the arrows of the colour bar [pixel].
+constexpr double kBarGap = 24, kBarWidth = 18, kBarArrow = 14;
 constexpr Colour kUndefined = {0xc8, 0xc8, 0xc8}, kBarFrame = {0x22, 0x22, 0x22};
 
-/// Converts a field to the unit of the labels: degrees, mm or um. Returns the unit, "1" for mixed units.
+/// Converts the values of a field to the unit of the labels: degrees, mm or um.
+/// @return this unit; "1" for mixed units
 std::string convert_to_display_unit(const std::string& unit, std::vector<double>& values) {
   double largest = 0, factor = 1;
   for (const double value : values)
@@ -60,9 +62,10 @@ SliceOutline::Loop rectangle(double left, double top, double right, double botto
 class Bands {
  public:
   explicit Bands(const ContourLevels& levels) : last_(static_cast<double>(levels.thresholds().size())) {}
-  /// The colour of a band. @param k  number of thresholds below the band
+  /// The colour of a band.
+  /// @param k  number of thresholds below the band
   Colour colour(std::size_t k) const { return scale_colour(last_ > 0 ? static_cast<double>(k) / last_ : 0.5); }
-  /// The colour between the bands on both sides of a threshold.
+  /// The mean colour of the bands below and above threshold number k.
   Colour at_threshold(std::size_t k) const { return scale_colour((static_cast<double>(k) + 0.5) / last_); }
 
  private:
@@ -103,11 +106,12 @@ void draw_regions(const FieldMap& map, const Bands& bands, const std::vector<dou
   }
 }
 
+/// Draws the colour bar of a map.
 /// @param title  name and unit of the field
 void draw_colour_bar(const ContourLevels& levels, const Bands& bands, const std::string& title, bool has_undefined,
                      Picture& picture) {
   const double left = picture.frame[0] + picture.frame[2] + kBarGap, right = left + kBarWidth;
-  const double below = has_undefined ? 30 : 0;  // space of the legend of undefined values
+  const double below = has_undefined ? 30 : 0;  // height of the legend for undefined values [pixel]
   double top = picture.frame[1], bottom = top + picture.frame[3] - below;
   const double text = right + 8;
   if (has_undefined) {

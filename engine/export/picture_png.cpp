@@ -9,9 +9,9 @@ namespace pkm {
 namespace {
 
 constexpr double kDots = 2;         // dots of the PNG file per pixel of the picture, horizontally and vertically
-constexpr double kFontScale = 1.5;  // pixels per unit of the stroke font
-constexpr double kHalfWidth = 0.5, kHalfBold = 0.85;  // half line widths, of normal and of bold lines [pixel]
-constexpr double kHalfBorder = 2.0;                   // half line width of letters with a border
+constexpr double kFontScale = 1.5;  // number of pixels per unit of the stroke font
+constexpr double kHalfWidth = 0.5, kHalfBold = 0.85;  // half the width of normal lines, and of bold lines [pixel]
+constexpr double kHalfBorder = 2.0;                   // half the width of the border of letters that have one [pixel]
 
 constexpr RasterImage::Colour kGrid = {0xdd, 0xdd, 0xdd}, kFill = {0x4a, 0x7f, 0xb5}, kOutline = {0x1f, 0x4e, 0x79},
                               kFrame = {0x22, 0x22, 0x22};

@@ -10,11 +10,11 @@
 namespace pkm {
 namespace {
 
-constexpr int kScanLinesPerPixel = 4;  // coverage is averaged over these scan lines
+constexpr int kScanLinesPerPixel = 4;  // number of scan lines per pixel row, over which coverage is averaged
 
 double centre(std::size_t pixel) { return static_cast<double>(pixel) + 0.5; }
 
-/// The pixels between two coordinates, clipped to [0, size]: the first, and one past the last.
+/// The pixels between two coordinates, clipped to [0, size]: index of the first one, and index after the last one.
 std::pair<std::size_t, std::size_t> pixel_range(double from, double to, std::size_t size) {
   const double end = static_cast<double>(size);
   return {static_cast<std::size_t>(std::clamp(from, 0.0, end)), static_cast<std::size_t>(std::clamp(to, 0.0, end))};
@@ -107,7 +107,7 @@ void RasterImage::blend(std::size_t x, std::size_t y, const Colour& colour, doub
 std::string RasterImage::png() const {
   std::string rows;
   for (std::size_t y = 0; y < height_; ++y) {
-    rows += '\0';  // filter type of the row: none
+    rows += '\0';  // the filter type of the row: no filter
     rows.append(reinterpret_cast<const char*>(&values_[3 * width_ * y]), 3 * width_);
   }
   const std::string format = {8, 2, 0, 0, 0};  // 8 bits per sample, RGB

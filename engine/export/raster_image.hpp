@@ -13,7 +13,8 @@
 
 namespace pkm {
 
-/// The image is white initially. Coordinates are in pixels, x to the right and y downwards from the upper left corner.
+/// A raster image, initially white. Coordinates are in pixels, x to the right and y downwards from the upper left
+/// corner.
 class RasterImage {
  public:
   using Colour = pkm::Colour;
@@ -24,18 +25,20 @@ class RasterImage {
 
   /// Draws a line of width 2 * `half_width` with round ends, or a disc if both ends coincide.
   void draw_line(double x1, double y1, double x2, double y2, double half_width, const Colour& colour);
-  /// Fills closed polygons by the even-odd rule. @param opacity  0 to 1
+  /// Fills closed polygons by the even-odd rule.
+  /// @param opacity  from 0 (transparent) to 1
   void fill_polygons(const std::vector<Polygon>& polygons, const Colour& colour, double opacity);
 
   /// The image as the bytes of a PNG file.
   std::string png() const;
 
  private:
-  /// Mixes a colour into one pixel. @param share  weight of the colour, 0 to 1
+  /// Mixes a colour into one pixel.
+  /// @param share  weight of the colour, from 0 to 1
   void blend(std::size_t x, std::size_t y, const Colour& colour, double share);
 
   std::size_t width_, height_;
-  std::vector<std::uint8_t> values_;  ///< red, green, blue; row by row
+  std::vector<std::uint8_t> values_;  ///< red, green and blue of each pixel, row by row
 };
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// A multibody model as SDF.
+// Writes a multibody model as SDF, the format of the simulation program Gazebo.
 #include <algorithm>
 
 #include "engine/export/multibody_files.hpp"

@@ -9,11 +9,12 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kIntervals = 240, kNodesPerRow = kIntervals + 1;  // intervals and nodes of the grid per axis
+// Number of intervals, and of nodes, of the grid along each axis.
+constexpr std::size_t kIntervals = 240, kNodesPerRow = kIntervals + 1;
 constexpr double kEdgeFraction = 0x1p-20;  // accuracy of a boundary point, relative to the edge of a square
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// Feasibility of the nodes of a grid over the ranges of both coordinates.
+/// Feasibility of the nodes of a regular grid that covers the ranges of both coordinates.
 class NodeGrid {
  public:
   NodeGrid(const WorkspaceFields& workspace, const PoseMargin& margin)
@@ -37,8 +38,8 @@ class NodeGrid {
     };
     return {coordinate(workspace_.axes[0], node % kNodesPerRow), coordinate(workspace_.axes[1], node / kNodesPerRow)};
   }
-  /// Locates the sign change of the margin between two nodes by bisection.
-  /// @return the feasible end of the bracket
+  /// Locates, by bisection, the point between two nodes at which the margin changes sign.
+  /// @return the end of the final bracket that is feasible
   PlanePoint crossing(std::size_t a, std::size_t b) const {
     const PlanePoint in = point(is_feasible(a) ? a : b), out = point(is_feasible(a) ? b : a);
     const auto at = [&](double t) { return PlanePoint{std::lerp(in[0], out[0], t), std::lerp(in[1], out[1], t)}; };
@@ -80,7 +81,7 @@ class MeshVertices {
   std::uint32_t of_edge(std::size_t a, std::size_t b) const { return of_edge_[edge(a, b)]; }
 
  private:
-  /// Index of the edge between two neighbouring nodes.
+  /// Index of the grid edge between two neighbouring nodes.
   static std::size_t edge(std::size_t a, std::size_t b) {
     const auto [first, second] = std::minmax(a, b);
     return 2 * first + (second - first == 1 ? 0 : 1);
@@ -98,7 +99,7 @@ SliceMesh slice_mesh(const WorkspaceFields& workspace, const PoseMargin& margin)
   for (std::size_t j = 0; j < kIntervals; ++j)
     for (std::size_t i = 0; i < kIntervals; ++i) {
       const std::array corners = {NodeGrid::node(i, j), NodeGrid::node(i + 1, j), NodeGrid::node(i + 1, j + 1),
-                                  NodeGrid::node(i, j + 1)};  // counter-clockwise
+                                  NodeGrid::node(i, j + 1)};  // the nodes of the square, counter-clockwise
       MeshPolygon polygon;
       std::vector<std::size_t> feasible;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -110,7 +111,8 @@ SliceMesh slice_mesh(const WorkspaceFields& workspace, const PoseMargin& margin)
         if (grid.is_feasible(corner) != grid.is_feasible(next)) polygon.push_back(vertices.of_edge(corner, next));
       }
       if (polygon.empty()) continue;
-      const bool ambiguous = feasible.size() == 2 && polygon.size() == 6;  // two feasible, opposite corners
+      // True if the square has two feasible nodes at opposite corners.
+      const bool ambiguous = feasible.size() == 2 && polygon.size() == 6;
       const PlanePoint a = grid.point(corners[0]), b = grid.point(corners[2]);
       if (!ambiguous || grid.is_feasible(PlanePoint{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2})) {
         mesh.polygons.push_back(std::move(polygon));
@@ -131,7 +133,7 @@ std::vector<PathEdge> boundary_edges(const std::vector<MeshPolygon>& polygons) {
   std::ranges::sort(edges, {}, key);
   for (std::size_t k = 0; k < edges.size(); ++k)
     if (k + 1 < edges.size() && key(edges[k]) == key(edges[k + 1]))
-      ++k;  // an edge and its reverse
+      ++k;  // skips both, because an edge and its reverse cancel
     else
       boundary.push_back(edges[k]);
   return boundary;

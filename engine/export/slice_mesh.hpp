@@ -16,24 +16,28 @@
 namespace pkm {
 
 using PlanePoint = std::array<double, 2>;
-using PointPath = std::vector<std::uint64_t>;              ///< indices of points; closed if first and last are equal
-using PathEdge = std::pair<std::uint64_t, std::uint64_t>;  ///< directed, between two indices of points
-using MeshPolygon = std::vector<std::uint32_t>;            ///< indices of vertices, counter-clockwise
+/// Path as indices of points; it is closed if the first and the last index are equal.
+using PointPath = std::vector<std::uint64_t>;
+/// Directed edge from one point to another, as indices of points.
+using PathEdge = std::pair<std::uint64_t, std::uint64_t>;
+using MeshPolygon = std::vector<std::uint32_t>;  ///< indices of the vertices of a polygon, counter-clockwise
 
 struct SliceMesh {
-  std::array<WorkspaceAxis, 2> axes;  ///< horizontal and vertical
-  std::vector<PlanePoint> points;     ///< vertices, all of them feasible
-  std::vector<MeshPolygon> polygons;  ///< convex, apart from bisection errors; neighbours share vertices
+  std::array<WorkspaceAxis, 2> axes;  ///< the horizontal and the vertical axis
+  std::vector<PlanePoint> points;     ///< coordinates of the vertices, all of which are feasible
+  /// Polygons of the mesh, convex apart from bisection errors; neighbouring polygons share vertices.
+  std::vector<MeshPolygon> polygons;
 };
 
-/// Evaluates the margins in parallel on the caller's threads; the result does not depend on their number.
-/// @param workspace  has two swept coordinates; gives their ranges and the values of the fixed coordinates
+/// Computes the mesh. The margins are evaluated in parallel on the caller's threads; the result does not depend on the
+/// number of threads.
+/// @param workspace  workspace over two swept coordinates; gives their ranges and the values of the fixed coordinates
 SliceMesh slice_mesh(const WorkspaceFields& workspace, const PoseMargin& margin);
 
-/// The edges that belong to exactly one polygon, directed so that the mesh is on their left.
+/// The edges that belong to exactly one polygon of a mesh, directed so that the mesh is on their left.
 std::vector<PathEdge> boundary_edges(const std::vector<MeshPolygon>& polygons);
 
-/// Joins directed edges to paths: first the open paths, then the closed ones.
+/// Joins directed edges to paths. Open paths come first in the result, closed ones last.
 std::vector<PointPath> join_edges(std::vector<PathEdge> edges);
 
 }  // namespace pkm

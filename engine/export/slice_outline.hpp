@@ -9,9 +9,9 @@ namespace pkm {
 
 struct SliceOutline {
   using Loop = std::vector<PlanePoint>;
-  std::array<WorkspaceAxis, 2> axes;  ///< horizontal and vertical
+  std::array<WorkspaceAxis, 2> axes;  ///< the horizontal and the vertical axis
   std::vector<Loop> loops;  ///< closed polygons: counter-clockwise around feasible regions, clockwise around holes
-  double area = 0;          ///< area within the polygons, in the product of the axes' units
+  double area = 0;          ///< area within the outline, in the product of the units of both axes
 };
 
 SliceOutline trace_outline(const SliceMesh& mesh);

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// Appends a word in little-endian order, on any machine.
+/// Appends the bytes of a word in little-endian order, which does not depend on the machine.
 void append(std::string& bytes, std::uint32_t word) {
   for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(word >> shift & 0xff);
 }

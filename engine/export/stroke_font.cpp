@@ -6,10 +6,12 @@
 namespace pkm {
 namespace {
 
-constexpr double kBaseline = 6, kGap = 2, kSpace = 3;  // [units]: y of the baseline, space between letters, word space
+// Lengths in units of the font: y of the baseline, space between letters, space between words.
+constexpr double kBaseline = 6, kGap = 2, kSpace = 3;
 
-// The characters from '!' to '~'. Each is a list of polylines, separated by '|', of points with one digit for x and one
-// for y (downwards): capitals extend from y = 0 to 6, small letters from 2, descenders to 8.
+// Strokes of the characters from '!' to '~'. Each string is a list of polylines, separated by '|'. Each point has one
+// digit for x and one for y (downwards). Capital letters extend from y = 0 to 6, small letters from y = 2, descenders
+// to y = 8.
 constexpr std::string_view kLetters[] = {
     "00 04|06",                                         // !
     "00 02|20 22",                                      // "
@@ -113,7 +115,7 @@ void add(std::string_view letter, TextStrokes& text) {
   double widest = 0;
   bool begun = false;
   std::array<double, 2> last{};
-  for (std::size_t i = 0; i + 1 < letter.size(); i += 3) {  // two digits, then a space or a bar
+  for (std::size_t i = 0; i + 1 < letter.size(); i += 3) {  // each point takes two digits, followed by a space or a bar
     const double x = letter[i] - '0', y = letter[i + 1] - '0' - kBaseline;
     const bool ends = i + 2 >= letter.size() || letter[i + 2] == '|';
     widest = std::max(widest, x);

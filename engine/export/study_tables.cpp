@@ -10,7 +10,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// Appends headers such as "objective conditioning" or "margin rail-length [m]".
+/// Appends the column headers of a list of named values, such as "objective conditioning" or "margin rail-length [m]".
 template <class Named>
 void add_headers(Names& columns, const std::string& prefix, const std::vector<Named>& items) {
   for (const Named& item : items) columns.push_back(column_header(prefix + item.name, item.unit));

@@ -23,7 +23,8 @@ struct NamedTable {
   CsvTable table;
 };
 
-/// best.csv is omitted if nothing has been evaluated yet, front.csv if no stage has a front.
+/// All tables of a study file. best.csv is omitted if nothing has been evaluated yet, front.csv if no stage has a
+/// front.
 std::vector<NamedTable> study_tables(const StudyContents& contents);
 
 }  // namespace pkm

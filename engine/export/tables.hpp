@@ -12,15 +12,16 @@ namespace pkm {
 /// One row per cell: the coordinates of its centre and all fields.
 CsvTable workspace_table(const WorkspaceFields& workspace);
 
-/// One row per feasible cell: the coordinates of its centre, the coupling index of each joint, and the largest of them.
-/// @param workspace  its result has poses and the field kCouplingIndex
+/// One row per feasible cell: the coordinates of its centre, the coupling index of each joint, and the largest of these
+/// indices.
+/// @param workspace  its samples must contain poses and the field kCouplingIndex
 CsvTable coupling_table(const MechanismInfo& info, const WorkspaceResult<double>& workspace);
 
 /// One row per sample; undefined values are empty cells.
 CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajectory);
 
-/// One row per time step.
-/// @param friction  whether the drives have friction
+/// One row per time step of a simulation.
+/// @param friction  true if the drives have friction, for which columns are added
 CsvTable simulation_table(const MechanismInfo& info, const Simulation& run, bool friction);
 
 }  // namespace pkm

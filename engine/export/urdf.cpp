@@ -10,13 +10,14 @@
 namespace pkm {
 namespace {
 
-constexpr double kCoincidence = 1e-9;  // distance below which points coincide, relative to the size of the mechanism
+// Points closer than this, relative to the size of the mechanism, count as coincident.
+constexpr double kCoincidence = 1e-9;
 
 using Position = Point3<double>;
 
 double distance(const Position& a, const Position& b) { return segment_distance<double>({a, a}, {b, b}); }
 
-/// A link of the tree, with its capsules.
+/// A link of the URDF tree, with the capsules that represent it.
 struct TreeLink {
   std::string name;
   std::vector<Capsule<double>> shape = {};
@@ -29,19 +30,20 @@ struct TreeLink {
   }
 };
 
-/// A point that two links share.
+/// A point at which two links are joined.
 struct Junction {
-  std::size_t first, second;  ///< indices of the links
+  std::size_t first, second;  ///< indices of the two links
   Position point;
 };
 
-/// The joint of a link with its parent in the tree.
+/// The joint by which a link is attached to its parent in the tree.
 struct ParentJoint {
   std::size_t parent;
   Position point;
 };
 
-/// The links of the tree: first the frame, then the others; all links of the platform are one.
+/// Groups the links of the mechanism into links of the tree: the frame is the first one; all links of the platform form
+/// a single one.
 std::vector<TreeLink> tree_links(const std::vector<PlacedLink>& links) {
   std::vector<TreeLink> found = {{kFramePart}};
   for (const PlacedLink& link : links) {
@@ -54,13 +56,13 @@ std::vector<TreeLink> tree_links(const std::vector<PlacedLink>& links) {
   return found;
 }
 
-/// An end of a capsule, and whether it has the same position at the other pose.
+/// An end of a capsule. It is stationary if it has the same position at the other pose.
 struct End {
   Position point;
   bool is_stationary;
 };
 
-/// The ends of all capsules; coincident ends once.
+/// The ends of all capsules. Ends that coincide are listed once.
 std::vector<End> ends_of(const std::vector<PlacedLink>& links, const std::vector<PlacedLink>& moved, double tolerance) {
   std::vector<End> ends;
   for (std::size_t i = 0; i < links.size(); ++i)
@@ -72,7 +74,7 @@ std::vector<End> ends_of(const std::vector<PlacedLink>& links, const std::vector
   return ends;
 }
 
-/// Whether a link is a slide, i.e. lies completely on the frame.
+/// Returns true if both ends of all capsules of a link lie on the frame, as those of a slider do.
 bool is_slide(const TreeLink& frame, const TreeLink& body, double tolerance) {
   return std::ranges::all_of(body.shape, [&](const auto& part) {
     return frame.contains(part.axis.from, tolerance) && frame.contains(part.axis.to, tolerance);
@@ -80,8 +82,8 @@ bool is_slide(const TreeLink& frame, const TreeLink& body, double tolerance) {
 }
 
 /// Finds the junctions. Two links are joined where an end of one lies on the other; a link is joined to the frame at a
-/// stationary end. If several links share a point, one of them is joined to all others: the first slide or point if
-/// there is one, otherwise the first link. Two links have at most one junction.
+/// stationary end. If several links share a point, one of them is joined to all others: the first slider, or the first
+/// link that is a point, otherwise the first link. Two links have at most one junction.
 std::vector<Junction> junctions_of(const std::vector<TreeLink>& links, const std::vector<End>& ends, double tolerance) {
   std::vector<Junction> found;
   const auto joined = [&found](std::size_t a, std::size_t b) {
@@ -103,13 +105,14 @@ std::vector<Junction> junctions_of(const std::vector<TreeLink>& links, const std
 
 /// Spanning tree of the links, rooted at the frame.
 struct Tree {
-  std::vector<ParentJoint> joints;             ///< joint of each link with its parent; the frame's entry is unused
-  std::vector<std::size_t> order = {};         ///< parents before their children
-  std::vector<Junction> cuts = {};             ///< junctions that are not joints of the tree: each closes a loop
-  std::vector<std::size_t> disconnected = {};  ///< roots of the parts without a connection to the frame
+  std::vector<ParentJoint> joints;      ///< joint of each link with its parent; the element of the frame is unused
+  std::vector<std::size_t> order = {};  ///< indices of the links, parents before their children
+  std::vector<Junction> cuts = {};      ///< junctions that are not joints of the tree: each closes a loop
+  /// Indices of the links at which parts without a connection to the frame begin.
+  std::vector<std::size_t> disconnected = {};
 };
 
-/// Breadth-first search.
+/// Computes the spanning tree by breadth-first search.
 Tree spanning_tree(const std::vector<TreeLink>& links, const std::vector<Junction>& junctions) {
   Tree tree{std::vector<ParentJoint>(links.size())};
   std::vector<bool> reached(links.size()), used(junctions.size());
@@ -143,13 +146,14 @@ std::string numbers(const Position& p) {
   return formatted("%.12g", p[0]) + ' ' + formatted("%.12g", p[1]) + ' ' + formatted("%.12g", p[2]);
 }
 
+/// Element <origin> with a position and a rotation.
 /// @param angles  roll, pitch and yaw [rad]
 std::string origin(const Position& position, const Position& angles = {}) {
   return "<origin xyz=\"" + numbers(position) + "\" rpy=\"" + numbers(angles) + "\"/>";
 }
 
-/// A cylinder along the axis of the capsule; a sphere if the axis is a point. In URDF, the axis of a cylinder is along
-/// z before the rotations about x, y and z.
+/// Element <visual> for a capsule: a cylinder along the axis of the capsule, or a sphere if the axis is a point. In
+/// URDF, the axis of a cylinder is along z before the rotations about x, y and z.
 /// @param origin_of_link  origin of the link, in the frame of the capsule
 std::string visual(const Capsule<double>& capsule, const Position& origin_of_link) {
   const Position along = difference(capsule.axis.to, capsule.axis.from);

@@ -14,10 +14,10 @@ namespace pkm {
 /// by a breadth-first search from the frame. Every other connection closes a loop; a comment lists these connections
 /// with the points where the loops are cut. Links without a connection to the frame are attached to it, and listed in a
 /// comment.
-/// @param moved  the same links at another pose, or empty. Ends that do not move count as connected to the frame; if
-///               empty, only ends that lie on the capsules of the frame do
+/// @param moved  the same links at another pose, or empty. An end that has the same position at both poses counts as
+/// connected to the frame; if `moved` is empty, only ends that lie on the capsules of the frame do
 /// @param name   name of the robot
-/// @param title  text of a comment
+/// @param title  text of a comment at the beginning of the file
 std::string links_urdf(const std::vector<PlacedLink>& links, const std::vector<PlacedLink>& moved,
                        const std::string& name, const std::string& title);
 

@@ -1,4 +1,4 @@
-// The tree of a multibody model as URDF, and its loop closures.
+// Writes the spanning tree of a multibody model as URDF, and its loop closures.
 #include <algorithm>
 
 #include "engine/core/formatted.hpp"
@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 using Type = MultibodyModel::JointType;
 
-constexpr double kUnlimited = 1e6;  // effort, speed or travel where URDF requires a number but none is known
+constexpr double kUnlimited = 1e6;  // effort, speed or travel, where URDF requires a limit but the model has none
 
 std::string urdf_origin(const Vector3d& xyz, const Vector3d& rpy = Vector3d::Zero()) {
   return "<origin" + xml_attribute("xyz", xyz) + xml_attribute("rpy", rpy) + "/>";
@@ -132,7 +132,8 @@ std::string loop_closures_yaml(const MultibodyModel& of_mechanism, const std::st
     for (auto at = numbers.find(' '); at != std::string::npos; at = numbers.find(' ', at + 2)) numbers.insert(at, ",");
     return '[' + numbers + ']';
   };
-  const auto quoted = [](const std::string& name) { return '"' + name + '"'; };  // unquoted, y and no are truth values
+  // Names are quoted, because YAML reads an unquoted y or no as a truth value.
+  const auto quoted = [](const std::string& name) { return '"' + name + '"'; };
   std::string text =
       "# Loop closures of " + urdf_file + ": " + title +
       ". Units are m and rad.\n# Points and axes are in the frame of the link. A drive's position in the "

@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-/// Reorders a field for VTK, where the first axis varies fastest.
+/// Values of a field in the order of VTK, in which the first axis varies fastest.
 std::vector<double> first_axis_fastest(const WorkspaceField& field, const std::array<std::int64_t, 3>& cells) {
   const Extent n(cells.begin(), cells.end());
   std::vector<double> reordered(n[0] * n[1] * n[2]);
@@ -24,7 +24,8 @@ std::vector<double> first_axis_fastest(const WorkspaceField& field, const std::a
 std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, std::span<const double> parameters,
                       const std::string& title) {
   const std::string root = "/VTKHDF", points = root + "/PointData";
-  const std::string notes = "/pkmopt";  // name of the group; VTK 9.1 would read FieldData as point arrays
+  // Name of the group for further data; VTK 9.1 would read the group FieldData as point arrays.
+  const std::string notes = "/pkmopt";
   const VoxelGrid grid = workspace.grid();
   std::vector<std::int64_t> extent;
   std::vector<double> origin;

@@ -8,7 +8,7 @@
 namespace pkm {
 namespace {
 
-/// An XML element with text_of(item) for each item of the list.
+/// An XML element that contains text_of(item) for each item of a list.
 template <class List, class Text>
 std::string element(const std::string& tag, const std::string& attributes, const List& list, const Text& text_of) {
   std::string text = '<' + tag + ' ' + attributes + " format=\"ascii\">\n";
@@ -16,7 +16,7 @@ std::string element(const std::string& tag, const std::string& attributes, const
   return text + "</" + tag + ">\n";
 }
 
-/// A VTK array of strings: their character codes, with a 0 after each string.
+/// A VTK array of strings: the codes of their characters, with a 0 after each string.
 std::string texts(const std::string& name, const std::vector<std::string>& list) {
   const std::string attributes =
       "type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"" + std::to_string(list.size()) + '"';

@@ -1,4 +1,4 @@
-// Generated code in C99: a header, a source and a test program.
+// Generates code in C99: a header, a source file and a test program.
 #include "engine/export/code/c_like.hpp"
 #include "engine/export/code/languages.hpp"
 
@@ -14,7 +14,7 @@ std::string assembly_array(const Module& module) {
   return rows > 0 ? "  " + array("assembly", rows) + ";\n" : "";
 }
 
-/// Declarations of all functions, without semicolons, by name.
+/// Declarations of all generated functions, without semicolons; each member is named after its function.
 struct Declarations {
   std::string inverse, jacobian, margins, quantities, equations, forces, forward;
 

@@ -1,4 +1,4 @@
-// What C and C++ share: expressions, and the bodies of functions.
+// Parts of code generation that C and C++ share: expressions, and the bodies of functions.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ std::string helpers_of_c();
 /// Statements, indented by two spaces, that compute the outputs of a function and store them in arrays with the names
 /// of the outputs.
 std::string body_of_c(const Module& module, const Function& function);
-/// The condition that the inverse kinematics has a solution, in terms of the arrays q and assembly.
+/// C expression that is true if the inverse kinematics has a solution, in terms of the arrays q and assembly.
 std::string assembly_condition(const Module& module);
 /// The body of `forward`, which applies Newton's method.
 /// @param locals  declarations of the arrays found, J, change and next
@@ -25,27 +25,31 @@ std::string assembly_condition(const Module& module);
 std::string forward_body_of_c(const Module& module, const std::string& locals, const std::string& inverse_of_x,
                               const std::string& inverse_of_next, const std::string& jacobian, const std::string& J,
                               const std::string& found);
-/// The body of `forces`: solves the equations of motion. Parameters as above.
+/// The body of `forces`, which solves the equations of motion for the drive forces.
+/// @param locals  declarations of the arrays J, Jdot_v, M, h, G, Jw and transposed
+/// @param equations  call of the function `equations`
+/// @param transposed, tau  expressions that give pointers to these arrays
 std::string forces_body_of_c(const Module& module, const std::string& locals, const std::string& equations,
                              const std::string& transposed, const std::string& tau);
-/// A comment that describes the arrays; each line begins with `mark`.
+/// A comment that describes the arrays of the generated functions; each line begins with `mark`.
 std::string arrays_comment(const Module& module, const std::string& mark);
 
-/// Whether there is a function that computes drive forces.
+/// Returns true if a function that computes drive forces is generated.
 inline bool has_forces(const Module& module) { return module.equations && module.has_forward; }
 
-/// The parts of the test program that differ between C and C++.
+/// The parts of the generated test program that differ between C and C++.
 struct TestSyntax {
-  std::string begin;                                                ///< #include lines
-  std::string prefix;                                               ///< prefix of function names
-  std::string main;                                                 ///< "int main(void)"
+  std::string begin;   ///< #include lines at the beginning of the program
+  std::string prefix;  ///< prefix of the names of the generated functions
+  std::string main;    ///< head of the main function, for example "int main(void)"
   std::string (*array)(const std::string& name, std::size_t size);  ///< declaration of an array, without "static const"
   std::string (*row)(const std::string& numbers);                   ///< initialiser of an array
   std::string (*pointer)(const std::string& array);                 ///< pointer to the first element of an array
 };
 
-/// The test program. It compares the results of all functions with stored values and prints the largest difference
-/// (relative for values above 1). It returns 1 if the difference exceeds 1e-10, or 1e-2 in single precision.
+/// The text of the test program. The program compares the results of all functions with stored values and prints the
+/// largest difference (relative for values above 1). Its exit code is 1 if the difference exceeds 1e-10, or 1e-2 in
+/// single precision.
 std::string test_of_c(const Module& module, const TestSyntax& syntax);
 
 }  // namespace pkm::code

@@ -1,11 +1,11 @@
-// Generated code in C++17: a header and a test program.
+// Generates code in C++17: a header and a test program.
 #include "engine/export/code/c_like.hpp"
 #include "engine/export/code/languages.hpp"
 
 namespace pkm::code {
 namespace in_cpp {
 
-/// Declaration of an array. A name with a size declares an array of arrays: "poses[20]".
+/// Declaration of an array. If the name contains a size, such as "poses[20]", it declares an array of arrays.
 std::string array(const std::string& name, std::size_t size) {
   return "std::array<real, " + std::to_string(size) + "> " + name;
 }

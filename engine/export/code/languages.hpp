@@ -8,7 +8,7 @@
 
 namespace pkm::code {
 
-/// A file that is written, relative to the output folder.
+/// Name and content of a generated file. The name is a path relative to the output folder.
 struct File {
   std::string name, text;
 };

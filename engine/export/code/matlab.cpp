@@ -1,4 +1,4 @@
-// Generated code for MATLAB and Octave: a package folder with one file per function, and a test script.
+// Generates code for MATLAB and Octave: a package folder with one file per function, and a test script.
 #include <cmath>
 
 #include "engine/export/code/languages.hpp"
@@ -41,7 +41,8 @@ const Syntax kSyntax = {number, input, call, [](const std::string& name, const s
                           return name + " = " + expression + ";";
                         }};
 
-/// Local functions, each added to the files that call it. Undefined values are NaN instead of complex numbers.
+/// Names and texts of local functions; each is added to the files that call it. In them, undefined values are NaN
+/// instead of complex numbers.
 const std::vector<std::pair<std::string, std::string>> kHelpers = {
     {"minimum", "y = a; if b < a || isnan(b), y = b; end"},
     {"maximum", "y = a; if b > a || isnan(b), y = b; end"},

@@ -1,4 +1,4 @@
-// Generated code in Python 3 without other packages: a module and a test.
+// Generates code in Python 3 that needs no other packages: a module and a test.
 #include <cmath>
 
 #include "engine/export/code/languages.hpp"
@@ -152,7 +152,7 @@ def _solve(A, b):
     return b
 )";
 
-/// "[a, b]", or for a matrix "[[a, b], [c, d]]".
+/// An array as a Python list: "[a, b]", or for a matrix "[[a, b], [c, d]]".
 std::string list_of(const std::string* values, const Output& output) {
   std::string text = "[";
   for (std::size_t i = 0; i < output.rows; ++i) {
@@ -164,7 +164,7 @@ std::string list_of(const std::string* values, const Output& output) {
   return text + "]";
 }
 
-/// Definitions, and one assignment for each output.
+/// Body of a Python function: definitions of constants, and one assignment for each output.
 std::string body(const Module& module, const Function& function) {
   return body_of(module, function, kSyntax, "    ", [](const Output& output, const std::string* values) {
     return "    " + output.name + " = " + list_of(values, output) + "\n";

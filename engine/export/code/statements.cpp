@@ -9,9 +9,9 @@ namespace {
 using expression::Entry;
 using expression::Node;
 
-constexpr std::size_t kMaxLength = 60;  // maximum length of an expression that is written inline
+constexpr std::size_t kMaxLength = 60;  // maximum number of characters of an expression that is written inline
 
-/// Whether the first and the last character are a matching pair of parentheses.
+/// Returns true if the first and the last character of a text are a matching pair of parentheses.
 bool is_enclosed(const std::string& text) {
   if (text.size() < 2 || text.front() != '(' || text.back() != ')') return false;
   int depth = 0;
@@ -24,7 +24,7 @@ bool is_enclosed(const std::string& text) {
 
 struct Statements {
   std::vector<std::string> definitions;
-  std::vector<std::string> values;  ///< values of all outputs, concatenated
+  std::vector<std::string> values;  ///< expressions for the elements of all outputs, one output after the other
 };
 
 Statements statements_of(const Module& module, const Function& function, const Syntax& syntax) {

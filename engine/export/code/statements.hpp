@@ -13,31 +13,32 @@
 
 namespace pkm::code {
 
-/// How a language writes numbers, inputs and operations.
+/// Functions that write numbers, inputs and operations in the syntax of one language.
 struct Syntax {
   std::string (*number)(double value, bool single_precision);
   std::string (*input)(const InputPlace& place);
   /// An operation applied to operands, each of which is a name, a number or an expression in parentheses. If the result
   /// contains operators, it is in parentheses, too.
   std::string (*call)(const std::string& operation, const std::vector<std::string>& operands);
-  /// The definition of a constant: "const real t1 = a + b;".
+  /// Writes the definition of a constant, for example "const real t1 = a + b;".
   std::string (*define)(const std::string& name, const std::string& expression);
 };
 
-/// The lines that define the constants, followed by the lines that assign() gives for each output.
+/// Writes a function body: the lines that define the constants, followed by the lines that assign() writes for each
+/// output.
 /// @param indent  indentation of the definitions
-/// @param assign  assign(output, values) gives the lines that assign `values` to an output
+/// @param assign  assign(output, values): the lines that assign `values` to an output
 std::string body_of(const Module& module, const Function& function, const Syntax& syntax, const std::string& indent,
                     const std::function<std::string(const Output&, const std::string*)>& assign);
 
-/// The shortest decimal text from which the number can be read back exactly: "0.1", "1e-05".
+/// The shortest decimal text from which the number can be read back exactly, for example "0.1" or "1e-05".
 std::string shortest_number(double value);
-/// The text with every `from` replaced.
+/// Returns a text in which every occurrence of `from` is replaced by `to`.
 std::string with_replacements(std::string text, const std::string& from, const std::string& to);
-/// The expression without the parentheses around it.
+/// Returns the expression without the parentheses that enclose it, if there are any.
 std::string without_parentheses(const std::string& expression);
 
-/// "x: x [m], y [m]": names and units of the elements of an array, for comments.
+/// Names and units of the elements of an array for comments: "x [m], y [m]".
 std::string elements_text(const std::vector<NamedUnit>& elements);
 
 }  // namespace pkm::code
