@@ -1,4 +1,5 @@
-// Data of the panel "Convergence": objectives of each stage over generations or solver evaluations, subsampled.
+// Computes the data of the panel "Convergence": objectives of each stage over generations or solver evaluations,
+// subsampled.
 #include <cmath>
 #include <limits>
 
@@ -9,11 +10,12 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxGenerations = 1000;  // per stage
-constexpr std::size_t kMaxEvaluations = 2000;  // per solver stage
+constexpr std::size_t kMaxGenerations = 1000;  // maximum number of generations shown of each stage
+constexpr std::size_t kMaxEvaluations = 2000;  // maximum number of evaluations shown of each solver stage
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-/// Running best: element i is the best feasible value of an objective among the first i rows; NaN if none is feasible.
+/// Best value of an objective so far: element i is the best feasible value among the first i rows; NaN if none of these
+/// is feasible.
 std::vector<double> running_best(const EvaluationTable& table, std::size_t objective, Direction direction) {
   std::vector<double> best(table.size() + 1, kUndefined);
   for (std::size_t row = 0; row < table.size(); ++row) {
@@ -26,8 +28,8 @@ std::vector<double> running_best(const EvaluationTable& table, std::size_t objec
   return best;
 }
 
-/// Values of one objective per shown generation: best so far, and median and quartiles of the population's feasible
-/// designs.
+/// Values of one objective for each shown generation: the best so far, and median and quartiles over the feasible
+/// designs of the population.
 Json objective_curves(const StageRecord& stage, std::size_t objective, Direction direction, const Thinning& shown) {
   const std::vector<double> best = running_best(stage.table, objective, direction);
   std::vector<double> so_far, median, lower, upper;
@@ -74,7 +76,7 @@ Json generations(const ProblemRecord& problem, const StageRecord& stage) {
   return json;
 }
 
-/// One evaluation: its number in the stage (from 1), its objectives, and whether it is feasible.
+/// One evaluation: its number within the stage (from 1), its objectives, and whether it is feasible.
 Json point_of(const StageRecord& stage, std::int64_t row) {
   const auto r = static_cast<std::size_t>(row);
   const auto values = stage.table.objective_row(r);

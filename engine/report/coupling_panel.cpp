@@ -1,4 +1,4 @@
-// Data of the panel "Coupling": statistics of the coupling indices over the rotation of the platform.
+// Computes the data of the panel "Coupling": statistics of the coupling indices over the rotation of the platform.
 #include <algorithm>
 
 #include "engine/core/team.hpp"
@@ -10,17 +10,17 @@
 namespace pkm {
 namespace {
 
-// If the rotation is fixed in the study, the workspace is analysed once per rotation.
-constexpr std::int64_t kCellsPerAxis = 16;   // voxels along each swept axis
-constexpr std::size_t kFixedRotations = 13;  // sampled rotations
+// For a rotation that the study fixes, the workspace is analysed at several values of the rotation, with these numbers:
+constexpr std::int64_t kCellsPerAxis = 16;   // number of voxels along each swept axis
+constexpr std::size_t kFixedRotations = 13;  // number of values of the rotation
 
-/// The coupling indices of the feasible poses at each of several rotations.
+/// The coupling indices of the feasible poses at each of several values of a rotation.
 struct CouplingByRotation {
   std::vector<double> rotations;
   std::vector<WorkspaceResult<double>> surveys;
 };
 
-/// For a rotation that the study sweeps: groups the cells of the workspace by rotation.
+/// Used if the study sweeps the rotation: groups the cells of the workspace by the value of the rotation.
 CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size_t axis, std::size_t limbs) {
   CouplingByRotation result;
   const VoxelGrid grid = workspace.grid();
@@ -38,8 +38,8 @@ CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size
   return result;
 }
 
-/// For a rotation that the study fixes: analyses the workspace on coarse voxels at several rotations of the range in
-/// which poses are feasible.
+/// Used if the study fixes the rotation: analyses the workspace on coarse voxels at several values of the rotation,
+/// within the range in which poses are feasible.
 /// @param fixed  index of the rotation in WorkspaceFields::fixed
 CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDesign& design, std::size_t fixed) {
   CouplingByRotation result;
@@ -62,6 +62,7 @@ CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDe
   return result;
 }
 
+/// Coupling indices over a rotation, whether the study sweeps or fixes it.
 /// @param rotation  index of the rotation in MechanismInfo::coordinates
 CouplingByRotation coupling_by_rotation(const ShownDesigns& shown, const ShownDesign& design, int rotation) {
   const WorkspaceFields& workspace = *design.workspace;
@@ -73,8 +74,8 @@ CouplingByRotation coupling_by_rotation(const ShownDesigns& shown, const ShownDe
                                       : analyse_at_rotations(shown, design, find_in(workspace.fixed));
 }
 
-/// Mean, 95 % quantile and maximum of the coupling index of a limb at each rotation; NaN if no pose is feasible there.
-/// @param limb  "1", "2", .. or "worst"
+/// Mean, 95 % quantile and maximum of a coupling index at each value of the rotation; NaN if no pose is feasible there.
+/// @param limb  number of the limb, "1", "2", ..; "worst": the largest index of all limbs
 Json statistics_by_rotation(const CouplingByRotation& coupling, const std::string& limb) {
   Scratch scratch;
   Json json;

@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-/// Distances between all pairs of ends of links: element i * n + j is the distance between ends i and j of n ends.
+/// Distances between all pairs of link ends. With n ends, element i * n + j is the distance between ends i and j.
 std::vector<double> end_distances(const std::vector<PlacedLink>& links) {
   std::vector<Point3<double>> ends;
   for (const PlacedLink& link : links) {
@@ -19,7 +19,8 @@ std::vector<double> end_distances(const std::vector<PlacedLink>& links) {
   return distances;
 }
 
-/// Preference among distances, lower is better. 0: along one link, 1: within one part, 2: between two parts.
+/// Rank of a distance as a dimension, of which the lowest is preferred. 0: along one link, 1: within one part, 2:
+/// between two parts.
 int preference(const std::vector<PlacedLink>& links, std::size_t from, std::size_t to) {
   if (from / 2 == to / 2) return 0;
   return links[from / 2].part == links[to / 2].part ? 1 : 2;
@@ -30,13 +31,15 @@ int preference(const std::vector<PlacedLink>& links, std::size_t from, std::size
 std::vector<Dimension> dimensions_of(const Mechanism& mechanism, std::span<const double> parameters,
                                      const Pose<double>& pose, const std::string& mode) {
   constexpr double kRelativeStep = 1e-4;  // step of the forward differences, relative to the parameter
-  constexpr double kTolerance = 1e-2;     // smaller deviations of a derivative from 0 or 1 are truncation errors
+  // Derivatives that differ from 0 or 1 by less than this do so because of truncation errors.
+  constexpr double kTolerance = 1e-2;
   const auto& infos = mechanism.info().parameters;
   const std::vector<PlacedLink> links = mechanism.links()->place(parameters, pose, mode);
   const std::vector<double> length = end_distances(links);
   const std::size_t ends = 2 * links.size();
 
-  // Derivatives of all distances with respect to each length parameter; empty if the pose no longer assembles after the
+  // For each length parameter, the derivatives of all distances with respect to it; empty if the mechanism cannot be
+  // assembled at the pose after the step.
   // step.
   std::vector<std::vector<double>> derivatives(infos.size());
   for (std::size_t p = 0; p < infos.size(); ++p) {

@@ -9,10 +9,10 @@
 
 namespace pkm {
 
-/// A parameter that equals the distance between two ends of links.
+/// A parameter whose value equals the distance between two ends of links, which can be drawn as its dimension.
 struct Dimension {
   std::size_t parameter;  ///< index in MechanismInfo::parameters
-  std::size_t from, to;   ///< ends of links: end 2 k is the start of link k, end 2 k + 1 its other end
+  std::size_t from, to;   ///< numbers of two link ends: end 2 k is the start of link k, end 2 k + 1 its other end
 };
 
 /// The dimensions of a design at a pose, in the order of the parameters, at most one per parameter. A distance

@@ -1,4 +1,5 @@
-// Data of the panel "Pareto front": the non-dominated designs of each stage, with knees and the compromise.
+// Computes the data of the panel "Pareto front": the non-dominated designs of each stage, with knees and the
+// compromise.
 #include "engine/problem/front.hpp"
 #include "engine/report/panels.hpp"
 

@@ -16,7 +16,7 @@ extern const char pkm_page_plotly[], pkm_page_plotly_end[];
 namespace pkm {
 namespace {
 
-/// Adds the data of a panel unless it is null.
+/// Adds the data of a panel to those of a study, unless they are null.
 void add_panel(Json& study, const char* name, Json data) {
   if (!data.is_null()) study[name] = std::move(data);
 }
@@ -84,7 +84,8 @@ std::string html_page(const std::string& data) {
       {"{{style}}", assets.style}, {"{{data}}", data}, {"{{plotly}}", assets.plotly}, {"{{script}}", assets.script}};
   std::string page;
   std::string_view rest = assets.html;
-  for (const auto& [placeholder, text] : placeholders) {  // in their order in the template
+  // In the order in which the placeholders occur in the template.
+  for (const auto& [placeholder, text] : placeholders) {
     const std::size_t at = rest.find(placeholder);
     page.append(rest.substr(0, at)).append(text);
     rest.remove_prefix(at + placeholder.size());

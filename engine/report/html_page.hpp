@@ -10,12 +10,13 @@
 
 namespace pkm {
 
-/// The data of the page as JSON text: {"program": .., "studies": [..]}. Each study has one member per panel; panels
+/// Data of a page as JSON text: {"program": .., "studies": [..]}. Each study has one member for each panel; panels
 /// without content are omitted.
-/// @param program  name and version of the program, "pkmopt 0.1.0 (a1b2c3d)"
+/// @param program  name and version of the program, for example "pkmopt 0.1.0 (a1b2c3d)"
 std::string page_data(const std::vector<PageStudy>& studies, const std::string& program);
 
-/// The data of a page for one design without a study: "studies" has one entry with the panels of that design.
+/// Data of a page for one design without a study. The list "studies" then has one element, with the panels of that
+/// design.
 std::string page_data(const ShownDesigns& shown, const std::string& program);
 
 /// The files of engine/report/page/, which the build embeds into the library.
@@ -25,10 +26,10 @@ struct PageAssets {
   std::string_view script;
   std::string_view plotly;
 };
-/// The embedded files. Throws std::runtime_error if the library was built without them.
+/// Returns the embedded files. Throws std::runtime_error if the library was built without them.
 PageAssets page_assets();
 
-/// The complete page. Throws as page_assets() does.
+/// Text of the complete page. Throws std::runtime_error like page_assets().
 /// @param data  result of page_data()
 std::string html_page(const std::string& data);
 

@@ -24,8 +24,8 @@ inline std::string json_text(const Json& json) {
   return safe;
 }
 
-/// A coordinate or joint: { name, unit, role }. The role is "rotation" for an angle, the name for Cartesian coordinates
-/// "x", "y" and "z", and "other" otherwise.
+/// JSON object of a coordinate or a joint: { name, unit, role }. The role is "rotation" for an angle, the name itself
+/// for the Cartesian coordinates "x", "y" and "z", and "other" for all others.
 inline Json axis_data(const std::string& name, const std::string& unit) {
   const bool is_cartesian = name == "x" || name == "y" || name == "z";
   return {{"name", name}, {"unit", unit}, {"role", unit == "rad" ? "rotation" : is_cartesian ? name : "other"}};
@@ -37,7 +37,7 @@ Json axes_data(const Axes& axes) {
   return list;
 }
 
-/// An array of { name, unit, meaning }.
+/// JSON array with an object { name, unit, meaning } for each element of `infos`.
 template <class Infos>
 Json infos_json(const Infos& infos) {
   Json list = Json::array();
@@ -45,14 +45,14 @@ Json infos_json(const Infos& infos) {
   return list;
 }
 
-/// An array of { kind, names, sentence }.
+/// JSON array with an object { kind, names, sentence } for each reason.
 inline Json reasons_json(const std::vector<Reason>& reasons) {
   Json list = Json::array();
   for (const Reason& reason : reasons)
     list.push_back({{"kind", reason.kind}, {"names", reason.names}, {"sentence", reason.sentence}});
   return list;
 }
-/// { finding, sentence, reasons }; null if there is no diagnosis.
+/// JSON object { finding, sentence, reasons } of a diagnosis; null if there is none.
 inline Json diagnosis_json(const std::optional<Diagnosis>& diagnosis) {
   if (!diagnosis) return Json();
   return {{"finding", diagnosis->finding},

@@ -1,4 +1,4 @@
-// Data of the panel "Mechanism": the links of each design at a grid of poses and along the motions.
+// Computes the data of the panel "Mechanism": the links of each design at a grid of poses and along the motions.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -12,9 +12,9 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMotionPoses = 121;  // samples along each motion, both ends included
+constexpr std::size_t kMotionPoses = 121;  // number of samples along each motion, both ends included
 
-using Slider = std::vector<double>;  // values of one coordinate
+using Slider = std::vector<double>;  // values of one coordinate, which a slider of the page selects
 
 Slider equidistant_values(double lower, double upper, std::size_t steps) {
   if (!(upper > lower)) return {lower};
@@ -24,8 +24,9 @@ Slider equidistant_values(double lower, double upper, std::size_t steps) {
   return values;
 }
 
-/// One slider per coordinate. Swept coordinates: values that span the feasible cells. First fixed coordinate: values in
-/// its feasible range. Other fixed coordinates: one value.
+/// One slider for each coordinate. The slider of a swept coordinate has values that span the feasible cells, that of
+/// the first fixed coordinate has values in its feasible range, and those of all other fixed coordinates have a single
+/// value.
 using Sliders = std::vector<Slider>;
 
 Sliders make_sliders(const ShownDesign& design, const PageDetail& detail) {
@@ -45,20 +46,20 @@ Sliders make_sliders(const ShownDesign& design, const PageDetail& detail) {
   return sliders;
 }
 
-/// Slider positions of the pose with a given number; the last slider varies fastest.
+/// Position of each slider for a pose, given by its number in grid_poses(); the last slider varies fastest.
 std::vector<std::size_t> slider_positions(std::size_t pose, const Sliders& sliders) {
   std::vector<std::size_t> steps(sliders.size());
   for (std::size_t c = sliders.size(); c-- > 0; pose /= sliders[c].size()) steps[c] = pose % sliders[c].size();
   return steps;
 }
 
-/// A pose with its links; no links if it does not assemble.
+/// A pose with the report of its inverse kinematics and its links; there are no links if it cannot be assembled.
 struct DrawnPose {
   PoseReport report;
   std::vector<PlacedLink> links;
 };
 
-/// The poses of all combinations of the sliders' values.
+/// The poses of all combinations of slider positions.
 std::vector<Pose<double>> grid_poses(const Sliders& sliders) {
   std::size_t count = 1;
   for (const Slider& values : sliders) count *= values.size();
@@ -92,8 +93,9 @@ std::vector<DrawnPose> draw(const ShownDesigns& shown, const ShownDesign& design
   return drawn;
 }
 
-/// Data of the motions: for each, the index range of its samples among all poses, and the coordinates of its samples.
-/// @param first  number of the first pose of the first motion
+/// Data of the motions: for each motion, the index range of its samples among all poses, and the coordinates of the
+/// samples.
+/// @param first  index of the first pose of the first motion
 Json motion_poses(const ShownDesigns& shown, const std::vector<Pose<double>>& poses, std::size_t first) {
   Json list = Json::array();
   for (const NamedMotion& named : shown.motions) {
@@ -113,15 +115,17 @@ Json motion_poses(const ShownDesigns& shown, const std::vector<Pose<double>>& po
   return list;
 }
 
-/// Positions of the ends of all links, without duplicates: ends that coincide at all poses, such as those of jointed
-/// links, are stored once.
+/// Positions of the ends of all links, without duplicates: ends that coincide at all poses, such as those of links
+/// joined by a joint, are stored once.
 struct LinkEnds {
   std::size_t count = 0;
-  std::vector<std::size_t> from, to;             ///< per link: the numbers of its two ends
-  std::array<std::vector<double>, 3> positions;  ///< x, y, z of all ends at the first assembled pose, then at the next
+  std::vector<std::size_t> from, to;  ///< numbers of the two ends of each link
+  /// x, y and z of all ends at the first pose that can be assembled, followed by those at the next one.
+  std::array<std::vector<double>, 3> positions;
 
   explicit LinkEnds(const std::vector<DrawnPose>& poses) {
-    std::vector<std::vector<Point3<double>>> paths;  // indexed by end of a link, then by pose
+    // Positions of each link end (first index) at each pose (second index).
+    std::vector<std::vector<Point3<double>>> paths;
     for (const DrawnPose& pose : poses) {
       if (paths.empty()) paths.resize(2 * pose.links.size());
       for (std::size_t k = 0; k < pose.links.size(); ++k) {
@@ -143,9 +147,10 @@ struct LinkEnds {
   }
 };
 
-/// Number of the pose that is shown first: the feasible pose nearest, in slider positions, to the mean of the feasible
-/// poses. If none is feasible: the assembled pose nearest to the first position of every slider.
-/// @param poses  one pose per combination of slider positions, see grid_poses()
+/// Number of the pose that is shown first: the feasible pose that is nearest, in slider positions, to the mean of the
+/// feasible poses. If none is feasible: the pose that can be assembled and is nearest to the first position of every
+/// slider.
+/// @param poses  one pose for each combination of slider positions, see grid_poses()
 std::size_t initial_pose(std::span<const DrawnPose> poses, const Sliders& sliders) {
   std::vector<double> sum_of_steps(sliders.size());
   double count = 0;
@@ -195,7 +200,8 @@ Json drawn_mechanism(const ShownDesigns& shown, const ShownDesign& design) {
                              {"from", ends.from[k]},
                              {"to", ends.to[k]}});
   }
-  // Per pose: whether it assembles, and why it is infeasible. Per assembled pose: ends, joints, conditioning.
+  // For each pose: whether it can be assembled, and why it is infeasible. For each pose that can be assembled: ends of
+  // links, joints and conditioning.
   std::vector<std::string> reasons = {""};
   std::vector<std::uint8_t> assembles;
   std::vector<std::int64_t> reason_index;

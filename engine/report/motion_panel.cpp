@@ -1,4 +1,4 @@
-// Data of the panel "Motions": joints, forces and power of each design along the motions of the study.
+// Computes the data of the panel "Motions": joints, forces and power of each design along the motions of the study.
 #include <algorithm>
 
 #include "engine/mechanism/trajectory.hpp"
@@ -10,9 +10,9 @@ namespace {
 
 using JointQuantity = std::optional<AxisVector<double>> TrajectoryPoint::*;
 
-constexpr std::size_t kSamples = 201;  // per motion, both ends included
+constexpr std::size_t kSamples = 201;  // number of samples of each motion, both ends included
 
-/// `count` packed columns over time; NaN where a sample has no values.
+/// `count` packed columns with one element for each sample; NaN where a sample has no values.
 /// @param values_of  values_of(point): pointer to the `count` values of a sample, or null
 template <class ValuesOf>
 Json packed_columns(const Trajectory& trajectory, std::size_t count, const ValuesOf& values_of) {
@@ -28,7 +28,7 @@ Json packed_columns(const Trajectory& trajectory, std::size_t count, const Value
   return packed;
 }
 
-/// One column per joint of an optional quantity; null if no sample has it.
+/// Packed columns of an optional quantity of the joints, one for each joint; null if no sample has it.
 Json joint_columns(const Trajectory& trajectory, std::size_t joints, JointQuantity quantity) {
   if (std::ranges::none_of(trajectory.points, [&](const auto& point) { return (point.*quantity).has_value(); }))
     return Json();
@@ -38,8 +38,8 @@ Json joint_columns(const Trajectory& trajectory, std::size_t joints, JointQuanti
 
 std::vector<double> to_list(const AxisVector<double>& values) { return {values.begin(), values.end()}; }
 
-/// Indices in MechanismInfo::quantities of the quantities that are plotted along motions: those that depend on inputs
-/// or rates.
+/// Indices, in MechanismInfo::quantities, of the quantities that are plotted along motions: those that depend on inputs
+/// or on rates.
 std::vector<std::size_t> plotted_quantities(const MechanismInfo& info) {
   std::vector<std::size_t> plotted;
   for (std::size_t i = 0; i < info.quantities.size(); ++i)
@@ -47,7 +47,7 @@ std::vector<std::size_t> plotted_quantities(const MechanismInfo& info) {
   return plotted;
 }
 
-/// One packed column per plotted quantity; NaN where a sample has no quantities.
+/// Packed columns of the plotted quantities, one for each; NaN where a sample has no quantities.
 Json quantity_columns(const Trajectory& trajectory, const std::vector<std::size_t>& plotted) {
   Json columns = Json::array();
   for (const std::size_t i : plotted) {

@@ -21,7 +21,7 @@ std::string packed(const std::string& kind, const std::vector<T>& values) {
   return kind + ':' + base64(bytes);
 }
 
-/// Round-trip decimal representation.
+/// Decimal text from which the number can be read back exactly.
 std::string round_trip(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", value);
@@ -78,7 +78,7 @@ std::string packed_quantised(std::span<const double> values) {
     lower = std::min(lower, value);
     upper = std::max(upper, value);
   }
-  if (!(lower <= upper)) lower = upper = 0;  // no finite value
+  if (!(lower <= upper)) lower = upper = 0;  // no value is finite
   std::vector<std::uint16_t> levels;
   levels.reserve(values.size());
   for (const double value : values) {

@@ -14,7 +14,7 @@ namespace pkm {
 /// Base64 text of bytes (RFC 4648), with padding.
 std::string base64(std::span<const std::uint8_t> bytes);
 
-/// Packs numbers as kind "f32": single precision, seven digits; sufficient for plots and displayed values.
+/// Packs numbers as kind "f32": single precision, i.e. seven digits, which suffice for plots and displayed values.
 std::string packed_floats(std::span<const double> values);
 /// Packs integers as kind "u16" if all values fit, otherwise as "u32". Values must be in [0, 2^32).
 std::string packed_integers(std::span<const std::int64_t> values);

@@ -13,25 +13,28 @@ namespace pkm {
 /// Names and units of the study's problem, used by all panels: mechanism, parameters, variables, objectives,
 /// constraints, outputs.
 Json problem_data(const PageStudy& page);
-/// State of the study, table of designs, active constraints, computing time per stage, reproduction of the study.
+/// State of the study, table of designs, active constraints, computing time of each stage, and data for running the
+/// study again.
 Json summary_data(const PageStudy& page);
-/// Per stage over its generations: best, median and quartiles of the objectives, feasible share, diversity, indicators
-/// of the front; multistart runs of solvers.
+/// For each stage over its generations: best value, median and quartiles of the objectives, feasible share, diversity,
+/// indicators of the front. For solver stages: the multistart runs.
 Json convergence_data(const StudyContents& contents);
 /// The designs of each generation, or of each multistart run, subsampled.
 Json populations_data(const StudyContents& contents);
 /// All designs of the stages that are parameter sweeps.
 Json sweeps_data(const StudyContents& contents);
-/// The Pareto fronts with knees and compromise, and the data of the panels below for some of their designs.
+/// The Pareto fronts with knees and compromise solutions, and the data of the panels below for some designs of the last
+/// front.
 Json front_data(const PageStudy& page);
 
 /// The parameters of a single design, for a page without a study.
 Json design_data(const ShownDesigns& shown);
 /// The feasible cells of each design with their fields, and the boundary surface with the fields at its vertices.
 Json workspace_data(const ShownDesigns& shown);
-/// The feasible cells and the boundary surface from the map in the study file; it has no fields.
+/// The feasible cells and the boundary surface, from the voxel map in the study file; without fields.
 Json workspace_data(const StudyContents& contents);
-/// The links of each design at all positions of the page's sliders and along the motions, and its dimensions.
+/// The links of each design at all slider positions of the page and along the motions, and the dimensions of the
+/// design.
 Json mechanism_data(const ShownDesigns& shown);
 /// Statistics of the coupling indices over the first rotational coordinate, if there is one. Null unless the study
 /// requests coupling. Maps and histograms are drawn from the fields of the workspace.

@@ -1,4 +1,4 @@
-// Data of the panel "Populations": the designs of each generation or multistart run, subsampled.
+// Computes the data of the panel "Populations": the designs of each generation or multistart run, subsampled.
 #include <algorithm>
 #include <numeric>
 
@@ -9,12 +9,12 @@
 namespace pkm {
 namespace {
 
-// A step is a generation, or a multistart run of a solver; its members are the designs of the population, or those that
-// the run evaluated.
-constexpr std::size_t kMaxSteps = 101;    // per stage
-constexpr std::size_t kMaxMembers = 200;  // per step
+// In this file, a step is a generation, or a multistart run of a solver. Its members are the designs of the population,
+// or those that the run evaluated.
+constexpr std::size_t kMaxSteps = 101;    // maximum number of steps shown of each stage
+constexpr std::size_t kMaxMembers = 200;  // maximum number of members shown of each step
 
-/// The subsampled steps of one stage.
+/// The steps of one stage that are shown.
 struct ShownSteps {
   std::vector<std::int64_t> rows;  ///< rows of the stage's table that are members of a shown step, ascending
   Json steps = Json::array();
@@ -37,7 +37,8 @@ std::size_t step_count(const StageRecord& stage) {
   return stage.starts.empty() ? stage.generations.size() : stage.starts.size();
 }
 
-/// @param offset  number of designs of earlier stages; members are numbered over all stages
+/// Chooses the steps of a stage that are shown, and the shown members of each.
+/// @param offset  number of shown designs of earlier stages, because members are numbered over all stages
 ShownSteps subsample_steps(const StageRecord& stage, std::int64_t offset) {
   ShownSteps shown;
   const Thinning steps(step_count(stage), kMaxSteps);

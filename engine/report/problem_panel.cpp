@@ -1,11 +1,12 @@
-// Data on the problem of a study, which all panels use, and on a single design.
+// Computes the data on the problem of a study, which all panels use, and on a single design.
 #include "engine/report/panels.hpp"
 
 namespace pkm {
 
 namespace {
 
-/// Why the study cannot have a stage with a gradient solver (the message of the study reader); null if it can.
+/// The reason why the study cannot have a stage with a gradient-based solver (the message of the study reader); null if
+/// it can.
 Json gradients_unsupported(const DesignProblem& problem) {
   for (const Variable& v : problem.parts().space.variables())
     if (v.step > 0) return "the variable " + v.name + " has a step";

@@ -14,10 +14,11 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kFrontDesigns = 10;  // designs of the front that a page includes in addition to the best one
-constexpr PageDetail kFrontDetail = {16, 5, 3, false};  // resolution of these designs
+// Number of front designs that a page includes in addition to the best design.
+constexpr std::size_t kFrontDesigns = 10;
+constexpr PageDetail kFrontDetail = {16, 5, 3, false};  // resolution at which the front designs are sampled
 
-/// The study's plan with voxels, at most max_cells per axis.
+/// The plan of the study with voxels, at most max_cells along each axis.
 WorkspacePlan page_plan(const MechanismInfo& info, const WorkspacePlan& plan, std::int64_t max_cells) {
   WorkspacePlan picture = visualisation_plan(info, plan, {max_cells, max_cells, max_cells});
   for (std::int64_t& cells : std::get<VoxelOptions>(picture.method).cells) cells = std::min(cells, max_cells);
@@ -25,10 +26,10 @@ WorkspacePlan page_plan(const MechanismInfo& info, const WorkspacePlan& plan, st
 }
 
 /// The range of a fixed coordinate around its value in which at least one of a sample of feasible poses remains
-/// feasible, found by stepping outwards.
+/// feasible. It is found by steps from the value in both directions.
 std::array<double, 2> feasible_range(const WorkspaceAxis& fixed, const ShownDesigns& shown, const ShownDesign& design) {
-  constexpr std::size_t kPoses = 100;  // sampled poses
-  constexpr int kSteps = 60;           // in each direction
+  constexpr std::size_t kPoses = 100;  // number of sampled poses
+  constexpr int kSteps = 60;           // number of steps in each direction
   const WorkspaceFields& workspace = *design.workspace;
   const std::vector<std::size_t> cells = workspace.feasible_cells();
   std::vector<Pose<double>> poses;
@@ -136,7 +137,7 @@ ShownDesigns evaluate_front_designs(const PageStudy& page) {
   const auto last = std::ranges::find_if(contents.stages.rbegin(), contents.stages.rend(), &StageRecord::has_front);
   if (last == contents.stages.rend() || contents.problem.objectives.size() < 2) return shown;
   const std::vector<std::int64_t>& rows = last->front->rows;
-  const std::int64_t stage = contents.stages.rend() - last;  // from 1
+  const std::int64_t stage = contents.stages.rend() - last;  // number of the stage, from 1
   for (const std::size_t point :
        select_representatives(scores_of(contents.problem.objectives, last->table, rows), kFrontDesigns)) {
     if (contents.best.stage == stage - 1 && contents.best.row == rows[point]) continue;

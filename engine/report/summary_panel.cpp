@@ -1,4 +1,5 @@
-// Data of the panel "Summary": state, table of designs, active constraints, computing time, reproduction of the study.
+// Computes the data of the panel "Summary": state, table of designs, active constraints, computing time, reproduction
+// of the study.
 #include <array>
 
 #include "engine/report/panels.hpp"
@@ -32,7 +33,8 @@ Json table(const PageStudy& page) {
   return {{"columns", columns}, {"rows", rows}};
 }
 
-/// Per stage: wall time, total time of the evaluations over all threads, and the number of evaluations by outcome.
+/// For each stage: wall time, total time of the evaluations over all threads, and number of evaluations with each
+/// status.
 Json stages(const StudyContents& contents) {
   Json list = Json::array();
   double begin = 0;
@@ -59,8 +61,8 @@ Json stages(const StudyContents& contents) {
   return list;
 }
 
-/// KKT residual, multipliers and sensitivities of the best design, from the stage that found it, otherwise from the
-/// last stage; null if that stage did not compute them.
+/// KKT residual, multipliers and sensitivities of the best design, as computed by the stage that found it. If that
+/// stage did not compute them, those of the last stage; null if it did not compute them either.
 Json optimality(const StudyContents& contents) {
   if (contents.best.row < 0) return Json();
   const StageRecord& best_stage = contents.best_stage();
@@ -75,7 +77,7 @@ Json optimality(const StudyContents& contents) {
   return json;
 }
 
-/// The data needed to run the study again.
+/// The data that a user needs to run the study again.
 Json origin(const PageStudy& page) {
   const StudyContents& c = page.contents;
   Json extensions = Json::array();

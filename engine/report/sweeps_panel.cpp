@@ -1,4 +1,4 @@
-// Data of the panel "Sweeps": all designs of the stages that are parameter sweeps.
+// Computes the data of the panel "Sweeps": all designs of the stages that are parameter sweeps.
 #include <algorithm>
 
 #include "engine/report/packed_array.hpp"
@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxDesigns = 100'000;  // per stage; larger sweeps would make the page slow
+constexpr std::size_t kMaxDesigns = 100'000;  // maximum number of designs of a stage; more would make the page slow
 
 /// The values of each variable in a sweep, ascending.
 std::vector<std::vector<double>> levels_of(const EvaluationTable& table) {
@@ -21,8 +21,8 @@ std::vector<std::vector<double>> levels_of(const EvaluationTable& table) {
   return levels;
 }
 
-/// Whether the rows are the combinations of all levels, the last variable varying fastest. The sweep may have been
-/// stopped before the last combination.
+/// Returns true if the rows of the table are the combinations of all levels, with the last variable varying fastest.
+/// The sweep may have been stopped before the last combination.
 bool is_full_factorial(const EvaluationTable& table, const std::vector<std::vector<double>>& levels) {
   for (std::size_t row = 0; row < table.size(); ++row) {
     std::size_t quotient = row;

@@ -6,7 +6,7 @@
 
 namespace pkm {
 
-/// Every stride-th index of [0, count), and always the first and the last one. The stride is the smallest one that
+/// Every stride-th index of [0, count), in addition the first and the last one. The stride is the smallest one that
 /// leaves at most `max_count` (>= 2) indices.
 struct Thinning {
   std::size_t stride = 1;

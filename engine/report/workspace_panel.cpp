@@ -1,4 +1,4 @@
-// Data of the panel "Workspace": feasible cells, their fields, and the boundary surface of each design.
+// Computes the data of the panel "Workspace": feasible cells, their fields, and the boundary surface of each design.
 #include <algorithm>
 #include <optional>
 
@@ -11,8 +11,8 @@
 namespace pkm {
 namespace {
 
-/// Whether the page includes a field. Quantities of inertia need ShownDesigns::coupling, margins and joint positions
-/// need PageDetail::joints.
+/// Returns true if the page includes a field. Quantities of inertia require ShownDesigns::coupling; margins and joint
+/// positions require PageDetail::joints.
 bool is_shown(const ShownDesigns& shown, const std::string& field) {
   for (const PoseQuantity* const quantity : pose_quantities(shown.mechanism.info())) {
     const std::string name = quantity->name;
@@ -22,8 +22,9 @@ bool is_shown(const ShownDesigns& shown, const std::string& field) {
   return shown.detail.joints;
 }
 
-/// The boundary surface: one packed column per coordinate of the vertices, and the fields at the vertices by name.
-/// @param shown, design  null: only the cells are known, vertices are interpolated and there are no fields
+/// The boundary surface: one packed column for each coordinate of the vertices, and the fields at the vertices by name.
+/// @param shown, design  null if only the feasible cells are known: vertices are then interpolated, and there are no
+/// fields
 Json surface_json(const ShownDesigns* shown, const ShownDesign* design, const WorkspaceFields& workspace) {
   std::optional<PoseMargin> margin;
   if (shown) margin.emplace(shown->mechanism, design->parameters, shown->plan.limits);
@@ -52,7 +53,7 @@ Json axis_json(const WorkspaceAxis& axis) {
   return json;
 }
 
-/// @param shown, design  null: only the cells are known
+/// @param shown, design  null if only the feasible cells are known
 Json workspace_json(const std::string& name, const WorkspaceFields& found, const ShownDesigns* shown,
                     const ShownDesign* design) {
   Json json = {{"name", name}, {"axes", Json::array()}, {"fixed", Json::array()}};
@@ -80,8 +81,9 @@ Json workspace_json(const std::string& name, const WorkspaceFields& found, const
   return json;
 }
 
-/// Converts the map in a study file, which has the feasible cells of the best design but not the values of the fixed
-/// coordinates. The margin is 1 or -1; the isosurface then runs half-way between feasible and infeasible cells.
+/// Converts the map in a study file to fields. The map contains the feasible cells of the best design, but not the
+/// values of the fixed coordinates. The margin is set to 1 or -1; the isosurface then runs half-way between feasible
+/// and infeasible cells.
 WorkspaceFields fields_of_map(const MapRecord& map, const DesignRecord& best, const std::string& volume_unit) {
   WorkspaceFields found;
   for (std::size_t i = 0; i < map.axes.size() && !map.axes[i].empty(); ++i)
@@ -118,7 +120,7 @@ Json workspace_data(const StudyContents& contents) {
   if (!contents.final || !contents.final->map || !contents.final->best) return {};
   const FinalRecord& final = *contents.final;
   Json best = workspace_json("best", fields_of_map(*final.map, *final.best, final.volume_unit), nullptr, nullptr);
-  best["fields"].clear();  // the margin is not meaningful, see fields_of_map()
+  best["fields"].clear();  // the margin is 1 or -1 and therefore not meaningful, see fields_of_map()
   return {{"column", best["axes"].back()["name"]}, {"designs", {best}}, {"problems", Json::array()}};
 }
 
