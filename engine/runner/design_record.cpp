@@ -12,7 +12,8 @@ namespace pkm {
 
 DesignRecord evaluate_design(const DesignProblem& problem, std::span<const double> parameters) {
   const DesignReport r = problem.report(parameters);
-  const bool box_matters = problem.parts().plan.box().has_value();  // the default box contains all reachable poses
+  // The default box contains all reachable poses, so that reaching its faces has no meaning.
+  const bool box_matters = problem.parts().plan.box().has_value();
   return {.parameters = r.parameters,
           .objectives = r.objectives,
           .margins = r.margins,
@@ -31,7 +32,7 @@ void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord
   DesignReport r = problem.report(record.parameters);
   try {
     record.certified = verify_volume(problem, r, gap, stop_requested);
-    check_stop();  // bounds of an interrupted computation are discarded
+    check_stop();  // throws if the run is stopped, because bounds of an interrupted computation are discarded
   } catch (const std::invalid_argument& reason) {
     r.status = Status::failed;
     r.reason = reason.what();

@@ -10,7 +10,8 @@
 
 namespace pkm {
 
-/// @param parameters  all parameters of the mechanism
+/// Evaluates one design.
+/// @param parameters  values of all parameters of the mechanism
 DesignRecord evaluate_design(const DesignProblem& problem, std::span<const double> parameters);
 
 /// Evaluates a design whose variables have been rounded to the steps given in the study. DesignRecord::reason lists the
@@ -20,7 +21,7 @@ DesignRecord evaluate_design_after_rounding(const DesignProblem& problem, const 
 
 /// Adds certified bounds of the volume to the record, unless its evaluation failed. Sets the status to failed if the
 /// computed volume lies outside them. Throws Stopped.
-/// @param gap  requested relative width of the bounds
+/// @param gap  requested gap of the bounds: upper minus lower bound, relative to their mean
 void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord& record);
 
 }  // namespace pkm

@@ -43,7 +43,7 @@ Unsupported ExactValues::poses_beyond_box(std::span<const double> parameters) co
   if (!box || problem_->parts().plan.box()) return {};
   WorkspacePlan plan = parts_.plan;
   plan.home.reset();
-  plan.method = VoxelOptions{};  // a single cell whose box contains all reachable poses
+  plan.method = VoxelOptions{};  // a single cell that fills a box of all reachable poses, whose ranges are needed
   VoxelMap reachable;
   try {
     reachable = voxel_map(*parts_.mechanism, parameters, plan);

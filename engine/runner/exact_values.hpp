@@ -15,22 +15,24 @@ namespace pkm {
 
 class ExactValues {
  public:
-  static constexpr const char* kNoValues = "no exact values of the ";  ///< beginning of the notes added by evaluate()
+  static constexpr const char* kNoValues = "no exact values of the ";  ///< beginning of the notes that evaluate() adds
 
   /// @param parts  problem of the voxel study; must outlive this object
   explicit ExactValues(const ProblemParts& parts);
 
-  /// Evaluates one design.
-  /// @param name   name of the design, for the note
-  /// @param notes  receives the reason if there are no exact values, but only for mechanisms that support the method
+  /// Evaluates one design. std::nullopt if there are no exact values.
+  /// @param name   name of the design in notes
+  /// @param notes  receives the reason if there are no exact values, but only if the mechanism supports the method
   std::optional<DesignRecord> evaluate(const char* name, std::span<const double> parameters,
                                        std::vector<std::string>& notes) const;
 
  private:
-  /// Checks whether the box of the study contains all reachable poses, because the columns may extend beyond the box.
-  /// @return the ranges of the reachable poses if it does not; empty if it does, or if columns are cut by the box
+  /// Checks whether the box of the study contains all reachable poses. If it does not, columns may extend beyond the
+  /// box.
+  /// @return the ranges of the reachable poses as text if they exceed the box; empty if they do not, or if columns are
+  /// restricted to the box
   Unsupported poses_beyond_box(std::span<const double> parameters) const;
-  /// Sets values that depend on a region evaluated on voxels to NaN, because they are not exact.
+  /// Sets values to NaN that depend on a region evaluated on voxels, because these values are not exact.
   void discard_voxel_values(const std::vector<NamedQuantity>& quantities, std::vector<double>& values) const;
 
   const ProblemParts& parts_;

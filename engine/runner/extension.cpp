@@ -15,8 +15,8 @@ void check_limit(const Stage& stage, const std::string& limit, double value) {
   if (!(value <= option->upper)) throw ConfigError(place, shortest(value), "at most " + shortest(option->upper));
 }
 
-/// Number of evaluations made, as counted by the stage's evaluation limit: all evaluations of the stage. In solver
-/// stages, where the limit applies to each multistart run, those of the longest run.
+/// Number of evaluations made, as the stage's evaluation limit counts them: all evaluations of the stage or, in a
+/// solver stage, where the limit applies to each multistart run, those of the longest run.
 double evaluations_done(const StageRecord& stage) {
   // The rows after those of the finished runs belong to the unfinished run.
   auto count = static_cast<std::int64_t>(stage.table.size());

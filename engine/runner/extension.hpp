@@ -10,7 +10,7 @@
 
 namespace pkm {
 
-/// New limits of the last stage, as totals.
+/// New limits of the last stage, counted from the beginning of the stage; std::nullopt: the limit is not changed.
 struct ExtensionRequest {
   std::optional<std::int64_t> generations, evaluations;
 };

@@ -20,12 +20,13 @@ namespace {
 constexpr const char* kWideBounds = "certified bounds of the ";
 constexpr const char* kAlong = "along the motion ";
 
-constexpr std::size_t kMaxMotionBoxes = 200'000;  // time intervals examined per motion; takes some seconds
+// Maximum number of time intervals examined for a motion; it takes some seconds.
+constexpr std::size_t kMaxMotionBoxes = 200'000;
 
 /// Number of cells of the voxel map of a study whose workspace is analysed by columns.
 constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
 
-/// The voxel map of a design's workspace.
+/// Computes the voxel map of a design's workspace.
 MapRecord map_record(const ProblemParts& parts, std::span<const double> parameters) {
   const MechanismInfo& info = parts.mechanism->info();
   MapRecord map;
@@ -35,12 +36,12 @@ MapRecord map_record(const ProblemParts& parts, std::span<const double> paramete
     map.axes.push_back(axis.name);
     map.units.push_back(axis.unit);
   }
-  map.axes.resize(3);  // pad unused axes with empty names
+  map.axes.resize(3);  // unused axes get empty names
   map.units.resize(3, "1");
   return map;
 }
 
-/// @return one sentence per active bound, and per active or violated constraint
+/// Sentences for the report: one for each active bound, and one for each active or violated constraint.
 std::vector<std::string> active_sentences(const DesignProblem& problem, const DesignRecord& best) {
   std::vector<std::string> sentences;
   const ProblemParts& parts = problem.parts();
@@ -92,8 +93,8 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
   }
 }
 
-/// Computes the exact values of the best design, then of the baseline. Notes on the baseline precede those on the best
-/// design.
+/// Computes the exact values of the best design and of the baseline, in this order. Notes on the baseline precede those
+/// on the best design.
 void add_exact_values(const Study& study, StudyContents& contents,
                       const std::function<void(const std::string&)>& begin) {
   FinalRecord& f = *contents.final;
@@ -150,7 +151,8 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
 
 bool has_exact_step(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
-  // columns integrate over all components of the workspace
+  // if the study has a home pose, there are no exact values, because columns integrate over all components of the
+  // workspace
   return parts.plan.voxels() && !parts.plan.home && parts.mechanism->columns() && study.exact_seconds > 0;
 }
 

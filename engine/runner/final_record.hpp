@@ -30,7 +30,7 @@ inline void complete_final_record(const Study& study, StudyContents& contents) {
   complete_final_record(study, contents, [](const std::string&) {});
 }
 
-/// @return true if exact values of a voxel study are requested and the mechanism supports them
+/// @return true if the study is evaluated on voxels, and its exact values are requested and supported by the mechanism
 bool has_exact_step(const Study& study);
 
 }  // namespace pkm

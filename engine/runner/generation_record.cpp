@@ -10,12 +10,14 @@ namespace {
 
 using Rows = std::vector<std::int64_t>;
 
-/// Mean over the variables of the population's standard deviation, relative to the variable's range.
+/// Mean, over the variables, of the standard deviation of the population divided by the range of the variable.
 double diversity(const DesignSpace& space, const EvaluationTable& table, const Rows& population) {
   if (population.empty() || space.dimension() == 0) return 0;
   const std::size_t members = population.size(), dimension = space.dimension();
   const auto n = static_cast<double>(members);
-  std::vector<double> units(members * dimension);  // contiguous copy by variable: the table's rows are scattered
+  // Values of the members, one variable after the other; a contiguous copy, because the rows of the table are
+  // scattered.
+  std::vector<double> units(members * dimension);
   const auto gather = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto design = table.design(static_cast<std::size_t>(population[i]));
@@ -45,7 +47,7 @@ double feasible_share(const EvaluationTable& table, const Rows& population) {
   return static_cast<double>(feasible) / static_cast<double>(population.size());
 }
 
-/// Removes all generations but the first `size`.
+/// Removes all generations of a stage except the first `size`.
 void truncate(StageRecord& stage, std::size_t size) {
   GenerationRecords& list = stage.generations;
   if (stage.front)

@@ -5,21 +5,22 @@
 
 namespace pkm {
 
-/// Model name of the processor: "AMD EPYC".
+/// Model name of the processor, for example "AMD EPYC".
 std::string describe_processor();
 
-/// "AMD EPYC, 2 cores, avx2, Linux 6.1.0 x86_64"; avx2 is the instruction set of the vectorised kernels.
+/// Text such as "AMD EPYC, 2 cores, avx2, Linux 6.1.0 x86_64", where avx2 is the instruction set of the vectorised
+/// kernels.
 std::string describe_machine();
 
-/// "2 threads", "4 ranks x 16 threads".
+/// Text such as "2 threads" or "4 ranks x 16 threads".
 /// @param threads        number of threads of this rank
 /// @param total_threads  number of threads of all ranks together
 std::string describe_team(int threads, int total_threads);
 
-/// The hosts of the ranks: "node1, node2".
+/// Names of the hosts of all ranks, for example "node1, node2".
 std::string describe_hosts();
 
-/// Current time, ISO 8601 in UTC: "2026-01-31T12:00:00Z".
+/// Current time in the form of ISO 8601 in UTC, for example "2026-01-31T12:00:00Z".
 std::string utc_now();
 
 }  // namespace pkm

@@ -12,7 +12,8 @@
 namespace pkm {
 namespace {
 
-/// @return |objective| at the starting point of the multistart run that a row belongs to; 0 if it belongs to none
+/// @return magnitude of the objective at the start design of the multistart run to which a row belongs; 0 if it belongs
+/// to none
 double objective_scale(const StageRecord& stage, std::int64_t row) {
   for (const StartOutcome& start : stage.starts)
     if (row >= start.first_row && row < start.first_row + start.rows)
@@ -34,7 +35,8 @@ std::vector<SensitivityRecord> sensitivities(const DesignProblem& problem, std::
   const auto& parameters = parts.mechanism->info().parameters;
   std::vector<SensitivityRecord> records;
   for (std::size_t p = 0; p < count; ++p) {
-    // scale: largest derivative with respect to a parameter of the same unit
+    // total: derivative with respect to parameter p; scale: largest derivative with respect to a parameter of the same
+    // unit
     double total = derivatives[1 + p], scale = 0;
     for (std::size_t other = 0; other < count; ++other)
       if (parameters[other].unit == parameters[p].unit) scale = std::fmax(scale, std::fabs(derivatives[1 + other]));

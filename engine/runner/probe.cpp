@@ -11,13 +11,15 @@ namespace pkm {
 namespace {
 
 constexpr std::size_t kMaxDesigns = 64, kMinDesigns = 4;
-constexpr double kBudget = 50e-3, kMaxCost = 0.5;  // maximum estimated time of all designs, and of one [s]
+// Maximum estimated time of all sample designs together, and of a single one [s].
+constexpr double kBudget = 50e-3, kMaxCost = 0.5;
 
-// Approximate costs of a workspace analysis [s].
-constexpr double kVoxelCost = 0.1e-9;      // per voxel, counted in batches
-constexpr double kSampleCost = 0.1e-6;     // per pose at which pose quantities are evaluated
-constexpr double kKinematicsCost = 2e-6;   // per pose with the full inverse kinematics, or with distances between links
-constexpr double kDesignTestCost = 20e-6;  // per design-level constraint
+// Approximate times of the parts of a workspace analysis [s]:
+constexpr double kVoxelCost = 0.1e-9;   // for each voxel that is counted in batches
+constexpr double kSampleCost = 0.1e-6;  // for each pose at which pose quantities are evaluated
+// For each pose at which the full inverse kinematics or the distances between links are computed.
+constexpr double kKinematicsCost = 2e-6;
+constexpr double kDesignTestCost = 20e-6;  // for each constraint on the design
 constexpr double kColumnNodes = 5000;      // typical number of quadrature nodes of the exact method
 
 /// Estimated time of one workspace analysis [s].

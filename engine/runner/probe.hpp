@@ -12,22 +12,22 @@ namespace pkm {
 struct Probe {
   static constexpr double kTimeLimit = 10;  ///< time limit for all designs together [s]
 
-  EvaluationTable table;               ///< the evaluated designs; empty if one evaluation is too expensive
-  std::optional<Diagnosis> diagnosis;  ///< if no design is feasible or no objective value is meaningful
-  bool is_cut_off = false;             ///< the time limit ended the probe before all designs were evaluated
+  EvaluationTable table;  ///< the sample designs with their evaluations; empty if one evaluation is too expensive
+  std::optional<Diagnosis> diagnosis;  ///< set if no design is feasible, or if no objective value is meaningful
+  bool is_cut_off = false;             ///< true if the time limit ended the probe before all designs were evaluated
 
   std::size_t feasible() const;
 };
 
-/// @return number of designs to evaluate: 4 to 64, depending on the estimated cost of an evaluation (number of cells
-/// and samples of the workspace analyses); 0 if one evaluation is too expensive. The cost is estimated without
-/// measuring time, so that the result is the same on all machines.
+/// Number of sample designs: 4 to 64, depending on the estimated cost of an evaluation (number of cells and samples of
+/// the workspace analyses); 0 if one evaluation is too expensive. The cost is estimated without measuring time, so that
+/// the result is the same on all machines.
 std::size_t probe_size(const DesignProblem& problem);
 
 /// Evaluates probe_size() scrambled Sobol points of the design space, chosen by the study's seed, until the time limit.
 Probe probe(const Study& study);
 
-/// "23 of 64 designs spread over the bounds are feasible"
+/// Text such as "23 of 64 designs spread over the bounds are feasible".
 std::string describe_probe(const Probe& probe);
 
 }  // namespace pkm

@@ -22,15 +22,16 @@ std::string bar(double share, int width) {
          std::string(static_cast<std::size_t>(width - full), '.') + "] ";
 }
 
-/// Completed share of the stage's evaluation limit; 0 if it has none.
+/// Share of the stage's evaluation limit that has been used; 0 if there is no limit.
 double completed_share(const ProgressReport& r) {
   return r.evaluation_limit > 0 ? double(r.evaluations) / double(r.evaluation_limit) : 0;
 }
 
-/// Items that are omitted or shortened, in this order, if a line is too long.
+/// Items of a progress line that are omitted or shortened, in this order, if the line is too long.
 enum Cut { kEvaluations = 1, kLongBar, kWords, kBar, kShare, kRate, kStage, kLeft };
 
-/// @param cuts  number of items to be omitted or shortened
+/// Text of a progress line.
+/// @param cuts  number of items that are omitted or shortened, from the beginning of Cut
 std::string line(const ProgressReport& r, bool with_bar, int cuts) {
   const auto shows = [&](Cut item) { return cuts < item; };
   const bool full_words = shows(kWords);
@@ -88,7 +89,7 @@ void ScreenProgress::generation(const ProgressReport& r) {
   if (last_ >= 0 && r.seconds - last_ < interval) return;
   last_ = r.seconds;
   if (terminal_) {
-    // The last column stays free, because some terminals start a new line as soon as it is written. The width is
+    // The last column is left free, because some terminals start a new line as soon as it is written. The width is
     // queried each time, because the window may have been resized.
     std::fprintf(out_, "\r\033[K%s", progress_bar_line(r, terminal_width(out_) - 1).c_str());
     open_ = true;

@@ -8,23 +8,24 @@
 
 namespace pkm {
 
-/// The state of a run after a generation.
+/// The state of a run after a generation, which a progress display shows.
 struct ProgressReport {
   std::size_t stage = 0, stages = 1;
   std::string optimiser;
   std::int64_t generation = 0;
-  std::int64_t evaluations = 0;       ///< evaluations of the stage so far
-  std::int64_t evaluation_limit = 0;  ///< limit of the stage; 0: none
-  double evaluations_per_second = 0;  ///< average of this run
-  std::optional<double> left = {};    ///< estimated maximum remaining time [s], if known
-  double seconds = 0;                 ///< wall time of this run
-  bool has_best = false;              ///< the best design so far is feasible
-  double best = 0;                    ///< its (first) objective
-  std::string objective;              ///< name of the (first) objective; "": none
-  std::size_t front = 0;              ///< several objectives: size of the front, shown instead of `best`
-  double hypervolume = 0;             ///< NaN: not computed
-  double violation = 0;               ///< smallest constraint violation of any design, while none is feasible
-  double feasible_share = 0;          ///< share of the population, in [0, 1]
+  std::int64_t evaluations = 0;       ///< number of evaluations of the current stage so far
+  std::int64_t evaluation_limit = 0;  ///< maximum number of evaluations of the current stage; 0: unlimited
+  double evaluations_per_second = 0;  ///< average over this run
+  std::optional<double> left = {};    ///< estimate of the maximum remaining time [s]; std::nullopt: unknown
+  double seconds = 0;                 ///< wall time since the start of this run [s]
+  bool has_best = false;              ///< true if the best design so far is feasible
+  double best = 0;                    ///< value of the first objective of the best design
+  std::string objective;              ///< name of the first objective; "": there is none
+  /// Number of designs on the front, which is shown instead of `best` if there are several objectives; otherwise 0.
+  std::size_t front = 0;
+  double hypervolume = 0;     ///< hypervolume of the front; NaN: not computed
+  double violation = 0;       ///< smallest constraint violation of all designs so far, as long as none is feasible
+  double feasible_share = 0;  ///< share of the population that is feasible, in [0, 1]
 };
 
 /// Interface of progress displays; the default implementation displays nothing.
@@ -55,17 +56,18 @@ class ScreenProgress final : public Progress {
  private:
   std::FILE* out_;
   bool terminal_;
-  double last_ = -1;   ///< ProgressReport::seconds of the last report shown
-  bool open_ = false;  ///< the terminal shows a line without line break
+  double last_ = -1;   ///< ProgressReport::seconds of the report that was shown last; -1: none
+  bool open_ = false;  ///< true while the terminal shows a line that has not been ended by a line break
 };
 
-/// @return the report as one line of text
+/// Text of a report as one line.
 std::string progress_line(const ProgressReport& report);
 
-/// @return a progress bar and the report, in at most `width` columns: the least important items are omitted first
+/// Progress bar and report as one line of at most `width` columns, from which the least important items are omitted
+/// first.
 std::string progress_bar_line(const ProgressReport& report, std::size_t width);
 
-/// "1 h 02 min", "3 min 20 s", "12.3 s", "45 ms", "4.5 us".
+/// Text of a duration: "1 h 02 min", "3 min 20 s", "12.3 s", "45 ms", "4.5 us".
 std::string duration_text(double seconds);
 
 }  // namespace pkm

@@ -18,7 +18,7 @@ ConfigError call_error(const Study& study, const std::string& call, const std::s
   return ConfigError({study.file_name, 0, "call = \"" + call + "\""}, what);
 }
 
-/// The recorded hash of the file of a function; "" if nothing is recorded.
+/// The recorded hash of the file that defines a function; "" if none is recorded.
 std::string recorded_hash(const std::vector<FunctionRecord>& recorded, const std::string& call) {
   const auto found = std::ranges::find(recorded, call, &FunctionRecord::call);
   return found == recorded.end() ? "" : found->hash;
@@ -28,8 +28,8 @@ std::string changed_text(const std::string& what) {
   return what + " was changed after the study was started; restore it, or start a new study";
 }
 
-/// Finds the file that defines a function: the first existing one in `folders`, or, given the recorded hash, the first
-/// one whose contents have this hash.
+/// Finds the file that defines a function. Without a recorded hash, it is the first existing file in `folders`; with
+/// one, the first file whose contents have this hash.
 PythonFunction find_function(const Study& study, const std::string& call, const std::vector<std::string>& folders,
                              const std::string& hash) {
   const std::size_t colon = call.rfind(':');

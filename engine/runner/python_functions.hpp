@@ -16,15 +16,15 @@ namespace pkm {
 /// a stop request.
 /// @param recorded  the functions recorded in the study file to be resumed: the contents of their files must not have
 ///                  changed
-/// @param threads   number of processes if the options specify none
+/// @param threads   number of processes if the options do not specify a number
 void start_python_workers(const Study& study, const std::vector<std::string>& folders,
                           const std::vector<FunctionRecord>& recorded, const PythonOptions& options, int threads);
 
-/// The parent folder of a file; "": the current folder.
+/// Path of the folder that contains a file; "": the current folder.
 std::string folder_of(const std::string& file);
 
-/// The records of a study's functions, to be stored in the study file. Throws std::logic_error if they are not
-/// connected.
+/// The records of the functions of a study, which are stored in the study file. Throws std::logic_error if the
+/// functions are not connected to files yet.
 std::vector<FunctionRecord> function_records(const Study& study);
 
 /// Throws StorageError if a connected function differs from the recorded one.

@@ -1,4 +1,4 @@
-// The program of a worker process, bindings/python/pkmopt/_worker.py.
+// Text of the Python program that a worker process runs, bindings/python/pkmopt/_worker.py.
 #pragma once
 
 namespace pkm {

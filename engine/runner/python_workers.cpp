@@ -30,12 +30,13 @@ extern char** environ;
 namespace pkm {
 namespace {
 
-constexpr int kConnection = 3;               // file descriptor of the connection in a worker
-constexpr int kPollTime = 50;                // [ms]
-constexpr std::size_t kChunksPerWorker = 4;  // several, so that all workers finish a batch at about the same time
+constexpr int kConnection = 3;  // number of the file descriptor that is the connection in a worker process
+constexpr int kPollTime = 50;   // interval between checks for a stop request [ms]
+// More than one chunk for each worker, so that all workers finish a batch at about the same time.
+constexpr std::size_t kChunksPerWorker = 4;
 
-/// The environment of a worker. It has a fixed hash seed, because the order of the elements of a set of strings would
-/// otherwise differ from run to run.
+/// Environment variables of a worker process. The hash seed of Python is fixed, because the order of the elements of a
+/// set of strings would otherwise differ from run to run.
 std::vector<std::string> worker_environment() {
   std::vector<std::string> all;
   for (char** entry = environ; *entry; ++entry) all.emplace_back(*entry);
@@ -57,10 +58,10 @@ std::string how_it_ended(int status) {
 
 }  // namespace
 
-/// What is needed to start a worker process: the interpreter, and the first message, which names the functions.
+/// What is needed to start a worker process: the interpreter, and the first message, which names the functions to load.
 struct PythonWorkers::Setup {
   std::string program;
-  std::string message;  ///< JSON
+  std::string message;  ///< first message to the process, in JSON
 };
 
 /// A worker process and the connection to it.
@@ -101,7 +102,7 @@ class PythonWorkers::Process {
   Process& operator=(const Process&) = delete;
   ~Process() {
     ::close(connection_);
-    constexpr int kPatience = 100;  // in units of 10 ms; a process that has not ended by then is killed
+    constexpr int kPatience = 100;  // time after which a process that has not ended is killed, in units of 10 ms
     for (int i = 0; pid_ > 0 && i < kPatience && !is_busy; ++i) {
       if (is_ended()) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -112,7 +113,7 @@ class PythonWorkers::Process {
   }
 
   int connection() const { return connection_; }
-  /// Sends a message. If the process has ended, this is detected when its answer is received.
+  /// Sends a message. If the process has ended, this is detected only when its answer is received.
   void send(const std::string& bytes) {
     const std::uint64_t size = bytes.size();
     std::string all(reinterpret_cast<const char*>(&size), sizeof size);
@@ -124,7 +125,8 @@ class PythonWorkers::Process {
       done += static_cast<std::size_t>(n);
     }
   }
-  /// Receives a message. @return std::nullopt if the process has ended
+  /// Receives a message.
+  /// @return std::nullopt if the process has ended
   std::optional<std::string> receive() {
     std::uint64_t size = 0;
     if (!receive_bytes(reinterpret_cast<char*>(&size), sizeof size)) return {};
@@ -142,7 +144,7 @@ class PythonWorkers::Process {
     if (!answer->empty()) throw ConfigError({"", 0, "call"}, "a function cannot be loaded: " + *answer);
     is_started_ = true;
   }
-  /// Describes how the process ended. Precondition: receive() has returned std::nullopt.
+  /// Describes in words how the process ended. Precondition: receive() has returned std::nullopt.
   std::string end_text() {
     if (pid_ > 0 && ::waitpid(pid_, &status_, 0) == pid_) pid_ = 0;
     return how_it_ended(status_);
@@ -177,7 +179,8 @@ class PythonWorkers::Batch {
   Batch(std::size_t function, std::span<const double> parameters, std::span<ExternalValue> values, const Setup& setup)
       : function_(function), parameters_(parameters), values_(values), setup_(setup) {}
 
-  /// Starts processes that are missing. Throws Stopped; then busy processes have been ended.
+  /// Evaluates the batch. Starts the processes that are missing. If it throws Stopped, the processes that were busy
+  /// have been ended.
   void evaluate(std::vector<std::unique_ptr<Process>>& processes) {
     const std::size_t count = values_.size();
     const std::size_t size = std::max<std::size_t>(1, count / (kChunksPerWorker * processes.size()));
@@ -222,7 +225,8 @@ class PythonWorkers::Batch {
     process->send({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)});
   }
 
-  /// Receives the values of a chunk. @return number of designs that this completes
+  /// Receives the values of the designs of a chunk.
+  /// @return number of designs that are completed by this
   std::size_t finish(std::unique_ptr<Process>& process, const Rows& rows) {
     const auto answer = process->receive();
     process->is_busy = false;
@@ -242,8 +246,9 @@ class PythonWorkers::Batch {
     return rows.count();
   }
 
-  /// Handles a chunk during which the process ended. The call of a single design has failed. Otherwise each design of
-  /// the chunk is called again separately, to find the one that ends the process. @return as for finish()
+  /// Handles the end of a process while it evaluated a chunk. If the chunk has a single design, the call has failed.
+  /// Otherwise each design of the chunk is called again separately, to find the one that ends the process.
+  /// @return number of designs that are completed by this
   std::size_t fail(const Rows& rows, const std::string& reason) {
     if (rows.count() == 1) {
       constexpr double nan = std::numeric_limits<double>::quiet_NaN();

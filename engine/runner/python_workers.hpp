@@ -13,23 +13,23 @@
 namespace pkm {
 
 struct PythonOptions {
-  int workers = 0;                     ///< number of processes; 0: one per thread
-  std::string program = "python3";     ///< the interpreter
-  std::vector<std::string> path = {};  ///< additional folders to search for modules
+  int workers = 0;                     ///< number of worker processes; 0: one for each thread
+  std::string program = "python3";     ///< command that starts the Python interpreter
+  std::vector<std::string> path = {};  ///< additional folders in which Python searches for modules
 };
 
 /// A function and the file that defines it.
 struct PythonFunction {
-  std::string call;  ///< as the study names it
+  std::string call;  ///< name of the function in the study, for example "cost.py:price"
   std::string file, function;
-  std::string hash;  ///< hash of the file's contents
+  std::string hash;  ///< hash of the contents of the file
 };
 
 /// Calls Python functions in separate processes. If a process ends during a call, the process is replaced and the call
 /// counts as failed. Results do not depend on the number of processes.
 class PythonWorkers final : public FunctionCaller {
  public:
-  /// Starts the processes and loads the functions. Throws ConfigError, Stopped.
+  /// Starts the processes and loads the functions. Throws ConfigError if a function cannot be loaded, and Stopped.
   /// @param parameters  names of the mechanism's parameters
   /// @param workers     number of processes, at least 1
   PythonWorkers(std::vector<PythonFunction> functions, std::vector<std::string> parameters,

@@ -17,12 +17,12 @@ namespace {
 // The first algorithm version in which a [[motion]] implies a constraint.
 constexpr std::int64_t kFirstWithImpliedConstraints = 6;
 
-/// Hash of the study's text, a NUL character and the text of the mechanism file.
+/// Hash of the study's text, followed by a NUL character and the text of the mechanism file.
 std::string text_digest(const std::string& toml, const std::optional<SourceText>& description) {
   return xxh64_hex(toml + '\0' + (description ? description->text : ""));
 }
 
-/// Text for comparing a recorded element of the problem with that of the study text: "name [unit]", and other
+/// Text by which a recorded element of the problem is compared with that of the study's text: "name [unit]", and other
 /// properties without which the recorded values would be meaningless.
 template <class Info>
 std::string label(const Info& info) {
@@ -41,7 +41,7 @@ std::vector<std::string> labels(const List& list) {
   return all;
 }
 
-/// @return a sentence that names the first element of `recorded` that the study text does not define; empty if it
+/// @return a sentence that names the first element of `recorded` that the study's text does not define; empty if it
 /// defines all of them
 template <class List>
 Unsupported undefined_in_text(const std::string& kind, const List& of_text, const List& recorded) {
@@ -55,8 +55,8 @@ std::string conflict(const std::string& in_text, const std::string& recorded) {
   return "the text has " + in_text + ", the record has " + recorded;
 }
 
-/// @return a sentence that states why the recorded problem is not the one that the text describes; empty if it is the
-/// same
+/// @return a sentence that states why the recorded problem differs from the one that the study's text describes; empty
+/// if they are the same
 Unsupported conflict_with_text(const Study& study, const StudyContents& contents) {
   const ProblemRecord of_text = problem_record(study);
   const ProblemRecord& recorded = contents.problem;
@@ -84,8 +84,8 @@ Unsupported conflict_with_text(const Study& study, const StudyContents& contents
   return {};
 }
 
-/// Compares recorded values with those that the text gives, for a problem that is otherwise the same.
-/// @return one sentence per difference
+/// Compares recorded values with those that follow from the study's text. The problem must otherwise be the same.
+/// @return one sentence for each difference
 std::vector<std::string> differences(const Study& study, const StudyContents& contents) {
   const ProblemRecord of_text = problem_record(study);
   const ProblemRecord& recorded = contents.problem;

@@ -14,7 +14,7 @@ namespace pkm {
 /// @return the contents of a new study file: provenance and problem, no stages
 StudyContents new_contents(const Study& study);
 
-/// @return the problem of a study in explicit form
+/// @return the problem of a study as it is stored in the study file: all variables, objectives, constraints and values
 ProblemRecord problem_record(const Study& study);
 
 /// Rebuilds the study of a study file, with the recorded seed. If recorded values differ from those that the text gives
@@ -28,7 +28,7 @@ Study study_of(const StudyContents& contents, const Catalogues& catalogues, cons
 /// @param path  path of the file, for messages
 Study study_to_continue(const StudyContents& contents, const std::string& path, const Catalogues& catalogues);
 
-/// @return one line "name = value" per option
+/// @return for each option, the text "name = value"
 std::vector<std::string> option_lines(const Options& options);
 
 }  // namespace pkm

@@ -16,7 +16,8 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// A table with the centre of the design space and the baseline, if there is one, not yet evaluated.
+/// A table of sample designs that are not yet evaluated: the centre of the design space and, if there is one, the
+/// baseline.
 EvaluationTable sample_designs(const Study& study, Detail detail) {
   const DesignProblem& problem = *study.problem;
   EvaluationTable table(problem.shape(detail));
@@ -28,7 +29,7 @@ EvaluationTable sample_designs(const Study& study, Detail detail) {
   return table;
 }
 
-/// Time of one evaluation [s]: the maximum over the sample designs, because the evaluation of a design that fails takes
+/// Time of one evaluation [s], as the maximum over the sample designs: the evaluation of a design that fails takes
 /// almost no time.
 double evaluation_seconds(const Study& study, Detail detail) {
   const DesignProblem& problem = *study.problem;
@@ -39,7 +40,8 @@ double evaluation_seconds(const Study& study, Detail detail) {
   try {
     for (std::size_t row = 0; row < table.size(); ++row) {
       double seconds = 1e30;
-      for (int i = 0; i < 3 && (i == 0 || seconds < 1); ++i) {  // minimum of three; the first one also warms up
+      // The minimum of three measurements is used; the first one also warms up.
+      for (int i = 0; i < 3 && (i == 0 || seconds < 1); ++i) {
         const auto begin = Clock::now();
         evaluate_design(problem, table.design(row), scratch, table.slot(row));
         seconds = std::min(seconds, since(begin));
@@ -53,9 +55,9 @@ double evaluation_seconds(const Study& study, Detail detail) {
   return longest;
 }
 
-/// Time to compute the exact values of all final designs [s]; empty if this takes too long to be measured.
+/// Time to compute the exact values of all final designs [s]; std::nullopt if it is too long to be measured.
 std::optional<double> exact_seconds(const Study& study) {
-  constexpr double kMaxSeconds = 0.3;  // per measurement
+  constexpr double kMaxSeconds = 0.3;  // time limit of each measurement [s]
   const double designs = study.baseline ? 2 : 1;
   const EvaluationTable table = sample_designs(study, Detail::complete);
   const auto begin = Clock::now();
@@ -95,7 +97,7 @@ RunCost measure_run_cost(const Study& study) {
 
 namespace {
 
-/// Maximum time of a stage, which follows from its evaluation limit [s].
+/// Maximum time of a stage [s], computed from its evaluation limit.
 double stage_seconds(const Stage& stage, const Study& study, const RunCost& cost, int threads) {
   const double each = stage.optimiser->detail() == Detail::derivatives ? cost.with_derivatives : cost.plain;
   const auto at_once = std::min<std::int64_t>(threads, stage.optimiser->at_once());
@@ -119,16 +121,19 @@ RemainingTime::RemainingTime(const Study& study, const RunCost& cost, int thread
 }
 
 std::optional<double> RemainingTime::update(std::size_t stage, std::int64_t left, std::int64_t made, double seconds) {
-  constexpr double kStartUp = 1;         // s; the rate at the beginning is not representative
-  constexpr double kMinWindow = 2;       // s; the rate is averaged over recent evaluations, because their cost changes
-  constexpr double kSafetyFactor = 1.5;  // factor of upper bounds: evaluations of a solver may become slower
+  constexpr double kStartUp = 1;  // time [s] before which the rate of evaluations is not representative
+  // Minimum time [s] over which the rate is averaged; only recent evaluations count, because their cost changes.
+  constexpr double kMinWindow = 2;
+  // Factor of the upper bound of a solver stage, whose evaluations may become slower.
+  constexpr double kSafetyFactor = 1.5;
   if (stage != stage_) {
     stage_ = stage;
     begin_ = last_;
     samples_.clear();
     bound_.reset();
   }
-  if (made == last_.made) begin_.seconds = made == begin_.made ? seconds : begin_.seconds;  // skips replay
+  // As long as recorded evaluations are replayed, the beginning of the measurement moves with them.
+  if (made == last_.made) begin_.seconds = made == begin_.made ? seconds : begin_.seconds;
   last_ = {seconds, made};
   const double window = std::max(kMinWindow, (seconds - begin_.seconds) / 3);
   if (samples_.empty() || seconds - samples_.back().seconds >= 0.01 * window) samples_.push_back(last_);

@@ -16,7 +16,7 @@
 namespace pkm {
 namespace {
 
-/// Seed of a stage: stages have independent streams of random numbers.
+/// Seed of a stage. Different seeds give the stages independent streams of random numbers.
 std::uint64_t stage_seed(std::uint64_t study, std::size_t stage) {
   return study + 0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(stage);
 }
@@ -50,7 +50,7 @@ void Run::begin() {
 RunOutcome Run::operator()() {
   for (const std::string& each : ranks::all_gather(std::to_string(evaluator_.threads()))) threads_ += std::stoi(each);
   RunOutcome result;
-  // With several ranks evaluations are not aborted, because the other ranks would wait for them.
+  // With several ranks, evaluations are not aborted, because the other ranks would wait for them.
   std::optional<StopScope> stop;
   if (ranks::size() == 1) stop.emplace([this] { return is_grace_period_over(); });
   try {
@@ -70,13 +70,13 @@ void Run::run_stages() {
   try {
     for (std::size_t i = 0; i < study_.stages.size(); ++i)
       if (!run_stage(i)) break;
-  } catch (const Stopped&) {  // the complete evaluations of the aborted generation remain in the table
+  } catch (const Stopped&) {  // those evaluations of the aborted generation that are complete remain in the table
     ahead_ = {};
     if (contents_.stages.back().table.size() == 0) contents_.stages.pop_back();
     goes_on();
-  } catch (const ReplayMismatch&) {  // thrown on every rank
+  } catch (const ReplayMismatch&) {  // thrown on every rank, so that no rank waits for another
     throw;
-  } catch (const std::exception& error) {  // the other ranks would wait for this one
+  } catch (const std::exception& error) {  // without this, the other ranks would wait for this one
     if (ranks::size() > 1) ranks::abort_all_ranks(message_of(error));
     throw;
   }
@@ -97,11 +97,12 @@ bool Run::run_stage(std::size_t index) {
   ahead_ = {};
   if (failed_) return false;
   if (result.reason == StopReason::interrupted) {
-    goes_on();  // sets the stop reason if an evaluation was aborted
+    goes_on();  // sets the reason for stopping if an evaluation was aborted
     return false;
   }
   update_best(record.table, result.best_row);
-  const bool restarted = !warnings_.empty();  // a multistart run that was not reproduced may be shorter than recorded
+  // A multistart run that was not reproduced was restarted, and may be shorter than recorded.
+  const bool restarted = !warnings_.empty();
   if (input.recorded && !restarted && record.table.size() < input.recorded->size())
     throw ReplayMismatch("stage " + std::to_string(index + 1) + " ended after " + std::to_string(record.table.size()) +
                          " of " + std::to_string(input.recorded->size()) + " recorded evaluations");
@@ -147,7 +148,7 @@ bool Run::generation(const Generation& g) {
   if (ranks::rank() == 0) {
     try {
       process_generation(g);
-    } catch (...) {  // passed on after the other ranks have been informed
+    } catch (...) {  // thrown again after the other ranks have been informed
       if (ranks::size() == 1 || g.alone) throw;
       failure_ = std::current_exception();
     }
@@ -171,7 +172,7 @@ bool Run::has_stop_request() const {
 }
 
 bool Run::is_grace_period_over() {
-  constexpr double kGracePeriod = 0.1;  // s; most generations and final steps end within it
+  constexpr double kGracePeriod = 0.1;  // time [s] within which most generations and final steps end by themselves
   if (!has_stop_request()) return false;
   const double now = seconds();
   double first = std::numeric_limits<double>::infinity();

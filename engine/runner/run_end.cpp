@@ -1,5 +1,5 @@
-// End of a run: computes the final results and writes the study file; saves complete generations after running out of
-// memory.
+// End of a run: computes the final results and writes the study file. If memory is exhausted, saves the complete
+// generations.
 #include <cmath>
 #include <new>
 #include <utility>
@@ -13,7 +13,7 @@
 namespace pkm {
 namespace {
 
-/// Sentence on the parallel efficiency of a run with several ranks.
+/// Sentence about the parallel efficiency of a run with several ranks.
 std::string ranks_note(const RunOutcome& outcome) {
   const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
   return std::to_string(outcome.evaluations) + " evaluations by " + outcome.team + " on " + describe_hosts() +
@@ -27,7 +27,8 @@ RunOutcome Run::complete() {
   RunOutcome outcome = statistics();
   std::optional<std::string> write_error;
   if (!stopped_.empty() && replaying_ && evaluator_.made() == 0) {
-    contents_ = read_study(output_->path());  // stopped during replay: the file contains more than this run
+    // The run was stopped during replay, so the file contains more evaluations than this run.
+    contents_ = read_study(output_->path());
   } else {
     if (ranks::size() > 1 && outcome.evaluations > 0) contents_.notes.push_back(ranks_note(outcome));
     for (const auto& [call, reason] : study_.problem->parts().functions->failures())
@@ -55,14 +56,14 @@ void Run::compute_final_results() {
     contents_.final = final_record(study_, contents_);
     try {
       write(StudyState::running);
-    } catch (const StorageError&) {  // ignored: the final write follows
+    } catch (const StorageError&) {  // ignored, because the file is written again at the end of the run
     }
     std::optional<SlowStepNotice> slow;
     complete_final_record(study_, contents_, [&](const std::string& what) {
       slow.reset();
       slow.emplace([this, what] { progress_.step(what); });
     });
-  } catch (const Stopped&) {  // a resumed run continues with these steps
+  } catch (const Stopped&) {  // a resumed run continues with the steps that are missing
     goes_on();
   }
 }
@@ -70,7 +71,7 @@ void Run::compute_final_results() {
 RunOutcome Run::statistics() const {
   RunOutcome outcome;
   outcome.evaluations = evaluator_.made();
-  if (ranks::size() > 1) {  // multistart runs have been evaluated on other ranks as well
+  if (ranks::size() > 1) {  // with several ranks, multistart runs have been evaluated on other ranks as well
     outcome.evaluations = contents_.evaluations();
     for (const StageRecord& stage : recorded_) outcome.evaluations -= static_cast<std::int64_t>(stage.table.size());
     outcome.exchange_share = (ranks::communication_seconds() - initial_exchange_) / seconds();
@@ -105,7 +106,7 @@ void Run::save_after_out_of_memory() {
       contents_.final.reset();
       write(StudyState::interrupted);
       saved = "the " + std::to_string(contents_.evaluations()) + " complete evaluations";
-    } catch (const std::bad_alloc&) {  // the last checkpoint remains
+    } catch (const std::bad_alloc&) {  // the last checkpoint remains valid
     }
   throw StorageError(output_->path() + ": out of memory in stage " + std::to_string(stage_ + 1) + "; the file has " +
                      saved + " and can be resumed with fewer threads or more memory");

@@ -23,38 +23,40 @@ inline constexpr std::int64_t kAlgorithms = 8;
 /// Program version and arguments, which must be the same on all ranks.
 struct ProgramVersion {
   std::string version, revision;
-  std::string arguments = {};  ///< arguments of the command line, on one line
+  std::string arguments = {};  ///< command-line arguments as one line of text
 };
 
 struct RunOptions {
-  int threads = 0;                   ///< per rank, as for team_size(); 0: ranks::threads()
-  std::optional<double> time_limit;  ///< wall time of this run [s], after which it stops with a checkpoint
-  /// Returns true to stop with a checkpoint; called often, by any thread of the team. Empty: never.
+  int threads = 0;  ///< number of threads of each rank, as for team_size(); 0: ranks::threads()
+  /// Wall time of this run after which it stops with a checkpoint [s]; std::nullopt: unlimited.
+  std::optional<double> time_limit;
+  /// Function that returns true to stop the run with a checkpoint. It is called often, by any thread of the team. An
+  /// empty function never stops.
   std::function<bool()> stop = {};
-  /// Whether SIGINT, SIGTERM and SIGHUP request a stop. False if pkmopt is used as a library, which must not change the
+  /// True if SIGINT, SIGTERM and SIGHUP request a stop. False if pkmopt is used as a library, which must not change the
   /// signal handling of the process.
   bool handles_signals = true;
-  PythonOptions python = {};  ///< for studies that call Python functions
-  /// If set, calls the external functions of a resumed study instead of Python worker processes.
+  PythonOptions python = {};  ///< options of the Python workers, for studies that call Python functions
+  /// If not null, it calls the external functions of a resumed study; otherwise Python worker processes do.
   std::shared_ptr<FunctionCaller> functions = {};
   ProgramVersion program;
-  RunCost cost = {};  ///< for the estimate of the remaining time in progress reports
+  RunCost cost = {};  ///< measured costs, for the estimate of the remaining time in progress reports
 };
 
 struct RunOutcome {
   StudyContents contents;
   /// Reason for stopping before the end of the study ("SIGINT", "time limit", "request"); "" if the study is finished.
   std::string stopped;
-  double seconds = 0;                 ///< wall time of this run
-  std::int64_t evaluations = 0;       ///< evaluations of this run, excluding replayed ones
+  double seconds = 0;                 ///< wall time of this run [s]
+  std::int64_t evaluations = 0;       ///< number of evaluations made by this run, without replayed ones
   double checkpoint_share = 0;        ///< share of the run time spent on checkpoints (first and final write excluded)
   double parallel_efficiency = 0;     ///< sum of the evaluation times / (number of threads * wall time of evaluating)
-  std::string team;                   ///< "2 threads", "4 ranks x 16 threads"
+  std::string team;                   ///< number of threads as text, for example "2 threads" or "4 ranks x 16 threads"
   double exchange_share = 0;          ///< share of the run time that rank 0 spent in messages, including waiting
-  std::vector<std::string> warnings;  ///< sentences for the user; also in the file
+  std::vector<std::string> warnings;  ///< warnings for the user, one sentence each; they are also in the study file
 };
 
-/// The final write of a run failed. The exception carries the results, which are not in the study file.
+/// Exception for a failure of the final write of a run. It contains the results, which are not in the study file.
 class UnwrittenOutcome : public StorageError {
  public:
   UnwrittenOutcome(const std::string& why, RunOutcome found) : StorageError(why), outcome(std::move(found)) {}

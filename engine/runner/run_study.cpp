@@ -28,7 +28,7 @@ RunOutcome run_with_ranks(const Study& study, StudyContents contents, StudyOutpu
 }
 
 /// Adds a note if the study was started on another processor. The code of pkmopt gives identical bits on all
-/// processors, external libraries (solvers, mathematical functions) may not.
+/// processors, but external libraries (solvers, mathematical functions) may not.
 void note_processor(StudyContents& contents) {
   if (contents.machine.starts_with(describe_processor() + ",")) return;
   const std::string note = "started on " + contents.machine + ", resumed on " + describe_machine() +
@@ -72,12 +72,12 @@ RunOutcome resume_study(LockedStudy& locked, const Catalogues& catalogues, const
                        "; this program has version " + std::to_string(kAlgorithms) + " and would not reproduce it");
   Study study = study_to_continue(contents, path, catalogues);
   connect_functions(study, contents, path, options);
-  contents.problem = problem_record(study);  // adds parameters that are new in this program version
+  contents.problem = problem_record(study);  // adds the parameters that this program version has in addition
   if (extension.generations || extension.evaluations) {
     request_extension(study, contents, extension);
     contents.state = StudyState::interrupted;
     contents.final.reset();
-    write_study(path, contents);  // keeps the extension if the run is stopped during replay
+    write_study(path, contents);  // so that the extension is recorded even if the run is stopped during replay
   }
   apply_extensions(study, contents.extensions);
   note_processor(contents);

@@ -21,10 +21,11 @@ namespace pkm {
 RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
                      Progress& progress);
 
-/// A study file that this process has locked and read in order to resume it. While it lives, SIGINT, SIGTERM and SIGHUP
-/// request a stop, unless it does not handle signals.
+/// A study file that this process has locked and read in order to resume it. While an instance exists, SIGINT, SIGTERM
+/// and SIGHUP request a stop if it handles signals.
 struct LockedStudy {
-  /// Throws StorageError.
+  /// Locks and reads the file. Throws StorageError.
+  /// @param handles_signals  true: the instance handles signals
   explicit LockedStudy(std::string file, bool handles_signals = true)
       : stop_request(handles_signals ? std::make_unique<StopRequest>() : nullptr),
         path(std::move(file)),
@@ -37,16 +38,16 @@ struct LockedStudy {
   StudyContents contents;
 };
 
-/// Makes the external functions of a study, which was read from the file at `path`, callable: by options.functions if
-/// it is set, otherwise by Python worker processes. The functions must be the recorded ones. Throws ConfigError,
-/// StorageError and Stopped.
+/// Makes the external functions that a study calls callable, by options.functions if it is set, otherwise by Python
+/// worker processes. They must be the recorded functions. Throws ConfigError, StorageError and Stopped.
+/// @param path  path of the file from which the study was read
 void connect_functions(const Study& study, const StudyContents& contents, const std::string& path,
                        const RunOptions& options);
 
-/// Resumes a study, or extends a finished one. Throws StorageError, also if the file was written with another algorithm
-/// version or its recorded evaluations are not reproduced, and ConfigError if its problem cannot be built or the
-/// extension is invalid.
-/// @param locked  its contents are moved to the outcome
+/// Resumes a study, or extends a finished one. Throws StorageError if the file cannot be read or written, if it was
+/// written with another algorithm version, or if its recorded evaluations are not reproduced; ConfigError if its
+/// problem cannot be built or the extension is invalid.
+/// @param locked  the study; its contents are moved to the outcome
 RunOutcome resume_study(LockedStudy& locked, const Catalogues& catalogues, const ExtensionRequest& extension,
                         const RunOptions& options, Progress& progress);
 inline RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,

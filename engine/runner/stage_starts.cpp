@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-/// basins() considers only this number of best evaluations.
+/// Number of best evaluations among which basins() searches.
 constexpr std::size_t kMaxCandidates = 4000;
 
 StartDesign best_so_far(const Study& study, const StudyContents& contents) {
@@ -23,7 +23,7 @@ StartDesign best_so_far(const Study& study, const StudyContents& contents) {
 
 /// Estimates basins of attraction: the evaluations that have no better evaluation in their neighbourhood, from best to
 /// worst. The neighbourhood is a box that extends by `radius` in each variable, relative to the variable's range.
-/// @param limit  maximum number of designs
+/// @param limit  maximum number of returned designs
 std::vector<StartDesign> basins(const StudyContents& contents, std::size_t limit, double radius) {
   struct Candidate {
     RankKey rank;
@@ -62,14 +62,14 @@ std::vector<StartDesign> basins(const StudyContents& contents, std::size_t limit
   return found;
 }
 
-/// @return the last stage that has found a front; null if there is none
+/// The last stage that has found a Pareto front; null if there is none.
 const StageRecord* stage_with_front(const StudyContents& contents) {
   const auto found =
       std::find_if(contents.stages.rbegin(), contents.stages.rend(), std::mem_fn(&StageRecord::has_front));
   return found == contents.stages.rend() ? nullptr : &*found;
 }
 
-/// @return at most `limit` points spread over the last front; none if there is no front
+/// At most `limit` points spread over the last Pareto front; none if there is no front.
 std::vector<StartDesign> front_points(const StudyContents& contents, std::size_t limit) {
   const StageRecord* const stage = stage_with_front(contents);
   if (!stage) return {};
@@ -84,7 +84,7 @@ std::vector<StartDesign> front_points(const StudyContents& contents, std::size_t
   return starts;
 }
 
-/// Adds the designs of the option `designs`; variables that a design does not name have their values in `base`.
+/// Adds the designs that the option `designs` gives. Variables that a design does not name have their values in `base`.
 void add_given_designs(const DesignSpace& space, const Options& options, const std::vector<double>& base,
                        std::vector<StartDesign>& starts) {
   if (!options.has("designs")) return;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kOption = "--start-from";
 
-/// Maximum number of designs that the first stage uses.
+/// Maximum number of designs of another study from which a stage can start.
 std::size_t designs_used_by(const Stage& stage) {
   const Options& options = stage.options;
   if (stage.entry->capabilities(options).starts)

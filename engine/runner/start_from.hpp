@@ -8,13 +8,15 @@
 
 namespace pkm {
 
-/// Changes that make the first stage of a study start from the best designs of another study.
+/// Changes to a study that make its first stage start from the best designs of another study.
 struct StartFrom {
-  std::vector<std::string> start;  ///< for StudyChanges::start: the designs, best first, as "a=0.3,b=1"
+  /// Value of StudyChanges::start: the designs, best first, each as text such as "a=0.3,b=1".
+  std::vector<std::string> start;
   /// Number of designs that lie outside the study's bounds, or between the steps of a variable; they are moved to the
   /// nearest allowed design.
   std::size_t moved = 0;
-  std::vector<std::string> missing;  ///< variables that are not parameters of the other study; see start_from()
+  /// Names of the variables that are not parameters of the other study; see start_from().
+  std::vector<std::string> missing;
 };
 
 /// Chooses designs of `other` for the first stage of `study`: for a genetic algorithm at most half of the population,

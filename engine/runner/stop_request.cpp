@@ -10,14 +10,15 @@ namespace {
 constexpr std::array kStopSignals = {SIGINT, SIGTERM, SIGHUP};
 constexpr std::array kIgnoredSignals = {SIGXFSZ, SIGPIPE};
 
-volatile std::sig_atomic_t received = 0;                                              // signal number; 0: none
-volatile std::sig_atomic_t received_at = 0;                                           // time of the monotonic clock [s]
-std::array<struct sigaction, kStopSignals.size() + kIgnoredSignals.size()> previous;  // handlers to be restored
-int depth = 0;                                                                        // number of nested guards
+volatile std::sig_atomic_t received = 0;     // number of the first signal received; 0: none
+volatile std::sig_atomic_t received_at = 0;  // time at which it was received, on the monotonic clock [s]
+// Handlers of all signals, which are restored at the end.
+std::array<struct sigaction, kStopSignals.size() + kIgnoredSignals.size()> previous;
+int depth = 0;  // number of nested StopRequest objects
 
 std::sig_atomic_t monotonic_seconds() {
   timespec time{};
-  clock_gettime(CLOCK_MONOTONIC, &time);  // async-signal-safe
+  clock_gettime(CLOCK_MONOTONIC, &time);  // may be called in a signal handler
   return static_cast<std::sig_atomic_t>(time.tv_sec);
 }
 
@@ -45,7 +46,8 @@ StopRequest::StopRequest() {
   action.sa_handler = handle_signal;
   for (const int signal : kStopSignals) {
     sigaction(signal, nullptr, &previous[i]);
-    if (previous[i++].sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // SIG_IGN: nohup, background jobs
+    // SIG_IGN is kept: nohup and shells set it for jobs in the background.
+    if (previous[i++].sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
   action.sa_handler = SIG_IGN;
   for (const int signal : kIgnoredSignals) sigaction(signal, &action, &previous[i++]);

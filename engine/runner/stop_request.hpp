@@ -17,9 +17,9 @@ class StopRequest {
   StopRequest(const StopRequest&) = delete;
   StopRequest& operator=(const StopRequest&) = delete;
 
-  /// @return the first signal received; 0: none
+  /// @return number of the first signal received; 0: none
   static int signal();
-  /// @return "SIGINT", "SIGTERM" or "SIGHUP"
+  /// @return name of a signal: "SIGINT", "SIGTERM" or "SIGHUP"
   static const char* name(int signal);
 };
 

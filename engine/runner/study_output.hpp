@@ -11,8 +11,8 @@ namespace pkm {
 
 class StudyOutput {
  public:
-  /// @param lock  lock of `path`; must outlive this object
-  /// @param existing  whether the first write may replace an existing file
+  /// @param lock  lock of the study at `path`; must outlive this object
+  /// @param existing  states whether the first write may replace an existing file
   StudyOutput(std::string path, const StudyLock& lock, Existing existing)
       : path_(std::move(path)), lock_(lock), existing_(existing) {}
 

@@ -11,12 +11,12 @@ namespace pkm {
 
 class TimedEvaluator final : public Evaluator {
  public:
-  /// @param threads  see ParallelEvaluator
+  /// @param threads  number of threads, as for ParallelEvaluator
   explicit TimedEvaluator(int threads) : inner_(threads) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
 
   int threads() const { return inner_.threads(); }
-  std::int64_t made() const { return made_; }  ///< number of evaluations
+  std::int64_t made() const { return made_; }  ///< number of evaluations made so far
   /// @return sum of the evaluation times / (threads * wall time during which at least one call was active)
   double efficiency(int threads) const { return wall_ > 0 ? busy_ / (wall_ * threads) : 0; }
   /// Releases the scratch memory of the evaluations.
@@ -31,8 +31,9 @@ class TimedEvaluator final : public Evaluator {
   ParallelEvaluator inner_;
   std::mutex mutex_;
   int active_calls_ = 0;
-  double begin_ = 0;            ///< beginning of the current period with active calls [s]
-  double wall_ = 0, busy_ = 0;  ///< wall time with active calls, and sum of the evaluation times [s]
+  double begin_ = 0;  ///< time at which the current period with active calls began [s]
+  /// Wall time during which calls were active, and sum of the times of all evaluations [s].
+  double wall_ = 0, busy_ = 0;
   std::atomic<std::int64_t> made_ = 0;
 };
 

@@ -19,18 +19,18 @@
 namespace pkm {
 namespace {
 
-/// First byte of the messages that rank 0 broadcasts between runs.
+/// First byte of the messages by which rank 0 starts a run, or ends the worker ranks.
 constexpr char kRun = 'r', kQuit = 'q';
 
-/// @return the line that begins at position `at`, which is advanced to the next line
+/// The line of `text` that begins at position `at`. The position is advanced to the next line.
 std::string next_line(const std::string& text, std::size_t& at) {
   const std::size_t begin = at, end = text.find('\n', at);
   at = end + 1;
   return text.substr(begin, end - begin);
 }
 
-/// Ends all ranks if a study or mechanism file exists on this host with contents other than those that rank 0 has read,
-/// because the user then probably assumes that this rank uses its own file.
+/// Ends all ranks if this host has a study or mechanism file whose contents differ from those that rank 0 has read: the
+/// user then probably assumes that this rank uses its own file.
 void expect_same_files(const StudyContents& contents) {
   const auto compare = [](const std::string& file, const std::string& recorded, TextKind kind) {
     const std::string text = upgraded(recorded, kind).text;
@@ -92,7 +92,7 @@ std::string run_message(const StudyContents& contents, const RunOptions& options
 }
 
 int run_worker_rank(const Catalogues& catalogues, const ProgramVersion& program) {
-  const StopRequest stop_request;  // signals sent to all ranks are handled by rank 0
+  const StopRequest stop_request;  // rank 0 handles the signals that are sent to all ranks
   while (true) {
     std::string message;
     ranks::broadcast(message);

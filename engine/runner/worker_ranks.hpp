@@ -15,11 +15,11 @@ namespace pkm {
 /// @return the exit code received from rank 0 at the end of the program
 int run_worker_rank(const Catalogues& catalogues, const ProgramVersion& program);
 
-/// The message that rank 0 broadcasts to start a run on the worker ranks: program version, arguments, options and study
-/// file. "" if there are no worker ranks.
+/// The message that rank 0 broadcasts to start a run on the worker ranks. It contains program version, arguments,
+/// options and study file. "" if there are no worker ranks.
 std::string run_message(const StudyContents& contents, const RunOptions& options);
 
-/// Called by rank 0 at the end of the program: ends the worker ranks.
+/// Ends the worker ranks. Rank 0 calls it at the end of the program.
 void stop_worker_ranks(int exit_code);
 
 }  // namespace pkm
