@@ -40,7 +40,6 @@ std::vector<Dimension> dimensions_of(const Mechanism& mechanism, std::span<const
 
   // For each length parameter, the derivatives of all distances with respect to it; empty if the mechanism cannot be
   // assembled at the pose after the step.
-  // step.
   std::vector<std::vector<double>> derivatives(infos.size());
   for (std::size_t p = 0; p < infos.size(); ++p) {
     if (infos[p].unit != "m" || !(parameters[p] > 0)) continue;
