@@ -44,7 +44,8 @@ std::string matrix_text(const std::string& title, const AxisMatrix<double>& matr
   for (std::size_t i = 0; i < matrix.rows(); ++i, text += '\n')
     for (std::size_t j = 0; j < matrix.cols(); ++j) {
       std::array<char, 32> cell{};
-      std::snprintf(cell.data(), cell.size(), "%18.11g", matrix(i, j) + 0.0);  // no "-0"
+      // Adding 0.0 turns -0 into 0, so that "-0" is not printed.
+      std::snprintf(cell.data(), cell.size(), "%18.11g", matrix(i, j) + 0.0);
       text += cell.data();
     }
   return text;

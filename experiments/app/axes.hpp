@@ -15,7 +15,7 @@ using Axes = std::vector<AxisInfo>;
 
 AxisVector<double> axis_vector(std::span<const double> values);
 
-/// The distinct units of a list in order of first appearance, each followed by `suffix`: "m/s, rad/s".
+/// The different units of a list in the order of their first appearance, each followed by `suffix`: "m/s, rad/s".
 template <class List>
 std::string units_of(const List& list, const std::string& suffix = "") {
   std::vector<std::string> units;
@@ -24,21 +24,21 @@ std::string units_of(const List& list, const std::string& suffix = "") {
   return join(units);
 }
 
-/// "x = 0.25 m, theta = 0.5 rad"
+/// Names and values as text, for example "x = 0.25 m, theta = 0.5 rad".
 std::string axes_text(const Axes& axes, std::span<const double> values);
-/// A hint if an angle exceeds one revolution, which suggests degrees entered without a unit (plain numbers are in rad);
-/// otherwise "".
+/// A hint if an angle exceeds one revolution: its value was probably given in degrees without a unit, but plain numbers
+/// are in rad. Otherwise "".
 std::string large_angle_note(const Axes& axes, std::span<const double> values);
-/// {name: value, ...}; null if there are no values.
+/// JSON object {name: value, ...} with a value for each axis; null if there are no values.
 Json axes_json(const Axes& axes, const std::optional<AxisVector<double>>& values);
-/// A JSON array.
+/// JSON array of the numbers.
 inline Json vector_json(std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); }
-/// A JSON array of rows; null if there is no matrix.
+/// JSON array of the rows of a matrix; null if there is no matrix.
 Json matrix_json(const std::optional<AxisMatrix<double>>& matrix);
-/// The rows of a matrix in aligned columns, below a title.
+/// Text of a matrix below a title: one line per row, aligned columns.
 std::string matrix_text(const std::string& title, const AxisMatrix<double>& matrix);
 
-/// Adds the pose to the output, with whether it can be assembled and whether it is feasible.
+/// Adds a pose to the output, and states whether it can be assembled and whether it is feasible.
 void report_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out);
 /// Error message if the mechanism cannot be assembled at the pose in `mode`; "" if it can.
 std::string assembly_error(const std::string& mode, const PoseReport& report);

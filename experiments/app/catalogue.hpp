@@ -13,22 +13,22 @@ namespace pkm {
 /// @return true if at least one option is required, so that the entry cannot be created from its defaults
 bool needs_options(const std::vector<OptionSpec>& specs);
 
-/// Name of the mass model in use; null if the mechanism has no masses.
+/// Name of the selected mass model; null if the mechanism has no masses.
 Json mass_model_json(const Mechanism& mechanism);
 
-/// The full description of one mechanism, which need not be in the catalogues.
+/// Full description of one mechanism, which may be read from a file instead of the catalogues.
 Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues);
 
 /// The four catalogues by their names ("mechanisms", "objectives", "constraints", "optimisers"). Each is a list with
 /// one object per entry, which contains `name`, `meaning`, the options and further data of the entry.
 Json catalogues_json(const Catalogues& catalogues);
 
-// Readable forms of this JSON:
-/// The full description of one entry: one line per value, one table per list.
+// The following functions write this JSON in readable form.
+/// Full description of one entry: one line for each single value, one table for each list.
 std::string entry_text(const Json& entry);
 /// All entries of all catalogues in Markdown: the content of experiments/catalogue.md.
 std::string catalogues_markdown(const Json& catalogues);
-/// A value as text for a table cell, lists separated by semicolons; "-" for null.
+/// Text of a value for a table cell: elements of lists are separated by semicolons; "-" for null.
 std::string cell_text(const Json& value);
 
 }  // namespace pkm

@@ -11,10 +11,10 @@
 namespace pkm {
 namespace {
 
-/// Null for an infinite bound.
+/// JSON of a bound: null if it is infinite.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-/// Names of the values of OptionKind, in its order.
+/// Words for the values of OptionKind, in their order.
 constexpr std::array kKindWords = {"number",        "integer", "flag", "word", "named numbers", "list of named numbers",
                                    "named settings"};
 
@@ -33,14 +33,16 @@ Json options_json(const std::vector<OptionSpec>& specs) {
   });
 }
 
-/// Whether an objective or a design-level constraint supports a mechanism: its unit, or the reason why it does not.
+/// JSON that states whether an objective or a constraint on designs supports a mechanism: its unit, or the reason why
+/// it does not.
 template <class Entry>
 Json support_json(const Entry& entry, const std::vector<OptionSpec>& specs, const Mechanism& mechanism) {
   const Unsupported refusal = entry.refusal(mechanism);
   Json json = {{"name", mechanism.info().name}, {"serves", !refusal}, {"unit", nullptr}, {"reason", nullptr}};
   if (refusal) {
     json["reason"] = *refusal;
-  } else if (entry.unit && !needs_options(specs)) {  // otherwise the unit depends on the study's options
+    // If the entry needs options, its unit depends on them and stays null.
+  } else if (entry.unit && !needs_options(specs)) {
     WorkspacePlan plan;
     plan.limits = no_limits(mechanism.info());
     const Options options = default_options(specs);
@@ -76,7 +78,7 @@ Json expression_names_json(const Mechanism& mechanism) {
   });
 }
 
-/// Names of the entries that support a mechanism.
+/// Names of those entries of a catalogue that support a mechanism.
 template <class List>
 Json names_supporting(const List& entries, const Mechanism& mechanism) {
   Json names = Json::array();
@@ -92,7 +94,7 @@ Json parameters_json(const std::vector<Parameter>& parameters) {
   });
 }
 
-/// The parameters that the mechanism has only with mass models other than the one in use.
+/// Those parameters that the mechanism does not have with the selected mass model, but with another one.
 Json other_parameters_json(const Mechanism& mechanism) {
   Json models = Json::object();
   const Dynamics* const dynamics = mechanism.dynamics();
@@ -115,7 +117,7 @@ Json sweep_json(const MechanismInfo& info, const Sweep& sweep, bool has_columns)
           {"volume_unit", unit_of_product(info, sweep.swept)}};
 }
 
-/// The result of `read` on a capability of a mechanism; null if the mechanism lacks this capability.
+/// JSON that `read` returns for a capability of a mechanism; null if the mechanism lacks this capability.
 template <class Capability, class Read>
 Json optional_json(const Capability* capability, const Read& read) {
   return capability ? Json(read(*capability)) : Json();
@@ -155,7 +157,8 @@ Json capabilities_json(const Capabilities& capabilities) {
           {"starts", capabilities.starts}};
 }
 
-/// Capabilities of an optimiser with its default options and, if it has several algorithms, with each of them.
+/// JSON with the capabilities of an optimiser for its default options and, if it has several algorithms, for each of
+/// them.
 Json optimiser_json(const OptimiserEntry& entry) {
   Options options = default_options(entry.options);
   Json json = {{"name", entry.name},

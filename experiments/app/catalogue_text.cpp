@@ -10,7 +10,8 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxListedSweeps = 8;  // mechanisms with more other sweeps get a summary instead of a table
+// Maximum number of further sweeps in a table; if there are more, a summary is printed instead.
+constexpr std::size_t kMaxListedSweeps = 8;
 
 /// A table of a list of objects: one row per object, one column per key; empty columns are omitted.
 std::vector<Row> table(const Json& list) {
@@ -25,7 +26,7 @@ std::vector<Row> table(const Json& list) {
   return rows;
 }
 
-/// "20 sweeps of 3 coordinates, 14 of 2 coordinates, 6 of 1 coordinate; --json lists them"
+/// Text such as "20 sweeps of 3 coordinates, 14 of 2 coordinates, 6 of 1 coordinate; --json lists them".
 std::string sweep_summary(const Json& sweeps) {
   std::map<std::size_t, int, std::greater<>> count;
   for (const Json& sweep : sweeps) ++count[sweep["swept"].size()];
@@ -36,10 +37,11 @@ std::string sweep_summary(const Json& sweeps) {
   return join(words) + "; --json lists them";
 }
 
-/// The names in expressions, with one entry for all statistics of a quantity: "lti_mean, _std, _min, _max".
+/// The names that expressions may use, with all statistics of a quantity joined to one entry: "lti_mean, _std, _min,
+/// _max".
 Json with_joined_statistics(const Json& names, const Json& quantities) {
   Json joined = Json::array();
-  const std::string* last = nullptr;  // quantity of the last entry; null if there is none
+  const std::string* last = nullptr;  // quantity to which the last entry belongs; null if it belongs to none
   for (const Json& entry : names) {
     const std::string& name = entry["name"].get_ref<const std::string&>();
     const std::size_t end = name.rfind('_');
@@ -62,9 +64,9 @@ Json with_joined_statistics(const Json& names, const Json& quantities) {
   return joined;
 }
 
-/// An entry of a catalogue, prepared for text: its single values, and its lists as tables with their titles.
+/// A catalogue entry in the form in which it is printed: its single values, and its lists as tables with titles.
 struct Details {
-  std::vector<Row> head;  ///< name and value
+  std::vector<Row> head;  ///< names and texts of the single values
   std::vector<std::pair<std::string, std::vector<Row>>> tables;
 };
 
@@ -94,7 +96,7 @@ Details details(const Json& entry) {
   return found;
 }
 
-/// A row of a Markdown table; vertical bars within cells are escaped.
+/// A row of a Markdown table. Vertical bars within cells are escaped.
 std::string markdown_row(const Row& row) {
   std::string line = "|";
   for (const std::string& cell : row) {
@@ -148,7 +150,7 @@ std::string catalogues_markdown(const Json& catalogues) {
       text += markdown_table(head) + '\n';
       for (const auto& [title, rows] : found.tables) text += title + ":\n\n" + markdown_table(rows) + '\n';
     }
-  text.pop_back();  // remove the last blank line
+  text.pop_back();  // removes the last blank line
   return text;
 }
 

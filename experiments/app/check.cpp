@@ -45,16 +45,16 @@ Json workspace_json(const MechanismInfo& info, const WorkspacePlan& plan) {
     for (std::size_t k = 0; k < swept.size(); ++k) json["cells"][swept[k]] = voxels->cells[k];
     for (const FixedCoordinate& fixed : plan.fixed)
       if (fixed.cells > 0) json["cells"][coordinate_names(info, {fixed.coordinate})[0]] = fixed.cells;
-    json["box"] = nullptr;  // computed for each design
+    json["box"] = nullptr;  // null: the box is computed for each design
   }
   for (std::size_t k = 0; plan.box() && k < swept.size(); ++k) json["box"][swept[k]] = (*plan.box())[k];
-  json["home"] = nullptr;  // all components count
+  json["home"] = nullptr;  // null: all components of the workspace are measured
   for (std::size_t k = 0; plan.home && k < swept.size(); ++k) json["home"][swept[k]] = (*plan.home)[k];
   if (const ColumnOptions* columns = plan.columns()) {
     const bool fixed = columns->nodes[0] > 0;
     json["tolerance"] = fixed ? Json() : Json(columns->tolerance);
     json["certified"] = json_or_null(columns->certified);
-    json["nodes"] = nullptr;  // chosen from the tolerance
+    json["nodes"] = nullptr;  // null: the numbers of nodes follow from the tolerance
     std::size_t node = 0;
     for (std::size_t k = 0; k < swept.size(); ++k)
       if (fixed && sweep.swept[k] != sweep.column) json["nodes"][swept[k]] = columns->nodes[node++];
@@ -135,7 +135,7 @@ Json probe_json(const Probe& probe) {
       {"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"diagnosis", diagnosis_json(probe.diagnosis)}};
 }
 
-/// The text omits contradictions, because they have been printed before.
+/// Text of a probe without the contradictions between requirements, which have been printed before.
 std::string probe_text(const Probe& probe) {
   std::string text = "\nprobe: " + describe_probe(probe) + '\n';
   if (!probe.diagnosis) return text;

@@ -12,18 +12,19 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxMessageLength = 1000;  // bytes; messages of CLI11 are truncated to this length
+// Maximum number of bytes of a message of CLI11; longer messages are truncated.
+constexpr std::size_t kMaxMessageLength = 1000;
 
-/// Options whose value is a list of name=value.
+/// Options whose value is a list of assignments NAME=VALUE.
 const std::vector<std::string> kLists = {"--set",          "--limit",  "--at",          "--joints",        "--velocity",
                                          "--acceleration", "--input",  "--speeds",      "--accelerations", "--near",
                                          "--forces",       "--wrench", "--fixed",       "--cut",           "--cells",
                                          "--box",          "--least",  "--joint-error", "--tolerance"};
 
-/// Repeats the option before each element of a list: "--set a=1 b=2" becomes "--set a=1 --set b=2".
+/// Repeats an option before each element of its list: "--set a=1 b=2" becomes "--set a=1 --set b=2".
 std::vector<std::string> expand_lists(const std::vector<std::string>& arguments) {
   std::vector<std::string> expanded;
-  std::string option;  // option whose list is being read; "" outside of a list
+  std::string option;  // the option whose list is being read; "" outside of a list
   for (const auto& argument : arguments) {
     const bool assignment = !argument.starts_with('-') && argument.find('=') != std::string::npos;
     const bool continues_list = assignment && !option.empty() && expanded.back() != option;
@@ -48,7 +49,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// Throws ConfigError unless the first argument is a subcommand or an option of the program, such as --help.
+/// Throws ConfigError unless the first argument is the name of a subcommand, or an option of the program such as
+/// --help.
 void check_subcommand(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto known = subcommand_names(app);
   const std::string expected = "one of " + join(known) + " (see '" + app.get_name() + " --help')";

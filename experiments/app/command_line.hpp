@@ -8,11 +8,12 @@
 
 namespace pkm {
 
-/// Parses `arguments` (without the program's name; at least one) and runs the chosen subcommand, or prints the help or
-/// the version if requested. Throws ConfigError for an invalid command line, with the closest valid word.
+/// Parses `arguments` and runs the selected subcommand, or prints the help or the version if an argument requests it.
+/// Throws ConfigError with the closest valid word for an invalid command line.
+/// @param arguments  at least one; without the program's name
 void parse_command_line(CLI::App& app, const std::vector<std::string>& arguments);
 
-/// Replaces "pkmopt" in a help text by the name of a user's own program.
+/// Replaces "pkmopt" in a help text by the name of a program that a user has built with the library.
 std::string with_program_name(std::string help, const std::string& name);
 
 }  // namespace pkm

@@ -25,21 +25,26 @@ namespace pkm {
 inline constexpr int kDone = 0;
 inline constexpr int kFailure = 1;
 inline constexpr int kBadInput = 2;
-inline constexpr int kStoppedEarly = 3;     ///< a checkpoint was written; 'pkmopt resume' continues
-inline constexpr int kNothingFeasible = 4;  ///< the study is complete, or provably has no feasible design
+/// The study was stopped after writing a checkpoint, and 'pkmopt resume' can continue it.
+inline constexpr int kStoppedEarly = 3;
+/// The study is complete without a feasible design, or it provably has none.
+inline constexpr int kNothingFeasible = 4;
 
-/// Context that every command receives, and its exit code.
+/// Data that every command receives; a command also sets its exit code here.
 struct Session {
   const Catalogues& catalogues;
-  std::string program;         ///< name under which it was called: "pkmopt", or that of a user's own program
+  /// Name under which the program was called: "pkmopt", or the name of a program built with the library.
+  std::string program;
   std::string arguments = {};  ///< the command line without the program name, quoted for a shell
   int exit_code = kDone;
 };
 
-/// Prints `step` to stderr if the returned object still exists after 1 s on a terminal, elsewhere after 10 s.
+/// Prints the sentence `step` to stderr if the returned object still exists after 1 s (on a terminal) or 10 s
+/// (elsewhere).
 SlowStepNotice announce_slow_step(const Session& session, const std::string& step);
 
-/// Declares an option with a placeholder for its value, "--csv FILE", or a positional argument, "STUDY.toml".
+/// Declares an option or a positional argument. `words` is its name with the placeholder of its value, "--csv FILE", or
+/// the placeholder of an argument, "STUDY.toml".
 template <class Value>
 CLI::Option* add_option(CLI::App& command, const std::string& words, Value& value, const std::string& meaning) {
   const auto name_end = std::min(words.find(' '), words.size());
@@ -56,10 +61,11 @@ CLI::Option* add_option(CLI::App& command, const std::string& words, Value& valu
   return option;
 }
 
-/// Parses the value of an option as a decimal integer in [lower, upper]. Throws ConfigError.
+/// Parses the value of an option as a decimal integer. Throws ConfigError if it is not an integer in [lower, upper].
 std::int64_t parse_option(const std::string& text, const std::string& option, std::int64_t lower, std::int64_t upper);
 
-/// Declares an option whose value is an integer in [lower, upper]. @param value  an integer or an optional integer
+/// Declares an option whose value is an integer in [lower, upper].
+/// @param value  receives it: an integer or an optional integer
 template <class Integer>
 CLI::Option* add_integer(CLI::App& command, const std::string& words, Integer& value, std::int64_t lower,
                          std::int64_t upper, const std::string& meaning) {
@@ -73,7 +79,7 @@ CLI::Option* add_integer(CLI::App& command, const std::string& words, Integer& v
   return command.add_option_function<std::string>(name, read, meaning)->type_name(words.substr(name_end + 1) + range);
 }
 
-/// Adds a subcommand that calls `run` with its arguments; the caller declares the arguments.
+/// Adds a subcommand, which calls `run` with its parsed arguments. The caller declares the options of the subcommand.
 template <class Arguments, class Run>
 std::pair<CLI::App&, Arguments&> add_command(CLI::App& app, const std::string& name, const std::string& meaning,
                                              const std::string& footer, Run run) {
@@ -83,7 +89,7 @@ std::pair<CLI::App&, Arguments&> add_command(CLI::App& app, const std::string& n
   return {*command, *arguments};
 }
 
-/// Adds a subcommand to `app`. `session` must outlive the parsing of the command line.
+/// Type of the functions that add one subcommand to `app`. `session` must outlive the parsing of the command line.
 using AddCommand = void(CLI::App& app, Session& session);
 AddCommand add_run, add_resume, add_check, add_evaluate, add_pose, add_forward, add_dynamics, add_coupling,
     add_trajectory, add_simulate, add_workspace, add_connect, add_certify, add_tolerances, add_compare, add_show,

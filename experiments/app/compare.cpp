@@ -1,4 +1,4 @@
-// `pkmopt compare`: several robots in one task, side by side.
+// `pkmopt compare`: compares several robots in one task.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// The robot that an argument names: a mechanism, a study, or a study file, whose best design is used.
+/// Finds the robot that an argument names: a mechanism, a study, or the best design of a study file.
 TaskRobot find_robot(const Session& session, const std::string& argument) {
   const std::filesystem::path path(argument);
   DesignArguments design;
@@ -68,7 +68,8 @@ void check_origins(const Task& task, const std::vector<TaskRobot>& robots,
   }
 }
 
-/// The lines of all robots: lines[robot][line]. Throws ConfigError if no robot supports an [[output]] of the task.
+/// The lines of the comparison: element [robot][line]. Throws ConfigError if no robot supports an [[output]] of the
+/// task.
 std::vector<std::vector<TaskValue>> compared(const Task& task, const std::vector<TaskRobot>& robots,
                                              const Catalogues& catalogues) {
   std::set<std::string> all;
@@ -84,7 +85,8 @@ std::vector<std::vector<TaskValue>> compared(const Task& task, const std::vector
   return lines;
 }
 
-/// The first margin that is negative or unknown, which is why the robot cannot do the task; null if there is none.
+/// The first constraint of a robot whose margin is negative or unknown, so that the robot cannot perform the task; null
+/// if there is none.
 const TaskValue* violated(const std::vector<TaskValue>& lines) {
   for (const TaskValue& line : lines)
     if (line.is_margin && !(line.value >= 0)) return &line;
@@ -97,7 +99,7 @@ std::string verdict(const std::vector<TaskValue>& lines) {
   return std::ranges::any_of(lines, &TaskValue::is_margin) ? "yes" : "nothing is asked";
 }
 
-/// The unit that all robots share in a line; "-" if they differ.
+/// The unit of a line, if it is the same for all robots; otherwise "-".
 std::string unit_of_line(const std::vector<std::vector<TaskValue>>& lines, std::size_t k) {
   std::string unit;
   for (const auto& robot : lines) {

@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-/// Possible values of an option or of an argument: words, files, or both.
+/// What an option or an argument accepts: words, files, or both.
 struct PossibleValues {
   std::vector<std::string> words;
   std::string extension;  ///< extension of the files, for example "h5"; "*": any file; "": no files
@@ -34,14 +34,14 @@ PossibleValues values_of(const std::string& command, const std::string& type, co
   return {};
 }
 
-/// The text in single quotes, valid in all three shells.
+/// The text in single quotes, in a form that is valid in bash, zsh and fish.
 std::string in_quotes(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
   return result + "'";
 }
 
-/// Escapes brackets and colons, which have a meaning in the descriptions of zsh's _arguments.
+/// Escapes brackets and colons, which have a meaning in the descriptions of zsh's function _arguments.
 std::string zsh_escaped(std::string text) {
   for (const char* const special : {"[", "]", ":"})
     for (auto at = text.find(special); at != std::string::npos; at = text.find(special, at + 2)) text.insert(at, "\\");
@@ -81,7 +81,7 @@ _)" << name << R"(() {
   case "${COMP_WORDS[1]} $before" in
 )";
   for (const DeclaredCommand& command : commands) {
-    std::map<std::string, std::string> options;  // command that offers values -> options with these values
+    std::map<std::string, std::string> options;  // for each command, its options that accept these values
     for (const DeclaredOption& option : command.options)
       if (!option.type.empty()) {
         std::string& all = options[offer(values_of(command.name, option.type, session))];

@@ -11,9 +11,9 @@
 namespace pkm {
 namespace {
 
-constexpr double kMinShare = 1e-3;  ///< of the feasible cells: the text lists larger components
+constexpr double kMinShare = 1e-3;  ///< share of the feasible cells from which on a component is listed in the text
 
-/// Number of the components that the text lists.
+/// Number of components that are large enough to be listed in the text.
 std::size_t large_ones(const ConnectedComponents& components, double feasible) {
   return static_cast<std::size_t>(std::ranges::count_if(components.all, [&](const WorkspaceComponent& component) {
     return static_cast<double>(component.cells) >= kMinShare * feasible;
@@ -22,7 +22,7 @@ std::size_t large_ones(const ConnectedComponents& components, double feasible) {
 
 using Extents = std::vector<std::array<double, 2>>;
 
-/// By component: the range of its cells along each axis.
+/// For each component, the range of its cells along each axis.
 std::vector<Extents> extents_of(const ConnectedComponents& components, const VoxelGrid& grid, std::size_t axes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<Extents> all(components.all.size(), Extents(axes, {kInfinity, -kInfinity}));
@@ -48,7 +48,8 @@ void report_components(const Target& target, const WorkspacePlan& plan, Printout
   WorkspacePlan all = visualisation_plan(info, plan, {1, 1, 1});
   all.home.reset();
   out.json["components"] = nullptr;
-  if (info.joints.size() < info.coordinates.size()) return;  // every pose is singular
+  // No components: with fewer joints than coordinates, every pose is singular.
+  if (info.joints.size() < info.coordinates.size()) return;
   Axes axes;
   for (const int coordinate : sweep_of(info, all).swept)
     axes.push_back(info.coordinates[static_cast<std::size_t>(coordinate)]);

@@ -8,9 +8,9 @@
 
 namespace pkm {
 
-/// Adds the components of the workspace to the output: shares and extents. The text lists them if there are several, or
-/// if the plan has a home pose.
-/// @param plan  of voxels
+/// Adds the connected components of the workspace to the output, with their shares and extents. The text lists them if
+/// there are several, or if the plan has a home pose.
+/// @param plan  a plan with voxels
 void report_components(const Target& target, const WorkspacePlan& plan, Printout& out);
 
 }  // namespace pkm

@@ -10,7 +10,8 @@
 namespace pkm {
 namespace {
 
-/// The coordinates of --home; those that are not given are 0. Without --home: a pose in the middle of the workspace.
+/// The home pose from which ranges are measured. Coordinates that --home does not give are 0. Without --home, it is a
+/// pose in the middle of the workspace.
 Pose<double> home_pose(const std::vector<std::string>& given, const Target& target, const std::string& mode) {
   const MechanismInfo& info = target.info();
   const SourceLocation place{"", 0, "--home"};
@@ -26,16 +27,18 @@ Pose<double> home_pose(const std::vector<std::string>& given, const Target& targ
   return pose;
 }
 
-/// An end of a range: the last feasible value, and what is violated beyond it.
+/// An end of the feasible range of a coordinate: the last feasible value, and the constraint that is violated beyond
+/// it.
 struct RangeEnd {
   double value = 0;
   std::string constraint;
 };
 
-/// @param limit  value at which the search ends
+/// Searches for the end of the feasible range of a coordinate.
+/// @param limit  value of the coordinate at which the search ends
 RangeEnd end_of_range(const Target& target, const std::string& mode, Pose<double> pose, std::size_t coordinate,
                       double limit) {
-  constexpr int kSteps = 512;  // infeasible intervals shorter than a step can be missed
+  constexpr int kSteps = 512;  // number of steps of the search; shorter infeasible intervals can be missed
   const double home = pose[coordinate];
   const auto inspect = [&](double value) {
     pose[coordinate] = value;

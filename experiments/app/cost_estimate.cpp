@@ -40,7 +40,7 @@ void print_estimate(const Study& study, const RunCost& cost, int seeds, int thre
             << (cost.exact_limit > 0
                     ? ", then exact values of the final designs in at most " + duration_text(cost.exact_limit)
                     : "")
-            << std::endl;  // flush immediately, also into a pipe
+            << std::endl;  // std::endl flushes the stream, so that the text appears immediately, also in a pipe
 }
 
 }  // namespace pkm

@@ -25,8 +25,8 @@ struct CouplingArguments : DesignArguments, GridArguments, TableOutput {
   std::string phi, mode;
 };
 
-/// The voxel grid given on the command line; options that are not given are taken from the study, as are the limits.
-/// With --phi, the last fixed coordinate is phi, which takes the listed values.
+/// The voxel grid of the command line. Values that are not given there, and the limits, are those of the study. With
+/// --phi, the last fixed coordinate is phi, which takes each of the listed values.
 WorkspacePlan plan_of(const Target& target, const CouplingArguments& arguments) {
   const MechanismInfo& info = target.info();
   WorkspacePlan plan = target.plan();
@@ -47,8 +47,8 @@ WorkspacePlan plan_of(const Target& target, const CouplingArguments& arguments) 
   return plan;
 }
 
-/// Statistics over the sampled poses, as JSON and as table rows: of the coupling index of each joint, and of the
-/// largest and the mean index at a pose.
+/// Statistics over the sampled poses, as JSON and as table rows: for the coupling index of each joint, and for the
+/// largest and the mean index of each pose.
 std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const WorkspaceResult<double>& survey) {
   Json json = {{"samples", survey.weight.size()}, {"cells", survey.cells}, {"volume", survey.volume}};
   for (const char* name : {"max", "mean", "std", "p95"}) json[name] = Json::object();
@@ -61,7 +61,8 @@ std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const Wo
       const double value = PoseStatistic{kCouplingIndex, name, limb}(survey, scratch);
       json[name][limb] = value;
       const double mean = json["mean"][limb];
-      row.push_back(number(zero_if_rounding_error(value, mean)));  // differences of equal values are rounding errors
+      // A difference of equal values, which is only a rounding error, becomes 0.
+      row.push_back(number(zero_if_rounding_error(value, mean)));
     }
     rows.push_back(row);
   };
@@ -78,7 +79,7 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
   const FieldRequest request{
       .fields = {&kCouplingIndex}, .poses = true, .mode = parse_mode(info, {arguments.mode, ""})};
   const WorkspacePlan plan = plan_of(target, arguments);
-  // Runs an action and converts std::invalid_argument into ConfigError.
+  // Runs an action; a std::invalid_argument that it throws is thrown again as ConfigError.
   const auto with_config_errors = [&info](const auto& action) {
     try {
       return action();

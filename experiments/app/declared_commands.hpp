@@ -8,11 +8,11 @@
 
 namespace pkm {
 
-/// An option or a positional argument.
+/// An option, or a positional argument, of a command.
 struct DeclaredOption {
-  std::string name;        ///< "--output"; for an argument, its type
-  std::string short_name;  ///< "-o"; "": none
-  std::string type;        ///< placeholder of its value: "F.h5"; "": the option takes no value
+  std::string name;        ///< name of the option, for example "--output"; for an argument, its type
+  std::string short_name;  ///< one-letter form of the option, for example "-o"; "": none
+  std::string type;        ///< placeholder of the value, for example "F.h5"; "": the option has no value
   std::string meaning;
   bool required = false;
 };
@@ -28,7 +28,7 @@ std::vector<DeclaredCommand> declared_commands(Session& session);
 /// Names of the shells for which completion is available.
 std::vector<std::string> shells();
 
-/// The words, separated by spaces.
+/// Joins words to one text, separated by spaces.
 std::string join_words(const std::vector<std::string>& words);
 
 }  // namespace pkm

@@ -14,14 +14,14 @@ struct DynamicsArguments : DesignArguments, MotionArguments, ReactionArguments {
   std::vector<std::string> wrench;
 };
 
-/// Units of the elements of the joint-space inertia matrix.
+/// Text that states the units of the elements of the joint-space inertia matrix.
 std::string inertia_units(const Axes& joints) {
   const std::string units = units_of(joints);
   return units == "m" ? "kg" : units == "rad" ? "kg m^2" : "kg, kg m, kg m^2";
 }
 
 /// Adds the joint-space dynamics to the output: positions, speeds, drive forces, powers and coupling indices.
-/// @return why there are no forces, if J is singular; otherwise ""
+/// @return the reason why there are no drive forces if J is singular; otherwise ""
 std::string report_drive_forces(const MechanismInfo& info, const PoseDynamics<double>& d, const MotionSample& at,
                                 const Wrench<double>& wrench, Printout& out) {
   const AxisVector<double> q_rate = d.J * at.velocity;

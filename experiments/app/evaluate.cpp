@@ -1,5 +1,5 @@
-// `pkmopt evaluate`: all objectives, constraint margins and outputs of one design, and the measure of its workspace; or
-// those of all designs of a table.
+// `pkmopt evaluate`: computes all objectives, constraint margins and outputs of one design and the measure of its
+// workspace, or of all designs of a table.
 
 #include <limits>
 
@@ -22,7 +22,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kDefaultCells = 40;  // along each axis, for mechanisms without a study
+constexpr std::int64_t kDefaultCells = 40;  // number of cells along each axis, for mechanisms without a study
 
 struct EvaluateArguments : DesignArguments, SensitivityArguments {
   int threads = 0, workers = 0;
@@ -33,7 +33,7 @@ struct EvaluateArguments : DesignArguments, SensitivityArguments {
 /// The problem of a mechanism without a study: all objectives of its workspace that the mechanism and the method
 /// support, with their default options. Objectives that need the pose of every sample are omitted, because most closed
 /// forms do not store poses.
-/// @param cells  numbers of voxels; empty: a default number
+/// @param cells  number of cells along each axis, as given by --cells; empty: kDefaultCells
 DesignProblem problem_of_all_objectives(const Target& target, const Catalogues& catalogues, bool by_columns,
                                         const std::vector<std::string>& cells) {
   ProblemParts parts;
@@ -66,10 +66,11 @@ DesignProblem problem_of_all_objectives(const Target& target, const Catalogues& 
 
 struct ProblemOfMechanism {
   std::shared_ptr<const DesignProblem> problem;
-  std::string why_voxels;  ///< why voxels are used although the mechanism has columns; "" otherwise
+  std::string why_voxels;  ///< the reason why voxels are used although the mechanism has columns; otherwise ""
 };
 
-/// Uses exact columns if the mechanism has them and no cells are given, otherwise voxels.
+/// The problem of a mechanism without a study: by exact columns if the mechanism has them and no numbers of cells are
+/// given, otherwise by voxels.
 ProblemOfMechanism default_problem(const Target& target, const Catalogues& catalogues,
                                    const std::vector<std::string>& cells) {
   ProblemOfMechanism made;
@@ -90,12 +91,12 @@ ProblemOfMechanism default_problem(const Target& target, const Catalogues& catal
   return made;
 }
 
-/// The relative error of an exact volume, by proven bounds of the volume; std::nullopt if there are no such bounds.
-/// Sets the status of `report` to failed if its volume contradicts them.
+/// The relative error of an exact volume, which follows from proven bounds of the volume; std::nullopt if there are
+/// none. If the volume contradicts them, sets the status of `report` to failed.
 std::optional<double> proven_error(const DesignProblem& problem, DesignReport& report) {
   const WorkspaceResult<double>& survey = report.workspace;
   if (!problem.parts().plan.columns() || survey.is_sampled || !(survey.volume > 0)) return {};
-  // The working mode is that of the problem's own analysis.
+  // The evaluator is prepared for the working mode of the problem's own analysis.
   const auto evaluator =
       prepare_workspace(*problem.parts().mechanism, problem.parts().plan, {.mode = problem.parts().request.mode});
   const auto* const prover = dynamic_cast<const VolumeProver*>(evaluator.get());
@@ -111,9 +112,9 @@ std::optional<double> proven_error(const DesignProblem& problem, DesignReport& r
   return std::max(survey.volume - bounds->lower, bounds->upper - survey.volume) / survey.volume;
 }
 
-/// Adds the measure of the workspace to the output.
-/// @param proven  the proven relative error of an exact volume, if any
-/// @param note  on the method; may be empty
+/// Adds the measure of the workspace (volume, area or length) to the output.
+/// @param proven  proven relative error of an exact volume; std::nullopt: none
+/// @param note    remark on the method; may be empty
 void report_workspace(const DesignProblem& problem, const WorkspaceResult<double>& survey,
                       const std::optional<double>& proven, const std::string& note, Printout& out) {
   const WorkspacePlan& plan = problem.parts().plan;
@@ -133,7 +134,8 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
     if (plan.box() && survey.touches_box)
       rows.push_back({"warning", "the feasible set touches the box: it may extend beyond"});
   } else {
-    const bool estimated = plan.columns()->nodes[0] == 0;  // fixed nodes give no error estimate
+    // False: the numbers of nodes are fixed, which gives no error estimate.
+    const bool estimated = plan.columns()->nodes[0] == 0;
     json["columns"] = survey.columns;
     const double tolerance = plan.columns()->tolerance;
     const bool certified = estimated && proven && *proven <= tolerance;
@@ -152,7 +154,7 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
 }
 
 /// Adds certified bounds on the exact volume to the output.
-/// @param holds  the computed volume lies within the bounds
+/// @param holds  true if the computed volume lies within the bounds
 void report_bounds(const VolumeBounds& bounds, double requested_gap, bool holds, const std::string& unit,
                    Printout& out) {
   out.json["certified"] = {
@@ -173,7 +175,8 @@ VolumeBounds certified_bounds(const DesignProblem& problem, DesignReport& report
   }
 }
 
-/// "yes", or "no: " with the violated constraints or the reason of the failure.
+/// Text that states whether a design is feasible: "yes", or "no: " with the violated constraints or the reason of the
+/// failure.
 std::string feasibility_text(const DesignProblem& problem, const DesignReport& report) {
   if (report.status == Status::feasible) return "yes";
   std::vector<std::string> violated;
@@ -183,10 +186,12 @@ std::string feasibility_text(const DesignProblem& problem, const DesignReport& r
   return "no: " + (report.status == Status::failed ? report.reason : join(violated) + " violated" + reason);
 }
 
-/// Evaluates the designs of a table. Its columns are parameters; all other parameters have the values of the target.
+/// Evaluates the designs of a table, whose columns are parameters. Parameters without a column have the values of the
+/// target.
 void evaluate_table(const DesignProblem& problem, const Target& target, const EvaluateArguments& arguments,
                     const std::string& program, Printout& out) {
-  std::vector<Assignable> parameters;  // without ranges: a design outside of them fails
+  // Their ranges are not used, so that a design outside of them fails instead of being refused.
+  std::vector<Assignable> parameters;
   for (const Parameter& p : target.info().parameters) parameters.push_back({p.name, p.unit});
   const CsvColumns given = read_table(arguments.designs, parameters, false, program);
   const auto reports = computed_rows<DesignReport>(given.rows, arguments.threads, [&](std::size_t row) {
@@ -200,7 +205,7 @@ void evaluate_table(const DesignProblem& problem, const Target& target, const Ev
       report.reason = *reason;
     } else {
       report = problem.report(design);
-      report.workspace = {};  // samples of many designs would not fit into memory
+      report.workspace = {};  // releases the samples, because those of many designs would not fit into memory
     }
     return report;
   });
@@ -246,7 +251,8 @@ void evaluate_table(const DesignProblem& problem, const Target& target, const Ev
                std::to_string(feasible) + " of " + std::to_string(given.rows) + " designs are feasible", out);
 }
 
-/// Starts the processes for the Python functions of the study. Those of a study file must be the recorded ones.
+/// Starts the worker processes for the Python functions of the study. If the study is read from a study file, the
+/// functions must be those that are recorded in it.
 void start_python_functions(const Study& study, const EvaluateArguments& arguments) {
   if (study.problem->external_calls().empty()) return;
   if (arguments.from.empty()) return start_python(study, arguments.target, arguments.workers, arguments.threads);

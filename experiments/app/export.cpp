@@ -27,7 +27,7 @@ struct ExportArguments : DesignArguments, WorkspaceOutputs {
   int threads = 0;
 };
 
-/// The pose given by --at, otherwise a central one of the workspace.
+/// The pose that --at gives or, without --at, a pose in the middle of the workspace.
 Pose<double> reference_pose(const Target& target, const std::string& mode, const ExportArguments& arguments) {
   if (!arguments.at.empty()) {
     MotionArguments motion;
@@ -39,7 +39,7 @@ Pose<double> reference_pose(const Target& target, const std::string& mode, const
                     "the reference pose of the model");
 }
 
-/// The path of a table's file within the folder.
+/// Path of the file of a table within the folder.
 std::string path_of(const std::string& folder, const NamedTable& table) {
   return (std::filesystem::path(folder) / table.file_name).string();
 }
@@ -89,7 +89,8 @@ void export_study(const Session& session, const ExportArguments& arguments) {
   for (const auto& [file, text] : models) write_file(file, text, existing);
   if (arguments.any())
     with_team(arguments.threads, [&] {
-      const std::string& mode = target->study->problem->parts().request.mode;  // the working mode of its objectives
+      // The working mode that the objectives of the study use.
+      const std::string& mode = target->study->problem->parts().request.mode;
       write_workspace(arguments, *target, compute_fields(*target, target->plan(), mode));
     });
   if (contents.state != StudyState::finished)

@@ -20,7 +20,7 @@ struct ForwardArguments : DesignArguments {
   bool moves() const { return !(speeds.empty() && accelerations.empty()); }
 };
 
-/// Velocity and acceleration of the joints, or of the platform coordinates.
+/// First and second derivative with respect to time, of the joints or of the platform coordinates.
 using Rates = std::array<AxisVector<double>, 2>;
 
 /// Parses --speeds and --accelerations. Throws ConfigError if the mechanism cannot convert them to platform rates.
@@ -39,12 +39,12 @@ Rates joint_rates(const Mechanism& mechanism, const ForwardArguments& arguments)
   return {rates(arguments.speeds, "--speeds", "s"), rates(arguments.accelerations, "--accelerations", "s^2")};
 }
 
-/// @return std::nullopt if the assembly mode is singular
+/// Velocity and acceleration of the platform coordinates in an assembly mode; std::nullopt if it is singular.
 std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& assembly, const Rates& joints) {
   const auto& modes = target.info().modes;
   const std::string mode = assembly.working_mode.empty() ? modes.front() : assembly.working_mode;
   if (std::ranges::find(modes, mode) == modes.end())
-    return std::nullopt;  // a limb is singular, so the pose is between two working modes
+    return std::nullopt;  // a limb is singular, so that the pose belongs to two working modes
   const auto influence = target.mechanism->velocities()->influence(target.parameters, assembly.pose, mode);
   if (!influence || is_singular(influence->G)) return std::nullopt;
   const Influence<double> back = reversed(*influence);
@@ -55,17 +55,17 @@ std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& as
   return rates;
 }
 
-/// The assembly mode closest to the pose of --near; empty if there is none.
+/// The assembly mode that is closest to the pose of --near, as a list of one element; empty if there is none.
 std::vector<AssemblyMode> nearest_mode(const Target& target, const AxisVector<double>& joints,
                                        const std::vector<std::string>& near) {
   const auto from = axis_vector(parse_all_assignments(near, "--near", assignable_axes(target.info().coordinates)));
   auto found = nearest_assembly(*target.mechanism, target.parameters, joints, from);
   if (!found) return {};
-  found->usual = true;  // requested, therefore listed
+  found->usual = true;  // the user has requested this mode, so it is always listed
   return {*found};
 }
 
-/// Whether the list of poses is complete, and by which method it was found.
+/// States whether the list of poses is complete, and by which method it was found.
 /// @param hidden  number of poses that are listed only with --all
 ForwardGuarantee guarantee_of(const ForwardKinematics& kinematics, const ForwardArguments& arguments,
                               std::size_t hidden) {

@@ -1,4 +1,4 @@
-// `pkmopt generate`: kinematics and dynamics of a design as code for controllers and simulations.
+// `pkmopt generate`: writes the kinematics and dynamics of a design as code for controllers and simulations.
 
 #include <filesystem>
 

@@ -11,16 +11,16 @@
 
 namespace pkm {
 
-/// Values of the options --box and --cells.
+/// Values of the options --box and --cells: lists of assignments.
 struct GridArguments {
   std::vector<std::string> box, cells;
 };
 
 /// Declares --box and --cells.
-/// @param default_cells  cells along each axis if neither the command line nor a study specifies them
+/// @param default_cells  number of cells along each axis if neither the command line nor a study specifies it
 void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t default_cells);
 
-/// The swept coordinates as names that --box and --cells may assign.
+/// The swept coordinates, as names to which --box and --cells may assign values.
 std::vector<Assignable> assignable_coordinates(const MechanismInfo& info, const Sweep& sweep);
 
 /// Parses --home: values of all swept coordinates, in the order of Sweep::swept. Throws ConfigError.
@@ -37,10 +37,11 @@ VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells);
 /// The box of the swept coordinates that encloses all poses the design can reach. Throws ConfigError if it is unknown.
 Box reachable_box(const WorkspacePlan& plan, const Target& target);
 
-/// Changes the method of a plan to voxels. Cells and box are taken from the command line, otherwise from the study,
-/// otherwise they have default values. The fixed coordinates of the plan must have been set before. Throws ConfigError.
-/// @param max_cells  limit of the total number of cells
-/// @return for each swept coordinate: true if its range was specified, so that feasible poses may exist beyond it
+/// Changes the method of a plan to voxels. Numbers of cells and box are those of the command line; if it does not give
+/// them, those of the study, otherwise default values. The fixed coordinates of the plan must have been set before.
+/// Throws ConfigError.
+/// @param max_cells  maximum total number of cells
+/// @return for each swept coordinate, true if its range was specified, so that feasible poses may exist beyond it
 std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,
                              std::int64_t default_cells, double max_cells);
 

@@ -9,14 +9,15 @@
 namespace pkm {
 namespace {
 
-/// A vector whose undetermined components are null.
+/// JSON array of the components of a force or couple; a component that is not determined is null.
 Json components_json(const std::array<std::optional<double>, 3>& components) {
   return list_json(components, json_or_null<double>);
 }
 
-/// Adds the magnitude of a force or couple along a motion: three cells to the joint's row, four keys to its JSON.
+/// Adds the magnitude of a force or couple along a motion to the output: three cells of the joint's row, four keys of
+/// its JSON object.
 void add_load(const std::string& key, const LoadSummary& load, const Trajectory& trajectory, Row& row, Json& json) {
-  std::vector<std::string> undetermined;  // components
+  std::vector<std::string> undetermined;  // names of the components that are not determined
   for (std::size_t k = 0; k < 3; ++k)
     if (!load.determined[k]) undetermined.emplace_back(1, "xyz"[k]);
   const bool known = undetermined.size()<3, acts = load.peak> 0;

@@ -11,7 +11,8 @@ namespace {
 
 using Text = std::string_view;
 
-constexpr std::size_t kMinSentenceWidth = 24;  // columns; sentences are not wrapped if less space is available
+// Minimum width of a wrapped sentence [columns]; with less space, sentences are not wrapped.
+constexpr std::size_t kMinSentenceWidth = 24;
 
 /// Length of the colour escape sequence with which the text begins; 0 if there is none.
 std::size_t escape_length(Text text) { return text.starts_with("\x1b[") ? text.find('m') + 1 : 0; }
@@ -27,7 +28,7 @@ std::size_t display_width(Text text) {
   return width;
 }
 
-/// Offset of the last cell of a table row; 0 if the line is not such a row, or this cell is not a sentence.
+/// Offset of the last cell of a table row; 0 if the line is not a table row, or if this cell is not a sentence.
 std::size_t sentence_offset(Text line) {
   const std::size_t first = line.find_first_not_of(' '), gap = line.rfind("  ");
   if (first < 2 || gap == Text::npos || gap < first || line[first] == '"') return 0;
@@ -37,7 +38,7 @@ std::size_t sentence_offset(Text line) {
   return sentence && std::ranges::count(words, ' ') > 1 ? gap + 2 : 0;
 }
 
-/// The line, with its sentence wrapped if it is a table row wider than `columns`.
+/// The line; if it is a table row wider than `columns`, its last cell, a sentence, is wrapped.
 std::string wrapped_row(Text line, std::size_t columns) {
   const std::size_t begin = sentence_offset(line), indent = display_width(line.substr(0, begin));
   if (begin == 0 || display_width(line) <= columns || indent + kMinSentenceWidth > columns) return std::string(line);

@@ -16,8 +16,8 @@ namespace {
 /// cannot be assembled there, in the negative direction; empty if it cannot be assembled at either pose.
 std::vector<PlacedLink> displaced_links(const Links& mechanism, const Target& target, const std::string& mode,
                                         const Pose<double>& pose) {
-  // [m or rad]; divided by 1, 2, 3, .. for the coordinates in order, so that the effects of two coordinates do not
-  // cancel
+  // Step of each coordinate [m or rad]. It is divided by 1, 2, 3, .. for the coordinates in their order, so that the
+  // effects of two coordinates do not cancel.
   constexpr double kStep = 1e-4;
   for (const double step : {kStep, -kStep}) {
     Pose<double> moved = pose;
@@ -55,7 +55,7 @@ void write_links(const Target& target, const std::string& mode, const Pose<doubl
   check_outputs(names, target.files, existing);
   const MechanismInfo& info = target.info();
   if (!target.mechanism->inspect(target.parameters, pose, mode, no_limits(info)).assembles)
-    return;  // the caller reports the reason
+    return;  // nothing is written; the caller reports why the pose cannot be assembled
   const auto write = [&](const std::string& file, const std::string& bytes) {
     write_file(file, bytes, existing);
     out.json["files"].push_back(file);

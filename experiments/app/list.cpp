@@ -19,7 +19,7 @@ struct ListArguments {
   bool json = false, markdown = false, file = false;
 };
 
-/// Prints the entries found, under the name of their catalogue if there are several.
+/// Prints the entries found. If they are from several catalogues, each is preceded by the name of its catalogue.
 void print_found(const Json& found) {
   bool first = true;
   for (const auto& [kind, entry] : found.items()) {
@@ -65,7 +65,8 @@ bool is_known(const Json& catalogues, const std::string& name) {
   });
 }
 
-/// All entries named `word`, by their catalogue. Throws ConfigError if there is none.
+/// All entries of the name `word`, as an object with one member for each catalogue that has one. Throws ConfigError if
+/// there is none.
 Json find_anywhere(const Json& catalogues, const std::string& word) {
   std::vector<std::string> known;
   Json found = Json::object();
@@ -81,7 +82,7 @@ Json find_anywhere(const Json& catalogues, const std::string& word) {
   throw ConfigError({"", 0, "list"}, "the unknown word '" + word + "'", expected, nearest_name(word, known));
 }
 
-/// Prints the file of a mechanism of the catalogue.
+/// Prints the text of the mechanism file of a built-in mechanism.
 void print_mechanism_file(const std::string& name, const Session& session) {
   const auto known = [](const auto& entry) { return entry.name(); };
   std::vector<std::string> names;

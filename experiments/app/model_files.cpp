@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// The file of the loop closures: links.yaml for links.urdf.
+/// Name of the YAML file with the loop closures that accompanies a URDF file: links.yaml for links.urdf.
 std::string yaml_beside(const std::string& urdf) { return std::filesystem::path(urdf).replace_extension(".yaml"); }
 
 }  // namespace

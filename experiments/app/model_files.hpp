@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// Names of the requested files; "": not requested.
+/// Names of the files to be written; "": not requested.
 struct ModelFiles {
   std::string urdf, sdf, mjcf;
 
@@ -17,16 +17,16 @@ struct ModelFiles {
 };
 /// Declares --urdf, --sdf and --mjcf.
 void add_model_options(CLI::App& command, ModelFiles& files);
-/// Extensions and values of these options, for -o.
+/// Extensions of these files, with the variables that hold their names, for the option -o.
 std::vector<std::pair<std::string, std::string*>> extensions_of(ModelFiles& files);
 
-/// Names and contents of the requested files, and of the YAML file beside the URDF file. Throws ConfigError if the
-/// mechanism has no multibody model.
-/// @param title  what the files contain
+/// Names and contents of the requested files, and of the YAML file that accompanies a URDF file. Throws ConfigError if
+/// the mechanism has no multibody model.
+/// @param title  text that states what the files contain
 std::vector<std::pair<std::string, std::string>> model_texts(const ModelFiles& files, const Target& target,
                                                              const std::string& mode, const Pose<double>& pose,
                                                              const std::string& title);
-/// The names of these files.
+/// Names of the files that model_texts() returns.
 std::vector<std::string> model_file_names(const ModelFiles& files);
 
 }  // namespace pkm

@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-/// For each input, the value given by --input, if any.
+/// For each input of the mechanism, the value that --input gives; std::nullopt if it gives none.
 std::vector<std::optional<double>> given_inputs(const Mechanism& mechanism, const InputArguments& arguments) {
   const MechanismInfo& info = mechanism.info();
   if (info.inputs.empty() && !arguments.inputs.empty())

@@ -8,7 +8,7 @@
 
 namespace pkm {
 
-/// Values of the option --input: "theta=30deg".
+/// Values of the option --input, such as "theta=30deg".
 struct InputArguments {
   std::vector<std::string> inputs;
 };
@@ -23,7 +23,7 @@ void set_inputs(const Mechanism& mechanism, const InputArguments& arguments, Mot
 std::shared_ptr<const Motion> with_given_inputs(const Mechanism& mechanism, std::shared_ptr<const Motion> motion,
                                                 const InputArguments& arguments);
 
-/// Adds "quantities" to the output, and a table of those that depend on inputs or rates.
+/// Adds all quantities to the output under "quantities", and a table of those that depend on inputs or on rates.
 void report_quantities(const MechanismInfo& info, const MotionSample& at, const std::vector<double>& values,
                        Printout& out);
 

@@ -10,7 +10,7 @@ namespace pkm {
 
 Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& point);
 
-/// " at t = 0.5 s (sample 51)"; samples are counted from 1.
+/// Text that locates a sample in a message, for example " at t = 0.5 s (sample 51)". Samples are counted from 1.
 /// @param point  an element of trajectory.points
 std::string sample_location(const Trajectory& trajectory, const TrajectoryPoint& point);
 

@@ -88,7 +88,7 @@ std::string mechanism_text(const std::string& given) {
   return text.replace(text.find(word), word.size(), name);
 }
 
-/// A TOML string.
+/// Text of a TOML string, in quotes.
 std::string quoted_toml(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -106,7 +106,8 @@ bool is_built_in(const Catalogues& catalogues, const std::string& name) {
   return std::ranges::any_of(catalogues.mechanisms, [&](const auto& m) { return m.name() == name; });
 }
 
-/// The line of [mechanism] that names the mechanism; a path is relative to the folder of the study that is written.
+/// The line of the table [mechanism] that names the mechanism. The path of a mechanism file is relative to the folder
+/// of the study that is written.
 std::string mechanism_key(const Catalogues& catalogues, const NewArguments& arguments) {
   if (is_built_in(catalogues, arguments.name)) return "type = " + quoted_toml(arguments.name) + '\n';
   const auto folder_of = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file).parent_path()); };
@@ -119,7 +120,7 @@ std::string mechanism_key(const Catalogues& catalogues, const NewArguments& argu
   return "file = " + quoted_toml(path) + comment("relative to this file");
 }
 
-/// A bound of a variable: rounded to two significant digits, within the parameter's range.
+/// Text of a bound of a variable: the value rounded to two significant digits, within the parameter's range.
 std::string bound(double value, const Parameter& p) {
   return shortest(std::clamp(std::stod(formatted("%.2g", value)), p.lower, p.upper));
 }
@@ -199,7 +200,7 @@ std::string default_study(const Catalogues& catalogues, const NewArguments& argu
     description = {read_text_file(arguments.name, "a mechanism in TOML"), arguments.name};
   const Study study = read_study_toml(text, "the study", catalogues, description);
   try {
-    study.problem->workspace(study.problem->parts().parameters);  // throws if there is no search box
+    study.problem->workspace(study.problem->parts().parameters);  // throws if the mechanism has no search box
     return study_text(catalogues, arguments, *mechanism, influential_variables(*study.problem, *mechanism));
   } catch (const std::invalid_argument& reason) {
     throw ConfigError({arguments.name, 0, ""}, reason.what());

@@ -8,7 +8,8 @@
 namespace pkm {
 namespace {
 
-/// A missing file is reported later, by the attempt to read it.
+/// Returns true if `file` is an existing file with this extension. A missing file is reported later, by the attempt to
+/// read it.
 bool is_file(const std::string& file, const std::string& extension) {
   std::error_code ignored;
   return file.ends_with(extension) && std::filesystem::is_regular_file(file, ignored);

@@ -14,10 +14,10 @@ std::string quoted(const std::string& word);
 /// A file name as a command-line argument: "./-x.h5" for a name that would be parsed as an option.
 std::string file_argument(const std::string& file);
 
-/// "pkmopt run a.toml": a command line of this program, quoted for the shell.
+/// A command line of this program as text, quoted for the shell: "pkmopt run a.toml".
 std::string command_text(const Session& session, const std::vector<std::string>& words);
 
-/// "next: pkmopt report a.h5\n"
+/// Text that suggests the next command: "next: pkmopt report a.h5\n".
 std::string next_step(const Session& session, const std::vector<std::string>& words);
 
 /// Throws ConfigError if `word` is the name of a built-in mechanism and not of a file.

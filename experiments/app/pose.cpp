@@ -75,7 +75,7 @@ void add_jacobians(const MechanismInfo& info, const PoseReport& report,
                {"det_G", json_or_null(report.det_G)}});
 }
 
-/// Whether each coordinate rate is a component of the twist, so that T contains only zeros and ones.
+/// Returns true if each rate of a coordinate is a component of the twist, so that T contains only zeros and ones.
 bool is_twist_of_rates(const AxisMatrix<double>& T) {
   for (std::size_t j = 0; j < T.cols(); ++j) {
     std::size_t ones = 0, zeros = 0;
@@ -88,7 +88,7 @@ bool is_twist_of_rates(const AxisMatrix<double>& T) {
   return true;
 }
 
-/// Prints the matrices that are defined for the mechanism.
+/// Prints those matrices that are defined for the mechanism.
 void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<double>>& J_twist, Printout& out) {
   const auto print = [&out](const std::string& title, const std::optional<AxisMatrix<double>>& matrix) {
     out.text += matrix ? matrix_text(title, *matrix) : '\n' + title + ": undefined at this pose\n";
@@ -105,7 +105,7 @@ void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<do
   print("J_twist, where qdot = J_twist [vx vy vz wx wy wz]", J_twist);
 }
 
-/// Joints, conditioning, quantities and margins at all poses of a table.
+/// Computes joints, conditioning, quantities and margins at all poses of a table.
 void pose_table(const Target& target, const TableJob& job, int threads, const std::string& mode,
                 const std::string& program, Printout& out) {
   const MechanismInfo& info = target.info();
@@ -119,7 +119,7 @@ void pose_table(const Target& target, const TableJob& job, int threads, const st
     return target.mechanism->inspect(target.parameters, pose_of(row), mode, target.limits);
   });
 
-  std::vector<std::size_t> quantities;  // indices of the quantities of poses
+  std::vector<std::size_t> quantities;  // indices of those quantities that depend on the pose
   std::vector<std::string> columns, margins;
   for (const AxisInfo& coordinate : info.coordinates)
     columns.push_back(column_header(coordinate.name, coordinate.unit));
@@ -132,7 +132,8 @@ void pose_table(const Target& target, const TableJob& job, int threads, const st
     quantities.push_back(i);
     columns.push_back(column_header(quantity.name, quantity.unit));
   }
-  for (const PoseReport& report : reports)  // a pose that cannot be assembled lacks some margins
+  // At a pose that cannot be assembled, some margins are missing, so the names are collected from all poses.
+  for (const PoseReport& report : reports)
     for (const auto& [name, value] : report.margins)
       if (!contains(margins, name)) margins.push_back(name);
   for (const std::string& margin : margins) columns.push_back("margin " + margin);

@@ -15,7 +15,7 @@ PrintableStream::~PrintableStream() {
   const auto state = stream_.rdstate();
   escape_received(received_.size());
   write_escaped(escaped_.size());
-  stream_.rdbuf(sink_);  // clears the state
+  stream_.rdbuf(sink_);  // restores the previous buffer; this also clears the error state
   stream_.setstate(state);
 }
 
@@ -24,7 +24,7 @@ bool PrintableStream::write(const std::string& text) {
   return sink_->sputn(text.data(), length) == length;
 }
 
-/// Escapes the first bytes received, and writes them unless they are buffered for `style_`.
+/// Escapes the first `size` bytes of received_, and writes them, unless they have to be buffered for `style_`.
 bool PrintableStream::escape_received(std::size_t size) {
   const std::string shown = printable(std::string_view(received_).substr(0, size), "\n\t");
   received_.erase(0, size);
@@ -33,7 +33,7 @@ bool PrintableStream::escape_received(std::size_t size) {
   return true;
 }
 
-/// Writes the first bytes of the buffered text, with its style.
+/// Writes the first `size` bytes of escaped_, after applying the style.
 bool PrintableStream::write_escaped(std::size_t size) {
   if (size == 0) return true;
   const std::string shown = style_(std::string_view(escaped_).substr(0, size));
@@ -53,7 +53,7 @@ PrintableStream::int_type PrintableStream::overflow(int_type c) {
 }
 
 int PrintableStream::sync() {
-  const bool written = write_escaped(escaped_.rfind('\n') + 1);  // whole lines only
+  const bool written = write_escaped(escaped_.rfind('\n') + 1);  // only complete lines are written
   return sink_->pubsync() == 0 && written ? 0 : -1;
 }
 

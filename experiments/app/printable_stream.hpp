@@ -10,8 +10,8 @@
 
 namespace pkm {
 
-/// During its lifetime, control characters written to a stream are escaped, except for line feeds and tabs. (Text that
-/// must not contain line feeds is escaped where it is printed.)
+/// While an instance exists, control characters written to a stream are escaped, except for line feeds and tabs. (Text
+/// that must not contain line feeds is escaped where it is printed.)
 class PrintableStream : private std::streambuf {
  public:
   using Style = std::function<std::string(std::string_view lines)>;
@@ -34,8 +34,9 @@ class PrintableStream : private std::streambuf {
   std::ostream& stream_;
   std::streambuf* sink_;
   Style style_;
-  std::string received_;  ///< bytes not yet escaped: the beginning of a UTF-8 character that is still incomplete
-  std::string escaped_;   ///< escaped text, buffered until the next flush
+  /// Bytes that are not yet escaped: the beginning of a UTF-8 character whose other bytes have not been received.
+  std::string received_;
+  std::string escaped_;  ///< escaped text, buffered until the next flush
 };
 
 }  // namespace pkm

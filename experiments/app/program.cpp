@@ -36,12 +36,12 @@ namespace {
 
 /// Argument with which the program starts itself as a separate process to parse a study file that may crash the parser.
 constexpr const char* kCheckFile = "--check-study-on-standard-input";
-constexpr std::size_t kMaxProgramName = 40;  // bytes of the program's name in messages
+constexpr std::size_t kMaxProgramName = 40;  // maximum number of bytes of the program's name in messages
 
 struct Command {
   std::string_view name;
   AddCommand* add;
-  bool evaluates = false;  ///< evaluates many designs, so that the instruction set matters
+  bool evaluates = false;  ///< true if it evaluates many designs, so that the instruction set influences its run time
 };
 
 constexpr Command kCommands[] = {{"run", add_run, true},
@@ -96,7 +96,7 @@ void add(const Command& command, CLI::App& app, Session& session) {
   if (command.evaluates) add_instruction_set(*app.get_subcommand(std::string(command.name)));
 }
 
-/// Printed if no command is given.
+/// Text that is printed if no command is given.
 constexpr const char* kFirstSteps =
     "First commands:\n"
     "  pkmopt list mechanisms                        list the built-in robots\n"
@@ -121,7 +121,8 @@ void run(const std::vector<std::string>& arguments, Session& session) {
   app.get_formatter()->label("REQUIRED", "(required)");
   app.require_subcommand(1);
   app.footer(kProgramNotes);
-  // Declaring all commands takes longer than executing most of them, so only the command that is named is declared.
+  // Only the command that is named is declared, because declaring all commands takes longer than executing most of
+  // them.
   const auto named = std::ranges::find(kCommands, arguments[0], &Command::name);
   if (named != std::end(kCommands))
     add(*named, app, session);
@@ -142,8 +143,8 @@ Catalogues all_catalogues() { return {all_mechanisms(), all_objectives(), all_co
 
 int program_main(int argc, char** argv, const Catalogues& catalogues) {
   if (argc == 2 && std::string_view(argv[1]) == kCheckFile) return check_study_on_standard_input();
-  // Not within another program, such as a test or a fuzzer: its executable does not understand kCheckFile and would
-  // just run again.
+  // This is not done within another program, such as a test or a fuzzer: its executable does not understand kCheckFile
+  // and would just run again.
   if (argc > 0 && argv[0] == program_invocation_name) set_check_command({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   std::string words;
@@ -174,14 +175,14 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
       return report_error(std::string("stopped by ") + StopRequest::name(StopRequest::signal()), kStoppedEarly);
     }
   };
-  std::signal(SIGXFSZ, SIG_IGN);  // so that exceeding the file size limit is an error that can be reported
+  std::signal(SIGXFSZ, SIG_IGN);  // then exceeding the file size limit is an error that can be reported
   try {
     const ranks::Group group;
     if (ranks::rank() > 0) return run_worker_rank(catalogues, {program_version(), program_revision(), words});
     const int exit_code = work();
     if (ranks::size() > 1) stop_worker_ranks(exit_code);
     return exit_code;
-  } catch (const std::exception& error) {  // the processes of an MPI run cannot connect
+  } catch (const std::exception& error) {  // thrown if the processes of an MPI run cannot connect
     return ranks::is_launched_as_rank_zero() ? report_error(message_of(error), kFailure) : kFailure;
   }
 }

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// Prints a warning if recorded values differ from those of the text, and returns the study.
+/// Returns the study. If recorded values differ from those of the study's text, prints a warning before.
 Study warn_of_differences(Study study, const std::string& file, const Session& session) {
   if (!study.differences.empty()) {
     const StorageError message(file + ": " + join(study.differences, "; ") + "; the recorded values are used");

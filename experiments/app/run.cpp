@@ -38,10 +38,10 @@ void warn_if_box_cuts(const Study& study, const Session& session) {
   }
 }
 
-/// The changes of the command line to a study, as options.
+/// The changes that the command line makes to a study, written as options; "no changes" if there are none.
 std::string changes_of(const Study& study) { return study.changes.empty() ? "no changes" : join(study.changes, " "); }
 
-/// Why a study file does not contain the study to be run; empty if it does.
+/// The reason why a study file does not belong to the study to be run; empty if it does.
 Unsupported refuse_different_study(const StudyContents& contents, const Study& study, const Catalogues& catalogues) {
   const std::string text = upgraded(contents.toml, TextKind::study).text;
   if (text != study.text && without_changes(text) == without_changes(study.text))
@@ -55,7 +55,7 @@ Unsupported refuse_different_study(const StudyContents& contents, const Study& s
   return {};
 }
 
-/// The study, with its first stage starting from designs of the study file `file`.
+/// Returns the study with its first stage changed to start from designs of the study file `file`.
 Study with_starts(const Study& study, const std::string& file, const RunArguments& arguments, const Session& session) {
   expect_study_file(file, "run", session);
   const StudyContents other = read_study(file);

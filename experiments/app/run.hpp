@@ -22,19 +22,20 @@ struct RunArguments {
 /// The files that a study was read from, which no output may overwrite.
 std::vector<std::string> input_files(const Study& study);
 
-/// Whether the file exists. Returns false on an error, which is reported later by the attempt to open the file.
+/// Returns true if the file exists. If that cannot be determined, it returns false; the attempt to open the file then
+/// reports the error.
 bool exists(const std::string& file);
 
-/// Runs a study and writes its file, or with --resume continues the file if it exists. Throws StorageError.
+/// Runs a study and writes its study file. With --resume, continues the study if the file exists. Throws StorageError.
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
                    const RunOptions& options, Session& session, Progress& progress);
 
-/// Repeats a study with arguments.seeds consecutive seeds, one file each, and prints a table of the results and their
-/// spread.
+/// Runs a study with arguments.seeds consecutive seeds, writes a study file for each, and prints a table of the results
+/// and their spread.
 void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
                Session& session);
 
-/// Prints an upper estimate of the time for all evaluations and the final steps.
+/// Prints an upper bound of the estimated time for all evaluations and the final steps.
 void print_estimate(const Study& study, const RunCost& cost, int seeds, int threads_of_rank);
 
 }  // namespace pkm

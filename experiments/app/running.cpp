@@ -18,7 +18,7 @@
 namespace pkm {
 
 SlowStepNotice announce_slow_step(const Session& session, const std::string& step) {
-  const double after = isatty(STDERR_FILENO) == 1 ? 1 : 10;  // s
+  const double after = isatty(STDERR_FILENO) == 1 ? 1 : 10;  // time [s] after which the step is announced
   return SlowStepNotice([&session, step] { std::cerr << session.program << ": " << step << std::endl; }, after);
 }
 
@@ -92,7 +92,7 @@ void print_run_end(const RunEnd& end, const Study& study, const std::string& fil
   const auto diagnosis = diagnose(outcome.contents, study.problem.get());
   if (!arguments.quiet || end.write_error) std::cout << summary_text(outcome.contents, study, diagnosis);
   if (!outcome.stopped.empty()) {
-    // Printed even when quiet, because the results are not final.
+    // This is printed even with --quiet, because the results are not final.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
     if (!end.write_error) std::cout << "; resume with: " << command_text(session, {"resume", file_argument(file)});
     std::cout << '\n';

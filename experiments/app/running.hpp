@@ -22,31 +22,32 @@ struct RunningArguments {
 void add_threads(CLI::App& command, int& threads);
 /// Declares --workers.
 void add_workers(CLI::App& command, int& workers);
-/// Starts the processes for the Python functions of a study, if it calls any.
-/// @param file  TOML file or study file; the Python functions are in its folder
+/// Starts the worker processes for the Python functions of a study, if it calls any.
+/// @param file  the TOML file or study file, in whose folder the Python functions are
 void start_python(const Study& study, const std::string& file, int workers, int threads);
 /// Declares --threads, --workers, --time and --quiet.
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 
-/// Number of threads of this MPI rank.
+/// Number of threads that this MPI rank uses.
 int threads_of(const RunningArguments& arguments);
 /// Measures the time of an evaluation, for the estimate before a run and the remaining time in progress reports.
 RunCost measured_cost(const Study& study, const Session& session);
 
-/// Converts the arguments; prints a warning if there are more threads than cores.
+/// Converts the arguments of the command to run options. Prints a warning if there are more threads than cores.
 RunOptions run_options(const RunningArguments& arguments, const Session& session);
-/// Shows progress on stderr, as a bar or as lines; nothing when quiet.
+/// The progress display on stderr: a bar on a terminal, lines elsewhere, nothing with --quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
-/// Outcome of a run, even if its study file could not be written at the end.
+/// Outcome of a run; also available if the study file could not be written at the end.
 struct RunEnd {
   RunOutcome outcome;
-  std::optional<std::string> write_error = {};  ///< message, if the file could not be written
+  /// The error message if the file could not be written; otherwise std::nullopt.
+  std::optional<std::string> write_error = {};
 };
-/// Calls `run`, and catches UnwrittenOutcome.
+/// Calls `run`, and converts the exception UnwrittenOutcome into an outcome with an error message.
 RunEnd execute_run(const std::function<RunOutcome()>& run);
 
-/// If the study found no feasible design, sets the exit code, and when quiet prints the diagnosis in one line on
+/// Sets the exit code if the study found no feasible design and, with --quiet, prints the diagnosis in one line on
 /// stderr.
 /// @param diagnosis  std::nullopt: the study found a feasible design
 void report_diagnosis(const std::optional<Diagnosis>& diagnosis, const RunningArguments& arguments, Session& session);

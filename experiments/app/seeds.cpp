@@ -19,7 +19,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxCompared = 4;  // maximum number of studies in the suggested report
+constexpr std::size_t kMaxCompared = 4;  // maximum number of study files in the suggested report command
 
 std::string seed_file(const std::string& output, std::uint64_t seed) {
   const std::filesystem::path path(output);
@@ -27,7 +27,7 @@ std::string seed_file(const std::string& output, std::uint64_t seed) {
       .string();
 }
 
-/// Adds the number of the current seed to progress reports.
+/// Progress display that adds the number of the current seed to the reports.
 class SeedProgress final : public Progress {
  public:
   SeedProgress(Progress& screen, int seeds) : screen_(screen), seeds_(seeds) {}
@@ -44,15 +44,16 @@ class SeedProgress final : public Progress {
   int seeds_, seed_ = 0;
 };
 
-/// Results of the seeds: one row each, and the values for the spread.
+/// Results of all seeds: one table row for each, and the values from which the spread is computed.
 struct SeedTable {
-  bool pareto;  ///< several objectives: the seeds are compared by their hypervolumes
+  bool pareto;  ///< true: there are several objectives, and the seeds are compared by their hypervolumes
   int feasible_seeds = 0;
   std::vector<Row> rows = {{"seed", pareto ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
-  std::string note = {};                    ///< note of the first seed that has one
-  std::optional<Diagnosis> diagnosis = {};  ///< diagnosis of the first seed that found no feasible design
-  std::vector<std::string> errors = {};     ///< exact volumes that contradict their certified bounds
+  std::string note = {};  ///< note of the first seed that has a note
+  /// Diagnosis of the first seed that found no feasible design; std::nullopt: all seeds found one.
+  std::optional<Diagnosis> diagnosis = {};
+  std::vector<std::string> errors = {};  ///< messages on exact volumes that contradict their certified bounds
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
     const FinalRecord final = contents.final.value_or(FinalRecord());
@@ -97,7 +98,7 @@ struct SeedTable {
   }
 };
 
-/// Throws if the file of a seed would overwrite a file that must not be overwritten.
+/// Throws ConfigError or StorageError if the study file of a seed would overwrite a file that must not be overwritten.
 void check_files(const std::vector<std::string>& files, const Study& study, const RunArguments& arguments) {
   for (const std::string& file : files) {
     check_outputs({file}, input_files(study), Existing::replaced);
@@ -113,7 +114,8 @@ void print_diagnosis(const SeedTable& table, const RunArguments& arguments, Sess
   report_diagnosis(table.diagnosis, arguments.common, session);
 }
 
-/// Prints the next command: a report, or after a stop the command that continues with the remaining seeds.
+/// Prints a suggestion for the next command: a report or, after a stop, the command that continues with the remaining
+/// seeds.
 void print_next_step(const std::string& output, std::uint64_t first, const std::vector<std::string>& files,
                      const RunArguments& arguments, const Session& session) {
   if (session.exit_code == kStoppedEarly) {
@@ -133,7 +135,7 @@ void print_next_step(const std::string& output, std::uint64_t first, const std::
 
 void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
                Session& session) {
-  const StopRequest listen;  // one object for all seeds, so that a signal between two of them is not lost
+  const StopRequest listen;  // one object for all seeds, so that a signal between the runs of two seeds is not lost
   const std::optional<double> time_limit = options.time_limit;  // limit of the total time of all seeds
   double seconds = 0;
   const std::uint64_t first = study.seed;
@@ -146,7 +148,8 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   SeedTable table{study.problem->objectives().size() > 1};
   const auto screen = make_progress(arguments.common);
   SeedProgress progress(*screen, arguments.seeds);
-  std::optional<std::string> write_error;  // why the results of a seed are not in its file
+  // The reason why the results of a seed are not in its file; std::nullopt: they are.
+  std::optional<std::string> write_error;
   for (std::size_t i = 0; i < files.size() && session.exit_code == kDone; ++i) {
     study.seed = first + i;
     progress.next();

@@ -13,14 +13,15 @@
 namespace pkm {
 namespace {
 
-/// Table of about ten generations of each stage, equally spaced.
+/// Text of a table with about ten equally spaced generations of each stage.
 std::string history(const StudyContents& contents) {
   std::string text;
   for (const StageRecord& stage : contents.stages) {
     const auto& list = stage.generations;
     if (list.size() == 0 || contents.problem.objectives.empty()) continue;
     const bool front = stage.front && stage.front->hypervolume.size() == list.size();
-    if (contents.problem.objectives.size() > 1 && !front) continue;  // multistart runs on a front have their own table
+    // Multistart runs that start from a front have a table of their own.
+    if (contents.problem.objectives.size() > 1 && !front) continue;
     std::vector<std::vector<std::string>> rows = {{"generation", "evaluations",
                                                    front ? "hypervolume" : contents.problem.objectives[0].name,
                                                    "feasible", "diversity", "time"}};
@@ -60,7 +61,8 @@ std::string describe_state(StudyContents& contents, const ShowArguments& argumen
   return "study interrupted; resume with: " + command_text(session, {"resume", file_argument(arguments.file)}) + '\n';
 }
 
-/// If this program cannot read the study's text, published references and some reasons of a diagnosis are omitted.
+/// Prints the results of a study. If this program cannot read the study's text, published references and some reasons
+/// of a diagnosis are omitted.
 void show(const ShowArguments& arguments, const Session& session) {
   expect_study_file(arguments.file, "check", session);
   StudyContents contents = read_study(arguments.file);

@@ -1,4 +1,5 @@
-// `pkmopt simulate`: forward dynamics, i.e. the motion of a mechanism under given actuator forces and a given wrench.
+// `pkmopt simulate`: computes the motion of a mechanism under given actuator forces and a given wrench (forward
+// dynamics).
 
 #include "engine/config/assignments.hpp"
 #include "engine/core/unit.hpp"

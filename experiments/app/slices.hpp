@@ -11,11 +11,11 @@
 
 namespace pkm {
 
-/// Fixes the coordinates named by --fixed at their values. Those that no sweep of the mechanism keeps fixed become
-/// slices. If the sweep of the plan can fix the others, the coordinates that the plan has fixed stay fixed. Otherwise
-/// another sweep is selected, and fixed coordinates, method and home pose are reset, because they belong to other axes.
-/// Throws ConfigError.
-/// @param lists  of --fixed: name=value
+/// Fixes the coordinates that --fixed names at the given values. A coordinate that no sweep of the mechanism keeps
+/// fixed becomes a slice. If the plan's sweep can fix the other named coordinates, the coordinates that the plan
+/// already fixes stay fixed. Otherwise another sweep is selected, and the fixed coordinates, the method and the home
+/// pose of the plan are reset, because they belong to other axes. Throws ConfigError.
+/// @param lists  values of --fixed, lists of NAME=VALUE
 /// @return the slices
 Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists);
 
@@ -23,13 +23,14 @@ Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, con
 void add_cuts(Slices& slices, const WorkspacePlan& plan, const MechanismInfo& info,
               const std::vector<std::string>& lists);
 
-/// The swept coordinates that are not sliced.
+/// Those swept coordinates of the plan that are not sliced.
 Axes swept_axes(const WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
 
 /// Reduces the range of each sliced coordinate to one thin cell. If no box is specified, it encloses the reachable
 /// poses. Throws ConfigError.
 /// @param plan          a plan with voxels
-/// @param ranges_given  for each swept coordinate, see set_grid(); becomes false for slices
+/// @param ranges_given  for each swept coordinate, the value returned by set_grid(); set to false for sliced
+/// coordinates
 void apply_slices(WorkspacePlan& plan, const Target& target, const Slices& slices, std::array<bool, 3>& ranges_given);
 
 }  // namespace pkm

@@ -11,12 +11,14 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxStarts = 12, kMaxStartsOnFront = 20;  // maximum numbers of rows of the tables
-/// Relative to the largest sensitivity of the same unit. Smaller sensitivities are regarded as zero: they are due to
-/// the solver's incomplete convergence.
+// Maximum number of rows of the table of starts, without and with a front.
+constexpr std::size_t kMaxStarts = 12, kMaxStartsOnFront = 20;
+/// Sensitivities that are smaller than this, relative to the largest one of the same unit, are regarded as zero: they
+/// are due to the solver's incomplete convergence.
 constexpr double kZeroSensitivity = 1e-6;
 
-/// Cells with the objective of a start at its first and last design; if there are several objectives, a cell for each.
+/// Table cells with the objective of a start at its first and at its last design: two cells or, with several
+/// objectives, one cell for each of them.
 Row objective_cells(const StageRecord& stage, const StartOutcome& start) {
   const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);
   const auto from = stage.table.objective_row(first), to = stage.table.objective_row(end);
@@ -37,7 +39,7 @@ Row objective_cells(const StageRecord& stage, const StartOutcome& start) {
 /// Groups records by unit, in the order in which the units appear, and sorts each group by decreasing |value(record)|.
 template <class Record, class Value>
 std::vector<Record> sorted_within_units(std::vector<Record> records, const Value& value) {
-  std::map<std::string, std::size_t> group;  // index of the group of each unit
+  std::map<std::string, std::size_t> group;  // for each unit, the index of its group
   for (const Record& r : records) group.try_emplace(r.unit, group.size());
   const auto key = [&](const Record& r) { return std::pair(group[r.unit], -std::fabs(value(r))); };
   std::ranges::stable_sort(records, std::less(), key);
@@ -46,8 +48,9 @@ std::vector<Record> sorted_within_units(std::vector<Record> records, const Value
 
 double influence(const SensitivityRecord& s) { return std::fmax(std::fabs(s.as_built), std::fabs(s.reoptimised)); }
 
-/// Removes parameters without influence, and sets derivatives to 0 that are negligible compared with the largest one of
-/// the same unit: derivatives that vanish at the exact optimum are not exactly 0 where the solver stopped.
+/// Removes parameters without influence, and sets those derivatives to 0 that are negligible compared with the largest
+/// one of the same unit. Derivatives that vanish at the exact optimum are not exactly 0 at the design where the solver
+/// stopped.
 std::vector<SensitivityRecord> without_residuals(std::vector<SensitivityRecord> all) {
   std::erase_if(all, [](const SensitivityRecord& s) { return influence(s) == 0; });
   std::map<std::string, double> largest;

@@ -10,21 +10,21 @@
 
 namespace pkm {
 
-/// Table of the multistart runs of a stage, best final design first, with a number for each distinct local optimum; ""
-/// if the stage has none.
+/// Text of a table of the multistart runs of a stage, best final design first, with a number for each different local
+/// optimum; "" if the stage has no such runs.
 std::string starts_text(const ProblemRecord& problem, const StageRecord& stage);
-/// First-order optimality, multipliers and sensitivities of a stage's best design; "" if the stage has not computed
-/// them.
+/// Text on first-order optimality, multipliers and sensitivities of a stage's best design; "" if the stage did not
+/// compute them.
 std::string optimality_text(const ProblemRecord& problem, const StageRecord& stage);
-/// Pareto front of a stage; "" if it has none. Points are numbered from 1, as in `pkmopt evaluate --front`.
+/// Text on the Pareto front of a stage; "" if it has none. Points are numbered from 1, as in `pkmopt evaluate --front`.
 std::string front_text(const ProblemRecord& problem, const StageRecord& stage);
 
 Json starts_json(const ProblemRecord& problem, const StageRecord& stage);
 Json optimality_json(const OptimalityRecord& record);
-/// All points of the front, and the quality indicators after each generation.
+/// JSON with all points of the front, and its quality indicators after each generation.
 Json front_json(const ProblemRecord& problem, const StageRecord& stage);
 
-/// The design, objectives, constraints and other values of an evaluation, by name.
+/// JSON with the design, objectives, constraints and other values of an evaluation, by name.
 Json row_json(const ProblemRecord& problem, const EvaluationTable& table, std::size_t row);
 
 }  // namespace pkm

@@ -21,10 +21,10 @@ using generic::axis_matrix, generic::eigen;
 
 const std::vector<std::string> kComponents = {"x", "y", "z", "about x", "about y", "about z"};
 
-/// Eigenvalues, in ascending order.
+/// Eigenvalues of a symmetric matrix, in ascending order.
 VectorXd eigenvalues(const MatrixXd& A) { return Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues(); }
 
-/// Compliance C of the platform in the basis S, whose columns are the wrenches that the mechanism can balance.
+/// Compliance matrix C of the platform. Its basis are the columns of S: the wrenches that the mechanism can balance.
 struct Elastic {
   MatrixXd S, C;
 
@@ -50,7 +50,8 @@ std::string least_stiffness(const MatrixXd& C, const char* unit, const char* key
   return number(1 / greatest, unit);
 }
 
-/// Whether no direction is rigid. The matrix is scaled, so that the result does not depend on units.
+/// Returns true if no direction is rigid, i.e. if C is not singular. C is scaled, so that the result does not depend on
+/// units.
 bool is_invertible(const MatrixXd& C) {
   if (C.diagonal().minCoeff() <= 0) return false;
   const VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
@@ -66,16 +67,16 @@ std::vector<double> natural_frequencies(const Target& target, const std::string&
   const MotionState<double> at_rest{pose, AxisVector<double>(pose.size())};
   PoseDynamics<double> found;
   dynamics->equations(std::span<const double>(target.parameters), mode, {&at_rest, 1}, {&found, 1});
-  // wrenches of unit generalised forces; the mechanism must be able to balance all of them
+  // The wrenches that correspond to unit generalised forces. The mechanism must be able to balance all of them.
   const MatrixXd wrenches = T.completeOrthogonalDecomposition().pseudoInverse().transpose(),
                  carried = elastic.S.transpose() * wrenches;
   if ((elastic.S * carried - wrenches).norm() > 1e-9 * wrenches.norm()) return {};
   const Eigen::LLT<MatrixXd> inertia(eigen(found.M_X));
   if (inertia.info() != Eigen::Success) return {};
-  // C_x M x'' + x = 0: the eigenvalues of L^T C_x L are 1 / omega^2
+  // The eigenvalues of L^T C_x L are 1 / omega^2, because free vibrations satisfy C_x M x'' + x = 0.
   const MatrixXd L = inertia.matrixL(), C_x = carried.transpose() * elastic.C * carried;
   const VectorXd squares = eigenvalues(L.transpose() * C_x * L);
-  constexpr double kRigid = 1e-13;  // relative to the largest: smaller eigenvalues are rounding errors
+  constexpr double kRigid = 1e-13;  // smaller eigenvalues, relative to the largest one, are rounding errors
   std::vector<double> frequencies;
   for (const double square : squares)
     if (square > kRigid * squares[squares.size() - 1])

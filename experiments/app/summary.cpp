@@ -32,7 +32,7 @@ std::vector<Row> table(const StudyContents& contents, const Study& study) {
   return rows;
 }
 
-/// The most violated constraint of a design; "" if all are satisfied.
+/// Text that states the most violated constraint of a design and its margin; "" if all are satisfied.
 std::string violation(const StudyContents& contents, const DesignRecord& best) {
   const auto worst = most_violated(best.margins);
   if (!worst) return "";
@@ -40,7 +40,7 @@ std::string violation(const StudyContents& contents, const DesignRecord& best) {
          contents.problem.margins[*worst].unit;
 }
 
-/// Why the rounded design should not be used, as the end of a sentence; "" if it can be used.
+/// The reason why the rounded design should not be used, as the end of a sentence; "" if it can be used.
 std::string rounded_remarks(const StudyContents& contents, const DesignRecord& rounded) {
   std::vector<std::string> remarks;
   for (const std::string& remark : {rounded.reason, violation(contents, rounded)})
@@ -91,7 +91,7 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
     out << "stage " << i + 1 << ": " << stage.optimiser << ", ";
-    const bool has_starts =  // also if the stage was interrupted before the first start ended
+    const bool has_starts =  // true also if the stage was interrupted before its first start had ended
         !stage.starts.empty() ||
         (i < study.stages.size() && study.stages[i].entry->capabilities(study.stages[i].options).starts);
     if (!has_starts)

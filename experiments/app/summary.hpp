@@ -12,13 +12,13 @@
 namespace pkm {
 
 /// Stages and time, the best design compared with the baseline and published results, active constraints.
-/// @param diagnosis  added at the end; std::nullopt: the study found something
+/// @param diagnosis  printed at the end; std::nullopt: the study found a feasible design
 std::string summary_text(const StudyContents& contents, const Study& study, const std::optional<Diagnosis>& diagnosis);
 
-/// The reasons of a diagnosis, one line each.
+/// Text of the reasons of a diagnosis, one line for each.
 std::string reasons_text(const std::vector<Reason>& reasons);
 
-/// The object of `pkmopt show --json`.
+/// The JSON object that `pkmopt show --json` prints.
 Json summary_json(const StudyContents& contents, const std::optional<Diagnosis>& diagnosis, const Failures& failures);
 
 }  // namespace pkm

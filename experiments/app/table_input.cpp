@@ -16,7 +16,7 @@ void expect_table(const TableJob& job, const std::string& option) {
 
 CsvColumns read_table(const TableJob& job, const std::vector<Assignable>& known, bool needs_all,
                       const std::string& program) {
-  constexpr std::size_t kLargestTable = std::size_t{1} << 30;  // bytes
+  constexpr std::size_t kLargestTable = std::size_t{1} << 30;  // maximum size of a table file in bytes
   const std::string names = join(names_of(known));
   if (!job.csv.empty()) check_outputs({job.csv}, {job.input}, if_forced(job.force));
   const std::string text = read_text_file(job.input, "a table (CSV) with the columns " + names, kLargestTable);

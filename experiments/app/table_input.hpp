@@ -12,18 +12,18 @@
 
 namespace pkm {
 
-/// A CSV file to read, and the file for the results.
+/// The CSV file that a command reads, and the file that it writes.
 struct TableJob : TableOutput {
   std::string input;
 };
 
-/// Throws ConfigError if an output file is given without an input table. @param option  option of the input:
-/// "--designs"
+/// Throws ConfigError if a file for the results is given without an input table.
+/// @param option  name of the option that gives the input table: "--designs" or "--poses"
 void expect_table(const TableJob& job, const std::string& option);
 
-/// Reads the table. Prints a note that names columns which are not read. Throws ConfigError if it has no rows or none
-/// of the known columns.
-/// @param needs_all  every known column is required
+/// Reads the table, and prints a note with the names of columns that are not used. Throws ConfigError if it has no rows
+/// or none of the known columns.
+/// @param needs_all  true: every known column must be present
 CsvColumns read_table(const TableJob& job, const std::vector<Assignable>& known, bool needs_all,
                       const std::string& program);
 
@@ -44,8 +44,8 @@ std::vector<Result> computed_rows(std::size_t rows, int threads, const Compute& 
   return results;
 }
 
-/// Outputs the results: with --json one object per line, otherwise as CSV, and with -o into a file.
-/// @param summary  printed if the table is written to a file: "2 of 3 designs are feasible"
+/// Outputs the results: with --json as one object per line, otherwise as CSV; with -o into a file.
+/// @param summary  text that is printed if the results are written to a file: "2 of 3 designs are feasible"
 void report_table(const TableJob& job, const CsvTable& table, std::vector<Json> objects, const std::string& summary,
                   Printout& out);
 

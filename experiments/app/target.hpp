@@ -16,24 +16,25 @@ namespace pkm {
 
 struct DesignArguments {
   std::string target;            ///< name of a mechanism, or path of a mechanism file or a study
-  std::vector<std::string> set;  ///< lists of name=value
-  StudyChanges changes;          ///< limits, and for some commands cells
-  std::string masses;            ///< mass model; "": that of the study, otherwise the mechanism's default
-  std::string from;              ///< a study file, instead of `target`
-  DesignChoice choice;           ///< which design of the study file
+  std::vector<std::string> set;  ///< values of --set, lists of NAME=VALUE
+  StudyChanges changes;          ///< changes to limits and, for some commands, to numbers of cells
+  std::string masses;   ///< name of the mass model; "": that of the study or, without a study, the mechanism's default
+  std::string from;     ///< name of a study file that contains the design, instead of `target`; "": none
+  DesignChoice choice;  ///< selects the design of the study file
   bool json = false;
 };
 
 /// Declares --baseline, --generation, --individual, --front and --stage.
 void add_choice_options(CLI::App& command, DesignChoice& choice);
-/// The first of these options that is given; nullptr if none is.
+/// Name of the first of these options that the command line gives; nullptr if it gives none.
 const char* first_given_option(const DesignChoice& choice);
 
-/// Declares a list option such as --at: name=value, separated by commas, repeatable.
+/// Declares an option such as --at, whose value is a list of NAME=VALUE, separated by commas. The option can be
+/// repeated.
 CLI::Option* add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
                              const std::string& meaning);
 
-/// Declares --cells: one number for all axes, or NAME=CELLS.
+/// Declares --cells, whose value is one number for all axes, or NAME=CELLS for single ones.
 void add_cells_option(CLI::App& command, std::vector<std::string>& lists, const std::string& meaning);
 /// Declares --limit.
 void add_limit_option(CLI::App& command, std::vector<std::string>& lists);
@@ -41,8 +42,8 @@ void add_limit_option(CLI::App& command, std::vector<std::string>& lists);
 void add_change_options(CLI::App& command, StudyChanges& changes);
 
 struct ModeArguments {
-  std::string mode;    ///< working mode; "": the default
-  std::string branch;  ///< required assembly branch (a sign); "": that of the mode
+  std::string mode;    ///< name of the working mode; "": the default mode
+  std::string branch;  ///< sign of the required assembly branch; "": that of the mode
 };
 
 /// Declares --mode and --branch.
@@ -50,14 +51,15 @@ void add_mode_options(CLI::App& command, ModeArguments& arguments);
 /// The name of the selected working mode, including the branch. Throws ConfigError if the mechanism does not have it.
 std::string parse_mode(const MechanismInfo& info, const ModeArguments& arguments);
 
-/// A pose, and the rates of the coordinates there.
+/// Values of --at, --velocity and --acceleration: a pose, and the first and second time derivatives of its coordinates.
 struct MotionArguments : ModeArguments {
   std::vector<std::string> at, velocity, acceleration;
 };
 /// Parses the arguments. Rates that are not given are 0; inputs have their default values.
 MotionSample parse_motion(const Mechanism& mechanism, const MotionArguments& arguments);
 
-/// A capability that a command needs of the mechanism. Throws ConfigError if the mechanism does not have it (null).
+/// Returns a capability of the mechanism that a command needs. Throws ConfigError if the mechanism does not have it
+/// (null).
 /// @param what  name of the capability, for the message
 template <class Capability>
 const Capability& require_capability(const Capability* capability, const std::string& command, const std::string& what,
@@ -74,9 +76,9 @@ double parse_gap(const std::string& text, const std::string& option);
 /// mechanism, the default values. --set overrides them.
 struct Target : ChosenDesign {
   std::shared_ptr<const Mechanism> mechanism;
-  std::optional<Study> study;      ///< std::nullopt: a mechanism without a study
-  LimitSpec limits;                ///< limits of the study; without a study, no limits
-  std::vector<std::string> files;  ///< files that were read, which no output may overwrite
+  std::optional<Study> study;      ///< the study that gives the design; std::nullopt: a mechanism without a study
+  LimitSpec limits;                ///< limits of the study; if there is no study, no limits are set
+  std::vector<std::string> files;  ///< names of the files that were read, which no output may overwrite
 
   const MechanismInfo& info() const { return mechanism->info(); }
   /// The study's plan of the workspace analysis or, without a study, columns over the whole reach of the design; in
@@ -84,7 +86,7 @@ struct Target : ChosenDesign {
   WorkspacePlan plan() const;
 };
 
-/// A table that a command writes on request.
+/// The file that a command writes a table to, if the option --csv is given.
 struct TableOutput {
   std::string csv;
   bool force = false;
@@ -93,12 +95,14 @@ struct TableOutput {
 void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning);
 void write_table(const TableOutput& output, const CsvTable& table);
 
-/// Whether a word of the command line is meant as a file name: it ends in ".toml", or such a file exists.
+/// Returns true if a word of the command line is meant as a file name: it ends in ".toml", or a file of this name
+/// exists.
 bool looks_like_file(const std::string& name);
-/// The built-in mechanism of this name, or the mechanism of this file. Throws ConfigError.
+/// Finds a built-in mechanism by its name, or reads a mechanism file. Throws ConfigError.
 std::shared_ptr<const Mechanism> find_mechanism(const Catalogues& catalogues, const std::string& name);
 
-/// The [[motion]] of the study with this name, otherwise the motion of the file with this name. Throws ConfigError.
+/// Finds the [[motion]] of the study that has this name; if there is none, reads the motion file of this name. Throws
+/// ConfigError.
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name);
 
 /// Finds the design. Throws ConfigError if there is no such mechanism, study or design, or if the parameters do not
@@ -108,7 +112,7 @@ Target find_target(const Session& session, const DesignArguments& arguments);
 /// Declares the arguments that select a design.
 /// @param arguments  receives the parsed values; must outlive `command`
 void add_design_arguments(CLI::App& command, DesignArguments& arguments);
-/// Declares those of them that change the design, and --json.
+/// Declares those of these arguments that change the design, and --json.
 void add_design_options(CLI::App& command, DesignArguments& arguments);
 
 /// Adds a subcommand that analyses one design and prints the results.

@@ -22,7 +22,8 @@ std::string styled(Text style, Text text) {
   return "\x1b[" + std::string(style) + 'm' + std::string(text) + "\x1b[0m";
 }
 
-/// A word with which a line begins, followed by a colon; the style of this label and of the rest of the line.
+/// A word at the beginning of a line that is followed by a colon, the style of this label, and the style of the rest of
+/// the line.
 struct Label {
   Text word, style, rest_style;
 };
@@ -34,7 +35,7 @@ constexpr Label kLabels[] = {{"active", kYellow, kYellow},
                              {"next", kFaint, kBold},
                              {"stopped; resume with", kYellow, kBold}};
 
-/// The line with its label coloured; "" if it has no label.
+/// The line with its label coloured; "" if the line has no label.
 std::string coloured_label(Text line) {
   for (const Label& label : kLabels)
     if (line.starts_with(label.word) && line.substr(label.word.size()).starts_with(": ")) {
@@ -49,7 +50,7 @@ struct TableCell {
   Text gap, text;
 };
 
-/// The cells of a line: they are separated by at least two spaces.
+/// Divides a line into cells, which are separated by at least two spaces.
 std::vector<TableCell> cells_of(Text line) {
   std::vector<TableCell> cells;
   while (!line.empty()) {

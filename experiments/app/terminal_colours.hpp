@@ -11,7 +11,7 @@ namespace pkm {
 /// @return true if the file descriptor is a terminal with colours and NO_COLOR (https://no-color.org) is not set
 bool supports_colours(int descriptor);
 
-/// Adds colours to complete lines. Without the escape sequences the result is the input.
+/// Adds colours to complete lines. If the escape sequences are removed from the result, the input is obtained.
 /// @param program  name of the program, with which its error messages begin
 std::string coloured(std::string_view lines, std::string_view program);
 

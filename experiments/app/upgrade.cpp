@@ -21,7 +21,8 @@ void upgrade(const UpgradeArguments& arguments, Session& session) {
     std::string name;
     UpgradedText upgraded;
   };
-  std::vector<File> files;  // all files are read before the first one is written, so that an error changes nothing
+  // All files are read before the first one is written, so that an error in one of them leaves all files unchanged.
+  std::vector<File> files;
   for (const std::string& name : arguments.files)
     files.push_back({name, upgraded_file(read_text_file(name, "a study or a mechanism in TOML"), name)});
   for (const auto& [name, upgraded] : files) {

@@ -5,10 +5,11 @@
 
 namespace pkm {
 
-std::string program_version();   ///< "0.1.0"
-std::string program_revision();  ///< "f6d30b4a1c22", "f6d30b4a1c22+changes", or "unknown" outside git
+std::string program_version();  ///< version, for example "0.1.0"
+/// Git revision: "f6d30b4a1c22", "f6d30b4a1c22+changes", or "unknown" outside of a git repository.
+std::string program_revision();
 
-/// "pkmopt 0.1.0 (f6d30b4a1c22)"
+/// Name, version and revision of the program: "pkmopt 0.1.0 (f6d30b4a1c22)".
 inline std::string program_words() { return "pkmopt " + program_version() + " (" + program_revision() + ")"; }
 
 }  // namespace pkm

@@ -34,9 +34,9 @@ struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, Works
   std::string csv, html, svg, png;
   int threads = 0;
 
-  /// The option that requests a picture; "": none.
+  /// Name of the option that requests a picture; "" if none does.
   std::string picture() const { return !svg.empty() ? "--svg" : !png.empty() ? "--png" : ""; }
-  /// The names of the pictures: one for the outline or a single field, otherwise one for each field.
+  /// Names of the picture files: a single one for the outline or for one field, otherwise one for each field.
   std::vector<std::string> pictures(const std::string& file) const {
     if (file.empty() || fields.size() < 2) return file.empty() ? std::vector<std::string>() : std::vector{file};
     const std::filesystem::path path = file;
@@ -47,7 +47,7 @@ struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, Works
   }
 };
 
-/// Whether a feasible cell lies at an end of a range that the user has given.
+/// Returns true if a feasible cell lies at an end of a range that the user has given.
 bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges_given) {
   const VoxelGrid grid = workspace.grid();
   for (const std::size_t cell : workspace.feasible_cells()) {
@@ -60,7 +60,7 @@ bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges
   return false;
 }
 
-/// Throws ConfigError if a requested output is not available for these swept coordinates.
+/// Throws ConfigError if an output that the user requests is not available for these swept coordinates.
 void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
   const std::vector<std::string> names = names_of(swept);
   if (const std::string option = arguments.picture(); !option.empty() && names.size() != 2)
@@ -70,7 +70,8 @@ void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
   expect_surface(arguments, names);
 }
 
-/// The fields of exact errors at feasible poses, if one of them is to be drawn: they take longer than all others.
+/// The fields of exact errors at feasible poses; empty unless one of them is to be drawn, because they take longer than
+/// all other fields.
 std::vector<WorkspaceField> exact_fields(const Target& target, const WorkspaceArguments& arguments,
                                          const std::vector<Pose<double>>& poses) {
   const auto compute = [&](const std::vector<Pose<double>>& at) {
@@ -95,7 +96,7 @@ void add_exact_fields(const Target& target, const WorkspaceArguments& arguments,
   }
 }
 
-/// Throws ConfigError if a field cannot be drawn.
+/// Throws ConfigError if a field that the user names cannot be drawn.
 void expect_drawn_fields(const Target& target, const WorkspaceArguments& arguments, const std::string& mode) {
   if (arguments.fields.empty()) return;
   const SourceLocation place{"", 0, "--field"};
@@ -119,8 +120,8 @@ void expect_drawn_fields(const Target& target, const WorkspaceArguments& argumen
   }
 }
 
-/// Draws a workspace over two coordinates, one picture for each field or one of the outline only, and adds its area to
-/// the output.
+/// Draws a workspace over two coordinates: one picture for each field or, if no field is named, one of the outline.
+/// Adds the area of the workspace to the output.
 std::vector<Picture> slice_pictures(const Target& target, const WorkspaceFields& workspace,
                                     const WorkspaceArguments& arguments, const std::string& mode, Printout& out) {
   const SliceMesh mesh = slice_mesh(workspace, PoseMargin(*target.mechanism, target.parameters, target.limits));
@@ -208,7 +209,8 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
       json["fields"][field.name]["unavailable"] = *undefined;
       rows.push_back({field.name, "none", "", *undefined});
     }
-    const std::string unit = field.unit == "mixed" ? "1" : field.unit;  // the units are in the meaning
+    // Fields of mixed units state these in their meaning.
+    const std::string unit = field.unit == "mixed" ? "1" : field.unit;
     if (range && field.name != "feasible")
       rows.push_back({field.name, position(range->least, unit), position(range->greatest, unit), field.meaning});
   }
@@ -222,7 +224,8 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
   for (const std::string& file : {arguments.svg, arguments.png})
     for (const std::string& picture : arguments.pictures(file)) files.push_back(picture);
   const Existing existing = if_forced(arguments.force);
-  if (!arguments.html.empty()) page_assets();  // throws now, before any evaluation, if this build has no page
+  // Throws here, before any evaluation, if this build does not contain the page.
+  if (!arguments.html.empty()) page_assets();
   with_team(arguments.threads, [&] {
     WorkspacePlan plan = target.plan();
     Slices slices;
