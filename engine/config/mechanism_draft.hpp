@@ -50,7 +50,7 @@ struct NamedLimb {
   /// joint.
   std::size_t joint = 0;
   std::size_t joint_count = 1;  ///< number of joints; greater than 1 only for limbs with drive = "formula"
-  /// Axis of the crank's pivot, or direction of the slide; std::nullopt for other drives.
+  /// Axis of the crank's pivot, or direction in which the slider moves; std::nullopt for other drives.
   std::optional<limbs::Vector3> axis = {};
   /// Common direction of the axes of its joints; std::nullopt unless they are parallel revolute joints.
   std::optional<limbs::Vector3> revolute = {};
@@ -68,8 +68,8 @@ struct NamedLimb {
   };
   /// Cross-sections of a single rod or of the leg, of the crank, and of the slider. std::nullopt: the part is rigid.
   std::optional<Section> rod_section = {}, crank_section = {}, slider_section = {};
-  /// Signed distance [m], along the slide, from the guide in which the slider is clamped to the slider's end at the
-  /// rod; std::nullopt: the slider is rigid.
+  /// Signed distance [m], in the slider's direction, from the guide in which the slider is clamped to the slider's end
+  /// at the rod; std::nullopt: the slider is rigid.
   std::optional<limbs::Term> slider_length = {};
   /// Axis of the universal joints at both ends of the rod or leg, fixed to the part on the drive's side of each joint.
   std::optional<limbs::Vector3> universal = {};
@@ -149,7 +149,7 @@ void read_inputs(const ConfigValue& root, MechanismDraft& draft);
 /// Reads the tables [[quantity]] of the file and, if it is not null, of a study. Their formulas may also use
 /// "NAME_rate", the time derivative of a coordinate, an input or a quantity.
 void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
-/// The force that a limb transmits to the platform, along its rod or leg, or along the slide if there is no rod.
+/// The force that a limb transmits to the platform, along its rod or leg; without a rod, along the slider's direction.
 struct LimbForce {
   limbs::Vector3 force;  ///< unit vector in the direction of the force
   limbs::Term input;     ///< input transmission index of the limb

@@ -10,8 +10,9 @@
 //   a pair of rods        two parallel rods with half the mass each
 //   `links`, `across`     revolute joints with parallel axes: forces, and couples normal to the axis. If the platform
 //                         rotates about other axes, the joint at the platform is free about these, too
-//   a leg's slide         all forces and couples, at the middle of the leg; the drive exerts the force along it
-//   a slide on its rail   not a body: the drive force includes the force that accelerates the mass of the slide
+//   a leg                 in addition a prismatic joint at its middle: all forces and couples; the drive exerts the
+//                         force along it
+//   a slider on its rail  not a body: the drive force includes the force that accelerates the mass of the slider
 //   [[joint]]             a revolute joint of two bodies, or a driven prismatic or revolute joint
 
 #include <algorithm>
@@ -213,7 +214,7 @@ class JointReader {
       } else {
         joints_.push_back(limb_joint(limb, limb.name + ".S" + number, near, outer, {}, last.line));
         joints_.back().drive = drive;
-        drive.slide = {};  // count the mass of the slide only once for both rods
+        drive.slide = {};  // counts the mass of the slider only once for both rods
       }
       make_universal(limb, far - near, outer, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = held_beam(*section, near, far, true);
@@ -345,8 +346,8 @@ class JointReader {
   generic::Model& model_;
   std::vector<SolidNodes> solids_;
   std::vector<JointNodes> joints_;
-  std::map<std::string, std::vector<std::size_t>>
-      made_of_;  ///< for each body of the model, by its name, the indices of the solids that have its mass
+  /// For each body of the model, by its name, the indices of the solids that have its mass.
+  std::map<std::string, std::vector<std::size_t>> made_of_;
 };
 
 }  // namespace

@@ -32,9 +32,11 @@ struct LimbCopy {
 
 /// A limb with its inverse kinematics in closed form, for the drive that its table selects.
 struct DrivenLimb : limbs::Limb {
-  std::string form;                 ///< text that describes the closed form of the joint coordinate
-  std::optional<limbs::Vector3> e;  ///< direction of the slide, or axis of the crank; std::nullopt for a telescopic leg
-  /// Maximum distance of B from A or from the slide's axis; std::nullopt: unlimited.
+  std::string form;  ///< text that describes the closed form of the joint coordinate
+  /// Direction of the slider, or axis of the crank; std::nullopt for a telescopic leg.
+  std::optional<limbs::Vector3> e;
+  /// Maximum distance of B from A or from the line on which the slider moves; std::nullopt if lengths of parts do
+  /// not limit it.
   std::optional<limbs::Term> max_distance{};
 };
 
@@ -50,7 +52,7 @@ std::vector<LimbPart> read_parts(const LimbCopy& copy, const limbs::Ends& at, co
 /// Adds the links of a limb, which are drawn and tested for clearance, if its table has the key `radius`.
 void add_limb_links(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 /// Adds the ranges of x, y, z to which the limb's reach restricts the origin of the platform's frame: a box around A,
-/// or around the rail.
+/// or around the rail. If the reach is unknown, they are std::nullopt.
 void add_reach(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 
 /// Reads a [[limb]] with drive = "formula", whose joint coordinates are formulas of the pose.

@@ -1,5 +1,5 @@
-// Transmission indices of mechanisms in which each limb acts on the platform by a single force: cranks or slides with
-// rods, telescopes, and slides that carry the platform.
+// Transmission indices of mechanisms in which each limb acts on the platform by a single force: cranks or sliders with
+// rods, telescopic legs, and sliders that carry the platform.
 //
 // Limb i transmits a force along the unit vector f_i to the platform's joint B_i. The velocity of B_i is D_i x', with
 // the rates x' of the coordinates, and row i of the matrix A is the power of a unit force, f_i . D_i.
