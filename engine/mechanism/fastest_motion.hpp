@@ -70,7 +70,7 @@ struct FastestMove {
   /// Time-optimal speed profile, with FastestLaw::optimal; otherwise null.
   std::shared_ptr<const SpeedProfile> profile = {};
   double factor = 1;           ///< with FastestLaw::own: squared ratio of the speeds to those of the given motion
-  MotionSample limiting = {};  ///< with FastestLaw::own: the sample that limits the factor
+  MotionSample limiting = {};  ///< with FastestLaw::own: the sample of the motion that limits `factor`
   Violation limit = {};        ///< with FastestLaw::own: the limit that is active at `limiting`
 };
 

@@ -73,7 +73,7 @@ struct MechanismInfo {
   std::string title;   ///< title, one line
   std::string source;  ///< publication that describes the mechanism
   std::vector<Parameter> parameters;
-  std::vector<AxisInfo> coordinates;  ///< pose coordinates, translations and rotations; 1 to kMaxCoordinates
+  std::vector<AxisInfo> coordinates;  ///< coordinates of a pose, translations and rotations; 1 to kMaxCoordinates
   std::vector<AxisInfo> joints;       ///< actuated joints, 1 to kMaxJoints
   std::vector<std::string> modes;     ///< working modes; the first is the default
   std::vector<std::string> branches;  ///< signs that the name of a mode may add after a "/"; the first is the default
@@ -95,7 +95,7 @@ class Mechanism {
   /// Checks that the parameters describe a mechanism. By default, each parameter has to be within its range.
   /// @return the reason if they do not; empty if they do
   virtual Unsupported refuse(std::span<const double> parameters) const;
-  /// Inverse kinematics: joint coordinates, Jacobian, conditioning and named margins.
+  /// Computes the inverse kinematics of a pose: joint coordinates, Jacobian, conditioning and named margins.
   /// @param mode  one of MechanismInfo::modes
   virtual PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
                              const LimitSpec& limits) const = 0;

@@ -15,7 +15,7 @@
 
 namespace pkm {
 
-/// All points and directions are in the base frame, with the mechanism at its reference pose. SI units.
+/// A multibody system. All points and directions are in the base frame, with the mechanism at its reference pose.
 struct MultibodyModel {
   /// A capsule (a cylinder with hemispherical ends) that represents a part in drawings.
   struct Shape {
@@ -32,7 +32,7 @@ struct MultibodyModel {
   };
   enum class JointType { fixed, prismatic, revolute, universal, ball };
   struct Drive {
-    std::size_t joint;                             ///< index among MechanismInfo::joints
+    std::size_t joint;                             ///< index of the driven joint in MechanismInfo::joints
     double position;                               ///< position of the joint at the reference pose [m or rad]
     std::optional<std::array<double, 2>> range{};  ///< range of the joint position [m or rad]; std::nullopt: not given
     std::optional<double> peak_force{};  ///< maximum force or torque of the drive [N or N m]; std::nullopt: not given

@@ -17,7 +17,8 @@ namespace pkm {
 /// Thresholds of the pose-level constraints, in the order of MechanismInfo::limits. A limit that is neither given nor
 /// derived keeps its inactive value.
 struct LimitSpec {
-  std::vector<std::optional<double>> given;  ///< threshold of each limit that the study sets; std::nullopt: not set
+  /// For each limit, the threshold that the study sets; std::nullopt: not set.
+  std::vector<std::optional<double>> given;
   /// For each limit, true if the mechanism's formula computes the threshold from the design's parameters.
   std::vector<bool> derived;
   Obstacles obstacles = {};  ///< obstacles to which a clearance limit refers, in addition to links

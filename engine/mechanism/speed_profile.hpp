@@ -31,8 +31,8 @@ struct BindingLimit {
 };
 
 struct SpeedProfile {
-  std::vector<double> steps;          ///< D_i: distances of consecutive points in the path parameter
-  std::vector<double> squares;        ///< x_0 .. x_N [1/s^2 times the squared unit of the path]; x_0 = x_N = 0
+  std::vector<double> steps;    ///< D_i: distances of consecutive points in the path parameter
+  std::vector<double> squares;  ///< squared speeds x_0 .. x_N [1/s^2 times the squared unit of the path]; x_0 = x_N = 0
   std::vector<double> accelerations;  ///< path accelerations u_0 .. u_(N-1) in the intervals
   double duration = 0;                ///< sum of 2 D_i / (sqrt x_i + sqrt x_(i+1)) [s]
   std::vector<double> controllable;   ///< c_0 .. c_N: largest squared speeds from which the end can be reached

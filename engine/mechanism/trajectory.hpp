@@ -35,7 +35,7 @@ struct TrajectorySummary {
   std::size_t infeasible = 0;                    ///< number of samples that are infeasible
   std::optional<AxisVector<double>> peak_speed;  ///< maximum |qdot| [m/s, rad/s]; std::nullopt if no sample has speeds
   bool has_forces = false;                       ///< true if every sample has forces; otherwise the following are 0
-  AxisVector<double> peak_force, rms_force;      ///< maximum |tau|; root of the mean square over the samples [N, N m]
+  AxisVector<double> peak_force, rms_force;      ///< maximum |tau|, and root-mean-square tau over the samples [N, N m]
   AxisVector<double> peak_power;                 ///< maximum |tau qdot|, driving or braking [W]
   /// Torques [N m] and speed [rad/s] of the motors of drive trains.
   AxisVector<double> peak_torque, rms_torque, peak_motor_speed;

@@ -34,7 +34,7 @@ class GradientEvaluator {
   virtual void evaluate(std::span<const Dual4> parameters, Scratch& scratch, WorkspaceResult<Dual4>& result) const = 0;
 };
 
-/// Evaluator of a plan with voxels.
+/// Interface of a workspace evaluator for plans with voxels.
 class VoxelEvaluator : public WorkspaceEvaluator {
  public:
   /// Finds the feasible cells of a design. Coordinates that are integrated over are fixed at the centre of their first

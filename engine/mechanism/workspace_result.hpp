@@ -24,7 +24,7 @@ struct WorkspaceResult {
   double cell_volume = 0;
   bool touches_box = false;  ///< true if a feasible cell lies in the outermost layer of the box
   // The following members are set by analyses by columns:
-  std::int64_t columns = 0;  ///< number of columns, or of nodes along edges, evaluated
+  std::int64_t columns = 0;  ///< number of columns that were evaluated, or of nodes along edges of the workspace
   double error = 0;          ///< estimated relative error of the volume
   bool is_sampled = false;   ///< true if parts of the workspace that lie between sampled slices may have been missed
   // The following vectors have one element per feasible sample if they were requested; otherwise they are empty:
@@ -61,7 +61,7 @@ struct WorkspaceResult {
   }
 };
 
-/// Appends the samples of another result.
+/// Appends the samples of the result `from` to `to`.
 template <class S>
 void append_samples(const WorkspaceResult<S>& from, WorkspaceResult<S>& to) {
   const auto append = [](const auto& source, auto& target) {

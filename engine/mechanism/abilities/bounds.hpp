@@ -18,7 +18,7 @@ struct BoundsOptions {
   double gap = 1e-2;
   std::size_t max_boxes = 4000000;  ///< the search stops at this number of boxes
   std::string* proof = nullptr;     ///< receives the text of a proof of the bounds; null: no proof is written
-  std::function<bool()> stop = {};  ///< called often, by any thread; returns true to stop
+  std::function<bool()> stop = {};  ///< called often, by any thread; the search stops if it returns true
 };
 
 struct VolumeBounds {
@@ -61,7 +61,7 @@ struct Separation {
 class RigorousBounds {
  public:
   virtual ~RigorousBounds() = default;
-  /// Throws std::invalid_argument with one sentence if the workspace of a plan cannot be bounded.
+  /// Checks a plan: throws std::invalid_argument with one sentence if its workspace cannot be bounded.
   virtual void require_bounds(const WorkspacePlan& plan) const = 0;
   /// Bounds of the workspace volume within the plan's box or, if it has none, within ranges that contain the workspace.
   /// The parameters are taken as exact. Throws std::invalid_argument with one sentence if the plan is not supported.

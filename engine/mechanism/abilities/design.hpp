@@ -14,7 +14,7 @@
 
 namespace pkm {
 
-/// Size of the mechanism, by which workspace-ratio divides the workspace volume.
+/// Size of the mechanism, by which the objective workspace-ratio divides the workspace volume.
 class Size {
  public:
   virtual ~Size() = default;

@@ -31,7 +31,7 @@ class Dynamics {
                          std::span<const MotionState<Dual4>> states, std::span<PoseDynamics<Dual4>> found) const = 0;
 };
 
-/// Reaction forces and couples in every joint, by the Newton-Euler equations.
+/// Computes the reaction forces and couples in every joint by the Newton-Euler equations.
 class JointReactions {
  public:
   virtual ~JointReactions() = default;
