@@ -31,7 +31,7 @@ class NonDominatedSet {
   /// @param limit  maximum size, to which a larger set is truncated by crowding distance (crowding.hpp); 0: unlimited
   explicit NonDominatedSet(std::size_t objectives, std::size_t limit = 0) : limit_(limit), scores_{objectives} {}
 
-  /// Adds designs; `ids` has one identifier per row of `scores`.
+  /// Adds designs, given by their scores; `ids` has one identifier for each row of `scores`.
   /// @return true if at least one of them became a member
   bool add(const Scores& scores, std::span<const std::int64_t> ids);
 

@@ -22,7 +22,8 @@
 
 namespace pkm {
 
-inline constexpr std::size_t kUnlimitedObjectives = std::numeric_limits<std::size_t>::max();  ///< no upper limit
+inline constexpr std::size_t kUnlimitedObjectives =
+    std::numeric_limits<std::size_t>::max();  ///< value of Capabilities::max_objectives: no limit
 
 /// The kinds of problem that an optimiser can handle. A study that needs more is rejected when it is read.
 struct Capabilities {
@@ -87,7 +88,7 @@ struct StartDesign {
   std::string origin;
 };
 
-/// Scaling data from the Pareto front of the earlier stages.
+/// Data of the Pareto front of the earlier stages, by which a solver scales several objectives.
 struct PreviousFront {
   /// Range of each objective over the front, > 0; if the range is 0, the absolute value of the objective.
   std::vector<double> extents = {};
@@ -125,7 +126,7 @@ class Optimiser {
   virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
   /// Maximum number of designs that the stage evaluates concurrently.
   virtual std::int64_t at_once() const { return std::numeric_limits<std::int64_t>::max(); }
-  /// The level of detail at which the stage needs designs to be evaluated.
+  /// Detail in which designs must be evaluated for this stage, for example with derivatives.
   virtual Detail detail() const { return Detail::enough; }
 };
 

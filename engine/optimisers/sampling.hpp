@@ -9,7 +9,8 @@ namespace pkm {
 enum class Start {
   sobol,            ///< Sobol sequence with random linear scrambling and digital shift (Matousek 1998); variables
                     ///< beyond the 21st are sampled by a Latin hypercube
-  latin_hypercube,  ///< each of `count` equal strata of each variable contains one point
+  latin_hypercube,  ///< the range of each variable is divided into `count` equal strata, each of which contains one
+                    ///< point
   random            ///< independent and uniformly distributed
 };
 

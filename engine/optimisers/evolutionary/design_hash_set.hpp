@@ -11,11 +11,11 @@ namespace pkm {
 
 class DesignHashSet {
  public:
-  /// Returns the row whose design equals `design` bit for bit, or -1. `table` is the table passed to `insert`.
+  /// Number of the row whose design equals `design` bit for bit; -1: none. `table` is the table passed to `insert`.
   std::int64_t find(const EvaluationTable& table, std::span<const double> design) const;
   /// Prefetches the hash slot that find(design) will read, which is rarely in the processor's cache.
   void prefetch(std::span<const double> design) const;
-  /// Inserts a row whose design is not yet in the set.
+  /// Inserts a row of the table, whose design must not be in the set yet.
   void insert(const EvaluationTable& table, std::size_t row);
 
  private:

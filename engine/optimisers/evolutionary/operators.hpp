@@ -60,9 +60,9 @@ void recombine(const Crossover& crossover, const ParentPool& pool, std::size_t f
 
 struct Mutation {
   enum class Kind {
-    multiscale,  ///< normal with standard deviation sigma 10^(-4 u), u uniform in [0, 1): step sizes on all scales
-    gaussian,    ///< normal with standard deviation sigma
-    polynomial,  ///< polynomial mutation (Deb and Goyal 1996), distribution index `eta`
+    multiscale,  ///< normal steps with standard deviation sigma 10^(-4 u), u uniform in [0, 1)
+    gaussian,    ///< normally distributed steps with standard deviation sigma
+    polynomial,  ///< polynomial mutation (Deb and Goyal 1996) with distribution index `eta`
     uniform      ///< uniformly distributed over the range of the variable
   };
   Kind kind = Kind::multiscale;

@@ -39,7 +39,7 @@ class MultistartMerger {
   /// Appends row `source` of the start being merged to the stage table, and reports it to the monitor.
   /// @return false if the monitor requests a stop
   bool append_and_report(const EvaluationTable& run_table, std::size_t source);
-  /// Records the outcome of a start whose rows have all been merged, and proceeds to the next start.
+  /// Records the outcome of a start after all of its rows have been merged, and proceeds to the next start.
   void finish(MultistartRun& run);
   /// Maximum number of evaluations that all starts together can still make. The number is cached, and computed again
   /// only after a number of rows equal to a sixteenth of the number of starts has been merged.

@@ -21,7 +21,7 @@
 
 namespace pkm {
 
-/// Limits of the solver run from one start.
+/// Limits of the evaluations and of the time of one start.
 struct StartLimits {
   std::int64_t evaluations = std::numeric_limits<std::int64_t>::max();
   std::optional<double> seconds;

@@ -28,7 +28,7 @@ struct ActiveBound {
 
 struct ActiveConstraint {
   std::size_t margin = 0;  ///< index of the constraint among the margins
-  double multiplier = 0;   ///< improvement of the objective per unit by which the constraint is relaxed
+  double multiplier = 0;   ///< improvement of the objective per unit by which the constraint is relaxed, >= 0
 };
 
 struct Optimality {
