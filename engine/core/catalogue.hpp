@@ -41,7 +41,7 @@ inline std::string did_you_mean(std::string_view name, const std::vector<std::st
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
 }
 
-/// "a, b, c": text_of(element) for each element of the list, separated by commas, for messages.
+/// Text such as "a, b, c" for messages: text_of(element) for each element of the list, separated by commas.
 template <class List, class Text>
 std::string join_texts(const List& list, Text text_of) {
   std::vector<std::string> words;

@@ -11,8 +11,8 @@ namespace pkm {
 
 /// Location of an input value: file, line and key path, or the command-line option that gives the value.
 struct SourceLocation {
-  std::string file;  ///< "" if the value does not come from a file
-  int line = 0;      ///< 1-based; 0 if unknown
+  std::string file;  ///< name of the file; "" if the value does not come from a file
+  int line = 0;      ///< number of the line, from 1; 0 if unknown
   std::string key;   ///< dotted path such as "variables.a.min", or an option such as "--at"
 };
 

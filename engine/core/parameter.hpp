@@ -23,7 +23,7 @@ struct Variable {
   std::string unit;
   double lower = 0;
   double upper = 0;
-  double step = 0;  ///< 0: continuous variable; otherwise its values are lower + k step, k = 0, 1, .., up to upper
+  double step = 0;  ///< if > 0, the allowed values are lower + k step, k = 0, 1, .., up to upper; 0: continuous
 };
 
 /// The search space of the optimisers: a box in the design variables, with a lattice for discrete variables.

@@ -36,7 +36,7 @@ class StopScope {
   /// The innermost scope of this thread; null if this thread has none.
   static const StopScope* current() { return current_; }
 
-  /// While an instance exists, this thread is subject to a scope of another thread.
+  /// While an instance exists, check_stop() in this thread tests a scope that another thread has opened.
   class InheritedScope {
    public:
     explicit InheritedScope(const StopScope* scope) : previous_(current_) { current_ = scope; }
