@@ -177,7 +177,7 @@ Signature split_at_crossings(const SlicedDesign<S>& d, const SlicedDesign<double
 
 /// Finds the intervals of theta >= 0 on which the area is positive and smooth.
 /// @param values     scratch memory
-/// @param intervals  receives them
+/// @param intervals  receives the intervals
 template <class S>
 void find_theta_intervals(const SlicedDesign<S>& d, std::vector<CriticalValue<S>>& values,
                           std::vector<Subinterval<S>>& intervals) {

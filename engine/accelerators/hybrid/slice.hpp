@@ -171,7 +171,7 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   s.lower[6] = (l.tau_p * g.L3 - g.d * sin_b) / cos_b;
   s.upper[6] = beyond ? none : S(width * d.cot_c - lift);
   s.lower[7] = max(l.z_clear, S(width * l.lam.cos / l.lam.sin)) - lift;
-  const S shaft2 = (l.lw_max - w_y) * (l.lw_max + w_y);  // Q^2 + x^2 at the greatest length
+  const S shaft2 = (l.lw_max - w_y) * (l.lw_max + w_y);  // value of Q^2 + x^2 at the maximum length of the shaft
   s.upper[kEndL] = value_of(shaft2) > 0 ? S(sqrt(shaft2) - Q0) : none;
   s.lower[kEndQ] = magnitude(w_y) * d.cot_phi - Q0;
   const S hole2 = (l.lw_min - w_y) * (l.lw_min + w_y);

@@ -171,7 +171,7 @@ void add_positive(const Slice<double>& s, const Edge& left, const Edge& right, c
     strips.push_back({p.end, q.end, left, right});
 }
 
-/// Finds the strips between two heights, using only the first `curves` curves as bounds of x.
+/// Finds the strips between two heights if only the first `curves` curves bound x.
 void find_strips(const Slice<double>& s, std::size_t curves, const StripBound& low, const StripBound& high,
                  StripScratch& scratch, std::vector<Strip>& strips) {
   strips.clear();
