@@ -32,7 +32,7 @@ struct LimbPart {
   struct OnArm {
     std::size_t arm;
     limbs::Vector3 pivot;
-    limbs::Term length;  ///< length of the arm
+    limbs::Term length;  ///< length of the arm from `pivot` to its end
     bool is_arm;
   };
   std::optional<OnArm> on_arm = {};
@@ -171,7 +171,8 @@ void add_performance(const ConfigValue& root, const ConfigValue* study, Mechanis
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
 /// Compliance of the limb's end along the line of its rod or leg, due to rods, crank and slider [m/N].
 limbs::Term compliance_of_links(const NamedLimb& limb, MechanismDraft& draft);
-/// Compliance of a limb's drive, measured at the joint [m/N or rad/(N m)]; for a telescope, including that of the leg.
+/// Compliance of a limb's drive, measured at the joint [m/N or rad/(N m)]; for a telescopic leg, the compliance of the
+/// leg is included.
 std::optional<limbs::Term> drive_compliance(const NamedLimb& limb, MechanismDraft& draft);
 /// The limits that a study sets for quantities, as a table; std::nullopt if it sets none.
 std::optional<ConfigValue> limits_of_quantities(const ConfigValue& study);
