@@ -47,7 +47,7 @@ struct PoseDynamics {
   AxisMatrix<S> J;         ///< Jacobian, joints x coordinates: qdot = J Xdot
   AxisVector<S> J_rate_X;  ///< product Jdot Xdot, the joint accelerations for Xddot = 0
   AxisMatrix<S> M_X;       ///< inertia matrix: kinetic energy = Xdot^T M_X Xdot / 2
-  AxisVector<S> h_X;       ///< centrifugal and Coriolis forces at the given velocity
+  AxisVector<S> h_X;       ///< centrifugal and Coriolis forces at the velocity of the state
   AxisVector<S> G_X;       ///< gravity forces: gradient of the potential energy with respect to X
   /// Jacobian J_w of the point where a wrench acts: its velocity and angular velocity are J_w Xdot.
   MatrixUpTo<S, 6, kMaxJoints> J_wrench;

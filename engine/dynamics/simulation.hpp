@@ -19,7 +19,7 @@ namespace pkm {
 
 /// State of a simulation at one time. Vectors have one element per coordinate.
 struct SimulationState {
-  double time = 0;  ///< [s]
+  double time = 0;  ///< time since the start [s]
   AxisVector<double> pose, velocity, acceleration;
   double kinetic_energy = 0;  ///< kinetic energy at this time [J]
   /// Work done since the start by the drives, the weight and the wrench [J].
@@ -30,7 +30,7 @@ struct SimulationState {
 struct SimulationSetup {
   /// Evaluates the equations of motion of the mechanism at a pose and velocity.
   std::function<PoseDynamics<double>(const MotionState<double>&)> dynamics;
-  std::function<AxisVector<double>(double time)> forces;  ///< actuator forces tau [N, N m]
+  std::function<AxisVector<double>(double time)> forces;  ///< actuator forces tau as a function of the time [N, N m]
   /// Friction forces as a function of the joint speeds; positive values oppose positive speeds [N, N m]. Empty: no
   /// friction.
   std::function<AxisVector<double>(const AxisVector<double>& speeds)> friction;
