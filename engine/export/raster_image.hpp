@@ -20,7 +20,7 @@ class RasterImage {
   using Colour = pkm::Colour;
   using Polygon = std::vector<std::array<double, 2>>;
 
-  /// Both sizes are rounded to whole pixels.
+  /// Makes a white image. Both sizes are rounded to whole pixels.
   RasterImage(double width, double height);
 
   /// Draws a line of width 2 * `half_width` with round ends, or a disc if both ends coincide.

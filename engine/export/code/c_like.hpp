@@ -42,9 +42,10 @@ struct TestSyntax {
   std::string begin;   ///< #include lines at the beginning of the program
   std::string prefix;  ///< prefix of the names of the generated functions
   std::string main;    ///< head of the main function, for example "int main(void)"
-  std::string (*array)(const std::string& name, std::size_t size);  ///< declaration of an array, without "static const"
-  std::string (*row)(const std::string& numbers);                   ///< initialiser of an array
-  std::string (*pointer)(const std::string& array);                 ///< pointer to the first element of an array
+  /// Writes the declaration of an array, without "static const".
+  std::string (*array)(const std::string& name, std::size_t size);
+  std::string (*row)(const std::string& numbers);    ///< writes the initialiser of an array
+  std::string (*pointer)(const std::string& array);  ///< writes a pointer to the first element of an array
 };
 
 /// The text of the test program. The program compares the results of all functions with stored values and prints the
