@@ -43,7 +43,7 @@ struct PageDetail {
 struct ShownDesigns {
   const Mechanism& mechanism;
   WorkspacePlan plan;                ///< plan of the workspace analysis: voxels, limited by `detail`
-  LimitSpec limits;                  ///< limits of poses
+  LimitSpec limits;                  ///< thresholds of the constraints on poses
   std::string mode;                  ///< working mode
   std::vector<NamedMotion> motions;  ///< the first motions of the study, limited by the size of a page
   std::size_t omitted_motions = 0;   ///< number of motions of the study that are not shown
