@@ -10,8 +10,8 @@
 namespace pkm {
 namespace {
 
-// Fronts of up to kMaxFullFront points are shown completely; of larger ones kExcerptSize well-spread points, and all
-// points that have a label.
+// A front of at most kMaxFullFront points is shown completely; of a larger one, kExcerptSize well-spread points and all
+// points with a label are shown.
 constexpr std::size_t kMaxFullFront = 20, kExcerptSize = 10;
 
 std::string six_digits(double value) { return formatted("%.6g", value); }

@@ -42,7 +42,7 @@ void print_json(const Json& json);
 struct Printout {
   bool as_json = false;
   std::vector<Row> head = {};  ///< first lines of the text, as pairs of a name and a value
-  std::string text = {};       ///< the rest of the text
+  std::string text = {};       ///< text that is printed below `head`
   Json json = Json::object();
   /// JSON objects that are printed instead of `json`, one per line, if there are any.
   std::vector<Json> json_lines = {};
