@@ -61,12 +61,12 @@ struct Module {
   std::vector<NamedUnit> parameters, coordinates, joints, margins, quantities;
   std::vector<double> design;  ///< values of all parameters
 
-  Function inverse;                ///< outputs q, and `assembly`: values that are all >= 0 if the mechanism can be
-                                   ///< assembled at the pose
-  Function jacobian;               ///< its output is the Jacobian J
-  Function limits;                 ///< its output are the margins of the pose
-  std::optional<Function> values;  ///< its output are the quantities of the pose; std::nullopt: the mechanism has none
-  std::optional<Function> equations;  ///< its outputs are J, Jdot_v, M, h, G, Jw of the equations of motion
+  Function inverse;                   ///< computes q, and `assembly`: values that are all >= 0 if the mechanism can be
+                                      ///< assembled at the pose
+  Function jacobian;                  ///< computes the Jacobian J
+  Function limits;                    ///< computes the margins of the pose
+  std::optional<Function> values;     ///< computes the quantities of the pose; std::nullopt: there are none
+  std::optional<Function> equations;  ///< computes J, Jdot_v, M, h, G and Jw of the equations of motion
   /// True if the mechanism has as many joints as coordinates, so that forward kinematics can be generated.
   bool has_forward = false;
   std::vector<std::string> left_out;  ///< sentences that describe what the generated functions omit

@@ -22,8 +22,8 @@
 
 namespace pkm {
 
-inline constexpr std::size_t kUnlimitedObjectives =
-    std::numeric_limits<std::size_t>::max();  ///< value of Capabilities::max_objectives: no limit
+/// Value of Capabilities::max_objectives: no limit.
+inline constexpr std::size_t kUnlimitedObjectives = std::numeric_limits<std::size_t>::max();
 
 /// The kinds of problem that an optimiser can handle. A study that needs more is rejected when it is read.
 struct Capabilities {

@@ -21,8 +21,8 @@ struct EvolutionPlan {
   std::size_t children = 20;  ///< number of children per generation
   std::int64_t generations = 100;
   std::int64_t evaluations = std::numeric_limits<std::int64_t>::max();
-  std::optional<std::int64_t>
-      stall;                ///< number of generations without progress after which the run stops; std::nullopt: never
+  /// Number of generations without progress after which the run stops; std::nullopt: it does not stop.
+  std::optional<std::int64_t> stall;
   double tolerance = 1e-8;  ///< relative improvement that counts as progress
 
   bool is_progress(double gain, double reference) const { return gain > tolerance * std::fabs(reference); }
