@@ -98,7 +98,7 @@ void report_components(const Target& target, const WorkspacePlan& plan, Printout
                                         std::to_string(large_ones(across, feasible)) +
                                         " if singularities could be crossed"});
   if (rows.size() < found.all.size())
-    rows.push_back({"..", formatted("%.4g %%", 100 * others),
+    rows.push_back({"others", formatted("%.4g %%", 100 * others),
                     "in " + std::to_string(found.all.size() - rows.size()) + " components of less than 0.1 % each"});
   out.add_table("components of the workspace (share, size, extent)", rows);
 }
