@@ -6,6 +6,7 @@
 #include "constraints/list.hpp"
 #include "constraints/pose_margins.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/geometry/pose_product.hpp"
 
 namespace pkm {
 namespace {
@@ -15,18 +16,6 @@ const Region& region_of(const EntryContext& context) {
   if (const Region* found = find_named(context.regions, name)) return *found;
   throw std::invalid_argument("the study has no [[region]] called '" + name + "'" +
                               did_you_mean(name, names_of(context.regions)));
-}
-
-/// Cartesian product: each of the poses with each of the values of one coordinate.
-std::vector<Pose<double>> with_each(const std::vector<Pose<double>>& poses, int coordinate,
-                                    const std::vector<double>& values) {
-  std::vector<Pose<double>> more;
-  for (const Pose<double>& pose : poses)
-    for (const double value : values) {
-      more.push_back(pose);
-      more.back()[static_cast<std::size_t>(coordinate)] = value;
-    }
-  return more;
 }
 
 /// Regular grid of the region's box, including its vertices, at every value of the fixed coordinates.
@@ -42,7 +31,7 @@ std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& in
     if (how.kind != Kind::value && how.kind != Kind::listed)
       throw std::invalid_argument(
           "task-workspace needs a number or a list of them for each fixed coordinate of region '" + region.name + "'");
-    poses = with_each(poses, coordinate, how.kind == Kind::listed ? how.values : std::vector<double>{how.value});
+    poses = with_each(poses, coordinate, how.kind == Kind::listed ? how.values : std::vector{how.value});
   }
   for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis) {
     const auto& [lower, upper] = (*plan.box())[axis];

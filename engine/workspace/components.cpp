@@ -12,6 +12,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/math/disjoint_sets.hpp"
 #include "engine/workspace/side_of_jacobian.hpp"
 
 namespace pkm {
@@ -44,27 +45,6 @@ class InspectedSides final : public PoseSides {
   std::string mode_;
 };
 
-/// Disjoint sets of cells (union-find). The root of a set is its cell with the lowest index.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-  std::size_t root(std::size_t cell) {
-    while (parent_[cell] != cell) {
-      parent_[cell] = parent_[parent_[cell]];
-      cell = parent_[cell];
-    }
-    return cell;
-  }
-  void unite(std::size_t a, std::size_t b) {
-    const auto [lower, upper] = std::minmax({root(a), root(b)});
-    parent_[upper] = static_cast<std::uint32_t>(lower);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 }  // namespace
 
 /// The grid of one design.
@@ -75,8 +55,7 @@ class ComponentFinder::Search {
         parameters_(parameters),
         scratch_(scratch),
         axes_(finder.sweep_.swept.size()),
-        grid_({map.cells[0], map.cells[1], map.cells[2]},
-              {{{map.lower[0], map.upper[0]}, {map.lower[1], map.upper[1]}, {map.lower[2], map.upper[2]}}}),
+        grid_(map),
         fixed_(finder.mechanism_.info().coordinates.size()) {
     const MechanismInfo& info = finder.mechanism_.info();
     for (const int coordinate : finder.sweep_.fixed)

@@ -35,9 +35,7 @@ class HomeComponent final : public VoxelEvaluator {
 
   void evaluate(std::span<const double> parameters, Scratch& scratch, WorkspaceResult<double>& result) const override {
     const VoxelMap cells = component(parameters, scratch);
-    const VoxelGrid grid(
-        {cells.cells[0], cells.cells[1], cells.cells[2]},
-        {{{cells.lower[0], cells.upper[0]}, {cells.lower[1], cells.upper[1]}, {cells.lower[2], cells.upper[2]}}});
+    const VoxelGrid grid(cells);
     WorkspaceResult<double> counts;
     summarise(grid, cells, counts, sweep_.swept.size());
     if (samples_)

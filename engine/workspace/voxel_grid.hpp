@@ -23,6 +23,9 @@ struct VoxelGrid {
       step[i] = (upper[i] - lower[i]) / static_cast<double>(cells[i]);
     }
   }
+  explicit VoxelGrid(const VoxelMap& map)
+      : VoxelGrid({map.cells[0], map.cells[1], map.cells[2]},
+                  {{{map.lower[0], map.upper[0]}, {map.lower[1], map.upper[1]}, {map.lower[2], map.upper[2]}}}) {}
   double centre(std::size_t axis, std::int64_t k) const {
     return lower[axis] + (static_cast<double>(k) + 0.5) * step[axis];
   }

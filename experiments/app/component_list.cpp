@@ -54,8 +54,7 @@ void report_components(const Target& target, const WorkspacePlan& plan, Printout
   for (const int coordinate : sweep_of(info, all).swept)
     axes.push_back(info.coordinates[static_cast<std::size_t>(coordinate)]);
   const VoxelMap map = voxel_map(*target.mechanism, target.parameters, all);
-  const VoxelGrid grid({map.cells[0], map.cells[1], map.cells[2]},
-                       {{{map.lower[0], map.upper[0]}, {map.lower[1], map.upper[1]}, {map.lower[2], map.upper[2]}}});
+  const VoxelGrid grid(map);
   Scratch scratch;
   const ComponentFinder finder(*target.mechanism, all, "");
   const ConnectedComponents found = finder.find(target.parameters, map, scratch);

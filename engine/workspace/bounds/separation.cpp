@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/core/team.hpp"
+#include "engine/math/disjoint_sets.hpp"
 
 namespace pkm::bounds {
 namespace {
@@ -131,8 +132,7 @@ class BranchAndPrune {
   /// Removes the leaves that are not connected with the first pose. @return true if no remaining leaf contains the
   /// second pose
   bool remove_unreached() {
-    set_.resize(parts_.size());
-    for (std::size_t i = 0; i < set_.size(); ++i) set_[i] = i;
+    sets_ = DisjointSets(parts_.size());
     std::array<double, kMaxAxes> no_shift{};
     for (const Part& part : parts_)
       if (part.child != 0 && !part.is_removed) join(part.child, part.child + 1, no_shift);
@@ -144,11 +144,11 @@ class BranchAndPrune {
     }
     std::vector<bool> is_reached(parts_.size(), false);
     for (std::size_t i = 0; i < parts_.size(); ++i)
-      if (is_leaf(i) && contains(i, &SeparationAxis::from)) is_reached[root(i)] = true;
+      if (is_leaf(i) && contains(i, &SeparationAxis::from)) is_reached[sets_.root(i)] = true;
     bool separated = true;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (!is_leaf(i)) continue;
-      if (!is_reached[root(i)])
+      if (!is_reached[sets_.root(i)])
         parts_[i].is_removed = true;
       else if (contains(i, &SeparationAxis::to))
         separated = false;
@@ -166,10 +166,6 @@ class BranchAndPrune {
       if (!(side.lower <= x && x <= side.upper)) return false;
     }
     return true;
-  }
-  std::size_t root(std::size_t i) {
-    while (set_[i] != i) i = set_[i] = set_[set_[i]];
-    return i;
   }
 
   /// Unites all leaves below two nodes that touch. @param shift  is added to the coordinates of the second node
@@ -191,7 +187,7 @@ class BranchAndPrune {
       join(a, upper, shift);
       join(a, upper + 1, shift);
     } else if (is_leaf(a) && is_leaf(b)) {
-      set_[std::max(root(a), root(b))] = std::min(root(a), root(b));
+      sets_.unite(a, b);
     }
   }
 
@@ -202,7 +198,7 @@ class BranchAndPrune {
   std::vector<Scratch> scratch_;  ///< by worker
   std::vector<int> signs_;        ///< by matrix: sign of the determinant at the first pose
   std::vector<Part> parts_;       ///< the tree; the first one is the whole box
-  std::vector<std::size_t> set_;  ///< union-find
+  DisjointSets sets_;             ///< of parts
 };
 
 }  // namespace

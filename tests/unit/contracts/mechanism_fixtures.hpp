@@ -202,9 +202,7 @@ inline FieldRequest request_without_inertia(const Mechanism& mechanism) {
 /// The centres of the cells of a map, in the order of the cells.
 /// @param at  contains the values of the fixed coordinates
 inline std::vector<Pose<double>> centres(const Sweep& sweep, const VoxelMap& map, Pose<double> at) {
-  Box box;
-  for (std::size_t i = 0; i < 3; ++i) box[i] = {map.lower[i], map.upper[i]};
-  const VoxelGrid grid({map.cells[0], map.cells[1], map.cells[2]}, box);
+  const VoxelGrid grid(map);
   std::vector<Pose<double>> poses;
   for (std::int64_t i = 0; i < grid.cells[0]; ++i)
     for (std::int64_t j = 0; j < grid.cells[1]; ++j)

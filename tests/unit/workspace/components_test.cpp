@@ -227,8 +227,7 @@ TEST(Components, OfAcceleratedMechanismsCountTheSameCells) {
     const ConnectedComponents found = components_of(*mechanism, design, plan);
     ASSERT_FALSE(found.all.empty()) << name;
     const VoxelMap map = voxel_map(*mechanism, design, plan);
-    const VoxelGrid grid({map.cells[0], map.cells[1], map.cells[2]},
-                         {{{map.lower[0], map.upper[0]}, {map.lower[1], map.upper[1]}, {map.lower[2], map.upper[2]}}});
+    const VoxelGrid grid(map);
     std::size_t rest = found.all[0].first;
     std::array<double, 3> home{};
     for (std::size_t axis = 3; axis-- > 0; rest /= static_cast<std::size_t>(grid.cells[axis]))
@@ -348,7 +347,7 @@ Comparison compare(const Mechanism& mechanism, const std::vector<double>& design
                      kSpeck = fine_per_coarse * fine_per_coarse;  // two coarse cells along each axis
   const VoxelMap map = voxel_map(mechanism, design, plan);
   const Box box = {{{map.lower[0], map.upper[0]}, {map.lower[1], map.upper[1]}, {map.lower[2], map.upper[2]}}};
-  const VoxelGrid coarse_grid({map.cells[0], map.cells[1], map.cells[2]}, box);
+  const VoxelGrid coarse_grid(map);
   std::array<std::int64_t, 3> twice = coarse_grid.cells;
   for (std::size_t axis = 0; axis < axes; ++axis) twice[axis] *= 2;
   const VoxelGrid fine_grid(twice, box);
