@@ -1,6 +1,7 @@
 #include "engine/config/assignments.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 #include "engine/config/config_value.hpp"
@@ -35,27 +36,36 @@ std::vector<std::string> split(std::string_view text, char at) {
   return parts;
 }
 
+}  // namespace
+
+std::vector<std::string> list_items(const std::vector<std::string>& lists) {
+  std::vector<std::string> items;
+  for (const std::string& list : lists) std::ranges::move(split(list, ','), std::back_inserter(items));
+  return items;
+}
+
+namespace {
+
 /// The texts after `name=` in comma-separated lists, in the order of `known`.
 std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::string>& lists, const std::string& option,
                                                        const std::string& form, const std::vector<Assignable>& known) {
   const SourceLocation place = place_of(option);
   const auto names = names_of(known);
   std::vector<std::optional<std::string>> texts(known.size());
-  for (const auto& list : lists)
-    for (const std::string& item : split(list, ',')) {
-      const auto equals = item.find('=');
-      if (equals == std::string::npos)
-        throw ConfigError(place, '"' + item + '"', form + ", with names out of " + join(names));
-      const std::string name{trimmed(std::string_view(item).substr(0, equals))};
-      const Assignable* const target = find_named(known, name);
-      if (!target && known.empty())
-        throw ConfigError(place, "the unknown name '" + name + "'", "no name, because there is nothing to assign");
-      if (!target)
-        throw ConfigError(place, "the unknown name '" + name + "'", "one of " + join(names), nearest_name(name, names));
-      auto& text = texts[static_cast<std::size_t>(target - known.data())];
-      if (text) throw ConfigError(place, name + " twice", "each name once");
-      text = trimmed(std::string_view(item).substr(equals + 1));
-    }
+  for (const std::string& item : list_items(lists)) {
+    const auto equals = item.find('=');
+    if (equals == std::string::npos)
+      throw ConfigError(place, '"' + item + '"', form + ", with names out of " + join(names));
+    const std::string name{trimmed(std::string_view(item).substr(0, equals))};
+    const Assignable* const target = find_named(known, name);
+    if (!target && known.empty())
+      throw ConfigError(place, "the unknown name '" + name + "'", "no name, because there is nothing to assign");
+    if (!target)
+      throw ConfigError(place, "the unknown name '" + name + "'", "one of " + join(names), nearest_name(name, names));
+    auto& text = texts[static_cast<std::size_t>(target - known.data())];
+    if (text) throw ConfigError(place, name + " twice", "each name once");
+    text = trimmed(std::string_view(item).substr(equals + 1));
+  }
   return texts;
 }
 
@@ -105,8 +115,7 @@ std::vector<Assignable> assignable_forces(const MechanismInfo& info) {
 
 std::vector<std::string> assigned_names(const std::vector<std::string>& lists) {
   std::vector<std::string> names;
-  for (const std::string& list : lists)
-    for (const std::string& item : split(list, ',')) names.emplace_back(trimmed(item.substr(0, item.find('='))));
+  for (const std::string& item : list_items(lists)) names.emplace_back(trimmed(item.substr(0, item.find('='))));
   return names;
 }
 

@@ -31,6 +31,9 @@ std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::
 /// Forces of the joints, under the names of the joints.
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);
 
+/// The items of comma-separated lists, without surrounding spaces.
+std::vector<std::string> list_items(const std::vector<std::string>& lists);
+
 /// The names before the `=` in comma-separated `name=value` lists.
 std::vector<std::string> assigned_names(const std::vector<std::string>& lists);
 

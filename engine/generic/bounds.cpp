@@ -146,12 +146,11 @@ bounds::Matrices jacobians_along(const Motion& motion, const Model& model, std::
 
 }  // namespace
 
-PoseCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const WorkspacePlan& plan,
-                            std::size_t mode, std::span<const std::array<double, 2>> ranges,
-                            const BoundsOptions& options) {
+PoseCertificate certify_solid(const Evaluation& e, std::span<const double> parameters, const WorkspacePlan& plan,
+                              std::size_t mode, const PoseSolid& poses, const BoundsOptions& options) {
   std::vector<Interval> inputs = inputs_of(e, parameters, plan.limits, mode);
   std::vector<std::size_t> axes;
-  for (std::size_t i = 0; i < ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
+  for (std::size_t i = 0; i < poses.ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
   const IntervalConstraints constraints = interval_constraints(e.model, inputs);
   const bounds::Constraints conditions(constraints.graph, constraints.all, axes, inputs);
   Graph graph;
@@ -161,7 +160,7 @@ PoseCertificate certify_box(const Evaluation& e, std::span<const double> paramet
     const auto named = jacobians(e.model, graph, inputs);
     matrices.emplace(graph, named, axes, inputs);
   }
-  PoseCertificate found = bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
+  PoseCertificate found = bounds::certify(conditions, matrices ? &*matrices : nullptr, poses, options);
   if (not_examined) found.regular.detail = *not_examined;
   return found;
 }
@@ -181,8 +180,7 @@ PoseCertificate certify_motion(const Evaluation& e, std::span<const double> para
   if (!not_examined) matrices = jacobians_along(motion, e.model, design);
 
   const auto certify_until = [&](double end, const bounds::Matrices* regular) {
-    const std::array<double, 2> times = {0, end};
-    return bounds::certify(conditions, regular, {&times, 1}, options);
+    return bounds::certify(conditions, regular, {.ranges = {{0, end}}}, options);
   };
   PoseCertificate found = certify_until(motion.duration(), matrices ? &*matrices : nullptr);
   const auto time_of = [](const PropertyResult& finding) { return (*finding.pose)[0]; };

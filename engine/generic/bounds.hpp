@@ -1,5 +1,5 @@
 // Rigorous bounds for a mechanism file, by interval arithmetic on its expression graph: workspace volume, and
-// feasibility and regularity of all poses of a box or of a motion. See mechanism/abilities/bounds.hpp.
+// feasibility and regularity of all poses of a solid or of a motion. See mechanism/abilities/bounds.hpp.
 #pragma once
 
 #include "engine/generic/evaluation.hpp"
@@ -11,11 +11,10 @@ void require_bounds(const Model& model, const WorkspacePlan& plan);
 /// Bounds of the workspace volume of a design.
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& evaluation, std::span<const double> parameters,
                           const WorkspacePlan& plan, std::size_t mode, const BoundsOptions& options);
-/// Decides whether all poses of a box are feasible and regular.
-/// @param ranges  range of each coordinate
-PoseCertificate certify_box(const Evaluation& evaluation, std::span<const double> parameters, const WorkspacePlan& plan,
-                            std::size_t mode, std::span<const std::array<double, 2>> ranges,
-                            const BoundsOptions& options);
+/// Decides whether all poses of a solid are feasible and regular.
+PoseCertificate certify_solid(const Evaluation& evaluation, std::span<const double> parameters,
+                              const WorkspacePlan& plan, std::size_t mode, const PoseSolid& poses,
+                              const BoundsOptions& options);
 /// Decides whether all poses of a motion are feasible and regular.
 PoseCertificate certify_motion(const Evaluation& evaluation, std::span<const double> parameters,
                                const LimitSpec& limits, std::size_t mode, const Motion& motion,

@@ -232,9 +232,9 @@ class GenericMechanism final : public Mechanism,
                       const BoundsOptions& options) const override {
     return bound_volume(*this, e_, parameters, plan, mode_index(info(), mode), options);
   }
-  PoseCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
-                      std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
-    return certify_box(e_, parameters, plan, mode_index(info(), mode), ranges, options);
+  PoseCertificate solid(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                        const PoseSolid& poses, const BoundsOptions& options) const override {
+    return certify_solid(e_, parameters, plan, mode_index(info(), mode), poses, options);
   }
   PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
                          const Motion& motion, const BoundsOptions& options) const override {

@@ -1,5 +1,5 @@
 // `pkmopt certify`: rigorous bounds on the workspace volume of one design by interval arithmetic, or a proof that all
-// poses of a box or of a motion are feasible and non-singular.
+// poses of a box, a cylinder, a sphere or a motion are feasible and non-singular.
 
 #include <chrono>
 #include <map>
@@ -18,7 +18,7 @@ namespace {
 
 struct CertifyArguments : DesignArguments, ModeArguments {
   std::string gap = "1e-2", proof, motion;
-  std::vector<std::string> box;
+  std::vector<std::string> box, cylinder, sphere;
   std::int64_t boxes = 4000000;
   int threads = 0;
   bool force = false;
@@ -47,7 +47,55 @@ std::string shortfall(const VolumeBounds& bounds, double requested_gap, std::int
   return "the requested gap cannot be reached: the remaining boxes cannot be decided in double precision";
 }
 
-/// A property to be proven for all poses of a box or a motion.
+/// The requested solid of poses, in the swept coordinates; the other coordinates have their fixed values.
+/// @param kind  "box", "cylinder" or "sphere"
+PoseSolid solid_of(const Target& target, const WorkspacePlan& plan, const std::string& kind,
+                   const std::vector<std::string>& lists) {
+  const MechanismInfo& info = target.info();
+  const Sweep& sweep = sweep_of(info, plan);
+  const std::vector<Assignable> swept = assignable_coordinates(info, sweep);
+  const std::string option = "--" + kind;
+  if (kind == "box") return {.ranges = parse_pose_box(target, plan, lists)};
+  PoseSolid solid{.ranges = std::vector<std::array<double, 2>>(info.coordinates.size())};
+  for (const int coordinate : sweep.fixed)
+    solid.ranges[static_cast<std::size_t>(coordinate)].fill(
+        fixed_value(*target.mechanism, target.parameters, plan, coordinate));
+  // "x=0,y=0,z=-0.4:-0.2,diameter=0.6": a cylinder extends along the coordinate with a range.
+  std::vector<std::string> ranges, numbers;
+  for (const std::string& item : list_items(lists))
+    (item.find(':') == std::string::npos && item.find("..") == std::string::npos ? numbers : ranges).push_back(item);
+  const bool is_cylinder = kind == "cylinder";
+  const std::string expected =
+      is_cylinder
+          ? "one range, of the coordinate along which the cylinder extends, such as x=0,y=0,z=-0.4:-0.2,diameter=0.6"
+          : "no range: the centre and the diameter, such as x=0,y=0,z=-0.3,diameter=0.2";
+  if (is_cylinder && swept.size() != 3)
+    throw ConfigError({"", 0, option}, "a workspace over " + std::to_string(swept.size()) + " coordinates", "three");
+  if (ranges.size() != (is_cylinder ? 1 : 0))
+    throw ConfigError({"", 0, option}, std::to_string(ranges.size()) + " ranges", expected);
+  const auto heights = parse_some_ranges(ranges, option, swept);
+  std::vector<Assignable> round;
+  std::vector<std::size_t> ball;
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const auto coordinate = static_cast<std::size_t>(sweep.swept[i]);
+    if (heights[i]) {
+      solid.ranges[coordinate] = *heights[i];
+      continue;
+    }
+    if (info.coordinates[coordinate].turns())
+      throw ConfigError({"", 0, option}, "the swept angle " + swept[i].name, "lengths across the " + kind);
+    round.push_back(swept[i]);
+    ball.push_back(coordinate);
+  }
+  round.push_back({.name = "diameter", .unit = "m", .lower = 1e-9});
+  const std::vector<double> values = parse_all_assignments(numbers, option, round);
+  for (std::size_t i = 0; i < ball.size(); ++i)
+    solid.ranges[ball[i]] = {values[i] - values.back() / 2, values[i] + values.back() / 2};
+  solid.balls = {ball};
+  return solid;
+}
+
+/// A property to be proven for all poses of a solid or a motion.
 struct PosesClaim {
   std::string key;       ///< in JSON and in the text
   std::string if_holds;  ///< printed if it is proven
@@ -55,7 +103,7 @@ struct PosesClaim {
 };
 
 /// Adds the result of one proof to the output.
-/// @param region  "box" or "motion"
+/// @param region  "box", "cylinder", "sphere" or "motion"
 /// @return the error message; "" if the property is proven
 std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, const PropertyResult& result,
                          const std::string& region, Printout& out) {
@@ -90,7 +138,7 @@ std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, con
 /// Adds the results on feasibility and on singularities to the output. @return see report_claim()
 std::string report_poses(const MechanismInfo& info, const PoseCertificate& found, const std::string& region,
                          Printout& out) {
-  const std::string in = (region == "box" ? "in the " : "along the ") + region;
+  const std::string in = (region == "motion" ? "along the " : "in the ") + region;
   const std::string infeasible =
       report_claim(info, {"feasible", "everywhere " + in, "feasible"}, found.feasible, region, out);
   const std::string singular =
@@ -104,11 +152,18 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   const RigorousBounds& bounds =
       require_capability(target.mechanism->bounds(), "certify", "formulas for interval arithmetic", info);
   const double gap = parse_gap(arguments.gap, "--gap");
-  const bool certifies_poses = !arguments.box.empty() || !arguments.motion.empty();
-  if (certifies_poses && !arguments.proof.empty())
-    throw ConfigError({"", 0, "--proof"}, "proofs are written for volumes only, not for --box or --motion");
-  if (!arguments.box.empty() && !arguments.motion.empty())
-    throw ConfigError({"", 0, "--motion"}, "cannot be combined with --box");
+  std::string region;  // of poses to be certified
+  for (const auto& [kind, is_given] : {std::pair("box", !arguments.box.empty()),
+                                       {"cylinder", !arguments.cylinder.empty()},
+                                       {"sphere", !arguments.sphere.empty()},
+                                       {"motion", !arguments.motion.empty()}}) {
+    if (!is_given) continue;
+    const std::string option = std::string("--") + kind;
+    if (!arguments.proof.empty())
+      throw ConfigError({"", 0, "--proof"}, "proofs are written for volumes only, not for " + option);
+    if (!region.empty()) throw ConfigError({"", 0, option}, "cannot be combined with --" + region);
+    region = kind;
+  }
   const Existing existing = if_forced(arguments.force);
   const auto motion = arguments.motion.empty() ? nullptr : find_motion(target, arguments.motion);
   const WorkspacePlan plan = target.plan();
@@ -128,9 +183,12 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   std::string error;
   try {
     with_team(arguments.threads, [&] {
-      if (!arguments.box.empty()) {
-        const auto ranges = parse_pose_box(target, plan, arguments.box);
-        error = report_poses(info, bounds.box(target.parameters, plan, mode, ranges, options), "box", out);
+      if (!region.empty() && !motion) {
+        const auto& lists = region == "box"        ? arguments.box
+                            : region == "cylinder" ? arguments.cylinder
+                                                   : arguments.sphere;
+        const PoseSolid solid = solid_of(target, plan, region, lists);
+        error = report_poses(info, bounds.solid(target.parameters, plan, mode, solid, options), region, out);
         return;
       }
       if (motion) {
@@ -163,15 +221,23 @@ void add_certify(CLI::App& app, Session& session) {
       app, session, "certify", "Compute guaranteed bounds on a design's workspace volume (interval arithmetic).",
       "Evaluates the formulas of a mechanism file in interval arithmetic with outward rounding, so that the volume is\n"
       "guaranteed to lie within the bounds. Parameters are taken as exact double-precision numbers. Ctrl-C stops with\n"
-      "the bounds reached so far. With --box, proves instead that every pose of the box is feasible and not singular,\n"
-      "or prints a counterexample; with --motion, does the same for every instant of a motion, or prints the first\n"
-      "infeasible instant.\n"
+      "the bounds reached so far. With --box, --cylinder or --sphere, proves instead that every pose of the solid is\n"
+      "feasible and not singular, or prints a counterexample; with --motion, does the same for every instant of a\n"
+      "motion, or prints the first infeasible instant.\n"
       "Example: pkmopt certify experiments/mechanisms/orthoglide.toml --gap 1e-3 --proof orthoglide.proof",
       certify);
   add_option(command, "--gap GAP", arguments.gap,
              "Relative gap (upper - lower) / mean at which to stop (default 0.01)");
   add_option(command, "--box NAME=FROM:TO", arguments.box,
              "Certify all poses within these ranges of the swept coordinates")
+      ->allow_extra_args(false);
+  add_option(command, "--cylinder NAME=VALUE", arguments.cylinder,
+             "Certify all poses of a cylinder: its centre, its diameter, and a range along its axis, such as "
+             "x=0,y=0,z=-0.4:-0.2,diameter=0.6")
+      ->allow_extra_args(false);
+  add_option(
+      command, "--sphere NAME=VALUE", arguments.sphere,
+      "Certify all poses of a sphere or circle: its centre and its diameter, such as x=0,y=0,z=-0.3,diameter=0.2")
       ->allow_extra_args(false);
   add_option(command, "--motion MOTION.toml", arguments.motion,
              "Certify all poses of a motion: a TOML file, or the name of a [[motion]] of the study");

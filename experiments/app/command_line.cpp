@@ -15,11 +15,11 @@ namespace {
 // Maximum number of bytes of a message of CLI11; longer messages are truncated.
 constexpr std::size_t kMaxMessageLength = 1000;
 
-/// Options whose value is a list of assignments NAME=VALUE.
-const std::vector<std::string> kLists = {"--set",          "--limit",  "--at",          "--joints",        "--velocity",
-                                         "--acceleration", "--input",  "--speeds",      "--accelerations", "--near",
-                                         "--forces",       "--wrench", "--fixed",       "--cut",           "--cells",
-                                         "--box",          "--least",  "--joint-error", "--tolerance"};
+/// Options whose value is a list of name=value.
+const std::vector<std::string> kLists = {
+    "--set",    "--limit",         "--at",    "--joints",      "--velocity",  "--acceleration", "--input",
+    "--speeds", "--accelerations", "--near",  "--forces",      "--wrench",    "--fixed",        "--cut",
+    "--cells",  "--box",           "--least", "--joint-error", "--tolerance", "--cylinder",     "--sphere"};
 
 /// Repeats an option before each element of its list: "--set a=1 b=2" becomes "--set a=1 --set b=2".
 std::vector<std::string> expand_lists(const std::vector<std::string>& arguments) {

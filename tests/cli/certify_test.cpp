@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -93,6 +94,40 @@ TEST_F(Certify, CertifiesBoxesOfPoses) {
   const auto across = run({"certify", file, "--box", "x=-0.1:0.12,y=-0.1:0.12,z=-0.1:0.12"});
   EXPECT_EQ(across.exit_code, 1);
   EXPECT_THAT(across.out, HasSubstr("is violated at x = "));
+}
+
+/// The largest cylinder of the linear Delta (tests/cli/largest_solid_test.cpp), which touches the boundary of the
+/// workspace, and larger and smaller ones.
+TEST_F(Certify, CertifiesCylindersAndSpheres) {
+  const std::vector<std::string> design = {"certify", kMechanisms + "linear-delta.toml", "--set",
+                                           "R=0.26,r=0.06,l=0.5,q_max=0.6", "--json"};
+  const auto certified = [&](std::vector<std::string> solid) {
+    solid.insert(solid.begin(), design.begin(), design.end());
+    return run(solid);
+  };
+  const std::string diameter = "diameter=" + std::to_string(2 * 0.2586), height = "z=-0.1985:0.0998";
+  const auto inside = certified({"--cylinder", "x=0,y=0," + height + "," + diameter});
+  EXPECT_EQ(inside.exit_code, 0) << inside.err;
+  EXPECT_EQ(inside.json()["feasible"]["verdict"], "yes");
+  EXPECT_EQ(inside.json()["regular"]["verdict"], "yes");
+  const std::string edge = std::to_string(0.2586);
+  const auto box = certified({"--box", "x=-" + edge + ":" + edge + ",y=-" + edge + ":" + edge + "," + height});
+  EXPECT_EQ(box.json()["feasible"]["verdict"], "no");  // the corners of the box about the cylinder
+  const auto wide = certified({"--cylinder", "x=0,y=0", height, "diameter=0.53"});
+  EXPECT_EQ(wide.exit_code, 1);
+  const auto pose = wide.json()["feasible"]["pose"];
+  EXPECT_LE(std::hypot(double(pose["x"]), double(pose["y"])), 0.265);
+  EXPECT_THAT(wide.err, HasSubstr("the cylinder is not feasible everywhere"));
+  EXPECT_EQ(certified({"--sphere", "x=0,y=0,z=-0.05,diameter=0.29"}).json()["feasible"]["verdict"], "yes");
+  EXPECT_EQ(certified({"--sphere", "x=0,y=0,z=-0.05,diameter=0.6"}).json()["feasible"]["verdict"], "no");
+
+  EXPECT_THAT(certified({"--cylinder", "x=0,y=0,z=0,diameter=0.5"}).err,
+              HasSubstr("found 0 ranges; expected one range"));
+  EXPECT_THAT(certified({"--sphere", "x=0,y=0,z=0:1,diameter=0.5"}).err,
+              HasSubstr("found 1 ranges; expected no range"));
+  EXPECT_THAT(certified({"--cylinder", "x=0,y=0,z=0:1"}).err, HasSubstr("found no value for diameter"));
+  EXPECT_THAT(certified({"--sphere", "x=0,y=0,z=0,diameter=1", "--box", "x=0:1"}).err,
+              HasSubstr("cannot be combined with --box"));
 }
 
 TEST_F(Certify, CertifiesMotions) {

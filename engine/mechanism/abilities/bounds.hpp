@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/geometry/pose.hpp"
 #include "engine/mechanism/plan.hpp"
@@ -31,7 +32,14 @@ struct VolumeBounds {
   double gap() const { return upper > 0 ? 2 * (upper - lower) / (upper + lower) : 0; }
 };
 
-/// Result of the attempt to prove that a property holds at every pose of a box, or of a motion.
+/// A box of poses, or a cylinder or sphere in it, as Cartesian product of intervals and balls.
+struct PoseSolid {
+  std::vector<std::array<double, 2>> ranges;  ///< of each coordinate; lower = upper fixes the coordinate
+  /// Coordinates of each ball: only the ellipsoid inscribed in the box of their ranges belongs to the solid.
+  std::vector<std::vector<std::size_t>> balls = {};
+};
+
+/// Result of the attempt to prove that a property holds at every pose of a solid, or of a motion.
 struct PropertyResult {
   enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
@@ -67,12 +75,11 @@ class RigorousBounds {
   /// The parameters are taken as exact. Throws std::invalid_argument with one sentence if the plan is not supported.
   virtual VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               const BoundsOptions& options) const = 0;
-  /// Tries to prove that all poses of a box are feasible under the plan's limits, and that none is singular.
-  /// @param ranges  range of each coordinate; if lower = upper, the coordinate is fixed
-  virtual PoseCertificate box(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
-                              std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
-  /// Tries to prove that all poses of a motion are feasible, and that none is singular. If the motion is infeasible,
-  /// PropertyResult::time is its first infeasible instant, to 1e-6 of the duration.
+  /// Feasibility and regularity of all poses of a solid, under the plan's limits.
+  virtual PoseCertificate solid(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
+                                const PoseSolid& poses, const BoundsOptions& options) const = 0;
+  /// Feasibility and regularity at every instant of a motion. If the motion is infeasible, PropertyResult::time is its
+  /// first infeasible instant, to 1e-6 of the duration.
   virtual PoseCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
                                  const Motion& motion, const BoundsOptions& options) const = 0;
   /// Tries to prove that every path from one pose to another along which only the swept coordinates of the plan vary

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "engine/core/team.hpp"
 #include "engine/geometry/singular.hpp"
@@ -157,10 +159,12 @@ struct Box {
   std::vector<std::size_t> open;  ///< undecided constraints
   bool is_regular = false;        ///< true if all matrices are proved to have full rank
   // Results of examine():
-  std::optional<std::size_t> violated;   ///< a constraint that is violated at the midpoint or on the whole box
+  bool is_outside = false;               ///< no pose of the box is in the solid
+  IntervalBox sample;                    ///< a pose of the box: the midpoint, or the pose nearest to the solid's centre
+  std::optional<std::size_t> violated;   ///< a constraint that is violated at the sample, which is in the solid
   std::optional<std::size_t> undecided;  ///< the first matrix without a proof of full rank
-  int determinant_sign = 0;              ///< sign of its determinant at the midpoint; 0: unknown
-  bool is_singular_at_midpoint = false;  ///< that matrix is singular there to working precision
+  int determinant_sign = 0;              ///< sign of its determinant at the sample; 0: unknown
+  bool is_singular_at_sample = false;    ///< that matrix is singular there to working precision
   std::size_t axis = 0;                  ///< axis of the next bisection
 };
 
@@ -172,9 +176,9 @@ struct Singularity {
 
 class PoseBranchAndBound {
  public:
-  PoseBranchAndBound(const Constraints& constraints, const Matrices* matrices,
-                     std::span<const std::array<double, 2>> ranges, const BoundsOptions& options)
-      : constraints_(constraints), matrices_(matrices), ranges_(ranges), options_(options) {
+  PoseBranchAndBound(const Constraints& constraints, const Matrices* matrices, const PoseSolid& poses,
+                     const BoundsOptions& options)
+      : constraints_(constraints), matrices_(matrices), ranges_(poses.ranges), balls_(poses.balls), options_(options) {
     for (std::size_t i = 0; i < workers(); ++i)
       scratch_.push_back({constraints.make_scratch(), constraints.make_scratch(), constraints.make_scratch(),
                           matrices ? matrices->initial_scratch() : Matrices::Scratch()});
@@ -199,16 +203,17 @@ class PoseBranchAndBound {
       const bool last = found.stopped || found.boxes >= options_.max_boxes;
       std::vector<Box> next;
       for (const Box& box : boxes) {
+        if (box.is_outside) continue;
         if (box.violated && found.feasible.kind != PropertyResult::Kind::fails)
-          found.feasible = {PropertyResult::Kind::fails, constraints_.name(*box.violated), pose(box.sides)};
+          found.feasible = {PropertyResult::Kind::fails, constraints_.name(*box.violated), pose(box.sample)};
         if (box.violated) continue;
         if (!singularity_ && !box.is_regular) singularity_ = find_singularity(box);
         if (box.open.empty() && (box.is_regular || singularity_)) continue;
         if (!last && bisect(box, next)) continue;
         if (!box.open.empty() && found.feasible.kind == PropertyResult::Kind::holds)
-          found.feasible = {PropertyResult::Kind::undecided, constraints_.name(box.open.front()), pose(box.sides)};
+          found.feasible = {PropertyResult::Kind::undecided, constraints_.name(box.open.front()), pose(box.sample)};
         if (box.undecided && !singularity_ && found.regular.kind == PropertyResult::Kind::holds)
-          found.regular = {PropertyResult::Kind::undecided, matrices_->name(*box.undecided), pose(box.sides)};
+          found.regular = {PropertyResult::Kind::undecided, matrices_->name(*box.undecided), pose(box.sample)};
       }
       boxes = std::move(next);
       if (found.feasible.kind == PropertyResult::Kind::fails) {
@@ -222,7 +227,7 @@ class PoseBranchAndBound {
 
  private:
   struct Scratch {
-    Constraints::Scratch box, midpoint, vertex;
+    Constraints::Scratch box, sample, vertex;
     Matrices::Scratch matrices;
   };
 
@@ -233,18 +238,41 @@ class PoseBranchAndBound {
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) pose[axis] = box[axis].middle();
     return pose;
   }
-  static IntervalBox midpoint_of(IntervalBox box) {
-    for (Interval& side : box) side = Interval(side.middle());
-    return box;
+
+  /// For each ball, the sum of squares of which the solid is the set with a sum of at most 1; the largest one.
+  Interval sum_of_squares(const IntervalBox& box) const {
+    Interval largest(0.0);
+    for (const std::vector<std::size_t>& ball : balls_) {
+      Interval sum(0.0);
+      for (const std::size_t axis : ball) {
+        const Interval lower(ranges_[axis][0]), upper(ranges_[axis][1]);
+        sum += square((Interval(2.0) * box[axis] - lower - upper) / (upper - lower));
+      }
+      largest = max(largest, sum);
+    }
+    return largest;
+  }
+  bool is_certified_inside(const IntervalBox& box) const { return sum_of_squares(box).upper <= 1; }
+
+  /// The midpoint of a box or, if it is not in the solid, the pose of the box nearest to the centres of the balls.
+  IntervalBox sample_of(const IntervalBox& box) const {
+    IntervalBox sample = box;
+    for (Interval& side : sample) side = Interval(side.middle());
+    if (is_certified_inside(sample)) return sample;
+    for (const std::vector<std::size_t>& ball : balls_)
+      for (const std::size_t axis : ball)
+        sample[axis] =
+            Interval(std::clamp(std::midpoint(ranges_[axis][0], ranges_[axis][1]), box[axis].lower, box[axis].upper));
+    return sample;
   }
 
-  /// A singularity at the midpoint of a box, or between it and the midpoint of an earlier box.
+  /// A singularity at the sample of a box, or between it and the sample of an earlier box. Solids are convex.
   std::optional<Singularity> find_singularity(const Box& box) {
     const std::string& name = matrices_->name(*box.undecided);
-    if (box.is_singular_at_midpoint) return Singularity{name + ", to working precision", box.sides};
+    if (box.is_singular_at_sample) return Singularity{name + ", to working precision", box.sample};
     if (box.determinant_sign == 0) return {};
     Bracket& bracket = brackets_[*box.undecided];
-    (box.determinant_sign > 0 ? bracket.positive : bracket.negative) = midpoint_of(box.sides);
+    (box.determinant_sign > 0 ? bracket.positive : bracket.negative) = box.sample;
     if (!bracket.positive || !bracket.negative || bracket.searches == kMaxSearches) return {};
     ++bracket.searches;
     const auto root = bracket_root(*box.undecided, *bracket.negative, *bracket.positive);
@@ -278,26 +306,32 @@ class PoseBranchAndBound {
     return box;
   }
 
-  /// Decides constraints and matrices on a box, and looks for a counterexample at its midpoint.
+  /// Decides constraints and matrices on a box, and looks for a counterexample at its sample.
   void examine(Box& box, Scratch& scratch) const {
     std::array<double, kMaxAxes> variation{};  // by axis: bound of the open constraints' change, summed
     std::vector<std::size_t> open;
-    const IntervalBox midpoint = midpoint_of(box.sides);
+    const Interval sums = sum_of_squares(box.sides);
+    box.is_outside = sums.lower > 1;
+    if (box.is_outside) return;
+    box.sample = sample_of(box.sides);
+    const bool is_inside = is_certified_inside(box.sample);
     const std::size_t last = ranges_.size() - 1;
     constraints_.set_box(box.sides, scratch.box);
-    constraints_.set_box(midpoint, scratch.midpoint);
+    constraints_.set_box(box.sample, scratch.sample);
     for (const std::size_t k : box.open) {
       const Interval value = constraints_.value(k, box.sides[last], scratch.box);
       if (value.is_certified_satisfied()) continue;
-      const Interval at_midpoint = constraints_.value(k, midpoint[last], scratch.midpoint);
-      if (value.is_certified_violated() || at_midpoint.is_certified_violated()) {
+      const Interval at_sample = constraints_.value(k, box.sample[last], scratch.sample);
+      if (is_inside && (value.is_certified_violated() || at_sample.is_certified_violated())) {
         box.violated = k;
         return;
       }
       const Derivatives derivatives = constraints_.derivatives(k, box.sides[last], scratch.box);
       if (derivatives.is_known &&
-          (mean_value_form(at_midpoint, midpoint, box.sides, derivatives).is_certified_satisfied() ||
-           minimum_by_monotonicity(k, box.sides, derivatives, scratch).is_certified_satisfied()))
+          (mean_value_form(at_sample, box.sample, box.sides, derivatives).is_certified_satisfied() ||
+           minimum_by_monotonicity(k, box.sides, derivatives, scratch).is_certified_satisfied() ||
+           (sums.upper > 1 &&
+            mean_value_form_in_balls(at_sample, box.sample, box.sides, derivatives).is_certified_satisfied())))
         continue;
       open.push_back(k);
       for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
@@ -309,18 +343,57 @@ class PoseBranchAndBound {
       box.undecided = matrices_->first_undecided(box.sides, scratch.matrices);
       box.is_regular = !box.undecided;
     }
-    if (box.undecided) {
-      box.determinant_sign = matrices_->determinant_sign(*box.undecided, midpoint, scratch.matrices);
-      box.is_singular_at_midpoint =
-          box.determinant_sign == 0 && matrices_->is_singular_at(*box.undecided, midpoint, scratch.matrices);
+    if (box.undecided && is_inside) {
+      box.determinant_sign = matrices_->determinant_sign(*box.undecided, box.sample, scratch.matrices);
+      box.is_singular_at_sample =
+          box.determinant_sign == 0 && matrices_->is_singular_at(*box.undecided, box.sample, scratch.matrices);
     }
     box.axis = bisection_axis(box, variation);
   }
 
-  Interval mean_value_form(Interval value, const IntervalBox& midpoint, const IntervalBox& sides,
+  /// @param value  at `sample`, a pose of the box
+  Interval mean_value_form(Interval value, const IntervalBox& sample, const IntervalBox& sides,
                            const Derivatives& derivatives) const {
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
-      value += derivatives.by_axis[axis] * (sides[axis] - midpoint[axis]);
+      value += derivatives.by_axis[axis] * (sides[axis] - sample[axis]);
+    return value;
+  }
+
+  /// The mean value form for the part of a box that is in the solid. There, the sum of squares q of each ball is at
+  /// most 1, so that the constraint is not less than its mean value form plus m (q - 1) for any m >= 0 (Lagrangian
+  /// relaxation). This sum is separable. With the multiplier m of a linear constraint, its error is of second order in
+  /// the size of the box, like that of the mean value form on boxes that do not extend beyond the solid.
+  /// @return a lower bound
+  Interval mean_value_form_in_balls(Interval value, const IntervalBox& sample, const IntervalBox& sides,
+                                    const Derivatives& derivatives) const {
+    std::array<bool, kMaxAxes> is_added{};
+    for (const std::vector<std::size_t>& ball : balls_) {
+      double norm = 0;
+      for (const std::size_t axis : ball)
+        norm = std::hypot(norm, derivatives.by_axis[axis].middle() * (ranges_[axis][1] - ranges_[axis][0]) / 2);
+      const Interval multiplier(norm / 2);
+      if (!(norm > 0) || !std::isfinite(norm)) continue;
+      for (const std::size_t axis : ball) {
+        is_added[axis] = true;
+        const Interval lower(ranges_[axis][0]), upper(ranges_[axis][1]), two(2.0);
+        const Interval b = multiplier / square((upper - lower) / two), offset = sample[axis] - (lower + upper) / two;
+        const Interval change = sides[axis] - sample[axis];
+        double least = std::numeric_limits<double>::infinity();
+        const auto add_part = [&](double from, double to, double derivative) {
+          if (!(from <= to)) return;
+          // a t + b (t + offset)^2 for t from `from` to `to`, as a square
+          const Interval a(derivative), t(from, to), vertex = a / (two * b);
+          const double bound = (b * square(t + offset + vertex) - a * offset - a * vertex / two).lower;
+          least = bound > -std::numeric_limits<double>::infinity() ? std::min(least, bound) : bound;  // also NaN
+        };
+        add_part(change.lower, std::fmin(change.upper, 0), derivatives.by_axis[axis].upper);
+        add_part(std::fmax(change.lower, 0), change.upper, derivatives.by_axis[axis].lower);
+        value += Interval(least);
+      }
+      value = value - multiplier;
+    }
+    for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
+      if (!is_added[axis]) value += derivatives.by_axis[axis] * (sides[axis] - sample[axis]);
     return value;
   }
 
@@ -366,6 +439,8 @@ class PoseBranchAndBound {
       to.push_back(box);
       to.back().sides[box.axis] = half;
       to.back().undecided.reset();
+      to.back().determinant_sign = 0;
+      to.back().is_singular_at_sample = false;
     }
     return true;
   }
@@ -373,6 +448,7 @@ class PoseBranchAndBound {
   const Constraints& constraints_;
   const Matrices* matrices_;
   std::span<const std::array<double, 2>> ranges_;
+  const std::vector<std::vector<std::size_t>>& balls_;
   const BoundsOptions& options_;
   std::vector<Scratch> scratch_;  ///< by worker
 
@@ -388,9 +464,9 @@ class PoseBranchAndBound {
 
 }  // namespace
 
-PoseCertificate certify(const Constraints& constraints, const Matrices* matrices,
-                        std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) {
-  return PoseBranchAndBound(constraints, matrices, ranges, options).run();
+PoseCertificate certify(const Constraints& constraints, const Matrices* matrices, const PoseSolid& poses,
+                        const BoundsOptions& options) {
+  return PoseBranchAndBound(constraints, matrices, poses, options).run();
 }
 
 }  // namespace pkm::bounds

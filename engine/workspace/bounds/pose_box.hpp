@@ -1,5 +1,6 @@
-// Interval branch and bound over a box of poses: proves that all constraints are satisfied and that given matrices have
-// full rank at every pose, or finds a counterexample.
+// Interval branch and bound over a box of poses, or a cylinder or sphere in it: proves that all constraints are
+// satisfied and that given matrices have full rank at every pose, or finds a counterexample. Boxes outside the solid
+// are discarded. Counterexamples are poses proven to be in the solid.
 //
 // Constraints. One that is monotonic along each axis has its minimum at a vertex of the box; any other is bounded by
 // the mean value form about the midpoint.
@@ -61,10 +62,9 @@ class Matrices {
   Scratch initial_;
 };
 
-/// Examines a box of poses.
-/// @param ranges    range of each axis
+/// Examines a solid of poses, given over the axes.
 /// @param matrices  null: regularity is not examined
-PoseCertificate certify(const Constraints& constraints, const Matrices* matrices,
-                        std::span<const std::array<double, 2>> ranges, const BoundsOptions& options);
+PoseCertificate certify(const Constraints& constraints, const Matrices* matrices, const PoseSolid& poses,
+                        const BoundsOptions& options);
 
 }  // namespace pkm::bounds

@@ -182,8 +182,8 @@ TEST(RigorousBounds, OfABoxOfPoses) {
   const Mechanism& orthoglide = *test::described("orthoglide");
   const MechanismInfo& info = orthoglide.info();
   const auto certified = [&](double from, double to) {
-    return orthoglide.bounds()->box(defaults(info), plain_plan(info), "",
-                                    std::vector<std::array<double, 2>>(3, {from, to}), {.max_boxes = 20000});
+    return orthoglide.bounds()->solid(defaults(info), plain_plan(info), "",
+                                      {std::vector<std::array<double, 2>>(3, {from, to})}, {.max_boxes = 20000});
   };
   const PoseCertificate inside = certified(-0.05, 0.03);
   EXPECT_EQ(inside.feasible.kind, Kind::holds);
@@ -266,9 +266,8 @@ TEST(RigorousBounds, FindASingularityBetweenTwoSignsOfTheDeterminant) {
       "\"telescope\"\nbase = [0, 0, 0]\nplatform = [0, 0, 0]\n[[limb]]\nname = \"right\"\ndrive = "
       "\"telescope\"\nbase = [\"b\", 0, 0]\nplatform = [0, 0, 0]\n");
   const auto regular = [&](double from, double to) {
-    const std::vector<std::array<double, 2>> ranges = {{0.2, 0.8}, {from, to}};
     return legs->bounds()
-        ->box(defaults(legs->info()), plain_plan(legs->info()), "", ranges, {.max_boxes = 2000})
+        ->solid(defaults(legs->info()), plain_plan(legs->info()), "", {{{0.2, 0.8}, {from, to}}}, {.max_boxes = 2000})
         .regular;
   };
   EXPECT_EQ(regular(0.1, 0.9).kind, Kind::holds);
@@ -298,7 +297,7 @@ std::shared_ptr<const Mechanism> redundant(const std::string& name) {
 using PoseRanges = std::vector<std::array<double, 2>>;
 
 PoseCertificate over(const Mechanism& mechanism, const std::vector<double>& design, const PoseRanges& box) {
-  return mechanism.bounds()->box(design, plain_plan(mechanism.info()), "", box, {.max_boxes = 20000});
+  return mechanism.bounds()->solid(design, plain_plan(mechanism.info()), "", {box}, {.max_boxes = 20000});
 }
 
 TEST(RigorousBounds, OfRedundantDrives) {

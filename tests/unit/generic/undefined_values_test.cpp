@@ -73,8 +73,8 @@ TEST_P(UndefinedValues, ViolateAConstraintInPosesVoxelsColumnsAndBounds) {
 
 TEST_P(UndefinedValues, HoldNowhereForCertain) {
   const WorkspacePlan plan = test::columns(info());
-  const auto box = mechanism_->bounds()->box(
-      test::nominal(info()), plan, "", std::vector<std::array<double, 2>>{{0.1, 0.2}, {0.4, 0.6}}, {.max_boxes = 1000});
+  const auto box =
+      mechanism_->bounds()->solid(test::nominal(info()), plan, "", {{{0.1, 0.2}, {0.4, 0.6}}}, {.max_boxes = 1000});
   EXPECT_NE(box.feasible.kind, Kind::holds);
 }
 
@@ -97,8 +97,7 @@ TEST(UndefinedValues, AtAPoleViolateAConstraint) {
   const WorkspacePlan plan = test::columns(info);
   const auto certificate = [&](double from, double to) {
     return mechanism->bounds()
-        ->box(test::nominal(info), plan, "", std::vector<std::array<double, 2>>{{from, to}, {0.4, 0.6}},
-              {.max_boxes = 1000})
+        ->solid(test::nominal(info), plan, "", {{{from, to}, {0.4, 0.6}}}, {.max_boxes = 1000})
         .feasible.kind;
   };
   EXPECT_NE(certificate(0.49, 0.51), Kind::holds);

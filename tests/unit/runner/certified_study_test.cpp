@@ -75,8 +75,8 @@ class Bounded final : public Mechanism, RigorousBounds {
     const bool stopped = options.stop && options.stop();
     return {.lower = stopped ? 0 : lower * survey.volume, .upper = upper * survey.volume, .stopped = stopped};
   }
-  PoseCertificate box(std::span<const double>, const WorkspacePlan&, const std::string&,
-                      std::span<const std::array<double, 2>>, const BoundsOptions&) const override {
+  PoseCertificate solid(std::span<const double>, const WorkspacePlan&, const std::string&, const PoseSolid&,
+                        const BoundsOptions&) const override {
     return {};
   }
   PoseCertificate motion(std::span<const double>, const LimitSpec&, const std::string&, const Motion&,

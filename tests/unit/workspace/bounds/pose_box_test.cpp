@@ -15,7 +15,7 @@ using Kind = PropertyResult::Kind;
 using Box = std::vector<std::array<double, 2>>;
 
 PoseCertificate certify(const std::vector<std::string>& constraints, const Box& ranges, std::size_t boxes = 100'000) {
-  return bounds::certify(conditions(std::string("xyz").substr(0, ranges.size()), constraints), nullptr, ranges,
+  return bounds::certify(conditions(std::string("xyz").substr(0, ranges.size()), constraints), nullptr, {ranges},
                          {.max_boxes = boxes});
 }
 /// The rank of a matrix of formulas in x and y.
@@ -25,7 +25,7 @@ PropertyResult rank(std::size_t columns, const std::vector<std::string>& entries
   NamedMatrix matrix{.name = "J", .rows = entries.size() / columns, .columns = columns, .entries = {}};
   for (const std::string& entry : entries) matrix.entries.push_back(formulas.read(entry));
   const Matrices matrices(formulas.graph, {matrix}, formulas.positions, formulas.inputs());
-  const PoseCertificate found = bounds::certify(formulas.conditions({"1"}), &matrices, ranges, {.max_boxes = boxes});
+  const PoseCertificate found = bounds::certify(formulas.conditions({"1"}), &matrices, {ranges}, {.max_boxes = boxes});
   EXPECT_EQ(found.feasible.kind, Kind::holds);
   return found.regular;
 }
@@ -91,9 +91,45 @@ TEST(PoseBox, RankIsNotExaminedIfAPoseIsInfeasible) {
   Formulas formulas("x");
   const Matrices matrices(formulas.graph, {{"J", 1, 1, {formulas.read("x")}}}, formulas.positions, formulas.inputs());
   const Box ranges = {{-1, 1}};
-  const PoseCertificate found = bounds::certify(formulas.conditions({"x"}), &matrices, ranges, {});
+  const PoseCertificate found = bounds::certify(formulas.conditions({"x"}), &matrices, {ranges}, {});
   EXPECT_EQ(found.feasible.kind, Kind::fails);
   EXPECT_EQ(found.regular.kind, Kind::not_examined);
+}
+
+/// x + y <= c holds on the inscribed disc of radius 1 about (1, 1) exactly if c >= 2 + sqrt(2), and on its box if c
+/// >= 4.
+TEST(PoseBox, OnlyTheBallsOfASolidCount) {
+  const auto on_disc = [](double excess) {
+    const std::string constraint = std::to_string(2 + std::sqrt(2) + excess) + " - x - y";
+    return bounds::certify(conditions("xy", {constraint}), nullptr, {{{0, 2}, {0, 2}}, {{0, 1}}}, {}).feasible;
+  };
+  EXPECT_EQ(on_disc(1e-3).kind, Kind::holds);
+  const PropertyResult fails = on_disc(-1e-3);
+  ASSERT_EQ(fails.kind, Kind::fails);
+  EXPECT_LE(std::hypot((*fails.pose)[0] - 1, (*fails.pose)[1] - 1), 1);
+  EXPECT_GT((*fails.pose)[0] + (*fails.pose)[1], 2 + std::sqrt(2) - 1e-3);
+  // A cylinder along y and a sphere: the constraint is violated outside of them only.
+  const PoseSolid cylinder = {{{-1, 1}, {0, 3}, {-1, 1}}, {{0, 2}}}, sphere = {{{-1, 1}, {0, 2}, {-1, 1}}, {{0, 1, 2}}};
+  EXPECT_EQ(bounds::certify(conditions("xyz", {"1.001 - x^2 - z^2"}), nullptr, cylinder, {}).feasible.kind,
+            Kind::holds);
+  EXPECT_EQ(bounds::certify(conditions("xyz", {"1 - x^2 - (y - 0.1)^2 - z^2"}), nullptr, cylinder, {}).feasible.kind,
+            Kind::fails);
+  EXPECT_EQ(bounds::certify(conditions("xyz", {"1.001 - x^2 - (y - 1)^2 - z^2"}), nullptr, sphere, {}).feasible.kind,
+            Kind::holds);
+}
+
+TEST(PoseBox, SingularitiesOutsideOfTheBallsDoNotCount) {
+  Formulas formulas("xy");
+  const auto regular_at = [&](double pole) {
+    const Matrices matrices(formulas.graph, {{"J", 1, 1, {formulas.read(std::to_string(pole) + " - x - y")}}},
+                            formulas.positions, formulas.inputs());
+    return bounds::certify(formulas.conditions({"1"}), &matrices, {{{-1, 1}, {-1, 1}}, {{0, 1}}}, {}).regular;
+  };
+  EXPECT_EQ(regular_at(1.42).kind, Kind::holds);
+  const PropertyResult singular = regular_at(1.4);
+  ASSERT_EQ(singular.kind, Kind::fails);
+  EXPECT_NEAR((*singular.pose)[0] + (*singular.pose)[1], 1.4, 1e-9);
+  EXPECT_LE(std::hypot((*singular.pose)[0], (*singular.pose)[1]), 1 + 1e-12);
 }
 
 }  // namespace
