@@ -4,8 +4,11 @@
 // samples of the motion, with the limits of the study. For gradient solvers it is replaced by a smooth lower bound
 // (soft_minimum). Studies have this constraint for every motion that an objective, a constraint or an output uses,
 // unless that [[motion]] has follow = false: forces along a motion that the robot cannot follow are meaningless.
+#include <cmath>
+
 #include "constraints/list.hpp"
 #include "constraints/pose_margins.hpp"
+#include "engine/mechanism/ordered_margins.hpp"
 #include "engine/problem/motion_options.hpp"
 #include "engine/problem/pose_options.hpp"
 
@@ -14,21 +17,59 @@ namespace {
 
 constexpr double kUnlimited = 1;  // margin of a motion if the mechanism has no limits of poses
 
-std::unique_ptr<const Quantity> minimum_along(const EntryContext& context) {
-  MarginPoses along{{}, mode_of(context), context.plan.limits};
-  for (const MotionSample& at : samples_of(context)) along.poses.push_back(at.pose);
-  const double sharpness = context.options.number("sharpness");
-  return make_quantity(
-      [along](const DesignView<double>& design) {
-        const std::vector<double>& margins = margins_of(design, along);
-        return margins.empty() ? kUnlimited : minimum(margins);
-      },
-      [along, sharpness](const DesignView<Dual4>& design) {
-        const std::vector<Dual4>& margins = margins_of(design, along);
-        return margins.empty() ? Dual4(kUnlimited) : soft_minimum(margins, sharpness);
-      },
-      no_margin_derivatives(context.mechanism, along.limits, kMotionConstraint));
-}
+class MinimumAlong final : public Quantity {
+ public:
+  explicit MinimumAlong(const EntryContext& context)
+      : motion_(context),
+        along_{{}, mode_of(context), context.plan.limits},
+        sharpness_(context.options.number("sharpness")) {
+    const DesignMotion& motion = motion_of(context);
+    depends_on_design_ = static_cast<bool>(motion.of_design);
+    if (!depends_on_design_) along_.poses = poses_of(sample(*motion.motion, motion_.size()));
+    why_no_derivatives_ = motion_.why_no_derivatives();
+    if (!why_no_derivatives_)
+      why_no_derivatives_ = no_margin_derivatives(context.mechanism, along_.limits, kMotionConstraint);
+  }
+
+  double value(const DesignView<double>& design) const override {
+    if (!depends_on_design_) return minimum_or_unlimited(margins_of(design, along_));
+    return minimum_or_unlimited(margins_of(design, {poses_of(motion_.of(design)), along_.mode, along_.limits}));
+  }
+  Dual4 smooth(const DesignView<Dual4>& design) const override {
+    if (!depends_on_design_) return minimum_or_unlimited(margins_of(design, along_));
+    return motion_.with(design, [&](const auto& samples) {
+      std::vector<Pose<Dual4>> poses;
+      for (const auto& at : samples) poses.push_back(at.pose);
+      std::vector<Dual4> margins;
+      find_ordered_margins(design.mechanism)
+          ->append_ordered(design.parameters, along_.mode, along_.limits, poses, design.scratch, margins);
+      // A margin that does not exist counts as -1, as in margins_of().
+      for (Dual4& margin : margins)
+        if (std::isnan(margin.a)) margin = Dual4(-1.0);
+      return minimum_or_unlimited(margins);
+    });
+  }
+  Unsupported why_no_derivatives() const override { return why_no_derivatives_; }
+
+ private:
+  static std::vector<Pose<double>> poses_of(std::span<const MotionSample> samples) {
+    std::vector<Pose<double>> poses;
+    for (const MotionSample& at : samples) poses.push_back(at.pose);
+    return poses;
+  }
+  static double minimum_or_unlimited(const std::vector<double>& margins) {
+    return margins.empty() ? kUnlimited : minimum(margins);
+  }
+  Dual4 minimum_or_unlimited(const std::vector<Dual4>& margins) const {
+    return margins.empty() ? Dual4(kUnlimited) : soft_minimum(margins, sharpness_);
+  }
+
+  SampledMotion motion_;
+  MarginPoses along_;  ///< without poses if the motion depends on the design
+  double sharpness_;
+  bool depends_on_design_ = false;
+  Unsupported why_no_derivatives_;
+};
 
 }  // namespace
 
@@ -41,7 +82,7 @@ ConstraintEntry motion_constraint() {
             return std::vector<OptionSpec>{motion_option(), samples_option(), mode_option(), sharpness_of_minimum()};
           },
       .unit = unit_of_minimum,
-      .make = minimum_along,
+      .make = [](const EntryContext& context) { return std::make_unique<MinimumAlong>(context); },
       .detail =
           [](const EntryContext& context) {
             return "minimum margin of a pose along the motion " + context.options.word("motion") + ", over " +

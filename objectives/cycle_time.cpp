@@ -32,19 +32,26 @@ MotionLimits limits_of(const EntryContext& context) {
   return limits;
 }
 
-std::shared_ptr<const MovesOfMotion> moves_of(const EntryContext& context) {
+std::size_t nodes_of(const EntryContext& context) {
   const std::int64_t nodes = context.options.integer("nodes");
   if (nodes % 2 != 0)
     throw std::invalid_argument("nodes = " + std::to_string(nodes) + " is odd; expected an even number");
-  return std::make_shared<const MovesOfMotion>(
-      motion_of(context).motion, context.options.word("law") == "own" ? FastestLaw::own : FastestLaw::optimal,
-      static_cast<std::size_t>(nodes));
+  return static_cast<std::size_t>(nodes);
 }
 
 class CycleTime final : public Quantity {
  public:
   explicit CycleTime(const EntryContext& context)
-      : limits_(limits_of(context)), moves_(moves_of(context)), mode_(mode_of(context)), wrench_(wrench_of(context)) {
+      : limits_(limits_of(context)),
+        motion_(motion_of(context)),
+        law_(context.options.word("law") == "own" ? FastestLaw::own : FastestLaw::optimal),
+        nodes_(nodes_of(context)),
+        moves_(std::make_shared<const MovesOfMotion>(motion_.motion, law_, nodes_)),
+        mode_(mode_of(context)),
+        wrench_(wrench_of(context)) {
+    if (motion_.of_design)
+      why_no_derivatives_ = "cycle-time has no derivatives by parameters of the motion, and the motion " +
+                            motion_.name + " depends on the design; use an optimiser without gradients";
     if (const Unsupported reason = why_no_joint_forces(context.mechanism))
       why_no_derivatives_ = "joint speeds along a motion have no derivatives without dynamics: " + *reason;
   }
@@ -53,7 +60,7 @@ class CycleTime final : public Quantity {
 
   double value(const DesignView<double>& design) const override {
     try {
-      return shortest_times(*moves_, with_limits(design.mechanism, design.parameters)).duration;
+      return times_of(design).duration;
     } catch (const DesignError&) {
       return std::numeric_limits<double>::quiet_NaN();
     }
@@ -70,7 +77,7 @@ class CycleTime final : public Quantity {
   }
   std::string why_undefined(const DesignView<double>& design) const override {
     try {
-      shortest_times(*moves_, with_limits(design.mechanism, design.parameters));
+      times_of(design);
     } catch (const DesignError& reason) {
       return reason.what();
     }
@@ -78,12 +85,24 @@ class CycleTime final : public Quantity {
   }
 
  private:
+  ShortestTimes times_of(const DesignView<double>& design) const {
+    const DesignWithLimits at = with_limits(design.mechanism, design.parameters);
+    if (!motion_.of_design) return shortest_times(*moves_, at);
+    try {
+      return shortest_times(MovesOfMotion(motion_.of_design(design.parameters), law_, nodes_), at);
+    } catch (const std::invalid_argument& reason) {  // a motion without moves, or with corners
+      throw DesignError(reason.what());
+    }
+  }
   DesignWithLimits with_limits(const Mechanism& mechanism, std::span<const double> parameters) const {
     return {mechanism, parameters, mode_, limits_, wrench_};
   }
 
   MotionLimits limits_;
-  std::shared_ptr<const MovesOfMotion> moves_;
+  DesignMotion motion_;
+  FastestLaw law_;
+  std::size_t nodes_;
+  std::shared_ptr<const MovesOfMotion> moves_;  ///< of the study's own parameters
   std::string mode_;
   Wrench<double> wrench_;
   Unsupported why_no_derivatives_;

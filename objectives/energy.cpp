@@ -19,20 +19,21 @@ namespace {
 class Energy final : public Quantity {
  public:
   explicit Energy(const EntryContext& context)
-      : name_(motion_of(context).name),
-        samples_(samples_of(context)),
+      : motion_(context),
         mode_(mode_of(context)),
         wrench_(wrench_of(context)),
         recuperates_(context.options.flag("recuperation")) {}
 
+  Unsupported why_no_derivatives() const override { return motion_.why_no_derivatives(); }
   double value(const DesignView<double>& design) const override { return integral(design).energy; }
   Dual4 smooth(const DesignView<Dual4>& design) const override { return integral(design).energy; }
   std::string why_undefined(const DesignView<double>& design) const override {
     const Integral<double> found = integral(design);
     if (std::isfinite(found.energy)) return {};
-    if (found.samples == samples_.size()) return "the motion " + name_ + " passes through a singularity";
-    return "the motion " + name_ +
-           " leaves the reach of the mechanism at t = " + with_unit(samples_[found.samples].time, "s");
+    const auto samples = motion_.of(design);
+    if (found.samples == samples.size()) return "the motion " + motion_.name() + " passes through a singularity";
+    return "the motion " + motion_.name() +
+           " leaves the reach of the mechanism at t = " + with_unit(samples[found.samples].time, "s");
   }
 
  private:
@@ -44,25 +45,28 @@ class Energy final : public Quantity {
 
   template <class S>
   Integral<S> integral(const DesignView<S>& design) const {
+    return motion_.with(design, [&](const auto& samples) { return integral(design, samples); });
+  }
+  template <class S, class Sample>
+  Integral<S> integral(const DesignView<S>& design, std::span<const Sample> samples) const {
     Integral<S> found{S(0.0), 0};
     const DriveTrains* const trains = design.mechanism.drive_trains();
-    const double step = samples_.back().time / static_cast<double>(samples_.size() - 1);
-    found.samples = inverse_dynamics_along<S>(
-        *design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
+    const S step = S(samples.back().time) / static_cast<double>(samples.size() - 1);
+    found.samples = inverse_dynamics_of<S>(
+        *design.mechanism.dynamics(), design.parameters, mode_, samples, wrench_,
         design.scratch.template get<InverseDynamicsScratch<S>>(), [&](std::size_t k, const ActuatorState<S>& drive) {
-          const double weight = k == 0 || k + 1 == samples_.size() ? 0.5 * step : step;
+          const S weight = k == 0 || k + 1 == samples.size() ? S(step * 0.5) : step;
           for (std::size_t i = 0; i < drive.speeds.size(); ++i) {
             const S power =
                 trains ? S(drive.torque((*trains)[i], i) * drive.speeds[i] * (*trains)[i].ratio) : drive.power(i);
             if (recuperates_ || !(value_of(power) < 0)) found.energy += power * weight;
           }
         });
-    if (found.samples < samples_.size()) found.energy = S(std::numeric_limits<double>::quiet_NaN());
+    if (found.samples < samples.size()) found.energy = S(std::numeric_limits<double>::quiet_NaN());
     return found;
   }
 
-  std::string name_;
-  std::vector<MotionSample> samples_;
+  SampledMotion motion_;
   std::string mode_;
   Wrench<double> wrench_;
   bool recuperates_;

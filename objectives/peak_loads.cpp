@@ -46,8 +46,7 @@ struct LoadScratch {
 class PeakLoad final : public Quantity {
  public:
   PeakLoad(const EntryContext& context, Load load)
-      : name_(motion_of(context).name),
-        samples_(samples_of(context)),
+      : motion_(context),
         mode_(mode_of(context)),
         wrench_(wrench_of(context)),
         joint_(context.options.word("joint")),
@@ -55,14 +54,14 @@ class PeakLoad final : public Quantity {
         load_(load),
         by_rms_(load == Load::motor_torque && context.options.word("statistic") == "rms") {
     if (const Unsupported reason = why_no_joint_forces(context.mechanism))
-      why_no_derivatives_ = "joint speeds along a motion have no derivatives without dynamics: " + *reason;
+      no_forces_ = "joint speeds along a motion have no derivatives without dynamics: " + *reason;
   }
 
-  Unsupported why_no_derivatives() const override { return why_no_derivatives_; }
+  Unsupported why_no_derivatives() const override { return no_forces_ ? no_forces_ : motion_.why_no_derivatives(); }
 
   double value(const DesignView<double>& design) const override {
     std::vector<double>& loads = design.scratch.get<LoadScratch<double>>().loads;
-    if (collect(design, loads) < samples_.size()) return std::numeric_limits<double>::quiet_NaN();
+    if (collect(design, loads) < motion_.size()) return std::numeric_limits<double>::quiet_NaN();
     if (by_rms_) replace_by_rms(loads);
     double peak = 0;
     for (const double load : loads) {
@@ -73,7 +72,7 @@ class PeakLoad final : public Quantity {
   }
   Dual4 smooth(const DesignView<Dual4>& design) const override {
     std::vector<Dual4>& loads = design.scratch.get<LoadScratch<Dual4>>().loads;
-    const bool defined = collect(design, loads) == samples_.size() &&
+    const bool defined = collect(design, loads) == motion_.size() &&
                          std::ranges::all_of(loads, [](const Dual4& load) { return std::isfinite(load.a); });
     if (!defined) return Dual4(std::numeric_limits<double>::quiet_NaN());
     if (by_rms_) replace_by_rms(loads);
@@ -82,18 +81,19 @@ class PeakLoad final : public Quantity {
   std::string why_undefined(const DesignView<double>& design) const override {
     std::vector<double> loads;
     const std::size_t assembled = collect(design, loads);
-    if (assembled < samples_.size()) {
-      const MotionSample& at = samples_[assembled];
+    const auto samples = motion_.of(design);
+    if (assembled < samples.size()) {
+      const MotionSample& at = samples[assembled];
       const PoseReport report =
           design.mechanism.inspect(design.parameters, at.pose, mode_, no_limits(design.mechanism.info()));
-      return "the motion " + name_ + " leaves the reach of the mechanism at t = " + with_unit(at.time, "s") +
+      return "the motion " + motion_.name() + " leaves the reach of the mechanism at t = " + with_unit(at.time, "s") +
              (report.reason.empty() ? "" : " (" + report.reason + ")");
     }
     const auto infinite = std::find_if(loads.begin(), loads.end(), [](double load) { return !std::isfinite(load); });
     if (infinite == loads.end()) return {};
-    const auto k = static_cast<std::size_t>(infinite - loads.begin()) * samples_.size() / loads.size();
-    return "the motion " + name_ + " passes through a singularity at t = " + with_unit(samples_[k].time, "s") +
-           ", sample " + std::to_string(k + 1) + " of " + std::to_string(samples_.size());
+    const auto k = static_cast<std::size_t>(infinite - loads.begin()) * samples.size() / loads.size();
+    return "the motion " + motion_.name() + " passes through a singularity at t = " + with_unit(samples[k].time, "s") +
+           ", sample " + std::to_string(k + 1) + " of " + std::to_string(samples.size());
   }
 
  private:
@@ -102,18 +102,23 @@ class PeakLoad final : public Quantity {
   template <class S>
   std::size_t collect(const DesignView<S>& design, std::vector<S>& loads) const {
     loads.clear();
+    return motion_.with(design, [&](const auto& samples) { return collect(design, samples, loads); });
+  }
+  template <class S, class Sample>
+  std::size_t collect(const DesignView<S>& design, std::span<const Sample> samples, std::vector<S>& loads) const {
     if constexpr (std::is_same_v<S, double>)
-      if (why_no_derivatives_) return collect_rates(design, loads);
-    if (has_team()) return collect_with_team(design, loads);
-    return inverse_dynamics_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
-                                     design.scratch.template get<InverseDynamicsScratch<S>>(),
-                                     [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, loads); });
+      if (no_forces_) return collect_rates(design, samples, loads);
+    if (has_team()) return collect_with_team(design, samples, loads);
+    return inverse_dynamics_of<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples, wrench_,
+                                  design.scratch.template get<InverseDynamicsScratch<S>>(),
+                                  [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, loads); });
   }
   /// Variant of collect() for mechanisms without joint forces: computes speeds and accelerations by influence
   /// coefficients.
-  std::size_t collect_rates(const DesignView<double>& design, std::vector<double>& loads) const {
-    for (std::size_t k = 0; k < samples_.size(); ++k) {
-      const MotionSample& at = samples_[k];
+  std::size_t collect_rates(const DesignView<double>& design, std::span<const MotionSample> samples,
+                            std::vector<double>& loads) const {
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const MotionSample& at = samples[k];
       const auto joints = design.mechanism.velocities()->influence(design.parameters, at.pose, mode_);
       if (!joints) return k;
       append(design,
@@ -121,19 +126,20 @@ class PeakLoad final : public Quantity {
                                    .accelerations = accelerations(*joints, at.velocity, at.acceleration)},
              loads);
     }
-    return samples_.size();
+    return samples.size();
   }
-  template <class S>
-  std::size_t collect_with_team(const DesignView<S>& design, std::vector<S>& loads) const {
+  template <class S, class Sample>
+  std::size_t collect_with_team(const DesignView<S>& design, std::span<const Sample> samples,
+                                std::vector<S>& loads) const {
     LoadScratch<S>& buffers = design.scratch.template get<LoadScratch<S>>();
-    buffers.batches.resize((samples_.size() + kInverseDynamicsBatch - 1) / kInverseDynamicsBatch);
+    buffers.batches.resize((samples.size() + kInverseDynamicsBatch - 1) / kInverseDynamicsBatch);
     buffers.by_worker.resize(workers());
     parallel_for(buffers.batches.size(), [&](std::size_t number, std::size_t end, std::size_t worker) {
       for (; number < end; ++number) {
         typename LoadScratch<S>::Batch& batch = buffers.batches[number];
         batch.loads.clear();
-        const auto some = std::span(samples_).subspan(number * kInverseDynamicsBatch);
-        batch.assembled = inverse_dynamics_along<S>(
+        const auto some = samples.subspan(number * kInverseDynamicsBatch);
+        batch.assembled = inverse_dynamics_of<S>(
             *design.mechanism.dynamics(), design.parameters, mode_,
             some.first(std::min(kInverseDynamicsBatch, some.size())), wrench_, buffers.by_worker[worker],
             [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, batch.loads); });
@@ -171,24 +177,23 @@ class PeakLoad final : public Quantity {
   /// Replaces the loads by one root mean square per joint over the samples.
   template <class S>
   void replace_by_rms(std::vector<S>& loads) const {
-    const std::size_t joints = loads.size() / samples_.size();
+    const std::size_t joints = loads.size() / motion_.size();
     for (std::size_t j = 0; j < joints; ++j) {
       S sum(0.0);
       for (std::size_t k = j; k < loads.size(); k += joints) sum += loads[k] * loads[k];
-      loads[j] = sqrt_or_zero(S(sum / static_cast<double>(samples_.size())));
+      loads[j] = sqrt_or_zero(S(sum / static_cast<double>(motion_.size())));
     }
     loads.resize(joints);
   }
 
-  std::string name_;
-  std::vector<MotionSample> samples_;
+  SampledMotion motion_;
   std::string mode_;
   Wrench<double> wrench_;
   std::string joint_;
   double sharpness_;
   Load load_;
   bool by_rms_;
-  Unsupported why_no_derivatives_;
+  Unsupported no_forces_;
 };
 
 /// @param joints  words that the option `joint` accepts besides joint numbers; the first is the default

@@ -36,12 +36,7 @@ class SizeMeasure final : public Quantity {
  public:
   SizeMeasure(const EntryContext& context, const std::string& name, Measure measure)
       : name_(name), mode_(mode_of(context)), measure_(measure) {
-    if (!has_motion(context)) return;
-    motion_ = motion_of(context).name;
-    for (const MotionSample& at : samples_of(context)) {
-      poses_.push_back(at.pose);
-      times_.push_back(at.time);
-    }
+    if (has_motion(context)) motion_.emplace(context);
   }
 
   double value(const DesignView<double>& design) const override {
@@ -53,16 +48,19 @@ class SizeMeasure final : public Quantity {
     return name_ + " is an extremum over poses and links, which has none; use an optimiser without gradients";
   }
   std::string why_undefined(const DesignView<double>& design) const override {
-    if (motion_.empty()) return design.workspace->pose.empty() ? "no pose is feasible" : "";
-    for (std::size_t k = 0; k < poses_.size(); ++k)
-      if (design.mechanism.links()->place(design.parameters, poses_[k], mode_).empty())
-        return "the motion " + motion_ + " leaves the reach of the mechanism at t = " + with_unit(times_[k], "s");
+    if (!motion_) return design.workspace->pose.empty() ? "no pose is feasible" : "";
+    for (const MotionSample& at : motion_->of(design))
+      if (design.mechanism.links()->place(design.parameters, at.pose, mode_).empty())
+        return "the motion " + motion_->name() + " leaves the reach of the mechanism at t = " + with_unit(at.time, "s");
     return {};
   }
 
  private:
   const std::optional<InstallationSpace>& space_of(const DesignView<double>& design) const {
-    const std::vector<Pose<double>>& poses = motion_.empty() ? design.workspace->pose : poses_;
+    std::vector<Pose<double>> along;
+    if (motion_)
+      for (const MotionSample& at : motion_->of(design)) along.push_back(at.pose);
+    const std::vector<Pose<double>>& poses = motion_ ? along : design.workspace->pose;
     SpaceScratch& last = design.scratch.get<SpaceScratch>();
     if (last.mechanism == &design.mechanism && last.mode == mode_ && last.poses == poses &&
         std::ranges::equal(last.parameters, design.parameters))
@@ -76,9 +74,7 @@ class SizeMeasure final : public Quantity {
 
   std::string name_, mode_;
   Measure measure_;
-  std::string motion_;               ///< "": over the workspace
-  std::vector<Pose<double>> poses_;  ///< poses of the motion
-  std::vector<double> times_;        ///< times of these poses [s]
+  std::optional<SampledMotion> motion_;  ///< empty: over the workspace
 };
 
 /// @param what  "base area of the box of all links"

@@ -100,6 +100,7 @@ std::string expectation(const OptionSpec& spec) {
     case OptionKind::named_settings:
       return "a table, { name = number or text, ... }";
     case OptionKind::formula:
+      if (spec.positive || std::isfinite(spec.lower)) break;
       return spec.unit == "1" || spec.unit == kUnitOfEntry ? "a number or a formula"
                                                            : "a number or a formula in " + spec.unit;
     case OptionKind::list:
@@ -117,8 +118,9 @@ std::string expectation(const OptionSpec& spec) {
       break;
   }
   const std::string unit = spec.unit == kUnitOfEntry ? "1" : spec.unit;
-  if (!spec.positive) return range_text("a number", spec.lower, spec.upper, unit);
-  return "a number > " + with_unit(0, unit) +
+  const std::string noun = spec.kind == OptionKind::formula ? "a number or a formula" : "a number";
+  if (!spec.positive) return range_text(noun, spec.lower, spec.upper, unit);
+  return noun + " > " + with_unit(0, unit) +
          (std::isfinite(spec.upper) ? " and <= " + with_unit(spec.upper, unit) : "");
 }
 
@@ -179,7 +181,8 @@ const OptionSpec& ConfigValue::described_as(OptionKind kind) const {
 }
 
 double ConfigValue::number() const {
-  const OptionSpec& spec = described_as(OptionKind::number);
+  const OptionSpec* const formula = spec_as({OptionKind::number, OptionKind::formula});
+  const OptionSpec& spec = formula ? *formula : described_as(OptionKind::number);
   if (!spec.positive) return number(spec.unit, spec.lower, spec.upper);
   const double value = number(spec.unit, -kUnbounded, spec.upper);
   if (!(value > 0)) throw error(expectation(spec));

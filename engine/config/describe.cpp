@@ -24,11 +24,16 @@ void write_parameters(std::ostream& out, const Study& study) {
     const std::size_t i = parts.varies[v];
     const Variable& variable = parts.space[v];
     std::string bounds = format_range(variable.lower, variable.upper, variable.unit);
-    if (variable.step > 0) bounds += " in steps of " + with_degrees(variable.step, variable.unit);
+    const auto choice = std::ranges::find(parts.choices, i, &Choice::parameter);
+    if (choice != parts.choices.end())
+      bounds = "one of " + join(choice->rows);
+    else if (variable.step > 0)
+      bounds += " in steps of " + with_degrees(variable.step, variable.unit);
     std::string base;
     if (study.baseline) {
       const double value = (*study.baseline)[i];
-      base = "baseline " + with_degrees(value, variable.unit);
+      base = "baseline " +
+             (choice == parts.choices.end() ? with_degrees(value, variable.unit) : choice->rows[choice->row(value)]);
       if (value < variable.lower || value > variable.upper) base += " (outside the bounds)";
     }
     varying.push_back({variable.name, bounds, base, known[i].meaning});
@@ -208,7 +213,7 @@ std::string describe(const Study& study) {
   for (const Region& region : parts.regions)
     out << format_titled_table("region " + region.name, survey_rows(info, region.plan));
   std::vector<Row> motions;
-  for (const NamedMotion& named : study.motions)
+  for (const DesignMotion& named : study.motions)
     motions.push_back(
         {named.name, "takes " + with_unit(named.motion->duration(), "s"),
          contains(study.unfollowed_motions, named.name) ? "may violate limits of a pose (follow = false)" : ""});

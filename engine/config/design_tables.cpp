@@ -115,7 +115,7 @@ StudyAdditions additions_of(const ConfigValue& root, const StudyDraft& draft) {
     return train.has("stiffness") || train.has("peak_force") || train.has("rotor_inertia") ||
            train.has("shaft_inertia") || train.has("motor");
   };
-  if (!root.has("quantity") && !root.has("accuracy") && !limits_of_quantities(root) &&
+  if (!root.has("parameters") && !root.has("quantity") && !root.has("accuracy") && !limits_of_quantities(root) &&
       std::ranges::none_of(root.tables("drive_train"), changes_quantities))
     return nullptr;
   return study_additions(root.toml(), draft.study.file_name);
@@ -187,6 +187,10 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
     }
   }
   draft.parts.space = DesignSpace(std::move(variables));
+  for (const Catalogue& catalogue : draft.from_catalogues) {
+    const auto parameter = static_cast<std::size_t>(find_named(known, catalogue.variable) - known.data());
+    draft.parts.choices.push_back({catalogue.variable, parameter, catalogue.names});
+  }
   warn_of_lattice_end(draft.parts.space, draft.study.warnings);
   if (const Unsupported reason = draft.parts.mechanism->refuse(nominal)) throw mechanism.refusal(*reason);
 }

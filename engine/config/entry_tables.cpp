@@ -172,8 +172,7 @@ void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& ent
     specs = with_entry_unit(std::move(specs), made.unit);
     options = read_options(table, specs);
     made.quantity = entry.make(context);
-    if (entry.name == kMotionConstraint)
-      draft.parts.followed.push_back({motion_of(context).name, motion_of(context).motion, mode_of(context)});
+    if (entry.name == kMotionConstraint) draft.parts.followed.push_back({motion_of(context), mode_of(context)});
     made.meaning = entry.detail ? entry.detail(context) : entry.meaning;
     made.uses_workspace = entry.needs_workspace && entry.needs_workspace(context);
     FieldRequest own;
@@ -203,7 +202,7 @@ void add_motion_constraints(StudyDraft& draft) {
     std::vector<std::string> names;
   };
   Study& study = draft.study;
-  for (const NamedMotion& named : study.motions) {
+  for (const DesignMotion& named : study.motions) {
     std::map<std::string, Use> by_mode;
     bool is_stated = contains(study.unfollowed_motions, named.name);
     for (const auto* const list : {&study.objectives, &study.constraints, &study.outputs})
@@ -231,7 +230,7 @@ void add_motion_constraints(StudyDraft& draft) {
       const std::string role = "margin >= 0, " + in_unit(made.unit) + ", because of " + join(use.names, " and ");
       study.constraints.push_back({entry->name, made.name, role, std::move(specs), options});
       draft.parts.design_margins.push_back(std::move(made));
-      draft.parts.followed.push_back({named.name, named.motion, mode});
+      draft.parts.followed.push_back({named, mode});
     }
   }
 }

@@ -103,6 +103,7 @@ Json schema_of(const OptionSpec& spec) {
       break;
     case OptionKind::formula:
       schema = {{"type", {"number", "string"}}};
+      add_bounds(spec, schema);
       break;
     case OptionKind::list:
       schema = {{"type", "array"}, {"items", schema_of(spec.parts.at(0))}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "engine/core/options.hpp"
 
@@ -19,6 +20,14 @@ inline OptionSpec tables_key(const std::string& name, const TableSpec& table) {
           .kind = OptionKind::list,
           .meaning = table.meaning,
           .parts = {{.kind = OptionKind::table, .meaning = table.meaning, .table = &table}}};
+}
+
+/// The description of a number that may also be "VARIABLE.KEY", a key of the chosen row of a catalogue.
+inline OptionSpec or_key_of_row(OptionSpec number) {
+  OptionSpec either = number;
+  either.kind = OptionKind::any_of;
+  either.parts = {std::move(number), {.kind = OptionKind::word}};
+  return either;
 }
 
 /// The description of a key that must be present.

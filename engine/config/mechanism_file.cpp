@@ -88,12 +88,15 @@ void read_parameter_table(const ConfigValue& all, MechanismDraft& draft) {
   }
 }
 
-void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& asked, MechanismDraft& draft) {
+void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& asked, const StudyAdditions& study,
+                     MechanismDraft& draft) {
   const ConfigValue all = root.at("parameters", "a table [parameters] with at least one parameter").table();
   if (all.keys().empty()) throw all.error("at least one parameter");
   read_parameter_table(all, draft);
   if (draft.masses)
     if (const auto more = draft.masses->find_table("parameters")) read_parameter_table(*more, draft);
+  if (study)
+    if (const auto more = study->find_table("parameters")) read_parameter_table(*more, draft);
   generic::Model& model = draft.model;
   for (const LimbParameter& own : asked) {
     const Parameter* const general = find_named(model.info.parameters, own.parameter);
@@ -261,7 +264,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   MechanismDraft draft;
   read_names(root, draft);
   choose_masses(root, mass_model, draft);
-  read_parameters(root, own, draft);
+  read_parameters(root, own, study, draft);
   draft.model.inputs.limits = 0;
   read_limits(root, draft);
   if (study) read_quantity_limits(*study, draft);

@@ -313,6 +313,15 @@ const TableSpec& limb_parameter_keys() {
   return spec;
 }
 
+const TableSpec& study_parameters_keys() {
+  static const TableSpec spec = [] {
+    TableSpec table = parameters_table("[parameters]");
+    table.meaning = "parameters that the study adds to those of its mechanism, for motions and formulas";
+    return table;
+  }();
+  return spec;
+}
+
 const TableSpec& mechanism_keys() {
   static const TableSpec parameters = parameters_table("[parameters]"), let = let_table("[let]");
   static const TableSpec spec = {

@@ -11,6 +11,8 @@ namespace pkm {
 /// All tables that a mechanism file may contain, as the keys of its top level.
 const TableSpec& mechanism_keys();
 
+/// The table [parameters] of a study.
+const TableSpec& study_parameters_keys();
 /// Keys of a [[quantity]] of a mechanism file or a study.
 const TableSpec& quantity_keys();
 /// Keys of the table [accuracy] of a mechanism file or a study.

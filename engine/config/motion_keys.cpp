@@ -6,6 +6,13 @@
 namespace pkm {
 namespace {
 
+/// The same keys, whose numbers may be formulas of parameters (motion_formulas.hpp).
+std::vector<OptionSpec> with_formulas(std::vector<OptionSpec> keys) {
+  for (OptionSpec& key : keys)
+    if (key.kind == OptionKind::number) key.kind = OptionKind::formula;
+  return keys;
+}
+
 /// Keys that determine the duration of a move: `time`, or peak accelerations and speeds.
 std::vector<OptionSpec> pace_keys() {
   return {{.name = "time", .unit = "s", .meaning = "duration of a move", .positive = true},
@@ -37,6 +44,8 @@ std::vector<TableVariant> motion_variants() {
                        .named = {{.unit = kUnitOfEntry, .meaning = "value of the coordinate"}},
                        .noun = "key"};
     for (OptionSpec& key : pace_keys()) table.keys.push_back(std::move(key));
+    table.keys = with_formulas(table.keys);
+    table.named = with_formulas(table.named);
     return table;
   }();
   std::vector<OptionSpec> points = {
@@ -91,14 +100,14 @@ std::vector<TableVariant> motion_variants() {
 TableSpec motion_table(bool in_study) {
   TableSpec table = {
       .header = in_study ? "[[motion]]" : "",
-      .meaning = "path of the platform as a function of time",
+      .meaning = "path of the platform as a function of time; numbers may be formulas of parameters",
       .keys = {},
       .choice = "type",
       .variants = motion_variants(),
       .named = {{.kind = OptionKind::formula,
                  .unit = kUnitOfEntry,
-                 .meaning = "value at the start, or formula of the time t [s], of a coordinate or an input of the "
-                            "mechanism"}}};
+                 .meaning = "value at the start, or formula of the time t [s] and of parameters, of a coordinate or an "
+                            "input of the mechanism"}}};
   if (in_study) {
     table.keys.push_back({.name = "name",
                           .kind = OptionKind::word,
@@ -112,7 +121,10 @@ TableSpec motion_table(bool in_study) {
   }
   table.keys.push_back(
       {.name = "type", .kind = OptionKind::word, .required = true, .choices = {}, .meaning = "kind of motion"});
-  for (const TableVariant& variant : table.variants) table.keys.back().choices.push_back(variant.word);
+  for (TableVariant& variant : table.variants) {
+    table.keys.back().choices.push_back(variant.word);
+    variant.keys = with_formulas(variant.keys);
+  }
   return table;
 }
 
@@ -166,7 +178,7 @@ const TableSpec& motor_file_keys() {
 
 const TableSpec& drive_train_keys() {
   constexpr double kMinEfficiency = 1e-3;
-  static const TableSpec spec = {
+  static const TableSpec numbers = {
       .header = "[[drive_train]]",
       .meaning = "gear or screw, rotor and losses between a joint and its motor; given for all joints, or for none",
       .keys = {
@@ -223,6 +235,12 @@ const TableSpec& drive_train_keys() {
            .kind = OptionKind::word,
            .meaning =
                "name of a [[motor]] of the study: the inertia of its rotor, and its limits for fastest motions"}}};
+  static const TableSpec spec = [] {
+    TableSpec table = numbers;
+    for (OptionSpec& key : table.keys)
+      if (key.kind == OptionKind::number) key = or_key_of_row(key);
+    return table;
+  }();
   return spec;
 }
 

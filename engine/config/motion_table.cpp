@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/config/csv_columns.hpp"
+#include "engine/config/motion_formulas.hpp"
 #include "engine/config/study_draft.hpp"
 #include "engine/config/study_keys.hpp"
 #include "engine/config/text_file.hpp"
@@ -185,7 +186,8 @@ ConfigValue motion_described_by(const TableSpec& spec, const ConfigValue& value,
 }
 
 std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const MotionNames& names) {
-  const auto& [coordinates, inputs] = names;
+  const std::vector<AxisInfo>& coordinates = names.coordinates;
+  const std::vector<InputInfo>& inputs = names.inputs;
   const auto motion = find_named(kMotionKinds, table.at("type").word())->read(table, coordinates);
   if (!(motion->duration() <= kLongestMotion))
     throw table.refusal("the motion takes " + shortest(motion->duration()) + " s; expected at most " +
@@ -200,9 +202,34 @@ std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const Motion
   return moves ? with_inputs(motion, formulas) : motion;
 }
 
+/// Reads the table of a motion for the given values of the parameters.
+std::shared_ptr<const Motion> read_motion(const TableSpec& spec, const MotionFormulas& formulas,
+                                          const SourceLocation& place, const MotionNames& names,
+                                          std::span<const double> parameters) {
+  const TomlValue table = formulas.table_of(parameters);
+  return read_motion(motion_described_by(spec, ConfigValue(table, place.file, place.key), names), names);
+}
+
+/// The motion of each design, which the formulas of a table give.
+std::function<std::shared_ptr<const Motion>(std::span<const double>)> motion_of_designs(const std::string& name,
+                                                                                        const MotionFormulas& formulas,
+                                                                                        const SourceLocation& place,
+                                                                                        const MotionNames& names) {
+  return [=](std::span<const double> parameters) {
+    try {
+      return read_motion(motion_keys(), formulas, place, names, parameters);
+    } catch (const ConfigError& error) {
+      throw DesignError("the design has no motion " + name + ": " + message_of(error));
+    }
+  };
+}
+
 }  // namespace
 
-MotionNames motion_names(const Mechanism& mechanism) { return {mechanism.info().coordinates, mechanism.info().inputs}; }
+MotionNames motion_names(const Mechanism& mechanism, std::span<const double> parameters) {
+  const MechanismInfo& info = mechanism.info();
+  return {info.coordinates, info.inputs, info.parameters, {parameters.begin(), parameters.end()}};
+}
 
 std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const std::string& file_name,
                                                const MotionNames& names) {
@@ -210,7 +237,10 @@ std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const st
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file",
                       "a motion in TOML, with type = one of " + join(names_of(kMotionKinds)));
-  return read_motion(motion_described_by(motion_file_keys(), ConfigValue(document, file_name, ""), names), names);
+  const ConfigValue root(document, file_name, "");
+  motion_described_by(motion_file_keys(), root, names);  // refuses unknown keys
+  const MotionFormulas formulas(root, names.parameters, names_of(names.inputs));
+  return read_motion(motion_file_keys(), formulas, {file_name, 0, ""}, names, names.values);
 }
 
 std::shared_ptr<const Motion> read_motion_csv(const std::string& text, const std::string& file_name,
@@ -242,14 +272,20 @@ std::shared_ptr<const Motion> load_motion(const std::string& path, const MotionN
 }
 
 void read_motions(const ConfigValue& root, StudyDraft& draft) {
-  const MotionNames names = motion_names(*draft.parts.mechanism);
+  const MotionNames names = motion_names(*draft.parts.mechanism, draft.parts.parameters);
   const std::string expected = "a list of tables, each written [[motion]]";
   const auto list = root.find("motion");
   for (const auto& each : list ? list->elements(expected) : std::vector<ConfigValue>()) {
     const ConfigValue table = motion_described_by(motion_keys(), each.expect_table(expected), names);
+    const MotionFormulas formulas(each, names.parameters, names_of(names.inputs));
     const std::string name = new_name(table, "motion", draft.study.motions, "a name for objectives to refer to");
-    auto motion = read_motion(table, names);
-    draft.study.motions.push_back({name, std::move(motion)});
+    DesignMotion motion{{name, read_motion(motion_keys(), formulas, each.place(), names, names.values)},
+                        formulas.used()};
+    if (!motion.parameters.empty()) motion.of_design = motion_of_designs(name, formulas, each.place(), names);
+    if (const TomlValue* const law = each.toml().find("law"); law && law->text == "trapezoid")
+      motion.why_no_derivatives = "the accelerations of the motion " + name +
+                                  ", whose law is trapezoid, are discontinuous; use the law quintic or cycloid";
+    draft.study.motions.push_back(std::move(motion));
     if (!table.flag_at("follow")) draft.study.unfollowed_motions.push_back(name);
   }
 }

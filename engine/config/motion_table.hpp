@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "engine/config/config_value.hpp"
@@ -10,12 +11,15 @@
 
 namespace pkm {
 
-/// The names that a motion of a mechanism may use: the coordinates, and the inputs, which may be formulas of the time.
+/// The names that a motion of a mechanism may use: the coordinates, the inputs, which may be formulas of the time, and
+/// the parameters, of which all values may be formulas.
 struct MotionNames {
   std::vector<AxisInfo> coordinates;
   std::vector<InputInfo> inputs = {};
+  std::vector<Parameter> parameters = {};
+  std::vector<double> values = {};  ///< of the parameters
 };
-MotionNames motion_names(const Mechanism& mechanism);
+MotionNames motion_names(const Mechanism& mechanism, std::span<const double> parameters);
 
 /// Reads the text of a motion file. `file_name` is named in messages. Throws ConfigError.
 std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const std::string& file_name,

@@ -8,7 +8,8 @@ namespace pkm {
 namespace {
 
 /// Why the optimiser does not support the problem; empty if it does.
-Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, const Problem& problem) {
+Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, const Problem& problem,
+                       const std::vector<Choice>& choices) {
   const auto& objectives = problem.objectives();
   const Capabilities can = entry.capabilities(options);
   const std::string who = "the optimiser " + entry.name + " " +
@@ -25,6 +26,13 @@ Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, cons
            (*can.too_many_objectives_hint ? std::string("; ") + can.too_many_objectives_hint : "");
   if (!can.constraints && !problem.margins().empty())
     return who + "handles no constraints, but the study has " + join(names_of(problem.margins()));
+  if (!can.discrete && !choices.empty()) {
+    const Choice& choice = choices.front();
+    return who + "handles continuous variables only, but the variable " + choice.variable +
+           " is a choice from a catalogue; use a genetic algorithm, or remove the variable and write the values of one "
+           "row, for example of " +
+           choice.rows.front();
+  }
   for (const auto& variable : problem.space().variables())
     if (!can.discrete && variable.step > 0)
       return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
@@ -61,7 +69,7 @@ void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpa
 /// @param each      a table [[stage]]
 /// @param is_first  true if it is the first stage
 Stage read_stage(const ConfigValue& each, const std::vector<OptimiserEntry>& optimisers, const Problem& problem,
-                 bool is_first) {
+                 bool is_first, const std::vector<Choice>& choices = {}) {
   const OptimiserEntry& entry = *find_named(optimisers, each.choice("optimiser", names_of(optimisers)));
   const ConfigValue table = each.table(entry.options);
   // The unit of the objective; with several objectives there is no common unit.
@@ -77,7 +85,7 @@ Stage read_stage(const ConfigValue& each, const std::vector<OptimiserEntry>& opt
   }
   Stage stage{
       std::make_shared<const OptimiserEntry>(entry), read_options(table, specs), nullptr, table.place().line, {}};
-  if (const Unsupported reason = refusal_of(entry, stage.options, problem))
+  if (const Unsupported reason = refusal_of(entry, stage.options, problem, choices))
     throw table.find("optimiser")->refusal(*reason);
   if (entry.capabilities(stage.options).needs_front && is_first)
     throw table.find("start")->refusal(
@@ -111,8 +119,8 @@ void require_stages(const Study& study, const Catalogues& catalogues) {
 
 void read_stages(const ConfigValue& root, StudyDraft& draft) {
   for (const ConfigValue& table : stage_tables(root))
-    draft.study.stages.push_back(
-        read_stage(table, draft.catalogues.optimisers, *draft.study.problem, draft.study.stages.empty()));
+    draft.study.stages.push_back(read_stage(table, draft.catalogues.optimisers, *draft.study.problem,
+                                            draft.study.stages.empty(), draft.parts.choices));
 }
 
 Stage read_stage_toml(const std::string& lines, const std::string& file_name,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "engine/config/choices.hpp"
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/study_additions.hpp"
 #include "engine/config/study_draft.hpp"
@@ -113,22 +114,36 @@ void warn_of_targets(Study& study) {
   }
 }
 
-using FindDescription = std::function<SourceText(const ConfigValue& file)>;
+using FindFile = std::function<SourceText(const ConfigValue& file)>;
 
-Study read_document(const TomlValue& document, const SourceText& source, const Catalogues& catalogues,
-                    const FindDescription& find_description, const StudyChanges& changes,
-                    ImpliedConstraints implied = ImpliedConstraints::added) {
-  const std::string& file_name = source.file_name;
-  if (document.keys.empty())
-    throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] at least");
-  if (describes_mechanism(document))
-    throw ConfigError({file_name, 0, ""}, "a mechanism file",
-                      "a study, which refers to this file by [mechanism] file = \"..\"");
+/// The document of a study, and the files that it names.
+struct StudySource {
+  TomlValue document;
+  SourceText text;
+  FindFile description, catalogue;
+  StudyChanges changes = {};
+  ImpliedConstraints implied = ImpliedConstraints::added;
+};
+
+/// Reads a study with the given row of every catalogue.
+Study read_rows(const StudySource& source, const Catalogues& catalogues, const std::vector<Catalogue>& choices,
+                const std::vector<std::size_t>& rows,
+                const std::shared_ptr<ExternalFunctions>& functions = std::make_shared<ExternalFunctions>()) {
+  const std::string& file_name = source.text.file_name;
+  const TomlValue document = with_rows(source.document, file_name, choices, rows);
   const ConfigValue root = ConfigValue(document, file_name, "").described_by(study_keys());
-
-  StudyDraft draft{
-      .catalogues = catalogues, .description = find_description, .study = {}, .parts = {}, .implied = implied};
-  draft.study.text = changes.empty() ? source.text : with_changes(source.text, changes);
+  StudyDraft draft{.catalogues = catalogues,
+                   .description = source.description,
+                   .study = {},
+                   .parts = {},
+                   .from_catalogues = choices,
+                   .implied = source.implied};
+  StudyChanges changes = source.changes;
+  std::erase_if(changes.recorded_parameters, [of_rows = parameters_of_rows(source.document, choices)](
+                                                 const auto& each) { return contains(of_rows, each.first); });
+  draft.parts.functions = functions;
+  draft.parts.rows = rows;
+  draft.study.text = source.changes.empty() ? source.text.text : with_changes(source.text.text, source.changes);
   draft.study.file_name = file_name;
   read_overrides(root, draft);
   draft.changes.push_back(changes);
@@ -146,36 +161,93 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   read_regions(root, draft);
   read_motions(root, draft);
   read_quantities(root, draft);
+  for (const std::string& name : parameters_of_rows(source.document, choices))
+    draft.parts.of_rows.push_back(
+        static_cast<std::size_t>(find_named(draft.info().parameters, name) - draft.info().parameters.data()));
+  if (!choices.empty()) {
+    StudySource again = source;
+    again.description = [description = draft.study.description](const ConfigValue&) { return description.value(); };
+    draft.parts.with_rows = [again, catalogues, choices, functions](const std::vector<std::size_t>& others) {
+      return read_rows(again, catalogues, choices, others, functions).problem;
+    };
+  }
   draft.study.problem = root.find("workspace").value_or(*root.find("mechanism")).explained([&draft] {
     return std::make_shared<const DesignProblem>(draft.parts);
   });
   read_references(root, draft);
   read_stages(root, draft);
   read_run_tables(root, draft);
-  for (std::string& warning : consistency_warnings(draft.study.problem->parts()))
-    draft.study.warnings.push_back(std::move(warning));
-  warn_of_targets(draft.study);
-  warn_of_empty_workspace(draft.study);
   return std::move(draft.study);
 }
 
+/// Makes the problem of every row once, so that errors in a catalogue are reported when the study is read.
+void check_rows(const Study& study, const SourceLocation& place) {
+  const ProblemParts& parts = study.problem->parts();
+  for (const Choice& choice : parts.choices)
+    for (std::size_t row = 0; row < choice.rows.size(); ++row) {
+      std::vector<double> parameters = parts.parameters;
+      parameters[choice.parameter] = static_cast<double>(row + 1);
+      try {
+        study.problem->of(parameters);
+      } catch (const DesignError& error) {
+        throw ConfigError({place.file, 0, "variables." + choice.variable},
+                          "the row '" + choice.rows[row] + "': " + error.what());
+      }
+    }
+}
+
+Study read_document(const StudySource& source, const Catalogues& catalogues) {
+  const TomlValue& document = source.document;
+  const std::string& file_name = source.text.file_name;
+  if (document.keys.empty())
+    throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] at least");
+  if (describes_mechanism(document))
+    throw ConfigError({file_name, 0, ""}, "a mechanism file",
+                      "a study, which refers to this file by [mechanism] file = \"..\"");
+  const auto find_catalogue = [&](const ConfigValue& file) {
+    if (const auto recorded = recorded_catalogue(document, file.text("the name of a catalogue's file")))
+      return *recorded;
+    return source.catalogue(file);
+  };
+  const std::vector<Catalogue> choices = read_catalogues(document, file_name, find_catalogue);
+  Study study = read_rows(source, catalogues, choices, rows_of_baseline(document, file_name, choices));
+  for (const Catalogue& choice : choices) {
+    study.catalogues.push_back(choice.file.file_name);
+    const std::string name = document.find("variables")->find(choice.variable)->find("from")->text;
+    if (!recorded_catalogue(document, name)) study.text = with_catalogue(study.text, {choice.file.text, name});
+  }
+  check_rows(study, {file_name, 0, ""});
+  for (std::string& warning : consistency_warnings(study.problem->parts()))
+    study.warnings.push_back(std::move(warning));
+  warn_of_targets(study);
+  warn_of_empty_workspace(study);
+  return study;
+}
+
 /// Finds the mechanism file of a study that was read before.
-FindDescription known_description(const std::optional<SourceText>& description) {
+FindFile known_description(const std::optional<SourceText>& description) {
   return [&description](const ConfigValue& file) {
     if (!description) throw file.refusal("the contents of the mechanism file are not available here");
     return *description;
   };
 }
 
-/// Reads the mechanism file that a study names, relative to the folder of the study.
-SourceText load_description(const ConfigValue& file) {
-  const std::string expected = "the name of a mechanism's file";
+/// Catalogues of a study that was read before are part of its text.
+SourceText unknown_catalogue(const ConfigValue& file) {
+  throw file.refusal("the contents of the catalogue are not available here");
+}
+
+/// Reads a file that a study names, relative to the folder of the study. @param owner  "a mechanism"
+SourceText load_file(const ConfigValue& file, const std::string& owner, const std::string& what) {
+  const std::string expected = "the name of " + owner + "'s file";
   const std::string& name = file.text(expected);
   if (name.empty() || name.find('\0') != std::string::npos) throw file.error(expected);
   const auto [study, line, key] = file.place();
   const std::string path = (std::filesystem::path(study).parent_path() / name).string();
-  return {read_text_file(path, "the mechanism in TOML that " + study + ":" + std::to_string(line) + " names"), path};
+  return {read_text_file(path, what + " in TOML that " + study + ":" + std::to_string(line) + " names"), path};
 }
+SourceText load_description(const ConfigValue& file) { return load_file(file, "a mechanism", "the mechanism"); }
+SourceText load_catalogue(const ConfigValue& file) { return load_file(file, "a catalogue", "the catalogue"); }
 
 }  // namespace
 
@@ -195,18 +267,24 @@ std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
                       const std::optional<SourceText>& description, const StudyChanges& changes,
                       ImpliedConstraints implied) {
-  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, known_description(description),
-                       changes, implied);
+  return read_document({parse_toml(text, file_name),
+                        {text, file_name},
+                        known_description(description),
+                        unknown_catalogue,
+                        changes,
+                        implied},
+                       catalogues);
 }
 
 Study read_study_document(const TomlValue& document, const std::string& file_name, const Catalogues& catalogues,
                           const std::optional<SourceText>& description, const StudyChanges& changes) {
-  return read_document(document, {"", file_name}, catalogues, known_description(description), changes);
+  return read_document({document, {"", file_name}, known_description(description), unknown_catalogue, changes},
+                       catalogues);
 }
 
 Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes) {
   const SourceText source{read_text_file(path, "a study in TOML"), path};
-  return read_document(parse_toml(source.text, path), source, catalogues, load_description, changes);
+  return read_document({parse_toml(source.text, path), source, load_description, load_catalogue, changes}, catalogues);
 }
 
 MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues,
@@ -225,7 +303,7 @@ MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogu
   if (!changes.joint_error.empty())
     throw ConfigError({"", 0, "--joint-error"}, "a study",
                       "a mechanism; in a study, set joint_error in its table [accuracy]");
-  return read_document(document, source, catalogues, load_description, changes);
+  return read_document({document, source, load_description, load_catalogue, changes}, catalogues);
 }
 
 }  // namespace pkm

@@ -61,6 +61,7 @@ struct Study {
   std::string file_name;                  ///< name of the file when it was read
   std::vector<std::string> changes;       ///< changes by the command line, as in the text: "--set", "L0=2"
   std::optional<SourceText> description;  ///< the mechanism file, if [mechanism] names one
+  std::vector<std::string> catalogues;    ///< files of the catalogues that [variables] name
   std::string name;                       ///< default: the file's stem
   std::uint64_t seed = 1;
   std::optional<std::string> output;
@@ -77,7 +78,7 @@ struct Study {
   std::vector<std::string> differences;    ///< differences between the records and the text of a study file
 
   std::vector<Reference> references;
-  std::vector<NamedMotion> motions;             ///< [[motion]]s
+  std::vector<DesignMotion> motions;            ///< [[motion]]s
   std::vector<std::string> unfollowed_motions;  ///< motions with follow = false
 
   std::vector<StudyEntry> objectives, constraints, outputs;

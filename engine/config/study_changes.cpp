@@ -3,6 +3,7 @@
 #include "engine/config/study_changes.hpp"
 
 #include <array>
+#include <sstream>
 
 #include "engine/config/assignments.hpp"
 #include "engine/config/study_draft.hpp"
@@ -50,6 +51,26 @@ std::string with_changes(const std::string& text, const StudyChanges& changes) {
     if (const auto& words = changes.*lists; !words.empty())
       all += std::string(key) + " = [" + join_texts(words, toml_text) + "]\n";
   return all;
+}
+
+std::string with_catalogue(const std::string& text, const SourceText& file) {
+  std::string all = text + kHeading + "catalogue = " + toml_text(file.file_name) + "\ntext = [";
+  std::istringstream lines(file.text);
+  for (std::string line; std::getline(lines, line);) all += toml_text(line) + ",\n  ";
+  return all + "]\n";
+}
+
+std::optional<SourceText> recorded_catalogue(const TomlValue& study, const std::string& file_name) {
+  const TomlValue* const overrides = study.find("override");
+  if (!overrides) return {};
+  for (const TomlValue& table : overrides->items) {
+    const TomlValue *const name = table.find("catalogue"), *const lines = table.find("text");
+    if (!name || name->text != file_name || !lines) continue;
+    SourceText file{"", file_name};
+    for (const TomlValue& line : lines->items) file.text += line.text + '\n';
+    return file;
+  }
+  return {};
 }
 
 std::string without_changes(const std::string& text) { return text.substr(0, text.find(kHeading)); }

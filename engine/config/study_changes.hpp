@@ -2,12 +2,15 @@
 // `report` use the problem that was run.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/config/mechanism_file.hpp"
+#include "engine/config/toml.hpp"
 #include "engine/core/parameter.hpp"
+#include "engine/core/source_text.hpp"
 
 namespace pkm {
 
@@ -39,7 +42,11 @@ std::vector<LimbParameter> limb_parameters(const StudyChanges& changes);
 
 /// The text of a study with an [[override]] appended. Later overrides take precedence.
 std::string with_changes(const std::string& text, const StudyChanges& changes);
-/// The text of a study without the [[override]]s that with_changes() has appended.
+/// The text of a study with an [[override]] that contains the file of a catalogue, for reading the study elsewhere.
+std::string with_catalogue(const std::string& text, const SourceText& file);
+/// The file of a catalogue that with_catalogue() has added under this name; std::nullopt if there is none.
+std::optional<SourceText> recorded_catalogue(const TomlValue& study, const std::string& file_name);
+/// The text of a study without the [[override]]s that with_changes() and with_catalogue() have appended.
 std::string without_changes(const std::string& text);
 
 }  // namespace pkm

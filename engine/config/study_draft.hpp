@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "engine/config/choices.hpp"
 #include "engine/config/config_value.hpp"
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/study.hpp"
@@ -21,6 +22,7 @@ struct StudyDraft {
   ProblemParts parts;
   std::vector<LimbParameter> limb_parameters = {};  ///< single-limb parameters in study or command line
   std::vector<StudyChanges> changes = {};           ///< changes in the text, then those of the command line
+  std::vector<Catalogue> from_catalogues = {};      ///< the variables that are choices
   ImpliedConstraints implied = ImpliedConstraints::added;
 
   const MechanismInfo& info() const { return parts.mechanism->info(); }

@@ -13,14 +13,15 @@ const TableSpec& parameter_values() {
                                  .keys = {},
                                  .named = {{.unit = kUnitOfEntry, .meaning = "value of the parameter"}},
                                  .noun = "parameter"};
-  static const TableSpec all = {
-      .meaning = "parameters with their values",
-      .keys = {},
-      .named = {{.kind = OptionKind::any_of,
-                 .unit = kUnitOfEntry,
-                 .meaning = "value of the parameter",
-                 .parts = {{.unit = kUnitOfEntry}, {.kind = OptionKind::table, .table = &limb}}}},
-      .noun = "parameter"};
+  static const TableSpec all = {.meaning = "parameters with their values",
+                                .keys = {},
+                                .named = {{.kind = OptionKind::any_of,
+                                           .unit = kUnitOfEntry,
+                                           .meaning = "value of the parameter",
+                                           .parts = {{.unit = kUnitOfEntry},
+                                                     {.kind = OptionKind::word},
+                                                     {.kind = OptionKind::table, .table = &limb}}}},
+                                .noun = "parameter"};
   return all;
 }
 
@@ -67,6 +68,13 @@ const TableSpec& variables_table() {
                 .unit = kUnitOfEntry,
                 .meaning = "makes the variable discrete: min + k step",
                 .positive = true}}};
+  static const TableSpec choice = {
+      .meaning = "a choice from a catalogue",
+      .keys = {{.name = "from",
+                .kind = OptionKind::word,
+                .required = true,
+                .meaning = "file with one list of tables, such as [[motor]], each with a name; [[drive_train]] and "
+                           "[mechanism] refer to the chosen one by \"VARIABLE.KEY\""}}};
   static const TableSpec limb = {
       .meaning = "variables of this limb alone",
       .keys = {},
@@ -78,6 +86,7 @@ const TableSpec& variables_table() {
                                  .named = {{.kind = OptionKind::any_of,
                                             .meaning = "bounds of the parameter",
                                             .parts = {{.kind = OptionKind::table, .table = &variable},
+                                                      {.kind = OptionKind::table, .table = &choice},
                                                       {.kind = OptionKind::table, .table = &limb}}}},
                                  .noun = "parameter"};
   return spec;
@@ -241,13 +250,17 @@ const TableSpec& override_table() {
   const auto texts = [](const std::string& name, const std::string& meaning) -> OptionSpec {
     return {.name = name, .kind = OptionKind::list, .meaning = meaning, .parts = {{.kind = OptionKind::word}}};
   };
-  static const TableSpec spec = {
-      .header = "[[override]]",
-      .meaning = "changes by the command line, appended to the text in the study file",
-      .keys = {texts("set", "values of the option --set"), texts("limit", "values of the option --limit"),
-               texts("cells", "values of the option --cells"),
-               texts("start_from", "study file of the option --start-from"),
-               texts("start", "designs of this file, at which the first stage starts")}};
+  static const TableSpec spec = {.header = "[[override]]",
+                                 .meaning = "changes by the command line, appended to the text in the study file",
+                                 .keys = {texts("set", "values of the option --set"),
+                                          texts("limit", "values of the option --limit"),
+                                          texts("cells", "values of the option --cells"),
+                                          texts("start_from", "study file of the option --start-from"),
+                                          texts("start", "designs of this file, at which the first stage starts"),
+                                          {.name = "catalogue",
+                                           .kind = OptionKind::word,
+                                           .meaning = "name of the file of a catalogue that [variables] use"},
+                                          texts("text", "lines of this file")}};
   return spec;
 }
 
@@ -258,6 +271,7 @@ const TableSpec& study_keys() {
                                  .meaning = "study of pkmopt",
                                  .keys = {table_key("study", study_table()),
                                           required(table_key("mechanism", mechanism_table())),
+                                          table_key("parameters", study_parameters_keys()),
                                           table_key("variables", variables_table()),
                                           table_key("baseline", baseline_table()),
                                           table_key("workspace", workspace_keys()),

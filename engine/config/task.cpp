@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "engine/config/config_value.hpp"
@@ -22,19 +21,6 @@ using Names = std::vector<std::string>;
 
 constexpr std::int64_t kCells = 16;  // cells of a region along each axis, if the task does not set them
 
-/// Sets the value of a key of a table.
-void set(TomlValue& table, const std::string& key, TomlValue value) {
-  if (const auto found = std::ranges::find(table.keys, key); found != table.keys.end()) {
-    table.items[static_cast<std::size_t>(found - table.keys.begin())] = std::move(value);
-    return;
-  }
-  table.keys.push_back(key);
-  table.items.push_back(std::move(value));
-  table.order.resize(table.keys.size());
-  std::iota(table.order.begin(), table.order.end(), std::size_t{0});
-  std::ranges::sort(table.order, {}, [&table](std::size_t i) { return table.keys[i]; });
-}
-
 /// A copy of a table with only the entries for which keep(key) is true.
 template <class Keep>
 TomlValue filtered(const TomlValue& table, const Keep& keep) {
@@ -43,7 +29,7 @@ TomlValue filtered(const TomlValue& table, const Keep& keep) {
   result.items.clear();
   result.order.clear();
   for (std::size_t i = 0; i < table.keys.size(); ++i)
-    if (keep(table.keys[i])) set(result, table.keys[i], table.items[i]);
+    if (keep(table.keys[i])) set_key(result, table.keys[i], table.items[i]);
   return result;
 }
 
@@ -72,19 +58,20 @@ class TaskOfRobot {
 
   /// The document of a study of the robot with the regions, motions and limits of the task.
   TomlValue document() const {
-    static const Names kept = {"mechanism", "motor", "drive_train", "obstacle", "quantity", "accuracy", "override"};
+    static const Names kept = {"mechanism", "parameters", "motor",    "drive_train",
+                               "obstacle",  "quantity",   "accuracy", "override"};
     TomlValue study = filtered(robot_.study, [](const std::string& key) { return contains(kept, key); });
     if (const TomlValue* const overrides = study.find("override")) {
       TomlValue lists = *overrides;
       for (TomlValue& table : lists.items)
         table = filtered(table, [](const std::string& key) { return key == "set" || key == "limit"; });
-      set(study, "override", lists);
+      set_key(study, "override", lists);
     }
-    set(study, "workspace", workspace());
-    set(study, "constraint", pose_constraints());
-    set(study, "region", tables_of_robot("region", &TaskOfRobot::region));
-    set(study, "motion", tables_of_robot("motion", &TaskOfRobot::motion));
-    set(study, "output", list_value());
+    set_key(study, "workspace", workspace());
+    set_key(study, "constraint", pose_constraints());
+    set_key(study, "region", tables_of_robot("region", &TaskOfRobot::region));
+    set_key(study, "motion", tables_of_robot("motion", &TaskOfRobot::motion));
+    set_key(study, "output", list_value());
     return study;
   }
 
@@ -144,28 +131,28 @@ class TaskOfRobot {
       const std::string& name = info().coordinates[i].name;
       if (given.find(name) || table.find(name)) continue;
       if (const auto value = robot_.mechanism->default_value(robot_.parameters, static_cast<int>(i)))
-        set(table, name, number_value(*value));
+        set_key(table, name, number_value(*value));
     }
   }
 
   TomlValue region(const TomlValue& table) const {
     TomlValue own = in_robot_frame(table);
-    if (const TomlValue* const cells = own.find("cells")) set(own, "cells", without_other_coordinates(*cells));
+    if (const TomlValue* const cells = own.find("cells")) set_key(own, "cells", without_other_coordinates(*cells));
     const TomlValue box = in_robot_frame(value_or(own, "box", {}));
     if (box.keys.empty()) return own;
-    set(own, "box", box);
+    set_key(own, "box", box);
     TomlValue axes = list_value(), cells;
     for (const std::string& name : box.keys) {
       axes.items.push_back(text_value(name));
-      set(cells, name, {.kind = Kind::integer, .integer = kCells});
+      set_key(cells, name, {.kind = Kind::integer, .integer = kCells});
     }
     if (!own.find("sweep")) {
-      set(own, "sweep", axes);
+      set_key(own, "sweep", axes);
       add_default_values(box, own);
     }
     if (!own.find("method")) {
-      set(own, "method", text_value("voxels"));
-      if (!own.find("cells")) set(own, "cells", cells);
+      set_key(own, "method", text_value("voxels"));
+      if (!own.find("cells")) set_key(own, "cells", cells);
     }
     return own;
   }
@@ -176,7 +163,7 @@ class TaskOfRobot {
     if (const TomlValue* const points = own.find("points"); points && !points->items.empty()) {
       TomlValue moved_points = *points;
       for (TomlValue& point : moved_points.items) point = in_robot_frame(point);
-      set(own, "points", moved_points);
+      set_key(own, "points", moved_points);
       first = &own.items[static_cast<std::size_t>(std::ranges::find(own.keys, "points") - own.keys.begin())].items[0];
     }
     add_default_values(*first, *first);
@@ -189,10 +176,10 @@ class TaskOfRobot {
     for (const TomlValue* const document : {&robot_.study, &task_.document})
       if (const TomlValue* const table = document->find("workspace"))
         if (const TomlValue* const own = table->find("limits"))
-          for (std::size_t i = 0; i < own->keys.size(); ++i) set(limits, own->keys[i], own->items[i]);
+          for (std::size_t i = 0; i < own->keys.size(); ++i) set_key(limits, own->keys[i], own->items[i]);
     TomlValue table;
-    if (!robot_.mechanism->columns()) set(table, "method", text_value("voxels"));
-    if (!limits.keys.empty()) set(table, "limits", limits);
+    if (!robot_.mechanism->columns()) set_key(table, "method", text_value("voxels"));
+    if (!limits.keys.empty()) set_key(table, "limits", limits);
     return table;
   }
 
@@ -235,8 +222,8 @@ std::vector<Line> lines_of(const Task& task) {
                             const std::vector<std::array<const char*, 2>>& keys, const char* where = "",
                             const std::string& what = "") {
     Line line{name, is_margin, {}};
-    for (const auto& [key, value] : keys) set(line.entry, key, text_value(value));
-    if (*where) set(line.entry, where, text_value(what));
+    for (const auto& [key, value] : keys) set_key(line.entry, key, text_value(value));
+    if (*where) set_key(line.entry, where, text_value(what));
     lines.push_back(line);
   };
   for (const std::string& region : names_of_tables(task.document, "region")) {
@@ -329,11 +316,11 @@ std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot, c
     value.is_margin = line.is_margin;
     value.value = std::numeric_limits<double>::quiet_NaN();
     TomlValue entry = line.entry, longer = document;
-    set(entry, "name", text_value(names.back()));
+    set_key(entry, "name", text_value(names.back()));
     const char* const key = line.is_margin ? "constraint" : "output";
     TomlValue entries = *document.find(key);
     entries.items.push_back(entry);
-    set(longer, key, entries);
+    set_key(longer, key, entries);
     try {
       study = read(longer);
       document = std::move(longer);

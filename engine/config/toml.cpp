@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -163,6 +164,18 @@ const TomlValue* TomlValue::find(const std::string& key) const {
   const auto found =
       std::ranges::lower_bound(order, key, {}, [this](std::size_t i) -> const std::string& { return keys[i]; });
   return found == order.end() || keys[*found] != key ? nullptr : &items[*found];
+}
+
+void set_key(TomlValue& table, const std::string& key, TomlValue value) {
+  if (const auto found = std::ranges::find(table.keys, key); found != table.keys.end()) {
+    table.items[static_cast<std::size_t>(found - table.keys.begin())] = std::move(value);
+    return;
+  }
+  table.keys.push_back(key);
+  table.items.push_back(std::move(value));
+  table.order.resize(table.keys.size());
+  std::iota(table.order.begin(), table.order.end(), std::size_t{0});
+  std::ranges::sort(table.order, {}, [&table](std::size_t i) { return table.keys[i]; });
 }
 
 TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected) {

@@ -28,6 +28,9 @@ struct TomlValue {
   const TomlValue* find(const std::string& key) const;
 };
 
+/// Sets the value of a key of a table.
+void set_key(TomlValue& table, const std::string& key, TomlValue value);
+
 /// Parses `text`. Throws ConfigError with the line if it is not valid TOML (duplicate keys, bytes that are not UTF-8,
 /// ...). `file` and `expected`, a description of the contents, are for messages.
 TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected = "a study in TOML");

@@ -4,6 +4,7 @@
 
 #include "engine/problem/front.hpp"
 #include "engine/results/comparison.hpp"
+#include "engine/results/design_values.hpp"
 
 namespace pkm {
 namespace {
@@ -14,6 +15,18 @@ using Names = std::vector<std::string>;
 template <class Named>
 void add_headers(Names& columns, const std::string& prefix, const std::vector<Named>& items) {
   for (const Named& item : items) columns.push_back(column_header(prefix + item.name, item.unit));
+}
+
+/// Adds the value of a variable, or the name of the row that it selects from a catalogue.
+void add_variable(CsvTable& table, const ProblemRecord& problem, std::size_t variable, double value) {
+  if (const std::string name = choice_name(problem, variable, value); name.empty())
+    table.add(value);
+  else
+    table.add(name);
+}
+
+void add_design(CsvTable& table, const ProblemRecord& problem, std::span<const double> design) {
+  for (std::size_t v = 0; v < design.size(); ++v) add_variable(table, problem, v, design[v]);
 }
 
 CsvTable evaluations(const StudyContents& contents) {
@@ -27,9 +40,13 @@ CsvTable evaluations(const StudyContents& contents) {
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const EvaluationTable& rows = contents.stages[s].table;
     const auto generation = contents.stages[s].generations.generation_of_rows(rows.size());
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      table.row(s + 1, row, generation[row], words(rows.status[row]), rows.design(row), rows.objective_row(row),
-                rows.margin_row(row), rows.output_row(row));
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      table.row(s + 1, row, generation[row], words(rows.status[row]));
+      add_design(table, problem, rows.design(row));
+      table.add(rows.objective_row(row));
+      table.add(rows.margin_row(row));
+      table.add(rows.output_row(row));
+    }
   }
   return table;
 }
@@ -97,8 +114,15 @@ CsvTable best(const StudyContents& contents) {
     }
   };
   const ProblemRecord& problem = contents.problem;
-  add_rows(problem.parameters, &DesignRecord::parameters,
-           [](const ParameterRecord& p) { return p.variable < 0 ? "parameter" : "variable"; });
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+    const ParameterRecord& p = problem.parameters[i];
+    table.row(p.variable < 0 ? "parameter" : "variable", p.name, p.unit);
+    for (const auto& [label, design] : designs)
+      if (p.variable < 0)
+        table.add(design.parameters[i]);
+      else
+        add_variable(table, problem, static_cast<std::size_t>(p.variable), design.parameters[i]);
+  }
   add_rows(problem.objectives, &DesignRecord::objectives, [](const auto&) { return "objective"; });
   add_rows(problem.margins, &DesignRecord::margins, [](const auto&) { return "margin"; });
   add_rows(problem.reports, &DesignRecord::reports, [](const auto&) { return "output"; });
@@ -135,8 +159,8 @@ CsvTable front(const StudyContents& contents) {
     const std::size_t compromise_point = compromise(scores);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const auto row = static_cast<std::size_t>(rows[k]);
-      table.row(s + 1, k + 1, rows[k], bool{knee[k]}, k == compromise_point, stage.table.objective_row(row),
-                stage.table.design(row));
+      table.row(s + 1, k + 1, rows[k], bool{knee[k]}, k == compromise_point, stage.table.objective_row(row));
+      add_design(table, problem, stage.table.design(row));
     }
   }
   return table;

@@ -81,25 +81,17 @@ std::size_t path_points(const Mechanism& mechanism, std::span<const S> parameter
   }
   Wrench<S> load;
   for (std::size_t i = 0; i < 6; ++i) load[i] = S(wrench[i]);
-  std::vector<MotionState<S>> states(kInverseDynamicsBatch);
-  std::vector<PoseDynamics<S>> dynamics(kInverseDynamicsBatch);
-  for (std::size_t first = 0; first < samples.size(); first += kInverseDynamicsBatch) {
-    const std::size_t count = std::min(kInverseDynamicsBatch, samples.size() - first);
-    for (std::size_t k = 0; k < count; ++k) states[k] = {samples[first + k].pose, samples[first + k].velocity};
-    mechanism.dynamics()->equations(parameters, mode, std::span<const MotionState<S>>(states.data(), count),
-                                    std::span<PoseDynamics<S>>(dynamics.data(), count));
-    for (std::size_t k = 0; k < count; ++k) {
-      const PoseDynamics<S>& d = dynamics[k];
-      if (!d.assembles) return points.size();
-      const AxisVector<S> tangent = samples[first + k].velocity, curvature = samples[first + k].acceleration;
-      if (!append(samples[first + k], {.q1 = d.J * tangent,
-                                       .q2 = d.J * curvature + d.J_rate_X,
-                                       .A = at_joints<S>(d, d.M_X * tangent),
-                                       .B = at_joints<S>(d, d.M_X * curvature + d.h_X),
-                                       .C = at_joints<S>(d, d.G_X - transpose(d.J_wrench) * load)}))
-        return points.size();
-    }
-  }
+  InverseDynamicsScratch<S> scratch;
+  equations_along<S>(*mechanism.dynamics(), parameters, mode, samples, scratch,
+                     [&](std::size_t k, const MotionState<S>& state, const PoseDynamics<S>& d) {
+                       const AxisVector<S>& tangent = state.velocity;
+                       const AxisVector<S> curvature = samples[k].acceleration;
+                       return append(samples[k], {.q1 = d.J * tangent,
+                                                  .q2 = d.J * curvature + d.J_rate_X,
+                                                  .A = at_joints<S>(d, d.M_X * tangent),
+                                                  .B = at_joints<S>(d, d.M_X * curvature + d.h_X),
+                                                  .C = at_joints<S>(d, d.G_X - transpose(d.J_wrench) * load)});
+                     });
   return points.size();
 }
 

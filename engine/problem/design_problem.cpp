@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <sstream>
 
 #include "engine/core/catalogue.hpp"
@@ -51,7 +53,18 @@ struct DesignProblem::Buffers {
   WorkspaceResults<Dual4> dual_workspaces;
 };
 
-DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), used_(used_analyses(parts_)) {
+struct DesignProblem::OtherRows {
+  std::mutex mutex;
+  std::map<std::vector<std::size_t>, std::shared_ptr<const DesignProblem>> problems;
+};
+
+/// Scratch memory of the problems with other rows.
+struct ScratchOfRows {
+  std::map<const DesignProblem*, Scratch> of;
+};
+
+DesignProblem::DesignProblem(ProblemParts parts)
+    : parts_(std::move(parts)), used_(used_analyses(parts_)), others_(std::make_shared<OtherRows>()) {
   workspace_evaluators_.push_back(prepare_workspace(*parts_.mechanism, parts_.plan, parts_.request));
   if (const ColumnOptions* const columns = parts_.plan.columns(); columns && columns->certified)
     parts_.mechanism->bounds()->require_bounds(parts_.plan);
@@ -67,7 +80,24 @@ DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), use
         calls_.push_back(*call);
 }
 
+const DesignProblem& DesignProblem::of(std::span<const double> parameters) const {
+  if (!parts_.with_rows) return *this;
+  std::vector<std::size_t> rows;
+  for (const Choice& choice : parts_.choices) rows.push_back(choice.row(parameters[choice.parameter]));
+  if (rows == parts_.rows) return *this;
+  const std::lock_guard lock(others_->mutex);
+  std::shared_ptr<const DesignProblem>& found = others_->problems[rows];
+  try {
+    if (!found) found = parts_.with_rows(rows);
+  } catch (const ConfigError& error) {
+    throw DesignError(error.what());
+  }
+  return *found;
+}
+
 Unsupported DesignProblem::why_no_derivatives() const {
+  if (!parts_.choices.empty())
+    return "the variable " + parts_.choices[0].variable + " is a choice from a catalogue, without derivatives";
   for (std::size_t k = 0; k < used_.size(); ++k) {
     if (!used_[k]) continue;
     if (!workspace_evaluators_[k]->gradients()) return workspace_evaluators_[k]->why_no_derivatives();
@@ -81,10 +111,12 @@ Unsupported DesignProblem::why_no_derivatives() const {
 std::vector<double> DesignProblem::parameters(std::span<const double> design) const {
   std::vector<double> all = parts_.parameters;
   for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
+  if (const DesignProblem& other = of(all); &other != this) return other.parameters(design);
   return all;
 }
 
 WorkspaceResult<double> DesignProblem::workspace(std::span<const double> parameters, std::size_t k) const {
+  if (const DesignProblem& other = of(parameters); &other != this) return other.workspace(parameters, k);
   WorkspaceResult<double> result;
   evaluate_once(*workspace_evaluators_[k], parameters, result);
   return result;
@@ -195,6 +227,8 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
   try {
     all.assign(parts_.parameters.begin(), parts_.parameters.end());
     for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
+    if (const DesignProblem& other = of(all); &other != this)
+      return other.evaluate(design, scratch.get<ScratchOfRows>().of[&other], result);
     result.status = compute(all, scratch, result);
   } catch (const DesignError&) {
     result.status = Status::failed;
@@ -321,7 +355,9 @@ DesignReport DesignProblem::empty_report(std::span<const double> parameters) con
 }
 
 std::string DesignProblem::failure_reason(std::span<const double> design, Detail detail) const {
-  DesignReport report = empty_report(parameters(design));
+  const std::vector<double> all = parameters(design);
+  if (const DesignProblem& other = of(all); &other != this) return other.failure_reason(design, detail);
+  DesignReport report = empty_report(all);
   std::vector<double> derivatives(shape(detail).derivatives());
   try {
     Scratch scratch;
@@ -344,6 +380,7 @@ std::string DesignProblem::failure_reason(std::span<const double> design, Detail
 }
 
 DesignReport DesignProblem::report(std::span<const double> parameters) const {
+  if (const DesignProblem& other = of(parameters); &other != this) return other.report(parameters);
   DesignReport report = empty_report(parameters);
   try {
     Scratch scratch;

@@ -1,11 +1,13 @@
 // The design optimisation problem of a study: a mechanism, the design variables, objectives, constraints and outputs.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/problem/choice.hpp"
 #include "engine/problem/external_functions.hpp"
 #include "engine/problem/quantity.hpp"
 
@@ -28,10 +30,11 @@ struct NamedQuantity {
 
 /// A motion along which a constraint requires every pose to satisfy its limits.
 struct FollowedMotion {
-  std::string name;
-  std::shared_ptr<const Motion> motion;
+  DesignMotion motion;
   std::string mode;  ///< working mode, one of MechanismInfo::modes
 };
+
+class DesignProblem;
 
 struct ProblemParts {
   std::shared_ptr<const Mechanism> mechanism;
@@ -46,6 +49,11 @@ struct ProblemParts {
   std::vector<NamedQuantity> workspace_margins;  ///< all other constraints, including those on external functions
   std::vector<NamedQuantity> reports;
   std::vector<FollowedMotion> followed;
+  std::vector<Choice> choices;       ///< from catalogues
+  std::vector<std::size_t> rows;     ///< the chosen row of each catalogue, which determines the mechanism
+  std::vector<std::size_t> of_rows;  ///< indices of the parameters whose values these rows determine
+  /// Makes the problem with other rows; its variables, objectives and constraints are the same.
+  std::function<std::shared_ptr<const DesignProblem>(const std::vector<std::size_t>& rows)> with_rows = nullptr;
   std::shared_ptr<ExternalFunctions> functions = std::make_shared<ExternalFunctions>();
 };
 
@@ -76,6 +84,9 @@ class DesignProblem final : public Problem {
   Unsupported why_no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
+  /// The problem with the rows of the catalogues that a design chooses. Without choices it is this one. The reference
+  /// is valid as long as this problem. Throws DesignError if there is no such problem.
+  const DesignProblem& of(std::span<const double> parameters) const;
   /// The full parameter vector of a design. @param design  one value per variable
   std::vector<double> parameters(std::span<const double> design) const;
   /// A single workspace analysis. @param k  0: the workspace; otherwise the k-th region, from 1
@@ -92,6 +103,8 @@ class DesignProblem final : public Problem {
   std::vector<double> derivatives(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
+  /// The problems with other rows that have been made so far.
+  struct OtherRows;
   /// The analyses of a design: first of the workspace, then of each region. An analysis that no quantity uses is empty.
   template <class S>
   using WorkspaceResults = std::vector<WorkspaceResult<S>>;
@@ -124,6 +137,7 @@ class DesignProblem final : public Problem {
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;
   std::vector<OutputInfo> reports_;
+  std::shared_ptr<OtherRows> others_;
 };
 
 }  // namespace pkm

@@ -106,7 +106,7 @@ TableRow best_ranked(const Designs& designs) {
 /// Regular grid of poses over the box of the study, or over the box that bounds the workspace of a design without
 /// limits.
 std::vector<Pose<double>> poses_of(const DesignProblem& problem, const std::vector<double>& parameters) {
-  const ProblemParts& parts = problem.parts();
+  const ProblemParts& parts = problem.of(parameters).parts();
   const MechanismInfo& info = parts.mechanism->info();
   WorkspacePlan plan = visualisation_plan(info, parts.plan, {1, 1, 1});
   const Sweep& sweep = sweep_of(info, plan);
@@ -135,7 +135,7 @@ std::vector<Pose<double>> poses_of(const DesignProblem& problem, const std::vect
 /// The limits that make the workspace of a design empty, found on a grid of poses. There are no reasons if the
 /// mechanism defines no box of poses.
 std::vector<Reason> limits_of_empty_workspace(const DesignProblem& problem, const std::vector<double>& parameters) {
-  const ProblemParts& parts = problem.parts();
+  const ProblemParts& parts = problem.of(parameters).parts();
   const std::string& requested = parts.request.mode;
   const std::string& mode = requested.empty() ? parts.mechanism->info().modes.front() : requested;
   MarginTally tally;

@@ -46,9 +46,9 @@ inline Wrench<double> wrench_of(const EntryContext& context) {
 }
 
 /// The motion named in the options. Throws std::invalid_argument if the study has none of that name.
-inline const NamedMotion& motion_of(const EntryContext& context) {
+inline const DesignMotion& motion_of(const EntryContext& context) {
   const std::string& name = context.options.word("motion");
-  if (const NamedMotion* found = find_named(context.motions, name)) return *found;
+  if (const DesignMotion* found = find_named(context.motions, name)) return *found;
   const auto known = names_of(context.motions);
   if (known.empty())
     throw std::invalid_argument("the study has no motion called '" + name +
@@ -57,16 +57,46 @@ inline const NamedMotion& motion_of(const EntryContext& context) {
                               did_you_mean(name, known));
 }
 
-/// Samples of the motion named in the options. Throws std::invalid_argument if a sample is not finite.
-inline std::vector<MotionSample> samples_of(const EntryContext& context) {
-  const NamedMotion& named = motion_of(context);
-  auto samples = sample(*named.motion, static_cast<std::size_t>(context.options.integer("samples")));
-  for (const MotionSample& at : samples)
-    for (std::size_t i = 0; i < at.pose.size(); ++i)
-      if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
-        throw std::invalid_argument("the pose, velocity or acceleration of the motion " + named.name +
-                                    " is not finite at t = " + with_unit(at.time, "s"));
-  return samples;
-}
+/// The samples of the motion named in the options, for any design.
+class SampledMotion {
+ public:
+  /// Throws std::invalid_argument if a sample is not finite.
+  explicit SampledMotion(const EntryContext& context)
+      : named_(motion_of(context)),
+        samples_(sample(*named_.motion, static_cast<std::size_t>(context.options.integer("samples")))) {
+    for (const MotionSample& at : samples_)
+      for (std::size_t i = 0; i < at.pose.size(); ++i)
+        if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
+          throw std::invalid_argument("the pose, velocity or acceleration of the motion " + named_.name +
+                                      " is not finite at t = " + with_unit(at.time, "s"));
+  }
+
+  const std::string& name() const { return named_.name; }
+  std::size_t size() const { return samples_.size(); }
+  Unsupported why_no_derivatives() const { return named_.of_design ? named_.why_no_derivatives : Unsupported(); }
+
+  /// The samples of a design; they are valid until the next call with the same scratch memory.
+  std::span<const MotionSample> of(const DesignView<double>& design) const {
+    if (!named_.of_design) return samples_;
+    auto& samples = design.scratch.template get<std::vector<MotionSample>>();
+    return samples = sample(*named_.of_design(design.parameters), samples_.size());
+  }
+  /// Calls work(samples) with the samples of a design: std::span<const MotionSample> or, if they have derivatives,
+  /// std::span<const DualMotionSample>.
+  template <class Work>
+  auto with(const DesignView<double>& design, const Work& work) const {
+    return work(of(design));
+  }
+  template <class Work>
+  auto with(const DesignView<Dual4>& design, const Work& work) const {
+    if (!named_.of_design) return work(std::span<const MotionSample>(samples_));
+    const auto samples = sample_with_derivatives(named_, design.parameters, samples_.size());
+    return work(std::span<const DualMotionSample>(samples));
+  }
+
+ private:
+  DesignMotion named_;
+  std::vector<MotionSample> samples_;  ///< of the study's own parameters
+};
 
 }  // namespace pkm

@@ -13,7 +13,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
 #include "engine/mechanism/mechanism.hpp"
-#include "engine/motion/motion.hpp"
+#include "engine/motion/design_motion.hpp"
 #include "engine/problem/problem.hpp"
 
 namespace pkm {
@@ -89,8 +89,8 @@ struct EntryContext {
   const Mechanism& mechanism;
   const WorkspacePlan& plan;  ///< plan of the workspace analysis that the entry uses
   const Options& options;
-  std::span<const Region> regions = {};       ///< regions of the study
-  std::span<const NamedMotion> motions = {};  ///< motions of the study
+  std::span<const Region> regions = {};        ///< regions of the study
+  std::span<const DesignMotion> motions = {};  ///< motions of the study
 };
 
 /// Bounds on the values of a quantity, for any design.

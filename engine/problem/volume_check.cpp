@@ -7,7 +7,7 @@ namespace pkm {
 VolumeBounds verify_volume(const DesignProblem& problem, DesignReport& report, double gap,
                            const std::function<bool()>& stop) {
   constexpr double kRoundoff = 1e-9;  // relative; rounding errors of closed forms, not part of the error estimate
-  const ProblemParts& parts = problem.parts();
+  const ProblemParts& parts = problem.of(report.parameters).parts();
   const VolumeBounds bounds =
       parts.mechanism->bounds()->volume(report.parameters, parts.plan, parts.request.mode, {.gap = gap, .stop = stop});
   const double volume = report.workspace.volume, error = (report.workspace.error + kRoundoff) * volume;

@@ -93,12 +93,12 @@ std::vector<DrawnPose> draw(const ShownDesigns& shown, const ShownDesign& design
   return drawn;
 }
 
-/// Data of the motions: for each motion, the index range of its samples among all poses, and the coordinates of the
-/// samples.
-/// @param first  index of the first pose of the first motion
-Json motion_poses(const ShownDesigns& shown, const std::vector<Pose<double>>& poses, std::size_t first) {
+/// Data of the motions: for each, the index range of its samples among all poses, and the coordinates of its samples.
+/// @param first  number of the first pose of the first motion
+Json motion_poses(const ShownDesigns& shown, const ShownDesign& design, const std::vector<Pose<double>>& poses,
+                  std::size_t first) {
   Json list = Json::array();
-  for (const NamedMotion& named : shown.motions) {
+  for (const DesignMotion& named : shown.motions) {
     Json coordinates = Json::array();
     for (std::size_t c = 0; c < poses.front().size(); ++c) {
       std::vector<double> column;
@@ -106,7 +106,7 @@ Json motion_poses(const ShownDesigns& shown, const std::vector<Pose<double>>& po
       coordinates.push_back(packed_floats(column));
     }
     list.push_back({{"name", named.name},
-                    {"duration", named.motion->duration()},
+                    {"duration", named.at(design.parameters)->duration()},
                     {"first", first},
                     {"count", kMotionPoses},
                     {"coordinates", coordinates}});
@@ -181,7 +181,7 @@ Json drawn_mechanism(const ShownDesigns& shown, const ShownDesign& design) {
   const Sliders sliders = make_sliders(design, shown.detail);
   std::vector<Pose<double>> pose_values = grid_poses(sliders);
   const std::size_t grid_size = pose_values.size();
-  for (const NamedMotion& named : shown.motions) add_motion_poses(*named.motion, pose_values);
+  for (const DesignMotion& named : shown.motions) add_motion_poses(*named.at(design.parameters), pose_values);
   const std::vector<DrawnPose> poses = draw(shown, design, pose_values);
   const auto assembled = std::ranges::find_if(poses, [](const DrawnPose& pose) { return !pose.links.empty(); });
   if (assembled == poses.end()) return Json();
@@ -220,7 +220,7 @@ Json drawn_mechanism(const ShownDesigns& shown, const ShownDesign& design) {
   }
   const std::size_t start = initial_pose({poses.data(), grid_size}, sliders);
   json["initial_pose"] = start;
-  json["motions"] = motion_poses(shown, pose_values, grid_size);
+  json["motions"] = motion_poses(shown, design, pose_values, grid_size);
   json["dimensions"] = Json::array();
   for (const Dimension& d : dimensions_of(shown.mechanism, design.parameters, pose_values[start], shown.mode)) {
     const auto end = [&](std::size_t e) { return (e % 2 ? ends.to : ends.from)[e / 2]; };

@@ -106,13 +106,19 @@ Json design_along(const ShownDesigns& shown, const ShownDesign& design, const Mo
 Json motions_data(const ShownDesigns& shown) {
   const MechanismInfo& info = shown.mechanism.info();
   Json motions = Json::array();
-  for (const NamedMotion& named : shown.motions) {
-    Json json = {{"name", named.name},
-                 {"duration", named.motion->duration()},
-                 {"samples", kSamples},
-                 {"designs", Json::array()}};
-    for (const ShownDesign& design : shown.designs)
-      if (design.workspace) json["designs"].push_back(design_along(shown, design, *named.motion));
+  const auto entry = [](const std::string& name, const Motion& motion) {
+    return Json{{"name", name}, {"duration", motion.duration()}, {"samples", kSamples}, {"designs", Json::array()}};
+  };
+  for (const DesignMotion& named : shown.motions) {
+    Json json = entry(named.name, *named.motion);
+    for (const ShownDesign& design : shown.designs) {
+      if (!design.workspace) continue;
+      const auto motion = named.at(design.parameters);
+      Json of_design = design_along(shown, design, *motion);
+      // Motions that depend on the design have durations of their own, and a panel has one time axis.
+      if (named.of_design) motions.push_back(entry(named.name + " of " + design.name, *motion));
+      (named.of_design ? motions.back() : json)["designs"].push_back(std::move(of_design));
+    }
     if (!json["designs"].empty()) motions.push_back(std::move(json));
   }
   if (motions.empty()) return {};

@@ -32,6 +32,8 @@ Json problem_data(const PageStudy& page) {
   json["variables"] = Json::array();
   for (const Variable& v : problem.variables)
     json["variables"].push_back({{"name", v.name}, {"unit", v.unit}, {"lower", v.lower}, {"upper", v.upper}});
+  for (const ChoiceName& choice : problem.choices.value_or(std::vector<ChoiceName>()))
+    json["variables"][static_cast<std::size_t>(choice.variable)]["choices"].push_back(choice.name);
   json["objectives"] = infos_json(problem.objectives);
   for (std::size_t k = 0; k < problem.objectives.size(); ++k)
     json["objectives"][k]["maximise"] = problem.objectives[k].direction == Direction::maximise;

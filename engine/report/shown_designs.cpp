@@ -63,7 +63,7 @@ constexpr std::size_t kMaxMotions = 6;
 
 /// The settings that the designs of a page share; `designs` is empty.
 ShownDesigns prepare_designs(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,
-                             const std::vector<NamedMotion>& motions, const PageDetail& detail = {}) {
+                             const std::vector<DesignMotion>& motions, const PageDetail& detail = {}) {
   const MechanismInfo& info = mechanism.info();
   const std::size_t motion_count = std::min(motions.size(), kMaxMotions);
   return {.mechanism = mechanism,
@@ -97,7 +97,10 @@ bool uses_masses(const Study& study) {
 }
 
 ShownDesigns prepare_study_designs(const PageStudy& page, const PageDetail& detail) {
-  const ProblemParts& parts = page.study->problem->parts();
+  const DesignProblem& problem = *page.study->problem;
+  const std::vector<double> best =
+      page.contents.best.row < 0 ? problem.parts().parameters : problem.parameters(page.contents.best_design());
+  const ProblemParts& parts = problem.of(best).parts();
   ShownDesigns shown = prepare_designs(*parts.mechanism, parts.plan, parts.request.mode, page.study->motions, detail);
   shown.coupling = uses_masses(*page.study);
   return shown;
@@ -120,6 +123,14 @@ void add_design(ShownDesigns& shown, const std::string& name, const std::vector<
   shown.designs.push_back(std::move(design));
 }
 
+/// Adds a design of a study. A page shows one mechanism: designs with other rows of catalogues have none.
+void add_design_of_study(ShownDesigns& shown, const DesignProblem& problem, const std::string& name,
+                         const std::vector<double>& parameters) {
+  if (problem.of(parameters).parts().mechanism.get() == &shown.mechanism) return add_design(shown, name, parameters);
+  shown.designs.push_back({name, parameters, {}});
+  shown.designs.back().problem = "its choice from a catalogue is not that of the best design";
+}
+
 }  // namespace
 
 ShownDesigns evaluate_shown_designs(const PageStudy& page) {
@@ -127,7 +138,7 @@ ShownDesigns evaluate_shown_designs(const PageStudy& page) {
   ShownDesigns shown = prepare_study_designs(page, {});
   if (contents.best.row >= 0)
     add_design(shown, best_design_label(contents), page.study->problem->parameters(contents.best_design()));
-  if (page.study->baseline) add_design(shown, "baseline", *page.study->baseline);
+  if (page.study->baseline) add_design_of_study(shown, *page.study->problem, "baseline", *page.study->baseline);
   return shown;
 }
 
@@ -141,14 +152,15 @@ ShownDesigns evaluate_front_designs(const PageStudy& page) {
   for (const std::size_t point :
        select_representatives(scores_of(contents.problem.objectives, last->table, rows), kFrontDesigns)) {
     if (contents.best.stage == stage - 1 && contents.best.row == rows[point]) continue;
-    add_design(shown, "point " + std::to_string(point + 1) + " of stage " + std::to_string(stage),
-               page.study->problem->parameters(last->table.design(static_cast<std::size_t>(rows[point]))));
+    add_design_of_study(shown, *page.study->problem,
+                        "point " + std::to_string(point + 1) + " of stage " + std::to_string(stage),
+                        page.study->problem->parameters(last->table.design(static_cast<std::size_t>(rows[point]))));
   }
   return shown;
 }
 
 ShownDesigns evaluate_shown_designs(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,
-                                    const std::vector<NamedMotion>& motions,
+                                    const std::vector<DesignMotion>& motions,
                                     const std::pair<std::string, std::vector<double>>& design) {
   ShownDesigns shown = prepare_designs(mechanism, plan, mode, motions);
   add_design(shown, design.first, design.second);

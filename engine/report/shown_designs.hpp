@@ -42,11 +42,11 @@ struct PageDetail {
 /// Designs of one mechanism that a page shows, all evaluated with the same plan.
 struct ShownDesigns {
   const Mechanism& mechanism;
-  WorkspacePlan plan;                ///< plan of the workspace analysis: voxels, limited by `detail`
-  LimitSpec limits;                  ///< thresholds of the constraints on poses
-  std::string mode;                  ///< working mode
-  std::vector<NamedMotion> motions;  ///< the first motions of the study, limited by the size of a page
-  std::size_t omitted_motions = 0;   ///< number of motions of the study that are not shown
+  WorkspacePlan plan;                 ///< plan of the workspace analysis: voxels, limited by `detail`
+  LimitSpec limits;                   ///< limits of poses
+  std::string mode;                   ///< working mode
+  std::vector<DesignMotion> motions;  ///< the first motions of the study, limited by the size of a page
+  std::size_t omitted_motions = 0;    ///< number of motions of the study that are not shown
   std::vector<ShownDesign> designs;
   PageDetail detail = {};
   bool coupling = true;  ///< true if the page shows coupling and inertia; false if the study does not use masses
@@ -66,7 +66,7 @@ ShownDesigns evaluate_front_designs(const PageStudy& page);
 /// @param mode    one of MechanismInfo::modes; "": the first
 /// @param design  name of the design, and values of all parameters of the mechanism in SI
 ShownDesigns evaluate_shown_designs(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,
-                                    const std::vector<NamedMotion>& motions,
+                                    const std::vector<DesignMotion>& motions,
                                     const std::pair<std::string, std::vector<double>>& design);
 
 }  // namespace pkm

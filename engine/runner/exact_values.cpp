@@ -17,6 +17,7 @@ ExactValues::ExactValues(const ProblemParts& parts) : parts_(parts) {
   if (parts.mechanism->columns()->supports_box()) columns.box = parts.plan.box();
   ProblemParts exact = parts;
   exact.plan.method = columns;
+  exact.with_rows = nullptr;  // these problems use the method of the study
   try {
     problem_ = std::make_unique<const DesignProblem>(std::move(exact));
   } catch (const std::invalid_argument&) {

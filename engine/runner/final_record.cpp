@@ -46,6 +46,7 @@ std::vector<std::string> active_sentences(const DesignProblem& problem, const De
   std::vector<std::string> sentences;
   const ProblemParts& parts = problem.parts();
   for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    if (std::ranges::find(parts.choices, parts.varies[i], &Choice::parameter) != parts.choices.end()) continue;
     const Variable& v = parts.space[i];
     const double value = best.parameters[parts.varies[i]], tolerance = 1e-6 * (v.upper - v.lower);
     if (value - v.lower <= tolerance) sentences.push_back(v.name + " at its lower bound " + with_unit(v.lower, v.unit));
@@ -70,11 +71,11 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
   using Kind = PropertyResult::Kind;
   for (const FollowedMotion& along : parts.followed) {
     if (design.status != Status::feasible) return;
-    const std::string begin = kAlong + along.name + " the " + name + " ";
+    const std::string begin = kAlong + along.motion.name + " the " + name + " ";
     try {
-      const PoseCertificate found =
-          parts.mechanism->bounds()->motion(design.parameters, parts.plan.limits, along.mode, *along.motion,
-                                            {.max_boxes = kMaxMotionBoxes, .stop = [] { return stop_requested(); }});
+      const PoseCertificate found = parts.mechanism->bounds()->motion(
+          design.parameters, parts.plan.limits, along.mode, *along.motion.at(design.parameters),
+          {.max_boxes = kMaxMotionBoxes, .stop = [] { return stop_requested(); }});
       check_stop();
       const PropertyResult& result = found.feasible;
       const std::string when = result.time ? "t = " + with_unit(*result.time, "s") : "";
@@ -85,7 +86,7 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
       else {
         design.status = Status::failed;
         design.reason =
-            kAlong + along.name + ", " + result.detail + " is violated at " + when + ", between its samples";
+            kAlong + along.motion.name + ", " + result.detail + " is violated at " + when + ", between its samples";
       }
     } catch (const std::invalid_argument& reason) {
       notes.push_back(begin + "cannot be certified: " + reason.what());
@@ -104,10 +105,12 @@ void add_exact_values(const Study& study, StudyContents& contents,
   bool has_best = !f.best, has_baseline = !f.baseline;
   const StopScope limit(study.exact_seconds);
   try {
-    const ExactValues exact(study.problem->parts());
-    if (f.best) f.best_exact = exact.evaluate("best design", f.best->parameters, notes_on_best);
+    const auto evaluate = [&](const char* name, const DesignRecord& design, std::vector<std::string>& notes) {
+      return ExactValues(study.problem->of(design.parameters).parts()).evaluate(name, design.parameters, notes);
+    };
+    if (f.best) f.best_exact = evaluate("best design", *f.best, notes_on_best);
     has_best = true;
-    if (f.baseline) f.baseline_exact = exact.evaluate("baseline", f.baseline->parameters, notes_on_baseline);
+    if (f.baseline) f.baseline_exact = evaluate("baseline", *f.baseline, notes_on_baseline);
     has_baseline = true;
   } catch (const Stopped&) {
     if (limit.is_requested_by_outer_scope()) throw;
@@ -166,7 +169,7 @@ void complete_final_record(const Study& study, StudyContents& contents,
   });
   if (f.best) {
     begin("map of the best design's workspace");
-    f.map = map_record(parts, f.best->parameters);
+    f.map = map_record(problem.of(f.best->parameters).parts(), f.best->parameters);
   }
   if (const ColumnOptions* const columns = parts.plan.columns(); columns && columns->certified) {
     const double requested = *columns->certified;
@@ -181,7 +184,7 @@ void complete_final_record(const Study& study, StudyContents& contents,
                                  " boxes");
       if (parts.followed.empty()) continue;
       begin("motions of the " + std::string(name));
-      certify_motions(parts, name, **design, contents.notes);
+      certify_motions(problem.of((*design)->parameters).parts(), name, **design, contents.notes);
     }
   }
   if (has_exact_step(study)) add_exact_values(study, contents, begin);

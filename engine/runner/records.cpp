@@ -138,6 +138,11 @@ ProblemRecord problem_record(const Study& study) {
   for (std::size_t v = 0; v < parts.varies.size(); ++v)
     p.parameters[parts.varies[v]].variable = static_cast<std::int64_t>(v);
   p.variables = parts.space.variables();
+  for (const Choice& choice : parts.choices) {
+    if (!p.choices) p.choices.emplace();
+    const std::int64_t variable = p.parameters[choice.parameter].variable;
+    for (const std::string& row : choice.rows) p.choices->push_back({variable, row});
+  }
   p.objectives = study.problem->objectives();
   p.margins = study.problem->margins();
   p.reports = study.problem->reports();

@@ -30,6 +30,11 @@ void describe_problem(Archive& archive, Study& study) {
                 Field{"lower", &Variable::lower, "see unit", "Lower bound"},
                 Field{"upper", &Variable::upper, "see unit", "Upper bound"},
                 Field{"step", &Variable::step, "see unit", "Increment between allowed values; 0: continuous"});
+  if (visit_optional(archive, "/problem/choices", problem.choices))
+    visit_records(archive, "/problem/choices",
+                  "Names of the values 1, 2, .. of variables that are choices from catalogues", *problem.choices,
+                  Field{"variable", &ChoiceName::variable, "1", "Index into variables"},
+                  Field{"name", &ChoiceName::name, "1", "Name of the value"});
   visit_records(archive, "/problem/objectives", "Objectives: the columns of every objective", problem.objectives,
                 Field{"name", &ObjectiveInfo::name, "1", "Name"}, Field{"unit", &ObjectiveInfo::unit, "1", "Unit"},
                 Field{"meaning", &ObjectiveInfo::meaning, "1", "Meaning"},

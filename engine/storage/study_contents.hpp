@@ -30,11 +30,19 @@ struct ParameterRecord {
   std::int64_t variable = -1;  ///< index of the design variable in ProblemRecord::variables; -1: the parameter is fixed
 };
 
+/// The name of a value of a variable that is a choice from a catalogue. The values are 1, 2, .. in the order of the
+/// names.
+struct ChoiceName {
+  std::int64_t variable = 0;  ///< index into ProblemRecord::variables
+  std::string name;
+};
+
 /// The optimisation problem in explicit form, so that other programs need not parse the TOML text.
 struct ProblemRecord {
   std::string mechanism;  ///< name of the mechanism, for example "4ppa-2par"
   std::vector<ParameterRecord> parameters;
   std::vector<Variable> variables;
+  std::optional<std::vector<ChoiceName>> choices;  ///< of all variables that are choices
   std::vector<ObjectiveInfo> objectives;
   std::vector<MarginInfo> margins;
   std::vector<OutputInfo> reports;

@@ -114,6 +114,9 @@ Json study_json(const Study& study) {
     const Json step = v.step > 0 ? Json(v.step) : Json();
     return {{"name", v.name}, {"unit", v.unit}, {"min", v.lower}, {"max", v.upper}, {"step", step}};
   });
+  for (const Choice& choice : parts.choices)
+    for (Json& variable : json["variables"])
+      if (variable["name"] == choice.variable) variable["choices"] = choice.rows;
   json["baseline"] = study.baseline ? values_by_name(info.parameters, *study.baseline) : Json();
   json["workspace"] = workspace_json(info, parts.plan);
   if (parts.plan.voxels()) json["workspace"]["exact"] = has_exact_step(study) ? Json(study.exact_seconds) : Json(false);

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <set>
 
+#include "engine/config/choices.hpp"
+#include "engine/config/study_changes.hpp"
 #include "engine/config/task.hpp"
 #include "engine/config/text_file.hpp"
 #include "engine/core/catalogue.hpp"
@@ -19,7 +21,18 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// Finds the robot that an argument names: a mechanism, a study, or the best design of a study file.
+/// The document of a study with the rows of the catalogues that its design chooses.
+TomlValue with_rows_of_design(const TomlValue& study, const std::string& file_name, const Target& target) {
+  std::vector<std::size_t> rows;
+  for (const Choice& choice : target.study->problem->parts().choices)
+    rows.push_back(choice.row(target.parameters[choice.parameter]));
+  const auto recorded = [&study](const ConfigValue& file) {
+    return recorded_catalogue(study, file.text("the name of a catalogue's file")).value();
+  };
+  return with_rows(study, file_name, read_catalogues(study, file_name, recorded), rows);
+}
+
+/// The robot that an argument names: a mechanism, a study, or a study file, whose best design is used.
 TaskRobot find_robot(const Session& session, const std::string& argument) {
   const std::filesystem::path path(argument);
   DesignArguments design;
@@ -28,7 +41,7 @@ TaskRobot find_robot(const Session& session, const std::string& argument) {
   TaskRobot robot{
       looks_like_file(argument) ? path.stem().string() : argument, target.mechanism, target.parameters, {}, {}};
   if (target.study) {
-    robot.study = parse_toml(target.study->text, argument);
+    robot.study = with_rows_of_design(parse_toml(target.study->text, argument), argument, target);
     robot.description = target.study->description;
   } else if (looks_like_file(argument)) {
     robot.study = parse_toml("[mechanism]\nfile = \"mechanism.toml\"\n", argument);

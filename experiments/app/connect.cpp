@@ -110,7 +110,8 @@ Answer certified(const Target& target, const PathTask& task, const std::string& 
     return answer;
   }
   for (const auto& points : paths) {
-    const auto motion = read_motion_toml(motion_text(target.info(), points), "path", motion_names(*target.mechanism));
+    const auto motion = read_motion_toml(motion_text(target.info(), points), "path",
+                                         motion_names(*target.mechanism, target.parameters));
     PoseCertificate found;
     try {
       found = target.mechanism->bounds()->motion(target.parameters, task.plan.limits, mode, *motion, options);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/error.hpp"
+#include "engine/results/design_values.hpp"
 #include "engine/results/front_points.hpp"
 
 namespace pkm {
@@ -46,15 +47,30 @@ std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
     if (labels[i].empty() && std::ranges::find(spread, i) == spread.end()) continue;
     const auto row = static_cast<std::size_t>(stage.front->rows[i]);
     Row& cells = rows.emplace_back(Row{"  " + std::to_string(i + 1)});
-    for (const double x : stage.table.design(row)) cells.push_back(six_digits(x));
+    for (std::size_t v = 0; v < problem.variables.size(); ++v)
+      cells.push_back(variable_text(problem, v, stage.table.design(row)[v], six_digits));
     for (const double f : stage.table.objective_row(row)) cells.push_back(six_digits(f));
     cells.push_back(join(labels[i]));
   }
   return headline(problem, stage, front) + aligned(rows);
 }
 
+std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value,
+                          std::string (*format)(double)) {
+  const std::string name = choice_name(problem, variable, value);
+  return name.empty() ? format(value) : name;
+}
+
+Json variable_json(const ProblemRecord& problem, std::size_t variable, double value) {
+  const std::string name = choice_name(problem, variable, value);
+  return name.empty() ? Json(value) : Json(name);
+}
+
 Json row_json(const ProblemRecord& problem, const EvaluationTable& table, std::size_t row) {
-  return {{"design", values_by_name(problem.variables, table.design(row))},
+  Json design = Json::object();
+  for (std::size_t v = 0; v < problem.variables.size(); ++v)
+    design[problem.variables[v].name] = variable_json(problem, v, table.design(row)[v]);
+  return {{"design", design},
           {"objectives", values_by_name(problem.objectives, table.objective_row(row))},
           {"constraints", values_by_name(problem.margins, table.margin_row(row))},
           {"outputs", values_by_name(problem.reports, table.output_row(row))}};

@@ -44,8 +44,11 @@ std::string changes_of(const Study& study) { return study.changes.empty() ? "no 
 /// The reason why a study file does not belong to the study to be run; empty if it does.
 Unsupported refuse_different_study(const StudyContents& contents, const Study& study, const Catalogues& catalogues) {
   const std::string text = upgraded(contents.toml, TextKind::study).text;
-  if (text != study.text && without_changes(text) == without_changes(study.text))
-    return "the study with " + changes_of(study_of(contents, catalogues)) + ", not with " + changes_of(study);
+  if (text != study.text && without_changes(text) == without_changes(study.text)) {
+    const Study other = study_of(contents, catalogues);
+    if (other.changes == study.changes) return "a study whose catalogues differ from those of " + study.file_name;
+    return "the study with " + changes_of(other) + ", not with " + changes_of(study);
+  }
   if (text != study.text) return "a study whose text differs from " + study.file_name;
   if (study.description && contents.description &&
       upgraded(contents.description->text, TextKind::mechanism).text != study.description->text)
@@ -108,8 +111,10 @@ void run(const RunArguments& arguments, Session& session) {
 }  // namespace
 
 std::vector<std::string> input_files(const Study& study) {
-  if (!study.description) return {study.file_name};
-  return {study.file_name, study.description->file_name};
+  std::vector<std::string> files = {study.file_name};
+  if (study.description) files.push_back(study.description->file_name);
+  files.insert(files.end(), study.catalogues.begin(), study.catalogues.end());
+  return files;
 }
 
 bool exists(const std::string& file) {

@@ -24,7 +24,12 @@ Json optimality_json(const OptimalityRecord& record);
 /// JSON with all points of the front, and its quality indicators after each generation.
 Json front_json(const ProblemRecord& problem, const StageRecord& stage);
 
-/// JSON with the design, objectives, constraints and other values of an evaluation, by name.
+/// The value of a variable: the name of a choice, or the number as format() writes it.
+std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value,
+                          std::string (*format)(double));
+Json variable_json(const ProblemRecord& problem, std::size_t variable, double value);
+
+/// The design, objectives, constraints and other values of an evaluation, by name.
 Json row_json(const ProblemRecord& problem, const EvaluationTable& table, std::size_t row);
 
 }  // namespace pkm

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/printable.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/results/comparison.hpp"
@@ -15,8 +16,13 @@ namespace {
 /// A row for each variable, objective and constraint; columns: best, rounded, baseline, gain ("+1.52 %"), references.
 std::vector<Row> table(const StudyContents& contents, const Study& study) {
   const DesignTable designs = design_table(contents, study.references);
-  const auto append = [](Row& row, const std::vector<std::optional<double>>& values) {
-    for (const auto& value : values) row.push_back(value ? digits(*value) : "");
+  const ProblemRecord& problem = contents.problem;
+  const auto append = [&](Row& row, const DesignTable::Line& line, const std::vector<std::optional<double>>& values) {
+    for (const auto& value : values) {
+      const Variable* const variable = line.kind == "variable" ? find_named(problem.variables, line.name) : nullptr;
+      const auto number = [&] { return static_cast<std::size_t>(variable - problem.variables.data()); };
+      row.push_back(!value ? "" : variable ? variable_text(problem, number(), *value, digits) : digits(*value));
+    }
   };
   std::vector<Row> rows = {{"", ""}};
   for (const auto& column : designs.columns) rows[0].push_back(column.name);
@@ -24,10 +30,10 @@ std::vector<Row> table(const StudyContents& contents, const Study& study) {
   for (const auto& r : study.references) rows[0].push_back(r.name);
   for (const DesignTable::Line& line : designs.lines) {
     Row& row = rows.emplace_back(Row{line.name + (line.kind == "constraint" ? " margin" : ""), line.unit});
-    append(row, line.values);
+    append(row, line, line.values);
     if (designs.has_baseline())
       row.push_back(line.gain ? formatted("%+.2f %%", line.gain->percent) + (line.gain->worse ? ", worse" : "") : "");
-    append(row, line.published);
+    append(row, line, line.published);
   }
   return rows;
 }
@@ -56,7 +62,8 @@ Json certified_json(const VolumeBounds& bounds) {
 Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
   Json design = Json::object();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i)
-    if (problem.parameters[i].variable >= 0) design[problem.parameters[i].name] = record.parameters[i];
+    if (const ParameterRecord& p = problem.parameters[i]; p.variable >= 0)
+      design[p.name] = variable_json(problem, static_cast<std::size_t>(p.variable), record.parameters[i]);
   Json object = {{"design", design},
                  {"objectives", values_by_name(problem.objectives, record.objectives)},
                  {"constraints", values_by_name(problem.margins, record.margins)},
@@ -113,7 +120,8 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
       const Status status = stage.table.status[row];
       out << (status == Status::feasible ? "best so far:" : "best so far, which is " + words(status) + ":");
       for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
-        out << ' ' << printable(contents.problem.variables[i].name) << " = " << digits(stage.table.design(row)[i]);
+        out << ' ' << printable(contents.problem.variables[i].name) << " = "
+            << printable(variable_text(contents.problem, i, stage.table.design(row)[i], digits));
       for (std::size_t i = 0; i < contents.problem.objectives.size(); ++i)
         out << ", " << printable(contents.problem.objectives[i].name) << " = "
             << digits(stage.table.objective_row(row)[i]);

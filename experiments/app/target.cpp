@@ -66,6 +66,7 @@ Target named_target(const Catalogues& catalogues, const std::string& name, const
   Target target = study_target(std::get<Study>(std::move(found)));
   target.files = {name};
   if (target.study->description) target.files.push_back(target.study->description->file_name);
+  target.files.insert(target.files.end(), target.study->catalogues.begin(), target.study->catalogues.end());
   return target;
 }
 
@@ -169,13 +170,13 @@ double parse_gap(const std::string& text, const std::string& option) {
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
   if (target.study) {
     const auto& motions = target.study->motions;
-    if (const NamedMotion* known = find_named(motions, name)) return known->motion;
+    if (const DesignMotion* known = find_named(motions, name)) return known->at(target.parameters);
     if (!motions.empty() && !looks_like_file(name))
       throw ConfigError({"", 0, "--motion"}, "'" + name + "', which is neither a [[motion]] of the study nor a file",
                         "one of " + join(names_of(motions)) + ", or a motion in TOML",
                         nearest_name(name, names_of(motions)));
   }
-  return load_motion(name, motion_names(*target.mechanism));
+  return load_motion(name, motion_names(*target.mechanism, target.parameters));
 }
 
 std::string parse_mode(const MechanismInfo& info, const ModeArguments& arguments) {
@@ -265,6 +266,13 @@ Target find_target(const Session& session, const DesignArguments& given_argument
   if (!arguments.set.empty()) {
     target.words += " with " + join(arguments.set);
     target.file_name += "-changed";
+  }
+  if (target.study) {
+    const DesignProblem& problem = target.study->problem->of(target.parameters);
+    const std::vector<std::size_t>& chosen = target.study->problem->parts().of_rows;
+    for (const std::size_t i : chosen)
+      if (!given[i]) target.parameters[i] = problem.parts().parameters[i];
+    target.mechanism = problem.parts().mechanism;
   }
   if (const Unsupported reason = target.mechanism->refuse(target.parameters))
     throw ConfigError({"", 0, "--set"}, *reason);

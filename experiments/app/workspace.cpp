@@ -254,7 +254,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {
-      const auto motions = target.study ? target.study->motions : std::vector<NamedMotion>();
+      const auto motions = target.study ? target.study->motions : std::vector<DesignMotion>();
       const ShownDesigns views =
           evaluate_shown_designs(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);

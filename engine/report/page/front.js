@@ -8,7 +8,7 @@ function frontPointText(study, front, point) {
   const { variables, objectives } = study.problem;
   const lines = [`<b>stage ${front.stage}, point ${front.points.indexOf(point) + 1}</b>`];
   objectives.forEach((o, k) => lines.push(label(o.name) + " = " + label(quantity(point.objectives[k], o.unit))));
-  variables.forEach((v, i) => lines.push(label(v.name) + " = " + label(shownQuantity(point.design[i], v.unit))));
+  variables.forEach((v, i) => lines.push(label(v.name) + " = " + label(choiceName(point.design[i], v) ?? shownQuantity(point.design[i], v.unit))));
   return lines.join("<br>");
 }
 
@@ -109,7 +109,7 @@ function distinguishedPoints(study, load) {
           loadButton(front.stage + " / " + (i + 1), () => load(f, i)),
           roles.join(", "),
           ...point.objectives.map((v, k) => result(v, objectives[k].unit)),
-          ...point.design.map((v, i) => measured(v, variables[i].unit)),
+          ...point.design.map((v, i) => choiceName(v, variables[i]) ?? measured(v, variables[i].unit)),
         ]);
     });
   }

@@ -37,7 +37,7 @@ function activeSentence({ summary, problem, point }) {
   if (point) {
     const { variables } = problem;
     const atBounds = variables.flatMap((v, i) =>
-      boundAt(point.design[i], v) ? [`${v.name} (${boundAt(point.design[i], v)})`] : [],
+      !v.choices && boundAt(point.design[i], v) ? [`${v.name} (${boundAt(point.design[i], v)})`] : [],
     );
     return [
       (atBounds.length ? "Active bounds: " + atBounds.join("; ") : "No bound is active") +

@@ -130,7 +130,8 @@ function designTable({ columns, rows }, variables) {
     name.title = row.meaning;
     const line = element("tr", "", name, element("td", "unit", unitText(unitOf(row))));
     const bounds = row.kind === "variable" ? variables.find((variable) => variable.name === row.name) : null;
-    for (const value of row.values) line.append(tableCell({ ...row, bounds }, value));
+    for (const value of row.values)
+      line.append(bounds?.choices ? element("td", "", choiceName(value, bounds)) : tableCell({ ...row, bounds }, value));
     if (gains) line.append(element("td", "", gainText(row.gain)));
     body.append(line);
   }

@@ -51,6 +51,10 @@ function rounded(text, value, unit) {
 function measured(value, unit, count) {
   return rounded(shownQuantity(value, unit, count), value, unit);
 }
+/** The name that the value of a variable selects from a catalogue; undefined if the variable is a number. */
+function choiceName(value, variable) {
+  return variable?.choices?.[Math.round(value) - 1];
+}
 /** A value of an objective or output. */
 function result(value, unit) {
   const shown = resultUnit(unit);

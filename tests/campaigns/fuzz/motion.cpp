@@ -9,7 +9,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace pkm;
   const std::string text(reinterpret_cast<const char*>(data), size);
   for (const auto& mechanism : all_mechanisms()) try {
-      const auto motion = read_motion_toml(text, "motion.toml", motion_names(*mechanism));
+      std::vector<double> parameters;
+      for (const Parameter& p : mechanism->info().parameters) parameters.push_back(p.nominal);
+      const auto motion = read_motion_toml(text, "motion.toml", motion_names(*mechanism, parameters));
       fuzz::expect(motion->duration() > 0, "a motion takes time");
       fuzz::expect(sample(*motion, 3).size() == 3, "as many samples as requested");
       is_periodic(*motion, mechanism->info().coordinates);

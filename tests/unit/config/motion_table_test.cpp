@@ -90,8 +90,9 @@ TEST(MotionSection, Messages) {
       {pick + "reach_tim = 0.4",
        "m.toml:9: reach_tim: found an unknown key; expected one of type, x, y, z, phi, lift, reach, lift_time, "
        "reach_time, overlap, direction, turn, wait, cycle, law; did you mean 'reach_time'?"},
-      {pick, "m.toml:1: reach_time: found nothing; expected a number > 0 s (duration of the move sideways)"},
-      {pick + "reach_time = 0", "m.toml:9: reach_time: found 0; expected a number > 0 s"},
+      {pick,
+       "m.toml:1: reach_time: found nothing; expected a number or a formula > 0 s (duration of the move sideways)"},
+      {pick + "reach_time = 0", "m.toml:9: reach_time: found 0; expected a number or a formula > 0 s"},
       {pick + "reach_time = \"40 mm\"",
        "m.toml:9: reach_time: found \"40 mm\"; expected a number in s, or text with a unit made of us, ms, s, min, h"},
       {pick + "reach_time = 0.4\noverlap = 0.2", "m.toml:10: overlap: found 0.2; expected a number in [0, 0.12] s"},
@@ -102,7 +103,7 @@ TEST(MotionSection, Messages) {
       {"type = \"oscillation\"\nx = 0\ny = 0\nz = 0\ntheta = 0\namplitude = 0.01\nperiod = 1",
        "m.toml:5: theta: found an unknown key; expected one of type, x, y, z, phi, amplitude, period, cycles"},
       {"type = \"oscillation\"\n" + kPose + "amplitude = -1\nperiod = 1",
-       "m.toml:6: amplitude: found -1; expected a number > 0 m"},
+       "m.toml:6: amplitude: found -1; expected a number or a formula > 0 m"},
       {"type = \"points\"",
        "m.toml:1: points: found nothing; expected a list of points, [{ x = .., y = .., ... }, ...]"},
       {"type = \"points\"\npoints = [{ x = 0, y = 0, z = 0, phi = 0 }]",
@@ -125,7 +126,7 @@ TEST(MotionSection, Messages) {
        "m.toml:2: points[2].xx: found an unknown key; expected one of wait, time, acceleration, "
        "angular_acceleration, speed, angular_speed, x, y, z, phi; did you mean 'x'?"},
       {"type = \"formulas\"\nx = 1",
-       "m.toml:1: duration: found nothing; expected a number > 0 s (duration of the motion)"},
+       "m.toml:1: duration: found nothing; expected a number or a formula > 0 s (duration of the motion)"},
       {"type = \"formulas\"\nduration = 1\nx = 1\ny = 1\nz = 1",
        "m.toml:1: phi: found nothing; expected a formula of the time t [s], such as \"0.1*sin(2*pi*t)\", or a number "
        "in "

@@ -32,7 +32,8 @@ TEST(StudyErrors, Document) {
            "s.toml:1: found text that is not TOML (Error while parsing table header: expected ']', saw '\\n'); "
            "expected a study in TOML"},
           {"[mechansim]\ntype = \"slider\"\n",
-           "s.toml:1: mechansim: found an unknown table; expected one of study, mechanism, variables, baseline, "
+           "s.toml:1: mechansim: found an unknown table; expected one of study, mechanism, parameters, variables, "
+           "baseline, "
            "workspace, region, motion, objective, constraint, output, reference, drive_train, motor, obstacle, "
            "quantity, "
            "accuracy, "

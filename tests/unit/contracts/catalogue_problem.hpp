@@ -99,7 +99,7 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
     if (entry.pose_level() || entry.refusal(*mechanism)) continue;
     const Options options = test_options(entry.options(info), info, "1 - " + product);
     const std::vector<Region> regions = {task(info, centre)};
-    const std::vector<NamedMotion> swing = motions(*mechanism);
+    const std::vector<DesignMotion> swing = motions(*mechanism);
     const EntryContext context{*mechanism, plan, options, regions, swing};
     NamedQuantity margin;
     margin.name = entry.name;

@@ -274,8 +274,8 @@ inline Pose<double> unreachable_pose(const MechanismInfo& info) {
 }
 
 /// A motion named "swing" that the nominal design can follow.
-inline std::vector<NamedMotion> motions(const Mechanism& mechanism) {
-  return {{"swing", oscillation(space_axes(mechanism.info().coordinates), reference_pose(mechanism), 0.01, 1, 1)}};
+inline std::vector<DesignMotion> motions(const Mechanism& mechanism) {
+  return {{{"swing", oscillation(space_axes(mechanism.info().coordinates), reference_pose(mechanism), 0.01, 1, 1)}}};
 }
 
 /// A region, named "task": a small box of the default sweep around a pose. Around the reference pose it is feasible for

@@ -185,7 +185,7 @@ double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const st
   const WorkspacePlan p = best_plan(mechanism);
   const Options options = some_options(entry, mechanism.info());
   const std::vector<Region> regions = {test::task(mechanism)};
-  const std::vector<NamedMotion> motions = test::motions(mechanism);
+  const std::vector<DesignMotion> motions = test::motions(mechanism);
   Scratch scratch;
   return entry.make({mechanism, p, options, regions, motions})->value({mechanism, parameters, nullptr, scratch});
 }

@@ -252,7 +252,7 @@ TEST(FastestMotion, FollowsCurvedPathsWithinTheToolsAcceleration) {
 }
 
 /// The objective cycle-time of a mechanism with these options.
-std::unique_ptr<const Quantity> cycle_time(const Mechanism& mechanism, const std::vector<NamedMotion>& motions,
+std::unique_ptr<const Quantity> cycle_time(const Mechanism& mechanism, const std::vector<DesignMotion>& motions,
                                            const std::string& law) {
   const ObjectiveEntry& entry = *find_named(all_objectives(), "cycle-time");
   Options options = default_options(entry.options);
@@ -264,7 +264,7 @@ std::unique_ptr<const Quantity> cycle_time(const Mechanism& mechanism, const std
 }
 
 TEST(CycleTime, HasTheDerivativesOfItsDifferences) {
-  const std::vector<NamedMotion> motions = {{"cycle", cycle_of(TimeLaw::quintic)}};
+  const std::vector<DesignMotion> motions = {{{"cycle", cycle_of(TimeLaw::quintic)}}};
   for (const Motor& motor : {kMotor, motor_without_thermal_limit()})
     for (const std::string law : {"optimal", "own"}) {
       SCOPED_TRACE(law);

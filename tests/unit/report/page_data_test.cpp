@@ -246,8 +246,8 @@ TEST(PageData, OnlyTheFirstMotionsAreEmbedded) {
   const auto formula = [](const std::string& text) { return Formula(text, time_name()); };
   const auto rest = motion_from_formulas({formula("0.15"), formula("0.2"), formula("0.21"), formula("0.1*sin(t)")}, 5);
   const auto page_of = [&](std::size_t count) {
-    std::vector<NamedMotion> motions;
-    for (std::size_t i = 0; i < count; ++i) motions.push_back({"motion " + std::to_string(i + 1), rest});
+    std::vector<DesignMotion> motions;
+    for (std::size_t i = 0; i < count; ++i) motions.push_back({{"motion " + std::to_string(i + 1), rest}});
     return page_data(evaluate_shown_designs(*mechanism, test::voxels(info, 6), info.modes.front(), motions,
                                             {"nominal", test::nominal(info)}),
                      "pkmopt");

@@ -120,7 +120,7 @@ TEST(CrrCruMotion, InfeasibleSamplesAreMarkedAndLeaveTheOthers) {
 DesignProblem problem_of(const std::string& name, const std::string& objective, const std::string& joint,
                          const std::shared_ptr<const Motion>& motion) {
   const ObjectiveEntry& entry = *find_named(all_objectives(), objective);
-  const NamedMotion named{"pick", motion};
+  const DesignMotion named{{"pick", motion}};
   Options options = default_options(entry.options);
   options.set("motion", std::string("pick"));
   options.set("joint", joint);

@@ -73,7 +73,7 @@ TEST(SingularPose, IsMarkedInATrajectory) {
 
 TEST(SingularPose, FailsADesignWhosePeakForceIsLookedFor) {
   const ObjectiveEntry& entry = *find_named(all_objectives(), std::string("peak-force"));
-  const NamedMotion named{"turn", turn()};
+  const DesignMotion named{{"turn", turn()}};
   Options options = default_options(entry.options);
   options.set("motion", std::string("turn"));
   options.set("samples", std::int64_t{11});
