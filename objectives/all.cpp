@@ -17,6 +17,7 @@ const std::vector<ObjectiveEntry>& all_objectives() {
     all.push_back(energy());
     all.push_back(cycle_time());
     std::ranges::copy(size_objectives(), std::back_inserter(all));
+    all.push_back(yield_objective());
     all.push_back(expression_objective());
     all.push_back(python_objective());
     return all;

@@ -13,6 +13,7 @@ std::vector<ObjectiveEntry> peak_objectives();           ///< maximum forces, po
 std::vector<ObjectiveEntry> size_objectives();           ///< mass, and box of the links
 std::vector<ObjectiveEntry> largest_solid_objectives();  ///< largest box, cylinder and sphere in the workspace
 ObjectiveEntry energy();                                 ///< energy of the drives over a motion
+ObjectiveEntry yield_objective();                        ///< share of built machines that satisfy all constraints
 ObjectiveEntry cycle_time();                             ///< shortest time of a motion within limits
 ObjectiveEntry expression_objective();
 ObjectiveEntry python_objective();

@@ -157,6 +157,21 @@ std::vector<Row> obstacle_rows(const Obstacles& obstacles) {
   return rows;
 }
 
+std::vector<Row> tolerance_rows(const Study& study) {
+  const ToleranceModel& model = *study.tolerances;
+  const auto& parameters = study.machine->parts().mechanism->info().parameters;
+  std::vector<Row> rows = {{"samples", std::to_string(model.samples)}};
+  for (const ParameterError& error : model.errors) {
+    const std::string& unit = parameters[error.parameter].unit;
+    rows.push_back({error.name, "+-" + with_degrees(error.bound, unit),
+                    error.sigma == 0 ? "uniform" : "normal, standard deviation " + with_degrees(error.sigma, unit)});
+    for (const ErrorGroup& group : model.groups)
+      if (group.errors.size() > 1 && contains(group.errors, static_cast<std::size_t>(&error - model.errors.data())))
+        rows.back().back() += ", correlated with others";
+  }
+  return rows;
+}
+
 void write_options(std::ostream& out, const std::vector<OptionSpec>& specs, const Options& options) {
   std::vector<Row> rows;
   for (const auto& spec : specs) {
@@ -221,6 +236,7 @@ std::string describe(const Study& study) {
   if (const Obstacles& obstacles = parts.plan.limits.obstacles; !obstacles.empty())
     out << format_titled_table("obstacles, from which all moving links keep the clearance", obstacle_rows(obstacles));
   out << format_titled_table("limits of a pose", limit_rows(study));
+  if (study.tolerances) out << format_titled_table("tolerances of built machines", tolerance_rows(study));
   write_entries(out, "objectives", study.objectives);
   write_entries(out, "constraints", study.constraints);
   write_entries(out, "outputs", study.outputs);

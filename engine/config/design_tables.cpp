@@ -140,6 +140,7 @@ std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDr
   if (!file) throw table.error_of("neither type nor file", either);
   const SourceText& description = draft.study.description.emplace(draft.description(*file));
   find_limb_parameters(root, draft);
+  std::ranges::copy(draft.copies, std::back_inserter(draft.limb_parameters));
   return read_mechanism_toml(description.text, description.file_name, draft.limb_parameters, additions);
 }
 

@@ -88,6 +88,41 @@ void refuse_unsupported(const ConfigValue& table, const Entry& entry, const Stud
   if (const Unsupported reason = entry.refusal(*draft.parts.mechanism)) throw table.find("type")->refusal(*reason);
 }
 
+/// The statistic over built machines that replaces the value of an entry: that of a yield, or the key `robust`.
+std::optional<SampledValue> sampled_value(const ConfigValue& table, const ObjectiveEntry& entry, const Options& options,
+                                          const StudyDraft& draft) {
+  using Statistic = SampledValue::Statistic;
+  constexpr const char* kExpected = "\"worst\", \"mean\", or \"quantile:\" with a number between 0 and 1";
+  constexpr const char* kNeeded = " needs the errors of the built machines: give a table [tolerance]";
+  const auto robust = table.find("robust");
+  if (entry.name == kYield) {
+    if (robust) throw robust->refusal("a yield is a statistic over the built machines already");
+    if (!draft.has_tolerances) throw table.refusal("the objective yield" + std::string(kNeeded));
+    const std::string& statistic = options.word("statistic");
+    return SampledValue{statistic == "share"   ? Statistic::yield
+                        : statistic == "lower" ? Statistic::yield_lower
+                                               : Statistic::yield_upper};
+  }
+  if (!robust) return {};
+  if (!draft.has_tolerances) throw robust->refusal("robust" + std::string(kNeeded));
+  const std::string& text = robust->text(kExpected);
+  if (text == "worst") return SampledValue{Statistic::worst};
+  if (text == "mean") return SampledValue{Statistic::mean};
+  const std::string prefix = "quantile:";
+  const auto probability = text.starts_with(prefix) ? parse_quantity(text.substr(prefix.size()), "1") : std::nullopt;
+  if (!probability || !(*probability > 0 && *probability < 1)) throw robust->error(kExpected);
+  return SampledValue{Statistic::quantile, *probability};
+}
+
+/// ", mean of built machines": the statistic of a quantity, for a role; "" if it has none, or is a yield.
+std::string statistic_text(const NamedQuantity& q) {
+  using Statistic = SampledValue::Statistic;
+  if (!q.sampled || q.sampled->is_yield()) return "";
+  if (q.sampled->statistic == Statistic::worst) return ", worst value of built machines";
+  if (q.sampled->statistic == Statistic::mean) return ", mean of built machines";
+  return ", value that the share " + shortest(1 - q.sampled->probability) + " of built machines reaches";
+}
+
 /// Makes a quantity from an entry of the catalogue of objectives, and appends it to `entries`, without its role.
 NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, std::vector<StudyEntry>& entries,
                              StudyDraft& draft) {
@@ -106,14 +141,18 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
     FieldRequest own;
     entry.request(context, own);
     add_request(table, own, region ? region->request : draft.parts.request);
-    return {.name = name,
-            .unit = entry.unit(context),
-            .meaning = entry.detail ? entry.detail(context) : entry.meaning,
-            .direction = entry.direction,
-            .quantity = entry.make(context),
-            .analysis = survey,
-            .uses_workspace = entry.reads(context),
-            .range = entry.range(context)};
+    NamedQuantity made{.name = name,
+                       .unit = entry.unit(context),
+                       .meaning = entry.detail ? entry.detail(context) : entry.meaning,
+                       .direction = entry.direction,
+                       .quantity = entry.make(context),
+                       .analysis = survey,
+                       .uses_workspace = entry.reads(context),
+                       .range = entry.range(context),
+                       .sampled = sampled_value(table, entry, options, draft)};
+    if (made.sampled && made.quantity->external_call())
+      throw table.find("robust")->refusal("a Python function has no statistic over built machines");
+    return made;
   });
 }
 
@@ -124,12 +163,13 @@ void read_objective(const ConfigValue& value, StudyDraft& draft, bool optimised)
   const ConfigValue table = value.table(entry.options);
   auto& entries = optimised ? draft.study.objectives : draft.study.outputs;
   NamedQuantity made = make_objective(table, entry, entries, draft);
-  std::string role = in_unit(made.unit);
+  std::string role = in_unit(made.unit) + statistic_text(made);
   if (optimised) {
     if (const auto direction = table.find("direction"))
       made.direction = direction->word() == "maximise" ? Direction::maximise : Direction::minimise;
     role = (made.direction == Direction::maximise ? "maximise, " : "minimise, ") + role;
   }
+  if (made.sampled) made.sampled->greater_is_better = made.direction == Direction::maximise;
   entries.back().role = role;
   (optimised ? draft.parts.objectives : draft.parts.reports).push_back(std::move(made));
 }
@@ -145,12 +185,13 @@ void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entr
   NamedQuantity made = make_objective(table, entry, draft.study.constraints, draft);
   const double bound = (least ? least : greatest)->number(made.unit);
   (least ? made.lower_bound : made.upper_bound) = bound;
-  const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
+  if (made.sampled) made.sampled->greater_is_better = least.has_value();
+  const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit) + statistic_text(made);
   made.meaning = "margin of " + role + ": " + made.meaning;
   draft.study.constraints.back().role = role;
   // Constraints without a workspace analysis come first: the analysis is skipped if they are violated. External
-  // functions are called last.
-  const bool is_late = made.uses_workspace || made.quantity->external_call();
+  // functions and statistics over built machines are evaluated last.
+  const bool is_late = made.uses_workspace || made.sampled || made.quantity->external_call();
   (is_late ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
@@ -167,6 +208,7 @@ void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& ent
                              draft.study.motions};
   NamedQuantity made;
   made.name = entry_name(table, entry.name, draft.study.constraints);
+  if (const auto robust = table.find("robust")) made.sampled = sampled_value(table, {}, options, draft);
   table.explained([&] {
     made.unit = entry.unit(context);
     specs = with_entry_unit(std::move(specs), made.unit);
@@ -179,8 +221,10 @@ void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& ent
     entry.request(context, own);
     add_request(table, own, draft.parts.request);
   });
-  draft.study.constraints.push_back({entry.name, made.name, "margin >= 0, " + in_unit(made.unit), specs, options});
-  (made.uses_workspace ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
+  const std::string role = "margin >= 0, " + in_unit(made.unit) + statistic_text(made);
+  draft.study.constraints.push_back({entry.name, made.name, role, specs, options});
+  (made.uses_workspace || made.sampled ? draft.parts.workspace_margins : draft.parts.design_margins)
+      .push_back(std::move(made));
 }
 
 /// "motion-cycle" for a motion called cycle; characters that are invalid in names of constraints become dashes.
@@ -299,6 +343,7 @@ void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
 }
 
 void read_quantities(const ConfigValue& root, StudyDraft& draft) {
+  draft.has_tolerances = root.has("tolerance");
   for (const auto& table : tables_in(root, "objective")) read_objective(table, draft, true);
   read_constraints(root, draft, false);
   for (const auto& table : tables_in(root, "output")) read_objective(table, draft, false);

@@ -138,6 +138,8 @@ std::string si_unit(const ConfigValue& unit);
 void add_own_parameter(const LimbParameter& own, const Parameter& parameter, MechanismDraft& draft);
 /// Calls `read` with the limb's own parameters in scope, also in formulas of [let].
 void read_as_limb(const std::string& limb, const std::function<void()>& read, MechanismDraft& draft);
+/// The parameters of single limbs on which a joint or a limit depends.
+std::vector<LimbParameter> effective_parameters(const MechanismDraft& draft);
 /// Refuses a parameter of a single limb if the limb does not exist, or if no formula of the limb uses the parameter.
 void refuse_idle_parameters(const MechanismDraft& draft);
 

@@ -253,15 +253,15 @@ std::string si_unit(const ConfigValue& unit) {
   return text;
 }
 
-generic::Model read_mechanism_model(const std::string& text, const std::string& file_name,
-                                    const std::vector<LimbParameter>& own, const std::string& mass_model,
-                                    const StudyAdditions& study) {
+namespace {
+
+void read_draft(const std::string& text, const std::string& file_name, const std::vector<LimbParameter>& own,
+                const std::string& mass_model, const StudyAdditions& study, MechanismDraft& draft) {
   const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file",
                       "a mechanism: [mechanism], [parameters], [platform], [[limb]]");
   const ConfigValue root = ConfigValue(document, file_name, "").described_by(mechanism_keys());
-  MechanismDraft draft;
   read_names(root, draft);
   choose_masses(root, mass_model, draft);
   read_parameters(root, own, study, draft);
@@ -294,10 +294,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
   add_clearance(draft);
   add_joints(root, draft);
   draft.model.margin_unit = common_margin_unit(draft.model);
-  return std::move(draft.model);
 }
-
-namespace {
 
 std::shared_ptr<const Mechanism> build(const std::string& text, const std::string& file_name,
                                        const std::vector<LimbParameter>& own, const std::string& mass_model,
@@ -309,6 +306,29 @@ std::shared_ptr<const Mechanism> build(const std::string& text, const std::strin
 }
 
 }  // namespace
+
+generic::Model read_mechanism_model(const std::string& text, const std::string& file_name,
+                                    const std::vector<LimbParameter>& own, const std::string& mass_model,
+                                    const StudyAdditions& study) {
+  MechanismDraft draft;
+  read_draft(text, file_name, own, mass_model, study, draft);
+  return std::move(draft.model);
+}
+
+std::vector<LimbParameter> limb_copies(const std::string& text, const std::string& file_name,
+                                       const std::vector<std::string>& common, const std::vector<LimbParameter>& own) {
+  MechanismDraft without;  // gives the names of the limbs
+  read_draft(text, file_name, own, "", nullptr, without);
+  std::vector<LimbParameter> all = own;
+  for (const std::string& parameter : common)
+    for (const NamedLimb& limb : without.limbs)
+      all.push_back({.limb = limb.name, .parameter = parameter, .may_be_idle = true});
+  MechanismDraft draft;
+  read_draft(text, file_name, all, "", nullptr, draft);
+  std::vector<LimbParameter> copies = effective_parameters(draft);
+  std::erase_if(copies, [&common](const LimbParameter& each) { return !contains(common, each.parameter); });
+  return copies;
+}
 
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
                                                      const std::vector<LimbParameter>& own,

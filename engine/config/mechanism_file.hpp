@@ -19,6 +19,7 @@ class ConfigValue;
 struct LimbParameter {
   std::string limb, parameter;
   SourceLocation place = {};  ///< position of the name in the input file, for messages
+  bool may_be_idle = false;   ///< it is no error if nothing depends on it
 
   std::string name() const { return limb + "." + parameter; }
 };
@@ -35,6 +36,12 @@ using StudyAdditions = std::shared_ptr<const ConfigValue>;
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
                                                      const std::vector<LimbParameter>& own = {},
                                                      const StudyAdditions& study = nullptr);
+
+/// The parameters of single limbs that could replace the parameters `common`: one for each limb whose joints or limits
+/// depend on the parameter, also those that exist already. Throws ConfigError.
+/// @param own  parameters of single limbs as for read_mechanism_toml()
+std::vector<LimbParameter> limb_copies(const std::string& text, const std::string& file_name,
+                                       const std::vector<std::string>& common, const std::vector<LimbParameter>& own);
 
 /// Text of `pkmopt check FILE`: how the mechanism file was interpreted, which analyses the mechanism supports, and why
 /// it does not support others.

@@ -39,18 +39,26 @@ void read_as_limb(const std::string& limb, const std::function<void()>& read, Me
   draft.scope.restore(usual);
 }
 
-void refuse_idle_parameters(const MechanismDraft& draft) {
+std::vector<LimbParameter> effective_parameters(const MechanismDraft& draft) {
   const generic::Model& model = draft.model;
   std::vector<expression::Node> used = model.joints;
   std::ranges::copy(model.closures, std::back_inserter(used));
   for (const generic::Result& margin : model.margins) used.push_back(margin.node);
   used = model.graph.reachable(used);
+  std::vector<LimbParameter> effective;
+  for (const OwnParameter& own : draft.own)
+    if (std::ranges::binary_search(used, own.node)) effective.push_back(own);
+  return effective;
+}
+
+void refuse_idle_parameters(const MechanismDraft& draft) {
+  const std::vector<LimbParameter> effective = effective_parameters(draft);
   const std::vector<std::string> limbs = names_of(draft.limbs);
   for (const OwnParameter& own : draft.own) {
     if (!contains(limbs, own.limb))
       throw ConfigError(own.place, "the unknown limb '" + own.limb + "' of " + own.name(), "one of " + join(limbs),
                         nearest_name(own.limb, limbs));
-    if (!std::ranges::binary_search(used, own.node))
+    if (!own.may_be_idle && std::ranges::find(effective, own.name(), &LimbParameter::name) == effective.end())
       throw ConfigError(
           own.place, own.name() + " has no effect: no joint or limit of " + own.limb + " depends on " + own.parameter);
   }

@@ -113,6 +113,18 @@ void warn_of_targets(Study& study) {
           (up ? "above " + with_unit(q.range.upper, q.unit) : "below " + with_unit(q.range.lower, q.unit)));
   }
 }
+void read_problem(const ConfigValue& root, StudyDraft& draft) {
+  read_mechanism(root, draft);
+  read_drive_trains(root, draft);
+  read_variables(root, draft);
+  read_baseline(root, draft);
+  read_workspace(root, draft);
+  read_pose_constraints(root, draft);
+  read_obstacles(root, draft);
+  read_regions(root, draft);
+  read_motions(root, draft);
+  read_quantities(root, draft);
+}
 
 using FindFile = std::function<SourceText(const ConfigValue& file)>;
 
@@ -150,17 +162,10 @@ Study read_rows(const StudySource& source, const Catalogues& catalogues, const s
   for (const StudyChanges& each : draft.changes)
     std::ranges::copy(each.arguments(), std::back_inserter(draft.study.changes));
   read_study_table(root, draft.study);
-  read_mechanism(root, draft);
-  read_drive_trains(root, draft);
-  read_variables(root, draft);
-  read_baseline(root, draft);
+  read_problem(root, draft);
   override_starts(draft);
-  read_workspace(root, draft);
-  read_pose_constraints(root, draft);
-  read_obstacles(root, draft);
-  read_regions(root, draft);
-  read_motions(root, draft);
-  read_quantities(root, draft);
+  read_tolerances(
+      root, [&root](StudyDraft& machine) { read_problem(root, machine); }, draft);
   for (const std::string& name : parameters_of_rows(source.document, choices))
     draft.parts.of_rows.push_back(
         static_cast<std::size_t>(find_named(draft.info().parameters, name) - draft.info().parameters.data()));

@@ -81,6 +81,11 @@ struct Study {
   std::vector<DesignMotion> motions;            ///< [[motion]]s
   std::vector<std::string> unfollowed_motions;  ///< motions with follow = false
 
+  std::optional<ToleranceModel> tolerances;  ///< [tolerance]
+  /// The machine as built, whose limbs have errors of their own: the problem of the study without robust quantities and
+  /// yields. Null without [tolerance].
+  std::shared_ptr<const DesignProblem> machine;
+
   std::vector<StudyEntry> objectives, constraints, outputs;
   std::vector<std::string> limit_origins;  ///< for each limit of the mechanism, where its threshold is set; "": nowhere
 

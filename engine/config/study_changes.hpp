@@ -2,6 +2,7 @@
 // `report` use the problem that was run.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,6 +27,7 @@ struct StudyChanges {
   /// names. They do not change the study.
   std::vector<std::string> limb_parameters;
   std::vector<std::string> joint_error;  ///< [accuracy] joint_error of a mechanism without a study
+  std::optional<std::int64_t> machines;  ///< number of samples of [tolerance]; does not change the text of the study
 
   /// Values of parameters and bounds of variables recorded in a study file. They replace the values given by the
   /// study's text, but do not change the text.

@@ -24,6 +24,9 @@ struct StudyDraft {
   std::vector<StudyChanges> changes = {};           ///< changes in the text, then those of the command line
   std::vector<Catalogue> from_catalogues = {};      ///< the variables that are choices
   ImpliedConstraints implied = ImpliedConstraints::added;
+  /// Parameters of single limbs that the machine as built has in addition, because of [tolerance].
+  std::vector<LimbParameter> copies = {};
+  bool has_tolerances = false;  ///< the study has a table [tolerance]
 
   const MechanismInfo& info() const { return parts.mechanism->info(); }
 };
@@ -62,6 +65,10 @@ void read_motions(const ConfigValue& root, StudyDraft& draft);
 /// Reads [[objective]], [[output]] and the [[constraint]]s that do not limit poses, and adds the constraints that their
 /// motions imply.
 void read_quantities(const ConfigValue& root, StudyDraft& draft);
+/// Reads [tolerance], and adds the built machines to the problem if a quantity is a statistic over them. Called after
+/// all other tables of the problem have been read.
+/// @param read_problem  reads the problem of another draft from the same tables
+void read_tolerances(const ConfigValue& root, const std::function<void(StudyDraft&)>& read_problem, StudyDraft& draft);
 /// Reads the tables [[reference]].
 void read_references(const ConfigValue& root, StudyDraft& draft);
 /// Reads the tables [[stage]].

@@ -112,6 +112,13 @@ OptionSpec name_key() {
   return {
       .name = "name", .kind = OptionKind::word, .meaning = "name, needed if a type is used twice; default: the type"};
 }
+OptionSpec robust_key() {
+  return {.name = "robust",
+          .kind = OptionKind::word,
+          .meaning =
+              "statistic over the machines built within [tolerance] that replaces the value: \"worst\", \"mean\" "
+              "or \"quantile:0.05\", the value that 95 % of them reach"};
+}
 OptionSpec region_key() {
   return {.name = "region",
           .kind = OptionKind::word,
@@ -127,7 +134,8 @@ const TableSpec& objective_table() {
                                            .kind = OptionKind::word,
                                            .choices = {"minimise", "maximise"},
                                            .meaning = "default: the objective's own"},
-                                          region_key()}};
+                                          region_key(),
+                                          robust_key()}};
   return spec;
 }
 
@@ -147,7 +155,80 @@ const TableSpec& output_table() {
   static const TableSpec spec = {
       .header = "[[output]]",
       .meaning = "value that is computed and stored, but not optimised; it has the keys of an objective",
-      .keys = {type_key("objectives"), name_key(), region_key()}};
+      .keys = {type_key("objectives"), name_key(), region_key(), robust_key()}};
+  return spec;
+}
+
+const TableSpec& tolerance_table() {
+  static const TableSpec error = {
+      .meaning = "error of a parameter of the built machines",
+      .keys = {{.name = "bound",
+                .unit = kUnitOfEntry,
+                .required = true,
+                .meaning = "largest error, of either sign",
+                .positive = true},
+               {.name = "distribution",
+                .kind = OptionKind::word,
+                .initial = std::string("uniform"),
+                .choices = {"uniform", "normal"},
+                .meaning = "distribution of the error within the bound; a normal one is truncated"},
+               {.name = "sigma",
+                .unit = kUnitOfEntry,
+                .meaning = "standard deviation of a normal distribution; default: a third of the bound",
+                .positive = true},
+               {.name = "copies",
+                .kind = OptionKind::word,
+                .initial = std::string("independent"),
+                .choices = {"independent", "common"},
+                .meaning = "whether each limb of a mechanism file has an error of its own, or all have the same"}}};
+  static const std::vector<OptionSpec> alternatives = {
+      {.unit = kUnitOfEntry, .meaning = "largest error of a uniform distribution", .positive = true},
+      {.kind = OptionKind::table, .table = &error}};
+  static const TableSpec error_of_limb = [] {  // a single copy
+    TableSpec table = error;
+    table.keys.pop_back();
+    return table;
+  }();
+  static const TableSpec limb = {
+      .meaning = "errors of this limb alone",
+      .keys = {},
+      .named = {{.kind = OptionKind::any_of,
+                 .unit = kUnitOfEntry,
+                 .meaning = "error of the parameter",
+                 .parts = {alternatives[0], {.kind = OptionKind::table, .table = &error_of_limb}}}},
+      .noun = "parameter"};
+  static const TableSpec correlation = {
+      .header = "[[tolerance.correlation]]",
+      .meaning = "correlation of normal errors",
+      .keys = {{.name = "between",
+                .kind = OptionKind::list,
+                .required = true,
+                .meaning = "two parameters; one that several limbs have stands for each of its copies",
+                .count = 2,
+                .parts = {{.kind = OptionKind::word}}},
+               {.name = "coefficient",
+                .required = true,
+                .lower = -1,
+                .upper = 1,
+                .meaning = "correlation coefficient of each pair, before the truncation"}}};
+  static const TableSpec spec = [] {
+    TableSpec table = {.header = "[tolerance]",
+                       .meaning = "errors of the parameters of built machines",
+                       .keys = {{.name = "samples",
+                                 .kind = OptionKind::integer,
+                                 .initial = std::int64_t{64},
+                                 .lower = 2,
+                                 .upper = 1e7,
+                                 .meaning = "number of built machines that statistics are computed from"},
+                                tables_key("correlation", correlation)},
+                       .named = {{.kind = OptionKind::any_of,
+                                  .unit = kUnitOfEntry,
+                                  .meaning = "error of the parameter",
+                                  .parts = alternatives}},
+                       .noun = "parameter"};
+    table.named.front().parts.push_back({.kind = OptionKind::table, .table = &limb});
+    return table;
+  }();
   return spec;
 }
 
@@ -286,6 +367,7 @@ const TableSpec& study_keys() {
                                           tables_key("obstacle", obstacle_table()),
                                           tables_key("quantity", quantity_keys()),
                                           table_key("accuracy", accuracy_keys()),
+                                          table_key("tolerance", tolerance_table()),
                                           required(tables_key("stage", stage_table())),
                                           table_key("checkpoint", checkpoint_table()),
                                           table_key("final", final_table()),
@@ -333,7 +415,14 @@ const TableSpec& pose_constraint_keys() {
   return spec;
 }
 
-const TableSpec& margin_constraint_keys() { return constraint_table(); }
+const TableSpec& margin_constraint_keys() {
+  static const TableSpec spec = [] {
+    TableSpec table = constraint_table();
+    table.keys.push_back(robust_key());
+    return table;
+  }();
+  return spec;
+}
 
 const TableSpec& bounded_objective_keys() {
   static const TableSpec spec = {
@@ -343,7 +432,8 @@ const TableSpec& bounded_objective_keys() {
                name_key(),
                {.name = "min", .unit = kUnitOfEntry, .meaning = "minimum allowed value of the objective"},
                {.name = "max", .unit = kUnitOfEntry, .meaning = "maximum allowed value of the objective"},
-               region_key()}};
+               region_key(),
+               robust_key()}};
   return spec;
 }
 

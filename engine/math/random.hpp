@@ -20,7 +20,7 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::a
 class Stream {
  public:
   /// Purpose of the numbers; streams of different purposes are independent.
-  enum class Use : std::uint32_t { start, selection, variation, retry };
+  enum class Use : std::uint32_t { start, selection, variation, retry, tolerance };
 
   Stream(std::uint64_t seed, std::uint32_t generation, std::uint32_t individual, Use use)
       : seed_(seed), generation_(generation), individual_(individual), use_(use) {}

@@ -9,6 +9,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
+#include "engine/core/team.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
@@ -28,7 +29,7 @@ std::vector<bool> used_analyses(const ProblemParts& parts) {
   std::vector<bool> used(1 + parts.regions.size());
   for (const auto* list : {&parts.objectives, &parts.workspace_margins, &parts.reports})
     for (const auto& q : *list)
-      if (q.uses_workspace) used[q.analysis] = true;
+      if (q.uses_analysis_of_design()) used[q.analysis] = true;
   return used;
 }
 
@@ -51,6 +52,9 @@ struct DesignProblem::Buffers {
   std::vector<Dual4> duals;  ///< the parameters with derivatives
   WorkspaceResults<double> workspaces;
   WorkspaceResults<Dual4> dual_workspaces;
+  MachineValues machines;        ///< of the design that was evaluated last
+  std::vector<Scratch> workers;  ///< scratch memory for the machines, by worker
+  std::vector<double> machine;   ///< parameters of a machine
 };
 
 struct DesignProblem::OtherRows {
@@ -102,9 +106,13 @@ Unsupported DesignProblem::why_no_derivatives() const {
     if (!used_[k]) continue;
     if (!workspace_evaluators_[k]->gradients()) return workspace_evaluators_[k]->why_no_derivatives();
   }
+  bool is_robust = false;
   for (const auto* list : {&parts_.objectives, &parts_.design_margins, &parts_.workspace_margins})
-    for (const auto& q : *list)
+    for (const auto& q : *list) {
       if (const Unsupported reason = q.quantity->why_no_derivatives()) return reason;
+      is_robust = is_robust || q.sampled;
+    }
+  if (is_robust) return parts_.built->problem->why_no_derivatives();
   return {};
 }
 
@@ -135,7 +143,8 @@ void DesignProblem::analyse(std::span<const S> parameters, bool all, Scratch& sc
     }
 }
 
-Status DesignProblem::compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const {
+Status DesignProblem::compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result,
+                              bool is_report) const {
   WorkspaceResults<double>& workspaces = scratch.get<Buffers>().workspaces;
   DesignView<double> view{*parts_.mechanism, parameters, nullptr, scratch};
   bool satisfied = true, usable = true, violated = false;
@@ -160,10 +169,12 @@ Status DesignProblem::compute(std::span<const double> parameters, Scratch& scrat
     differentiate(parameters, parts_.varies, result.derivatives, scratch);
     for (const double derivative : result.derivatives) usable = usable && std::isfinite(derivative);
   } else {
-    analyse(parameters, result.detail == Detail::complete, scratch, workspaces);
+    analyse(parameters, is_report, scratch, workspaces);
+    if (parts_.built) evaluate_machines(parameters, {}, scratch);
   }
   const auto value = [&](const NamedQuantity& q) {
     if (q.quantity->external_call()) return 0.0;  // placeholder until complete() computes the value
+    if (q.sampled) return statistic(*q.sampled, scratch);
     view.workspace = &workspaces[q.analysis];
     return q.quantity->value(view);
   };
@@ -185,10 +196,18 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
   WorkspaceResults<double>& workspaces = buffers.workspaces;
   WorkspaceResults<Dual4>& dual_workspaces = buffers.dual_workspaces;
   const std::size_t width = 1 + by.size();
+  if (parts_.built && !parts_.built->problem->objectives().empty())
+    evaluate_machines(parameters, by, scratch);
+  else if (parts_.built)
+    evaluate_machines(parameters, {}, scratch);
   for (std::size_t first = 0; first < std::max<std::size_t>(by.size(), 1); first += kDirections) {
     const std::size_t count = std::min(kDirections, by.size() - first);
     all.assign(parameters.begin(), parameters.end());
-    for (std::size_t k = 0; k < count; ++k) all[by[first + k]].v[static_cast<int>(k)] = 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      all[by[first + k]].v[static_cast<int>(k)] = 1;
+      for (const auto& [own, common] : parts_.copies)
+        if (common == by[first + k]) all[own].v[static_cast<int>(k)] = 1;
+    }
     analyse(std::span<const Dual4>(all), false, scratch, dual_workspaces);
     workspaces.resize(dual_workspaces.size());
     for (std::size_t k = 0; first == 0 && k < workspaces.size(); ++k) copy_values(dual_workspaces[k], workspaces[k]);
@@ -200,6 +219,7 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
       for (std::size_t k = 0; k < count; ++k) target[1 + first + k] = value.v[static_cast<int>(k)];
     };
     const auto smooth = [&](const NamedQuantity& q) {
+      if (q.sampled) return smooth_statistic(*q.sampled, first, count, by.size(), scratch);
       view.workspace = &dual_workspaces[q.analysis];
       return q.quantity->smooth(view);
     };
@@ -212,6 +232,106 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
     row = 0;
     for (const auto& q : parts_.objectives) put(smooth(q));
   }
+}
+
+void DesignProblem::evaluate_machine(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
+                                     Scratch& scratch, std::span<double> objectives, std::span<double> margins,
+                                     std::span<double> derivatives) const {
+  if (parts_.mechanism->refuse(parameters)) return;
+  WorkspaceResults<double>& workspaces = scratch.get<Buffers>().workspaces;
+  DesignView<double> view{*parts_.mechanism, parameters, nullptr, scratch};
+  bool violated = false;
+  std::size_t margin = 0;
+  for (const auto& q : parts_.design_margins) {
+    margins[margin] = margin_of(q, q.quantity->value(view));
+    violated = violated || !(margins[margin++] >= 0);
+  }
+  if (violated && parts_.objectives.empty()) return;
+  if (by)
+    differentiate(parameters, *by, derivatives, scratch);
+  else
+    analyse(parameters, false, scratch, workspaces);
+  const auto value = [&](const NamedQuantity& q) {
+    view.workspace = &workspaces[q.analysis];
+    return q.quantity->value(view);
+  };
+  for (const auto& q : parts_.workspace_margins) margins[margin++] = margin_of(q, value(q));
+  for (std::size_t i = 0; i < objectives.size(); ++i) objectives[i] = value(parts_.objectives[i]);
+}
+
+void DesignProblem::evaluate_machines(std::span<const double> parameters,
+                                      std::optional<std::span<const std::size_t>> by, Scratch& scratch) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr std::size_t kMachinesPerCheck = 64;  // of microseconds; the evaluation of a longer one checks by itself
+  const auto& [tolerances, problem] = *parts_.built;
+  Buffers& buffers = scratch.get<Buffers>();
+  MachineValues& values = buffers.machines;
+  values.machines = tolerances.samples;
+  const EvaluationShape shape{by ? by->size() : 0, problem->objectives().size(), problem->margins().size(), 0,
+                              by ? Detail::derivatives : Detail::enough};
+  values.objectives.assign(values.machines * shape.objectives, nan);
+  values.margins.assign(values.machines * shape.margins, nan);
+  values.derivatives.assign(values.machines * shape.derivatives(), nan);
+  if (buffers.workers.size() < workers()) buffers.workers.resize(workers());
+  parallel_for(values.machines, [&](std::size_t begin, std::size_t end, std::size_t worker) {
+    Scratch& own = buffers.workers[worker];
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k % kMachinesPerCheck == 0) check_stop();
+      const auto part = [k](std::vector<double>& all, std::size_t width) {
+        return std::span(all).subspan(k * width, width);
+      };
+      std::vector<double>& machine = own.get<Buffers>().machine;
+      tolerances.sample(k, parameters, machine);
+      try {
+        problem->evaluate_machine(machine, by, own, part(values.objectives, shape.objectives),
+                                  part(values.margins, shape.margins), part(values.derivatives, shape.derivatives()));
+      } catch (const DesignError&) {  // its values remain NaN
+      }
+    }
+  });
+}
+
+double DesignProblem::statistic(const SampledValue& sampled, Scratch& scratch) const {
+  const MachineValues& values = scratch.get<Buffers>().machines;
+  if (sampled.is_yield()) return yield_statistic(sampled, yield_of(values));
+  const std::size_t width = values.objectives.size() / values.machines;
+  std::vector<double> each(values.machines);
+  for (std::size_t k = 0; k < each.size(); ++k) each[k] = values.objectives[k * width + sampled.row];
+  double sum = 0;
+  for (const auto& [machine, weight] : sample_weights(sampled, each)) sum += weight * each[machine];
+  return sum;
+}
+
+Dual4 DesignProblem::smooth_statistic(const SampledValue& sampled, std::size_t first, std::size_t count,
+                                      std::size_t directions, Scratch& scratch) const {
+  const MachineValues& values = scratch.get<Buffers>().machines;
+  const std::size_t width = values.derivatives.size() / values.machines;
+  const auto row = [&](std::size_t machine) {
+    return &values.derivatives[machine * width + sampled.row * (1 + directions)];
+  };
+  std::vector<double> each(values.machines);
+  for (std::size_t k = 0; k < each.size(); ++k) each[k] = *row(k);
+  Dual4 sum(0.0);
+  for (const auto& [machine, weight] : sample_weights(sampled, each)) {
+    const double* const own = row(machine);
+    sum.a += weight * own[0];
+    for (std::size_t k = 0; k < count; ++k) sum.v[static_cast<int>(k)] += weight * own[1 + first + k];
+  }
+  return sum;
+}
+
+std::string DesignProblem::why_machine_fails(std::span<const double> parameters) const {
+  const auto& [tolerances, problem] = *parts_.built;
+  std::vector<double> machine;
+  for (std::size_t k = 0; k < tolerances.samples; ++k) {
+    tolerances.sample(k, parameters, machine);
+    Unsupported reason = problem->parts().mechanism->refuse(machine);
+    if (!reason)
+      if (const std::string failure = problem->report(machine).reason; !failure.empty()) reason = failure;
+    if (reason)
+      return "built machine " + std::to_string(k + 1) + " of " + std::to_string(tolerances.samples) + ": " + *reason;
+  }
+  return {};
 }
 
 std::vector<double> DesignProblem::derivatives(std::span<const double> parameters,
@@ -338,6 +458,9 @@ std::string DesignProblem::failure_reason(const DesignReport& report) const {
   for (const auto* list : {&parts_.design_margins, &parts_.workspace_margins, &parts_.objectives})
     for (const auto& q : *list) {
       if (std::isfinite(*value++)) continue;
+      if (q.sampled)
+        if (const std::string reason = why_machine_fails(report.parameters); !reason.empty())
+          return q.name + ": " + reason;
       if (const std::string reason = q.quantity->why_undefined(view); !reason.empty()) return q.name + ": " + reason;
       if (first_undefined.empty()) first_undefined = q.name;
     }
@@ -385,7 +508,9 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
   try {
     Scratch scratch;
     const EvaluationSlot slot{report.objectives, report.margins, report.reports, report.status, Detail::complete};
-    report.status = compute(parameters, scratch, slot);
+    report.status = compute(parameters, scratch, slot, true);
+    if (const MachineValues& machines = scratch.get<Buffers>().machines; !machines.margins.empty())
+      report.yield = yield_of(machines);
     if (auto& workspaces = scratch.get<Buffers>().workspaces; !workspaces.empty())
       report.workspace = std::move(workspaces.front());
     report.reason = complete(parameters, slot);

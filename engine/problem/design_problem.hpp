@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "engine/problem/built_machines.hpp"
 
 #include "engine/problem/choice.hpp"
 #include "engine/problem/external_functions.hpp"
@@ -26,6 +27,11 @@ struct NamedQuantity {
   /// Bound of a constraint on a quantity: its margin is value - lower_bound, or upper_bound - value. If neither is set,
   /// the margin is the value itself.
   std::optional<double> lower_bound, upper_bound;
+  /// A statistic over built machines, which replaces the value; the bounds apply to it.
+  std::optional<SampledValue> sampled = {};
+
+  /// The analysis that the value of a design uses; that of a statistic uses the analyses of the machines only.
+  bool uses_analysis_of_design() const { return uses_workspace && !sampled; }
 };
 
 /// A motion along which a constraint requires every pose to satisfy its limits.
@@ -55,6 +61,8 @@ struct ProblemParts {
   /// Makes the problem with other rows; its variables, objectives and constraints are the same.
   std::function<std::shared_ptr<const DesignProblem>(const std::vector<std::size_t>& rows)> with_rows = nullptr;
   std::shared_ptr<ExternalFunctions> functions = std::make_shared<ExternalFunctions>();
+  std::shared_ptr<const BuiltMachines> built = nullptr;  ///< if a quantity is a statistic over built machines
+  std::vector<LimbCopy> copies = {};                     ///< parameters that change with others in derivatives by these
 };
 
 /// Complete evaluation of one design, for the command line and the group /final of the study file.
@@ -64,6 +72,7 @@ struct DesignReport {
   Status status = Status::failed;
   std::string reason;  ///< why a value is missing (also for a rejected design); "" if no value is missing
   WorkspaceResult<double> workspace;
+  std::optional<Yield> yield = {};  ///< if the problem has a yield that was computed
 };
 
 class DesignProblem final : public Problem {
@@ -111,7 +120,24 @@ class DesignProblem final : public Problem {
 
   struct Buffers;  ///< scratch memory of evaluations
 
-  Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const;
+  /// @param is_report  analyses the main workspace in any case
+  Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result,
+                 bool is_report = false) const;
+  /// Evaluates all built machines of a design, in parallel, and writes their values to the buffers in `scratch`.
+  /// @param by  indices of the parameters of the design by which derivatives are computed; nullopt: no derivatives
+  void evaluate_machines(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
+                         Scratch& scratch) const;
+  /// Evaluates one built machine, as far as possible: all values are set that can be computed.
+  void evaluate_machine(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
+                        Scratch& scratch, std::span<double> objectives, std::span<double> margins,
+                        std::span<double> derivatives) const;
+  /// A statistic over the machines in the buffers.
+  double statistic(const SampledValue& sampled, Scratch& scratch) const;
+  /// Statistic of the smooth values, with its derivatives by the directions [first, first + count) of `directions`.
+  Dual4 smooth_statistic(const SampledValue& sampled, std::size_t first, std::size_t count, std::size_t directions,
+                         Scratch& scratch) const;
+  /// Why a machine cannot be evaluated; "" if all can.
+  std::string why_machine_fails(std::span<const double> parameters) const;
   /// Computes the values of external functions of a design, after compute(). @return why a call failed; "" if none
   /// failed
   std::string complete(std::span<const double> parameters, const EvaluationSlot& result) const;

@@ -55,7 +55,7 @@ bool has_empty_value(const Designs& designs, const TableRow& at, std::size_t obj
   if (!designs.problem) return value == 0;
   const ProblemParts& parts = designs.problem->parts();
   const NamedQuantity& q = parts.objectives[objective];
-  if (!q.uses_workspace) return false;
+  if (!q.uses_analysis_of_design()) return false;
   const WorkspaceResult<double> empty;
   Scratch scratch;
   const std::vector<double> parameters = designs.parameters(at);

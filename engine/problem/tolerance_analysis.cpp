@@ -30,9 +30,11 @@ WorstCase worst_case(const DesignProblem& problem, const DesignReport& report,
                      const std::vector<QuantityGradient>& gradients, std::size_t k, std::span<const double> tolerance) {
   const QuantityGradient& g = gradients[k];
   std::vector<double> corner = report.parameters;
-  double change = 0;
+  double change = 0, squares = 0;
   for (std::size_t i = 0; i < corner.size(); ++i) {
-    change += std::fabs(g.by[i]) * tolerance[i];
+    const double contribution = std::fabs(g.by[i]) * tolerance[i];
+    change += contribution;
+    squares += contribution * contribution;
     if (g.by[i] != 0) corner[i] += std::copysign(tolerance[i], g.worse_sign * g.by[i]);
   }
   const DesignReport at_corner = problem.report(corner);
@@ -40,7 +42,7 @@ WorstCase worst_case(const DesignProblem& problem, const DesignReport& report,
   const double evaluated = at_corner.status == Status::failed ? std::nan("")
                            : is_objective                     ? at_corner.objectives[k]
                                                               : at_corner.margins[k - report.objectives.size()];
-  return {g.value + g.worse_sign * change, evaluated};
+  return {g.value + g.worse_sign * change, std::sqrt(squares), evaluated};
 }
 
 }  // namespace pkm

@@ -26,6 +26,7 @@ std::vector<QuantityGradient> quantity_gradients(const DesignProblem& problem, c
 /// Worst value of a quantity for parameters within +- their tolerances.
 struct WorstCase {
   double first_order;  ///< first-order estimate, from the gradient
+  double rss;          ///< change: root of the sum of the squared contributions of the parameters
   double evaluated;  ///< value at the vertex of the tolerance box that is worst to first order; NaN: evaluation failed
 };
 /// @param gradients  quantity_gradients() of the design

@@ -19,6 +19,12 @@ ExactValues::ExactValues(const ProblemParts& parts) : parts_(parts) {
   exact.plan.method = columns;
   exact.with_rows = nullptr;  // these problems use the method of the study
   try {
+    if (parts.built) {
+      ProblemParts machine = parts.built->problem->parts();
+      machine.plan.method = columns;
+      exact.built = std::make_shared<const BuiltMachines>(
+          BuiltMachines{parts.built->tolerances, std::make_shared<const DesignProblem>(std::move(machine))});
+    }
     problem_ = std::make_unique<const DesignProblem>(std::move(exact));
   } catch (const std::invalid_argument&) {
   }

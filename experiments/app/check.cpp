@@ -96,6 +96,13 @@ Json obstacles_json(const Obstacles& obstacles) {
   return json;
 }
 
+Json tolerances_json(const ToleranceModel& model) {
+  Json json = {{"samples", model.samples}, {"errors", Json::object()}};
+  for (const ParameterError& error : model.errors)
+    json["errors"][error.name] = {{"bound", error.bound}, {"sigma", error.sigma > 0 ? Json(error.sigma) : Json()}};
+  return json;
+}
+
 Json study_json(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
@@ -123,6 +130,7 @@ Json study_json(const Study& study) {
   json["regions"] = Json::object();
   for (const Region& region : parts.regions) json["regions"][region.name] = workspace_json(info, region.plan);
   json["obstacles"] = obstacles_json(parts.plan.limits.obstacles);
+  json["tolerance"] = study.tolerances ? tolerances_json(*study.tolerances) : Json();
   json["objectives"] = entries_json(study.objectives);
   json["constraints"] = entries_json(study.constraints);
   json["outputs"] = entries_json(study.outputs);

@@ -91,9 +91,10 @@ std::pair<CLI::App&, Arguments&> add_command(CLI::App& app, const std::string& n
 
 /// Type of the functions that add one subcommand to `app`. `session` must outlive the parsing of the command line.
 using AddCommand = void(CLI::App& app, Session& session);
-AddCommand add_run, add_resume, add_check, add_evaluate, add_pose, add_forward, add_dynamics, add_coupling,
-    add_trajectory, add_simulate, add_workspace, add_connect, add_certify, add_tolerances, add_compare, add_show,
-    add_report, add_export, add_generate, add_list, add_new, add_schema, add_upgrade, add_completion, add_manual;
+AddCommand add_run, add_resume, add_check, add_evaluate, add_sensitivity, add_pose, add_forward, add_dynamics,
+    add_coupling, add_trajectory, add_simulate, add_workspace, add_connect, add_certify, add_tolerances, add_compare,
+    add_show, add_report, add_export, add_generate, add_list, add_new, add_schema, add_upgrade, add_completion,
+    add_manual;
 void add_all_commands(CLI::App& app, Session& session);
 
 inline constexpr const char* kProgramMeaning = "Design-space optimisation of parallel kinematic machines.";

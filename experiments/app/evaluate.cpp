@@ -260,10 +260,32 @@ void start_python_functions(const Study& study, const EvaluateArguments& argumen
                     {.threads = arguments.threads, .python = {.workers = arguments.workers}});
 }
 
+/// Adds the yield with its confidence interval to the output, and the constraints that machines violate.
+void report_yield(const Yield& yield, const DesignProblem& machine, Printout& out) {
+  const auto [lower, upper] = yield.interval();
+  std::vector<Row> rows = {{"machines", std::to_string(yield.machines)},
+                           {"satisfy all constraints", std::to_string(yield.good)},
+                           {"yield", formatted("%.5f", yield.share()),
+                            formatted("%.5f", lower) + " .. " + formatted("%.5f", upper) + " with 95 % confidence"}};
+  Json violated = Json::object();
+  for (std::size_t k = 0; k < yield.violated.size(); ++k) {
+    const std::string& name = machine.margins()[k].name;
+    violated[name] = yield.violated[k];
+    if (yield.violated[k] > 0) rows.push_back({"violate " + name, std::to_string(yield.violated[k])});
+  }
+  if (yield.failed > 0) rows.push_back({"cannot be evaluated", std::to_string(yield.failed)});
+  out.json["yield"] = {{"machines", yield.machines}, {"good", yield.good},   {"share", yield.share()},
+                       {"interval", {lower, upper}}, {"violated", violated}, {"failed", yield.failed}};
+  out.add_table("yield of the built machines", rows);
+}
+
 std::string evaluate(const Session& session, const Target& target, const EvaluateArguments& arguments, Printout& out) {
   const ProblemOfMechanism found = target.study ? ProblemOfMechanism{target.study->problem, ""}
                                                 : default_problem(target, session.catalogues, arguments.changes.cells);
   const auto& problem = found.problem;
+  if (arguments.changes.machines && !problem->parts().built)
+    throw ConfigError({"", 0, "--samples"}, "no statistic over built machines",
+                      "a study with [tolerance], and with a yield or the key robust");
   expect_table(arguments.designs, "--designs");
   if (target.study) start_python_functions(*target.study, arguments);
   if (!arguments.designs.input.empty()) {
@@ -314,6 +336,7 @@ std::string evaluate(const Session& session, const Target& target, const Evaluat
   report_values("constraints", "constraints (margins, satisfied if >= 0)", problem->margins(), report.margins,
                 [](const MarginInfo&, double margin) { return margin >= 0 ? "satisfied" : "violated"; });
   report_values("outputs", "outputs", problem->reports(), report.reports, no_remark);
+  if (report.yield) report_yield(*report.yield, *problem->parts().built->problem, out);
   if (report.reason.empty())
     with_team(arguments.threads, [&] { report_sensitivities(*problem, report, arguments, out); });
   out.json["feasible"] = report.status == Status::feasible;
@@ -336,6 +359,8 @@ void add_evaluate(CLI::App& app, Session& session) {
         return evaluate(session, target, given, out);
       });
   add_cells_option(command, arguments.changes.cells, "Voxels along each swept coordinate, instead of the study's");
+  add_integer(command, "--samples N", arguments.changes.machines, 2, 10'000'000,
+              "Number of built machines of a study with [tolerance], instead of the study's");
   add_option(command, "--certified GAP", arguments.certified,
              "Check the exact volume against guaranteed bounds with this relative gap (see certify)");
   auto* const designs =

@@ -161,8 +161,8 @@ TEST(CliErrors, FailsIfStandardOutputCannotBeWritten) {
 TEST(CliHelp, EveryCommandHasHelpWithAnExample) {
   const auto all = pkmopt({"--help"});
   EXPECT_EQ(all.exit_code, 0);
-  for (const std::string command : {"run", "resume", "check", "evaluate", "pose", "forward", "dynamics", "coupling",
-                                    "trajectory", "simulate", "show", "list", "new"}) {
+  for (const std::string command : {"run", "resume", "check", "evaluate", "sensitivity", "pose", "forward", "dynamics",
+                                    "coupling", "trajectory", "simulate", "show", "list", "new"}) {
     EXPECT_THAT(all.out, HasSubstr("\n  " + command + " "));
     const auto help = pkmopt({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);

@@ -36,7 +36,7 @@ TEST(ExpressionErrors, Objectives) {
       {"", "s.toml:7: objective[1].expression: found nothing; expected text"},
       {"expression = 3", "s.toml:9: objective[1].expression: found 3; expected text"},
       {"expresion = \"a\"",
-       "s.toml:9: objective[1].expresion: found an unknown key; expected one of type, name, direction, region, "
+       "s.toml:9: objective[1].expresion: found an unknown key; expected one of type, name, direction, region, robust, "
        "expression, "
        "unit, characteristic_length, sharpness; did you mean 'expression'?"},
       {"expression = \"\"", "s.toml:7: objective[1]: the formula \"\" is empty"},

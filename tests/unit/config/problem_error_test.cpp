@@ -111,7 +111,8 @@ TEST(ProblemErrors, Objectives) {
           {"[[objective]]\ntype = \"volume\"\nname = \"a/b\"",
            "s.toml:7: objective[1].name: found \"a/b\"; expected a name of letters, digits, '-', '_' and '.'"},
           {"[[objective]]\ntype = \"shape\"\ncont = 3",
-           "s.toml:7: objective[1].cont: found an unknown key; expected one of type, name, direction, region, length, "
+           "s.toml:7: objective[1].cont: found an unknown key; expected one of type, name, direction, region, robust, "
+           "length, "
            "count, "
            "exact, statistic, weights, note; did you mean 'count'?"},
           {"[[objective]]\ntype = \"shape\"\ncount = 3.0",
@@ -133,7 +134,8 @@ TEST(ProblemErrors, Objectives) {
            "s.toml:8: output[1]: conditioning is requested with two different characteristic lengths; use one length "
            "in all tables"},
           {"[[output]]\ntype = \"volume\"\ndirection = \"minimise\"",
-           "s.toml:7: output[1].direction: found an unknown key; expected one of type, name, region; did you mean "
+           "s.toml:7: output[1].direction: found an unknown key; expected one of type, name, region, robust; did you "
+           "mean "
            "'region'?"},
       });
 }

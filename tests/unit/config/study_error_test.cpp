@@ -36,7 +36,7 @@ TEST(StudyErrors, Document) {
            "baseline, "
            "workspace, region, motion, objective, constraint, output, reference, drive_train, motor, obstacle, "
            "quantity, "
-           "accuracy, "
+           "accuracy, tolerance, "
            "stage, "
            "checkpoint, "
            "final, override; did you mean 'mechanism'?"},

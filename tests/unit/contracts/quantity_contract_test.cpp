@@ -9,6 +9,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
+#include "engine/problem/built_machines.hpp"
 #include "objectives/all.hpp"
 #include "tests/own_mechanisms/three_ropes.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
@@ -86,12 +87,14 @@ Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
                       shortest(info.parameters[0].nominal) + " - " + info.parameters[0].name);
 }
 
-/// All objectives but those of other programs, whose values are not those of pkmopt, and the largest solids, which need
-/// a workspace over lengths only (tests/cli/largest_solid_test.cpp).
+/// All objectives but those of other programs, whose values are not those of pkmopt, the largest solids, which need a
+/// workspace over lengths only (tests/cli/largest_solid_test.cpp), and the yield, whose values are computed by the
+/// design problem (tests/unit/config/tolerance_test.cpp).
 std::vector<ObjectiveEntry> own_objectives() {
   std::vector<ObjectiveEntry> all = all_objectives();
-  std::erase_if(
-      all, [](const ObjectiveEntry& entry) { return entry.name == "python" || entry.name.starts_with("largest-"); });
+  std::erase_if(all, [](const ObjectiveEntry& entry) {
+    return entry.name == "python" || entry.name == kYield || entry.name.starts_with("largest-");
+  });
   return all;
 }
 
