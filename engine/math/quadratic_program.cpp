@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -28,12 +29,22 @@ QuadraticSolution solve(const QuadraticProgram& program) {
   const Eigen::Index n = c.size(), m = b.size();
   if (m == 0) return {B.ldlt().solve(-c), {}};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n), slack = (-b).cwiseMax(1), multipliers = Eigen::VectorXd::Ones(m);
+  QuadraticSolution best;
+  double min_error = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const Eigen::VectorXd dual = B * x + c - A.transpose() * multipliers, primal = A * x - slack - b;
     const double gap = slack.dot(multipliers) / static_cast<double>(m);
-    if (gap < kGap && dual.lpNorm<Eigen::Infinity>() < kResidual && primal.lpNorm<Eigen::Infinity>() < kResidual) break;
+    const double residual = std::max(dual.lpNorm<Eigen::Infinity>(), primal.lpNorm<Eigen::Infinity>());
+    if (const double error = std::max(gap, residual); error < min_error) {
+      min_error = error;
+      best = {x, multipliers};
+    } else if (gap < kGap) {
+      break;  // rounding errors grow
+    }
+    if (gap < kGap && residual < kResidual) break;
     const Eigen::VectorXd ratio = multipliers.cwiseQuotient(slack);
-    const Eigen::LDLT<Eigen::MatrixXd> matrix((B + A.transpose() * ratio.asDiagonal() * A).eval());
+    // Products of small matrices: without the blocking that Eigen uses for large ones.
+    const Eigen::LDLT<Eigen::MatrixXd> matrix((B + A.transpose().lazyProduct((ratio.asDiagonal() * A).eval())).eval());
     Eigen::VectorXd dx, dslack, dmultipliers;
     const auto step_for = [&](const Eigen::VectorXd& complementarity) {
       dx = matrix.solve(-dual - A.transpose() *
@@ -55,7 +66,7 @@ QuadraticSolution solve(const QuadraticProgram& program) {
     slack += step * dslack;
     multipliers += step * dmultipliers;
   }
-  return {x, multipliers};
+  return best;
 }
 
 }  // namespace pkm

@@ -6,6 +6,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
+#include "engine/geometry/pose_product.hpp"
 #include "engine/math/quadratic_program.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 #include "engine/workspace/solid_margins.hpp"
@@ -15,9 +16,9 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kCellsOfSearch = 40;           // per axis, for plans of columns
-constexpr int kSampleDensity = 4, kFinalDensity = 6;  // intervals per radius
-constexpr std::size_t kBoxFace = std::size_t(-1);     // CriticalPoint::margin of the faces of the search box
+constexpr std::int64_t kCellsOfSearch = 40;                               // per axis, for plans of columns
+constexpr int kCoarseDensity = 2, kSampleDensity = 4, kFinalDensity = 6;  // intervals per radius
+constexpr std::size_t kBoxFace = std::size_t(-1);  // CriticalPoint::margin of the faces of the search box
 
 /// NaN if it is undefined.
 double determinant_of(const PoseReport& report) {
@@ -93,9 +94,8 @@ class SolidVariables {
 /// -log(volume) + penalty * (largest violation); every step is followed by a second-order correction.
 class SolidRefinement {
  public:
-  SolidRefinement(const SolidSpec& spec, const Faces& faces, SolidMargins& margins, const SolidSamples& samples,
-                  const Solid& start)
-      : spec_(spec), faces_(faces), margins_(margins), samples_(samples), variables_(spec, start), like_(start) {}
+  SolidRefinement(const SolidSpec& spec, const Faces& faces, SolidMargins& margins, const Solid& start)
+      : spec_(spec), faces_(faces), margins_(margins), variables_(spec, start), like_(start) {}
 
   /// A point of the iteration.
   struct Iterate {
@@ -104,12 +104,22 @@ class SolidRefinement {
     Eigen::VectorXd multipliers = {};  ///< by critical point
     double log_volume = 0;
     Eigen::VectorXd gradient, hessian;
-    double violation = 0;  ///< largest, in units of SolidVariables::unit()
+    double violation = 0;            ///< largest, in units of SolidVariables::unit()
+    Eigen::MatrixXd curvature = {};  ///< approximate Hessian of the Lagrangian at the end of a run
   };
 
-  Iterate run() {
-    Iterate now = evaluate(variables_.values(like_), nullptr, 1);
-    Eigen::MatrixXd curvature = initial_curvature(now);
+  /// Iterates until convergence.
+  /// @param last  end of an earlier run, with fewer samples, which is continued unless a constraint is violated there:
+  ///              then they missed a minimum of its margin
+  Iterate run(const SolidSamples& samples, const Iterate* last = nullptr) {
+    samples_ = &samples;
+    constexpr double kMissed = 1e-6;  // violation in units of the size
+    Iterate now = evaluate(last ? last->x : variables_.values(like_), nullptr, 1);
+    if (last && now.violation > kMissed) {
+      last = nullptr;
+      now = evaluate(variables_.values(like_), nullptr, 1);
+    }
+    Eigen::MatrixXd curvature = last ? last->curvature : initial_curvature(now);
     double radius = 0.3;
     int final_steps = 0;
     for (int iteration = 0;; ++iteration) {
@@ -124,6 +134,7 @@ class SolidRefinement {
           radius < kTolerance) {
         // The multipliers without the curvature, which an almost singular update may have made very large.
         now.multipliers = solve_step(now, initial_curvature(now), kNearby).multipliers;
+        now.curvature = curvature;
         return now;
       }
       final_steps += is_final ? 1 : 0;
@@ -199,7 +210,7 @@ class SolidRefinement {
     Iterate made{.x = x};
     const Solid here = solid(x);
     if (!before || length > kSmallStep) {
-      made.points = critical_points(here, samples_);
+      made.points = critical_points(here, *samples_);
     } else {
       for (const CriticalPoint& old : before->points) {
         if (old.margin == kBoxFace) continue;
@@ -261,9 +272,13 @@ class SolidRefinement {
   };
 
   /// Minimises c'd + d'Bd/2 + penalty * t subject to the linearised constraints, which t >= 0 relaxes, and |d| <=
-  /// radius.
+  /// radius. Constraints that hold for all these d are omitted.
   Step solve_program(const Iterate& at, const Eigen::MatrixXd& B, const Eigen::VectorXd& c, double radius) const {
-    const Eigen::Index n = variables_.count(), m = static_cast<Eigen::Index>(at.points.size());
+    std::vector<std::size_t> near;  // points
+    for (std::size_t k = 0; k < at.points.size(); ++k)
+      if (at.points[k].distance <= variables_.gradient(at.points[k]).lpNorm<1>() * radius * variables_.unit())
+        near.push_back(k);
+    const Eigen::Index n = variables_.count(), m = static_cast<Eigen::Index>(near.size());
     QuadraticProgram program;
     program.B = Eigen::MatrixXd::Identity(n + 1, n + 1) * 1e-8;
     program.B.topLeftCorner(n, n) += B;
@@ -272,7 +287,7 @@ class SolidRefinement {
     program.A = Eigen::MatrixXd::Zero(m + 1 + 2 * n, n + 1);
     program.b = Eigen::VectorXd::Zero(m + 1 + 2 * n);
     for (Eigen::Index k = 0; k < m; ++k) {
-      const CriticalPoint& point = at.points[static_cast<std::size_t>(k)];
+      const CriticalPoint& point = at.points[near[static_cast<std::size_t>(k)]];
       program.A.row(k).head(n) = variables_.gradient(point).transpose();
       program.A(k, n) = 1;
       program.b[k] = -point.distance / variables_.unit();
@@ -286,7 +301,9 @@ class SolidRefinement {
       program.b[m + 2 + 2 * i] = -radius;
     }
     const QuadraticSolution solution = solve(program);
-    Step found{solution.x.head(n), solution.multipliers.head(m)};
+    Step found{solution.x.head(n), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.points.size()))};
+    for (std::size_t k = 0; k < near.size(); ++k)
+      found.multipliers[static_cast<Eigen::Index>(near[k])] = solution.multipliers[static_cast<Eigen::Index>(k)];
     found.predicted = -c.dot(found.step) - 0.5 * found.step.dot(B * found.step) +
                       kPenalty * (at.violation - std::max(0.0, solution.x[n]));
     return found;
@@ -327,7 +344,7 @@ class SolidRefinement {
   const SolidSpec& spec_;
   const Faces& faces_;
   SolidMargins& margins_;
-  const SolidSamples& samples_;
+  const SolidSamples* samples_ = nullptr;  ///< of the current run
   SolidVariables variables_;
   Solid like_;
   double residual_ = 0;
@@ -343,6 +360,7 @@ LargestSolidFinder::LargestSolidFinder(const Mechanism& mechanism, const Workspa
       is_regular_(is_regular),
       reported_(std::move(reported)),
       sweep_(sweep_of(mechanism.info(), plan)),
+      coarse_samples_(spec_.shape.samples(kCoarseDensity)),
       samples_(spec_.shape.samples(kSampleDensity)),
       dense_samples_(spec_.shape.samples(kFinalDensity)) {
   const MechanismInfo& info = mechanism.info();
@@ -357,6 +375,8 @@ LargestSolidFinder::LargestSolidFinder(const Mechanism& mechanism, const Workspa
   plan_.limits = workspace_limits(info, plan.limits);
   voxels_ =
       prepare_voxel_map(mechanism, visualisation_plan(info, plan_, {kCellsOfSearch, kCellsOfSearch, kCellsOfSearch}));
+  if (mechanism.voxels() && info.joints.size() == info.coordinates.size())
+    sides_ = mechanism.voxels()->prepare_sides(plan_, "");
 }
 
 std::vector<std::string> LargestSolidFinder::dimension_names() const {
@@ -373,15 +393,55 @@ std::vector<Pose<double>> LargestSolidFinder::orientations(std::span<const doubl
     const std::vector<double> values = how.kind == FixedCoordinate::Kind::listed
                                            ? how.values
                                            : std::vector{fixed_value(mechanism_, parameters, plan_, coordinate)};
-    std::vector<Pose<double>> more;
-    for (const Pose<double>& pose : poses)
-      for (const double value : values) {
-        more.push_back(pose);
-        more.back()[static_cast<std::size_t>(coordinate)] = value;
-      }
-    poses = std::move(more);
+    poses = with_each(poses, coordinate, values);
   }
   return poses;
+}
+
+std::vector<PoseSolid> LargestSolidFinder::pose_solids(std::span<const double> parameters, const Solid& solid) const {
+  std::vector<PoseSolid> all;
+  for (const Pose<double>& fixed : orientations(parameters)) {
+    PoseSolid made;
+    for (const double value : fixed) made.ranges.push_back({value, value});
+    for (std::size_t ball = 0; ball < spec_.shape.balls(); ++ball) {
+      std::vector<std::size_t> coordinates;
+      for (const std::size_t axis : spec_.shape.axes_of(ball)) {
+        coordinates.push_back(static_cast<std::size_t>(sweep_.swept[axis]));
+        const double half = solid.dimensions[ball] / 2;
+        made.ranges[coordinates.back()] = {solid.centre[axis] - half, solid.centre[axis] + half};
+      }
+      if (coordinates.size() > 1) made.balls.push_back(coordinates);
+    }
+    all.push_back(std::move(made));
+  }
+  return all;
+}
+
+std::vector<std::int8_t> LargestSolidFinder::determinant_signs(std::span<const double> parameters,
+                                                               std::span<const Pose<double>> poses,
+                                                               const SolidMargins& margins) const {
+  const auto sign_at = [&](const Pose<double>& pose) {
+    const double determinant = determinant_of(margins.report(pose));
+    return static_cast<std::int8_t>(determinant > 0 ? 1 : determinant < 0 ? -1 : 0);
+  };
+  std::vector<std::int8_t> signs(poses.size());
+  if (!sides_) {
+    std::ranges::transform(poses, signs.begin(), sign_at);
+    return signs;
+  }
+  Scratch scratch;
+  sides_->start(parameters, scratch);
+  sides_->find(poses, true, scratch, signs);
+  std::ranges::replace(signs, PoseSides::kSingular, std::int8_t{0});
+  // det J is det G / det Jq up to its sign, and det Jq has one sign in a working mode.
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::int8_t sign = signs[i] == 0 ? std::int8_t{0} : sign_at(poses[i]);
+    if (sign == 0) continue;
+    if (sign != signs[i])
+      for (std::int8_t& each : signs) each = static_cast<std::int8_t>(-each);
+    break;
+  }
+  return signs;
 }
 
 SolidMargins LargestSolidFinder::margins(std::span<const double> parameters, double determinant) const {
@@ -402,7 +462,7 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters) const 
 LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const VoxelMap& map, bool is_regular) const {
   Faces faces;
   for (std::size_t axis = 0; axis < 3; ++axis) faces[axis] = {map.lower[axis], map.upper[axis]};
-  const VoxelGrid grid({map.cells[0], map.cells[1], map.cells[2]}, faces);
+  const VoxelGrid grid(map);
   SolidMargins tests = margins(parameters, 0);
   const std::size_t count = tests.orientations().size();
   LargestSolid none;
@@ -410,7 +470,8 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
 
   // On the grid: cells that are feasible in all orientations and, if required, have determinants of one sign.
   std::vector<std::uint8_t> good = map.feasible;
-  std::vector<double> determinants(is_regular ? good.size() : 0);
+  std::vector<std::size_t> cells;
+  std::vector<Pose<double>> poses;  // of the cells
   Cell cell;
   for (cell[0] = 0; cell[0] < grid.cells[0]; ++cell[0])
     for (cell[1] = 0; cell[1] < grid.cells[1]; ++cell[1])
@@ -419,14 +480,17 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
         std::array<double, 3> point{};
         for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = grid.centre(axis, cell[axis]);
         if (good[at] && (count > 1 || !reported_.empty())) good[at] = tests.is_feasible(point);
-        if (good[at] && is_regular) determinants[at] = determinant_of(tests.report(tests.pose(point, 0)));
+        if (!good[at] || !is_regular) continue;
+        cells.push_back(at);
+        poses.push_back(tests.pose(point, 0));
       }
+  const std::vector<std::int8_t> determinants = determinant_signs(parameters, poses, tests);
   std::optional<Solid> start;
   double sign = 0;
   for (const double side : is_regular ? std::vector{1.0, -1.0} : std::vector{0.0}) {
     std::vector<std::uint8_t> on_side = good;
-    for (std::size_t at = 0; at < determinants.size(); ++at)
-      if (!(side * determinants[at] > 0)) on_side[at] = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (!(side * determinants[i] > 0)) on_side[cells[i]] = 0;
     const auto solid = largest_solid_on_grid(grid, on_side, spec_);
     if (!solid || (start && spec_.shape.volume(solid->dimensions) <= spec_.shape.volume(start->dimensions))) continue;
     start = solid;
@@ -438,10 +502,11 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
     if (size > 0) sign /= size;
   }
 
-  // By the constraints themselves.
+  // By the constraints themselves, first with few samples.
   SolidMargins constraints = margins(parameters, sign);
-  SolidRefinement refinement(spec_, faces, constraints, samples_, *start);
-  SolidRefinement::Iterate last = refinement.run();
+  SolidRefinement refinement(spec_, faces, constraints, *start);
+  const SolidRefinement::Iterate coarse = refinement.run(coarse_samples_);
+  SolidRefinement::Iterate last = refinement.run(samples_, &coarse);
   LargestSolid found;
   found.solid = refinement.finish(last, dense_samples_);
   found.volume = spec_.shape.volume(found.solid.dimensions);
@@ -471,12 +536,10 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
   }
   if (sign == 0) {
     for (std::size_t k = 0; k < count; ++k) {
-      double reference = 0;
-      for (const UnitPoint& unit : samples_.points) {
-        const double determinant = determinant_of(tests.report(tests.pose(found.solid.at(spec_.shape, unit), k)));
-        if (reference == 0 && std::isfinite(determinant)) reference = determinant;
-        if (determinant * reference < 0) found.is_regular = false;
-      }
+      poses.clear();
+      for (const UnitPoint& unit : samples_.points) poses.push_back(tests.pose(found.solid.at(spec_.shape, unit), k));
+      const std::vector<std::int8_t> signs = determinant_signs(parameters, poses, tests);
+      if (std::ranges::count(signs, 1) > 0 && std::ranges::count(signs, -1) > 0) found.is_regular = false;
     }
   }
   return found;

@@ -7,6 +7,7 @@
 // margins are tested at samples of the whole solid and at the local minima that start from them.
 #pragma once
 
+#include "engine/mechanism/abilities/bounds.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/workspace/solid_margins.hpp"
 #include "engine/workspace/solid_on_grid.hpp"
@@ -49,7 +50,12 @@ class LargestSolidFinder {
   /// @param found  find() of the same parameters
   Dual4 volume(std::span<const Dual4> parameters, const LargestSolid& found) const;
 
+  /// A solid of this kind as poses, one set for each combination of listed values of the fixed coordinates.
+  std::vector<PoseSolid> pose_solids(std::span<const double> parameters, const Solid& solid) const;
+
   const SolidSpec& spec() const { return spec_; }
+  const LimitSpec& limits() const { return plan_.limits; }
+  bool is_regular() const { return is_regular_; }  ///< whether solids with parallel singularities are excluded
   const Sweep& sweep() const { return sweep_; }
   std::vector<std::string> dimension_names() const;
 
@@ -57,6 +63,9 @@ class LargestSolidFinder {
   std::vector<Pose<double>> orientations(std::span<const double> parameters) const;
   /// @param determinant  0: det(G) is no constraint
   SolidMargins margins(std::span<const double> parameters, double determinant) const;
+  /// Signs of det G at feasible poses; 0 where it is 0 or undefined.
+  std::vector<std::int8_t> determinant_signs(std::span<const double> parameters, std::span<const Pose<double>> poses,
+                                             const SolidMargins& margins) const;
   LargestSolid find(std::span<const double> parameters, const VoxelMap& map, bool is_regular) const;
 
   const Mechanism& mechanism_;
@@ -66,7 +75,8 @@ class LargestSolidFinder {
   std::vector<ReportMargin> reported_;
   const Sweep& sweep_;
   std::unique_ptr<const VoxelEvaluator> voxels_;
-  SolidSamples samples_, dense_samples_;
+  std::unique_ptr<const PoseSides> sides_;  ///< null: det G is computed at each pose
+  SolidSamples coarse_samples_, samples_, dense_samples_;
 };
 
 }  // namespace pkm

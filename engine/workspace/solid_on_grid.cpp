@@ -73,12 +73,18 @@ class GridSearch {
   }
 
  private:
+  /// Visits the good cells at which the current solid does not extend beyond the grid.
   template <class Visit>
   void for_each_centre(const Visit& visit) const {
+    std::array<std::int64_t, 3> first{}, end{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] = std::max(range_[axis][0], half_[axis]);
+      end[axis] = std::min(range_[axis][1], grid_.cells[axis] - half_[axis]);
+    }
     Cell cell;
-    for (cell[0] = range_[0][0]; cell[0] < range_[0][1]; ++cell[0])
-      for (cell[1] = range_[1][0]; cell[1] < range_[1][1]; ++cell[1])
-        for (cell[2] = range_[2][0]; cell[2] < range_[2][1]; ++cell[2])
+    for (cell[0] = first[0]; cell[0] < end[0]; ++cell[0])
+      for (cell[1] = first[1]; cell[1] < end[1]; ++cell[1])
+        for (cell[2] = first[2]; cell[2] < end[2]; ++cell[2])
           if (good_[grid_.index(cell)]) visit(cell);
   }
 
@@ -87,11 +93,10 @@ class GridSearch {
   void set_rows(const std::vector<double>& dimensions) {
     rows_.clear();
     const std::size_t axes = spec_.shape.axes();
-    std::array<std::int64_t, 3> half{};
     for (std::size_t axis = 0; axis < axes; ++axis)
-      half[axis] = static_cast<std::int64_t>(dimensions[spec_.shape.ball_of(axis)] / 2 / grid_.step[axis]);
-    for (std::int64_t i = -half[0]; i <= half[0]; ++i)
-      for (std::int64_t j = -half[1]; j <= half[1]; ++j) {
+      half_[axis] = static_cast<std::int64_t>(dimensions[spec_.shape.ball_of(axis)] / 2 / grid_.step[axis]);
+    for (std::int64_t i = -half_[0]; i <= half_[0]; ++i)
+      for (std::int64_t j = -half_[1]; j <= half_[1]; ++j) {
         const std::array<std::int64_t, 2> offset = {i, j};
         // by ball: squared distance of the row from the centre of the ball, in units of its squared radius
         std::array<double, 3> squares{};
@@ -150,6 +155,7 @@ class GridSearch {
   /// For each axis, the range of indices that the central cell can have: first, end (excluded).
   std::array<std::array<std::int64_t, 2>, 3> range_{};
   std::vector<RowOfCells> rows_;
+  std::array<std::int64_t, 3> half_{};  ///< largest distance of a cell of the solid from the central one, by axis
 };
 
 }  // namespace
