@@ -38,10 +38,7 @@ class LargestSolidMeasure final : public Quantity {
     for (int k = 0; k < 4; ++k) size.v[k] = factor * volume.v[k];
     return size;
   }
-  Unsupported why_no_derivatives() const override {
-    if (!finder_.spec().ratio.empty()) return {};
-    return "the largest solid has none if its proportions are free; give ratio";
-  }
+  const LargestSolidFinder* largest_solid() const override { return &finder_; }
 
  private:
   const LargestSolid& solid_of(std::span<const double> parameters, Scratch& scratch) const {

@@ -101,6 +101,14 @@ SolidSpec solid_spec(SolidKind kind, const MechanismInfo& info, const WorkspaceP
   return spec;
 }
 
+std::vector<const NamedQuantity*> solid_measures(const ProblemParts& parts) {
+  std::vector<const NamedQuantity*> measures;
+  for (const auto* const list : {&parts.objectives, &parts.workspace_margins, &parts.design_margins, &parts.reports})
+    for (const NamedQuantity& named : *list)
+      if (named.quantity->largest_solid()) measures.push_back(&named);
+  return measures;
+}
+
 LargestSolidFinder solid_finder(SolidKind kind, const EntryContext& context) {
   return {context.mechanism, context.plan, solid_spec(kind, context.mechanism.info(), context.plan, context.options),
           context.options.flag("regular")};

@@ -1,6 +1,7 @@
-// Options of the largest box, cylinder or sphere in the workspace.
+// Options of the largest box, cylinder or sphere in the workspace, and the quantities of a study that measure one.
 #pragma once
 
+#include "engine/problem/design_problem.hpp"
 #include "engine/problem/quantity.hpp"
 #include "engine/workspace/largest_solid.hpp"
 
@@ -18,5 +19,8 @@ SolidSpec solid_spec(SolidKind kind, const MechanismInfo& info, const WorkspaceP
 
 /// The finder for the options and the plan of an entry. Throws like solid_spec() and LargestSolidFinder.
 LargestSolidFinder solid_finder(SolidKind kind, const EntryContext& context);
+
+/// The objectives, constraints and outputs that measure a largest solid.
+std::vector<const NamedQuantity*> solid_measures(const ProblemParts& parts);
 
 }  // namespace pkm

@@ -18,6 +18,8 @@
 
 namespace pkm {
 
+class LargestSolidFinder;
+
 /// Input of a quantity: a design and the analysis of its workspace.
 template <class S>
 struct DesignView {
@@ -41,6 +43,8 @@ class Quantity {
   /// The external function that computes the value, in which case value() must not be called; null if the quantity is
   /// not computed by an external function.
   virtual const std::string* external_call() const { return nullptr; }
+  /// The finder of the solid that the value measures; null if the value does not measure a largest solid.
+  virtual const LargestSolidFinder* largest_solid() const { return nullptr; }
 };
 
 /// Creates a quantity from generic functions `[](const auto& design) { ... }` of a DesignView.

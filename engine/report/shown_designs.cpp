@@ -7,6 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/problem/front.hpp"
+#include "engine/problem/largest_solid_options.hpp"
 #include "engine/report/thinning.hpp"
 #include "engine/results/comparison.hpp"
 #include "engine/workspace/visualisation_plan.hpp"
@@ -131,6 +132,24 @@ void add_design_of_study(ShownDesigns& shown, const DesignProblem& problem, cons
   shown.designs.back().problem = "its choice from a catalogue is not that of the best design";
 }
 
+/// Finds the solids whose measures are objectives, constraints or outputs of a study, each of them once. Solids over
+/// other coordinates than those of the workspace are omitted.
+std::vector<ShownSolid> largest_solids(const ProblemParts& parts, const WorkspacePlan& plan,
+                                       const std::vector<double>& parameters) {
+  std::vector<ShownSolid> solids;
+  for (const NamedQuantity* const measure : solid_measures(parts)) {
+    const LargestSolidFinder& finder = *measure->quantity->largest_solid();
+    if (finder.sweep().swept != sweep_of(parts.mechanism->info(), plan).swept) continue;
+    const LargestSolid found = finder.find(parameters);
+    const auto is_same = [&](const ShownSolid& other) {
+      return other.solid.centre == found.solid.centre && other.solid.dimensions == found.solid.dimensions;
+    };
+    if (found.volume > 0 && std::ranges::none_of(solids, is_same))
+      solids.push_back({measure->name, finder.spec().shape, found.solid, finder.dimension_names(), found.volume});
+  }
+  return solids;
+}
+
 }  // namespace
 
 ShownDesigns evaluate_shown_designs(const PageStudy& page) {
@@ -139,6 +158,9 @@ ShownDesigns evaluate_shown_designs(const PageStudy& page) {
   if (contents.best.row >= 0)
     add_design(shown, best_design_label(contents), page.study->problem->parameters(contents.best_design()));
   if (page.study->baseline) add_design_of_study(shown, *page.study->problem, "baseline", *page.study->baseline);
+  for (ShownDesign& design : shown.designs)
+    if (design.workspace)
+      design.solids = largest_solids(page.study->problem->of(design.parameters).parts(), shown.plan, design.parameters);
   return shown;
 }
 

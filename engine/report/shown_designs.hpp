@@ -7,6 +7,7 @@
 
 #include "engine/config/study.hpp"
 #include "engine/storage/study_contents.hpp"
+#include "engine/workspace/solid.hpp"
 #include "engine/workspace/workspace_fields.hpp"
 
 namespace pkm {
@@ -20,14 +21,24 @@ struct PageStudy {
   std::string unreadable = {};  ///< the reason why this program cannot read the text; "" if it can
 };
 
-/// A design that a page shows, with its workspace.
+/// A largest solid in the workspace of a design, from an objective, constraint or output of its study.
+struct ShownSolid {
+  std::string name;  ///< of the objective, constraint or output
+  SolidShape shape;
+  Solid solid;
+  std::vector<std::string> dimension_names;  ///< one per dimension
+  double volume;                             ///< area over two axes
+};
+
+/// A design with its workspace.
 struct ShownDesign {
   std::string name;                          ///< name in the page, for example "best" or "baseline"
   std::vector<double> parameters;            ///< values of all parameters of the mechanism, in SI
   std::optional<WorkspaceFields> workspace;  ///< workspace of the design; std::nullopt if it has none, see `problem`
   /// For each fixed coordinate, the range around its value in which some poses of the workspace remain feasible.
   std::vector<std::array<double, 2>> fixed_range = {};
-  std::string problem = {};  ///< the reason why there is no workspace; "" if there is one
+  std::string problem = {};             ///< why there is no workspace
+  std::vector<ShownSolid> solids = {};  ///< over the coordinates of the workspace
 };
 
 /// Resolution at which a page samples its designs.

@@ -47,6 +47,20 @@ Json surface_json(const ShownDesigns* shown, const ShownDesign* design, const Wo
   return json;
 }
 
+/// The centre and the extents by axis, the axes of each ball (see SolidShape), and what is printed about the solid.
+Json solid_json(const ShownSolid& shown) {
+  Json json = {{"name", shown.name}, {"shape", shown.shape.name()}, {"volume", shown.volume}};
+  for (std::size_t axis = 0; axis < shown.shape.axes(); ++axis) {
+    json["centre"].push_back(shown.solid.centre[axis]);
+    json["extents"].push_back(shown.solid.dimensions[shown.shape.ball_of(axis)]);
+  }
+  for (std::size_t ball = 0; ball < shown.shape.balls(); ++ball) {
+    json["balls"].push_back(shown.shape.axes_of(ball));
+    json["dimensions"].push_back({{"name", shown.dimension_names[ball]}, {"value", shown.solid.dimensions[ball]}});
+  }
+  return json;
+}
+
 Json axis_json(const WorkspaceAxis& axis) {
   Json json = axis_data(axis.name, axis.unit);
   json["coordinate"] = axis.coordinate;
@@ -78,6 +92,8 @@ Json workspace_json(const std::string& name, const WorkspaceFields& found, const
         {{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}, {"values", packed_quantised(values)}});
   }
   if (!surface_unsupported(names_of(found.axes))) json["surface"] = surface_json(shown, design, found);
+  if (design)
+    for (const ShownSolid& solid : design->solids) json["solids"].push_back(solid_json(solid));
   return json;
 }
 

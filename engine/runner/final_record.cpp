@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <span>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/problem/largest_solid_options.hpp"
 #include "engine/runner/design_record.hpp"
 #include "engine/runner/exact_values.hpp"
 #include "engine/runner/progress.hpp"
@@ -19,9 +21,11 @@ namespace {
 // Beginnings of notes, by which the notes of an earlier run are recognised and replaced.
 constexpr const char* kWideBounds = "certified bounds of the ";
 constexpr const char* kAlong = "along the motion ";
+constexpr const char* kReduced = "reduced by 0.1 %, the ";
 
-// Maximum number of time intervals examined for a motion; it takes some seconds.
-constexpr std::size_t kMaxMotionBoxes = 200'000;
+constexpr double kReduction = 1e-3;               // of the dimensions of a largest solid, as in kReduced
+constexpr std::size_t kMaxSolidBoxes = 600'000;   // boxes examined per solid; takes some seconds
+constexpr std::size_t kMaxMotionBoxes = 200'000;  // time intervals examined per motion; takes some seconds
 
 /// Number of cells of the voxel map of a study whose workspace is analysed by columns.
 constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
@@ -94,8 +98,57 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
   }
 }
 
-/// Computes the exact values of the best design and of the baseline, in this order. Notes on the baseline precede those
-/// on the best design.
+/// Certifies by interval arithmetic the largest solids of a feasible design. They touch the boundary of the workspace,
+/// and are therefore reduced. If a limit is proven to be violated in one, the design's status becomes failed; other
+/// results are added to the notes.
+void certify_solids(const ProblemParts& parts, const std::string& name, DesignRecord& design,
+                    std::vector<std::string>& notes) {
+  using Kind = PropertyResult::Kind;
+  const RigorousBounds* const bounds = parts.mechanism->bounds();
+  if (!bounds || design.status != Status::feasible) return;
+  for (const NamedQuantity* const measure : solid_measures(parts)) {
+    const LargestSolidFinder& finder = *measure->quantity->largest_solid();
+    LargestSolid found = finder.find(design.parameters);
+    if (!(found.volume > 0)) continue;
+    for (double& dimension : found.solid.dimensions) dimension *= 1 - kReduction;
+    const std::string begin = kReduced + measure->name + " of the " + name + " ";
+    const auto place = [&](const PropertyResult& result) {
+      std::vector<std::string> words;
+      const auto& coordinates = parts.mechanism->info().coordinates;
+      for (std::size_t i = 0; i < coordinates.size(); ++i)
+        words.push_back(coordinates[i].name + " = " + with_unit((*result.pose)[i], coordinates[i].unit));
+      return join(words);
+    };
+    WorkspacePlan plan = parts.plan;
+    plan.limits = finder.limits();
+    std::string doubt;
+    bool is_regular = finder.is_regular();
+    try {
+      for (const PoseSolid& poses : finder.pose_solids(design.parameters, found.solid)) {
+        const auto [feasible, regular, boxes, stopped] = bounds->solid(
+            design.parameters, plan, "", poses, {.max_boxes = kMaxSolidBoxes, .stop = [] { return stop_requested(); }});
+        check_stop();
+        if (feasible.kind == Kind::fails) {
+          design.status = Status::failed;
+          design.reason = "in its " + measure->name + ", " + feasible.detail + " is violated at " + place(feasible);
+          return;
+        }
+        if (feasible.kind == Kind::undecided) doubt = feasible.detail + " is undecided near " + place(feasible);
+        is_regular = is_regular && regular.kind != Kind::not_examined;
+        if (is_regular && regular.kind != Kind::holds)
+          doubt = regular.detail + (regular.kind == Kind::fails ? ", at " : " is undecided near ") + place(regular);
+      }
+      notes.push_back(begin + (doubt.empty() ? std::string("is feasible ") + (is_regular ? "and not singular " : "") +
+                                                   "everywhere (certified)"
+                                             : "is not certified: " + doubt));
+    } catch (const std::invalid_argument& reason) {
+      notes.push_back(begin + "cannot be certified: " + reason.what());
+    }
+  }
+}
+
+/// Computes the exact values of the best design, then of the baseline. Notes on the baseline precede those on the best
+/// design.
 void add_exact_values(const Study& study, StudyContents& contents,
                       const std::function<void(const std::string&)>& begin) {
   FinalRecord& f = *contents.final;
@@ -165,7 +218,8 @@ void complete_final_record(const Study& study, StudyContents& contents,
   const ProblemParts& parts = problem.parts();
   FinalRecord& f = *contents.final;
   std::erase_if(contents.notes, [](const std::string& note) {
-    return note.starts_with(ExactValues::kNoValues) || note.starts_with(kWideBounds) || note.starts_with(kAlong);
+    return note.starts_with(ExactValues::kNoValues) || note.starts_with(kWideBounds) || note.starts_with(kAlong) ||
+           note.starts_with(kReduced);
   });
   if (f.best) {
     begin("map of the best design's workspace");
@@ -186,6 +240,10 @@ void complete_final_record(const Study& study, StudyContents& contents,
       begin("motions of the " + std::string(name));
       certify_motions(problem.of((*design)->parameters).parts(), name, **design, contents.notes);
     }
+  }
+  if (f.best && !solid_measures(parts).empty()) {
+    begin("largest solids of the best design");
+    certify_solids(problem.of(f.best->parameters).parts(), "best design", *f.best, contents.notes);
   }
   if (has_exact_step(study)) add_exact_values(study, contents, begin);
 }

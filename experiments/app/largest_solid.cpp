@@ -155,7 +155,7 @@ void report_solids(const std::vector<RequestedSolid>& requested, const Target& t
     json["volume"] = found.volume;
     json["unit"] = unit;
     rows.push_back({unit == "m^2" ? "area" : "volume", number(found.volume, unit)});
-    std::vector<std::string> centre, box;
+    std::vector<std::string> centre, places;  // of the option of `certify`
     const SolidShape& shape = finder->spec().shape;
     for (std::size_t axis = 0; axis < shape.axes(); ++axis) {
       const std::string& coordinate =
@@ -165,10 +165,14 @@ void report_solids(const std::vector<RequestedSolid>& requested, const Target& t
       json["centre"][coordinate] = at;
       json["box"][coordinate] = {at - half, at + half};
       centre.push_back(coordinate + "=" + formatted("%.9g", at));
-      box.push_back(coordinate + "=" + formatted("%.9g", at - half) + ":" + formatted("%.9g", at + half));
+      const bool is_round = shape.axes_of(shape.ball_of(axis)).size() > 1;
+      places.push_back(is_round ? centre.back()
+                                : coordinate + "=" + formatted("%.9g", at - half) + ":" + formatted("%.9g", at + half));
     }
     rows.push_back({"centre", join(centre, ",")});
-    rows.push_back({"box", join(box, ",")});
+    const bool is_box = shape.balls() == shape.axes();
+    if (!is_box) places.push_back("diameter=" + formatted("%.9g", found.solid.dimensions.front()));
+    rows.push_back({is_box ? "box" : shape.balls() == 2 ? "cylinder" : "sphere", join(places, ",")});
     json["residual"] = found.residual;
     rows.push_back({"accuracy", formatted("%.1e", found.residual) + " of the size, local maximum"});
     json["samples"] = found.samples;

@@ -26,10 +26,9 @@ struct InvalidCommand {
 
 TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
   const std::string commands =
-      "one of run, resume, check, evaluate, sensitivity, pose, forward, dynamics, coupling, trajectory, "
-      "simulate, workspace, connect, certify, compare, show, report, export, generate, list, new, schema, upgrade, "
-      "completion, "
-      "manual";
+      "one of run, resume, check, evaluate, sensitivity, pose, forward, dynamics, coupling, trajectory, simulate, "
+      "workspace, connect, certify, tolerances, compare, show, report, export, generate, list, new, schema, upgrade, "
+      "completion, manual";
   const std::string mechanism = "4ppa-2par";
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry.name();

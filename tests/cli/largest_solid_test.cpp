@@ -203,8 +203,13 @@ optimiser = "ga"
 }
 
 TEST_F(CliLargestSolid, HasDerivativesAsAnObjective) {
-  const std::string study =
-      folder_.write("derivatives.toml", "[mechanism]\nfile = \"" + kSolidRobots + R"(rotary-delta.toml"
+  for (const auto& [objective, options] : {std::pair("largest-cylinder", "ratio = \"2:1\""),
+                                           {"largest-cylinder", ""},
+                                           {"largest-box", "centre = { x = 0.01, y = 0.02 }"},
+                                           {"largest-box", ""}}) {
+    SCOPED_TRACE(std::string(objective) + ", " + options);
+    const std::string study = folder_.write("derivatives.toml", "[mechanism]\nfile = \"" + kSolidRobots +
+                                                                    R"(rotary-delta.toml"
 [variables]
 R = { min = 0.15, max = 0.25 }
 l_b = { min = 0.45, max = 0.6 }
@@ -212,20 +217,55 @@ l_b = { min = 0.45, max = 0.6 }
 method = "voxels"
 cells = { x = 24, y = 24, z = 24 }
 [[objective]]
-type = "largest-cylinder"
-ratio = "2:1"
+type = ")" + std::string(objective) + "\"\n" + options + R"(
 [[stage]]
 optimiser = "nlopt"
 algorithm = "slsqp"
 )");
-  const auto at = [&](const std::string& set) {
-    return pkmopt({"evaluate", study, "--json", "--sensitivity", "--set", set}, folder_.path()).json();
-  };
-  const json exact = at("R=0.2,l_b=0.5");
-  const auto value = [](const json& of) { return double(of["objectives"]["largest-cylinder"]); };
-  const double step = 1e-5;
-  const double difference = (value(at("R=0.20001,l_b=0.5")) - value(at("R=0.19999,l_b=0.5"))) / (2 * step);
-  EXPECT_NEAR(double(exact["sensitivities"]["largest-cylinder"]["R"]), difference, 1e-6) << exact.dump(1);
+    const auto at = [&](const std::string& set) {
+      return pkmopt({"evaluate", study, "--json", "--sensitivity", "--set", set}, folder_.path()).json();
+    };
+    const json exact = at("R=0.2,l_b=0.5");
+    const auto value = [&at, name = objective](const std::string& set) { return double(at(set)["objectives"][name]); };
+    constexpr double kStep = 1e-5;  // [m]
+    EXPECT_NEAR(double(exact["sensitivities"][objective]["R"]),
+                (value("R=0.20001,l_b=0.5") - value("R=0.19999,l_b=0.5")) / (2 * kStep), 1e-6);
+    EXPECT_NEAR(double(exact["sensitivities"][objective]["l_b"]),
+                (value("R=0.2,l_b=0.50001") - value("R=0.2,l_b=0.49999")) / (2 * kStep), 1e-6);
+  }
+}
+
+/// The best design of a study is proven, and its report draws the solid.
+TEST_F(CliLargestSolid, IsCertifiedAtTheEndOfAStudyAndShownInItsReport) {
+  const std::string study =
+      folder_.write("cylinder.toml", "[mechanism]\nfile = \"" + kSolidRobots + R"(linear-delta.toml"
+[variables]
+R = { min = 0.2, max = 0.3 }
+[workspace]
+method = "voxels"
+cells = { x = 12, y = 12, z = 12 }
+exact = false
+[[objective]]
+type = "largest-cylinder"
+ratio = "2:1"
+[[output]]
+type = "largest-box"
+[[stage]]
+optimiser = "ga"
+generations = 1
+population = 4
+)");
+  const auto run = pkmopt({"run", study, "-o", "cylinder.h5"}, folder_.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const std::string measure : {"largest-cylinder", "largest-box"})
+    EXPECT_THAT(run.out,
+                ::testing::HasSubstr("reduced by 0.1 %, the " + measure +
+                                     " of the best design is feasible and not singular everywhere (certified)"));
+  ASSERT_EQ(pkmopt({"report", "cylinder.h5", "-o", "cylinder.html"}, folder_.path()).exit_code, 0);
+  std::ostringstream page;
+  page << std::ifstream(folder_.path() + "/cylinder.html").rdbuf();
+  EXPECT_THAT(page.str(), ::testing::HasSubstr(R"("solids":[{"name":"largest-cylinder","shape":"cylinder")"));
+  EXPECT_THAT(page.str(), ::testing::HasSubstr(R"("balls":[[0,1],[2]])"));
 }
 
 TEST_F(CliLargestSolid, IsNullWithoutFeasibleCellsAndReportsWrongOptions) {

@@ -42,6 +42,86 @@ function surfaceTrace(design, field, range, order, more = {}) {
   };
 }
 
+const solidColour = "#d55e00";
+
+/** "largest cylinder: diameter 600 mm, height 200 mm" */
+function solidText(solid) {
+  const dimensions = solid.dimensions.map(({ name, value }) => `${name} ${shownValue(value, { unit: "m" })}`);
+  return `largest ${solid.shape}: ${dimensions.join(", ")}`;
+}
+
+/** Points of the boundary of the unit square or of the unit disc, counterclockwise. */
+function unitOutline(isRound) {
+  if (!isRound) return [[1, 1], [-1, 1], [-1, -1], [1, -1]];
+  return Array.from({ length: 48 }, (_, k) => [Math.cos((k * Math.PI) / 24), Math.sin((k * Math.PI) / 24)]);
+}
+
+/**
+ * 3-D trace of a box, cylinder or sphere: rings about one of its axes, joined by triangles.
+ * @param order  indices of the axes that are drawn as x, y and z
+ */
+function solidTrace(solid, axes, order) {
+  const isSphere = solid.balls.length === 1,
+    isCylinder = solid.balls.length === 2;
+  const along = solid.balls.find((ball) => ball.length === 1)?.[0] ?? 2;
+  const [across, up] = [0, 1, 2].filter((axis) => axis !== along);
+  const rings = isSphere // [radius, height] of the unit solid
+    ? Array.from({ length: 25 }, (_, k) => [Math.sin((k * Math.PI) / 24), -Math.cos((k * Math.PI) / 24)])
+    : [[0, -1], [1, -1], [1, 1], [0, 1]];
+  const outline = unitOutline(isSphere || isCylinder),
+    n = outline.length;
+  const points = rings.flatMap(([radius, height]) =>
+    outline.map(([u, v]) => {
+      const unit = [];
+      [unit[across], unit[up], unit[along]] = [radius * u, radius * v, height];
+      return unit.map((value, axis) => solid.centre[axis] + (value * solid.extents[axis]) / 2);
+    }),
+  );
+  const triangles = rings.slice(1).flatMap((_, ring) =>
+    outline.flatMap((_, k) => {
+      const [a, b] = [ring * n + k, ring * n + ((k + 1) % n)];
+      return [[a, b, a + n], [b, b + n, a + n]];
+    }),
+  );
+  const drawn = order.map((axis) => points.map((point) => point[axis] * shownScale(axes[axis].unit)));
+  return {
+    type: "mesh3d",
+    ...Object.fromEntries(drawn.map((values, k) => ["xyz"[k], values])),
+    ...Object.fromEntries([0, 1, 2].map((corner) => ["ijk"[corner], triangles.map((triangle) => triangle[corner])])),
+    name: label(solid.name),
+    color: solidColour,
+    hovertemplate: label(solidText(solid)) + "<extra></extra>",
+    lighting: { ambient: 0.7, diffuse: 0.5, specular: 0.1 },
+    flatshading: true,
+  };
+}
+
+/** Line trace of the outline of a solid on the plane of a slice; no trace if the slice misses the solid. */
+function solidOutlines(design, { fixed, across, up, value }) {
+  return (design.solids ?? []).flatMap((solid) => {
+    const ballOf = (axis) => solid.balls.findIndex((ball) => ball.includes(axis));
+    const offset = fixed === undefined ? 0 : (2 * (value - solid.centre[fixed])) / solid.extents[fixed];
+    if (Math.abs(offset) > 1) return [];
+    const outline = unitOutline(ballOf(across) === ballOf(up));
+    const line = [across, up].map((axis, k) => {
+      const share = ballOf(axis) === ballOf(fixed) ? Math.sqrt(1 - offset * offset) : 1;
+      return [...outline, outline[0]].map(
+        (point) => (solid.centre[axis] + (share * point[k] * solid.extents[axis]) / 2) * shownScale(design.axes[axis].unit),
+      );
+    });
+    return {
+      type: "scatter",
+      mode: "lines",
+      x: line[0],
+      y: line[1],
+      name: label(solid.name),
+      line: { color: solidColour, width: 3 },
+      hovertemplate: label(solidText(solid)) + "<extra></extra>",
+      showlegend: false,
+    };
+  });
+}
+
 /** @param relativeLength  relative to the longest axis; a shorter axis gets fewer tick labels */
 function sceneAxis(title, range, relativeLength = 1) {
   return {
@@ -168,10 +248,14 @@ function showWorkspace(study, panel) {
       title: design.name[0].toUpperCase() + design.name.slice(1),
       size,
       height: 520,
+      ...(design.solids ? { caption: `The ${design.solids.map(solidText).join("; ")}.` } : {}),
       make(distance) {
         const info = current();
         return {
-          data: [surfaceTrace(design, info.name, fieldRange(designs, info.name), order)],
+          data: [
+            surfaceTrace(design, info.name, fieldRange(designs, info.name), order, design.solids ? { opacity: 0.3 } : {}),
+            ...(design.solids ?? []).map((solid) => solidTrace(solid, design.axes, order)),
+          ],
           layout: { scene: workspaceScene(designs, order, distance), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
         };
       },
@@ -187,16 +271,20 @@ function showWorkspace(study, panel) {
       title: isVolume ? "Slice of " + design.name : design.name[0].toUpperCase() + design.name.slice(1),
       size,
       height: 440,
-      caption: order.length > 1 ? "Cells in colour, contour lines in white." : "Values at the centres of the cells.",
+      caption:
+        (order.length > 1 ? "Cells in colour, contour lines in white." : "Values at the centres of the cells.") +
+        (design.solids && !isVolume ? ` The ${design.solids.map(solidText).join("; ")}.` : ""),
       make() {
         const info = current();
-        return cellsPlot(designs, design, design.slice(info.name, slice, slice.layer(design)), slice.across, slice.up, {
+        const plot = cellsPlot(designs, design, design.slice(info.name, slice, slice.layer(design)), slice.across, slice.up, {
           range: fieldRange(designs, info.name),
           title: info.name ? fieldTitle(info.name) : "feasible",
           unit: info.unit === "mixed" ? "1" : info.unit,
           lines: names.length > 0,
           bar: names.length > 0,
         });
+        plot.data.push(...solidOutlines(design, slice));
+        return plot;
       },
     }),
   );
