@@ -70,7 +70,7 @@ TEST(ExpressionErrors, Objectives) {
        "all tables"},
       {"expression = \"a\"\nmin = 1",
        "s.toml:10: objective[1].min: found an unknown key; expected one of type, name, "
-       "direction, region, expression, unit, characteristic_length, sharpness"},
+       "direction, region, robust, expression, unit, characteristic_length, sharpness"},
       {"expression = \"conditioning_min\"\nsharpness = 100", "accepted"},
       {"expression = \"a\"\nunit = \"N m/rad\"", "accepted"},
   };
@@ -98,7 +98,7 @@ TEST(ExpressionErrors, Constraints) {
        "s.toml:9: constraint[1]: the formula \"a +\" ends where a number, a name or '(' is "
        "expected"},
       {"expression = \"a\"\nmx = 3",
-       "s.toml:12: constraint[1].mx: found an unknown key; expected one of type, name, expression, unit, "
+       "s.toml:12: constraint[1].mx: found an unknown key; expected one of type, name, robust, expression, unit, "
        "characteristic_length, sharpness, min, max; did you mean 'max'?"},
       {"expression = \"a\"\n[[constraint]]\ntype = \"expression\"\nexpression = \"b\"",
        "s.toml:12: constraint[2]: the name 'expression' is already used; give this one another name with name = "

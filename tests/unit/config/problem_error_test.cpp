@@ -149,7 +149,7 @@ TEST(ProblemErrors, Constraints) {
            "did "
            "you mean 'reach'?"},
           {"[[constraint]]\ntype = \"reach\"\nbound = 1",
-           "s.toml:9: constraint[1].bound: found an unknown key; expected one of type, name"},
+           "s.toml:9: constraint[1].bound: found an unknown key; expected one of type, name, robust"},
           {"[[constraint]]\ntype = \"linear\"\nbound = 1",
            "s.toml:7: constraint[1].coefficients: found nothing; expected a table of numbers, { name = number, ... }"},
           {"[[constraint]]\ntype = \"linear\"\ncoefficients = { q = 1 }\nbound = 1",
