@@ -263,7 +263,8 @@ void DesignProblem::evaluate_machines(std::span<const double> parameters,
                                       std::optional<std::span<const std::size_t>> by, Scratch& scratch) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr std::size_t kMachinesPerCheck = 64;  // of microseconds; the evaluation of a longer one checks by itself
-  const auto& [tolerances, problem] = *parts_.built;
+  const ToleranceModel& tolerances = parts_.built->tolerances;
+  const std::shared_ptr<const DesignProblem>& problem = parts_.built->problem;
   Buffers& buffers = scratch.get<Buffers>();
   MachineValues& values = buffers.machines;
   values.machines = tolerances.samples;
