@@ -23,7 +23,7 @@ void report_gradients(const std::vector<Parameter>& parameters, const std::vecto
     return g.by[i] * display_unit(parameters[i].unit).size;
   };
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return std::fabs(per_unit(gradients[0], i)); });
-  std::vector<Row> rows = {{"", "per"}};
+  std::vector<Row> rows = {{"", "per unit"}};
   for (const QuantityGradient& g : gradients) rows[0].push_back(g.name + (g.unit == "1" ? "" : " [" + g.unit + "]"));
   for (const std::size_t i : order) {
     if (std::ranges::all_of(gradients, [i](const QuantityGradient& g) { return g.by[i] == 0; })) continue;

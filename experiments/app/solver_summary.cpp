@@ -93,13 +93,13 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
   const std::string of = objective.name + (objective.unit == "1" ? "" : " [" + objective.unit + "]");
   std::string text = "first-order optimality " + formatted("%.1e", record.optimality) + '\n';
   if (!record.active.empty()) {
-    std::vector<Row> rows = {{"", "", "per", "multiplier"}};
+    std::vector<Row> rows = {{"", "", "per unit", "multiplier"}};
     for (const ActiveRecord& a : sorted_within_units(record.active, [](const ActiveRecord& a) { return a.multiplier; }))
       rows.push_back(
           {a.name, a.kind, display_unit(a.unit).name, formatted("%.4g", a.multiplier * display_unit(a.unit).size)});
     text += format_titled_table("active constraints, and the gain of " + of + " if they are relaxed", rows);
   }
-  std::vector<Row> rows = {{"", "", "per", "as built", "reoptimised"}};
+  std::vector<Row> rows = {{"", "", "per unit", "as built", "reoptimised"}};
   for (const SensitivityRecord& s : sorted_within_units(without_residuals(record.sensitivities), influence)) {
     const bool varies = std::isnan(s.reoptimised);
     const auto text_of = [size = display_unit(s.unit).size](double value) {
