@@ -49,7 +49,7 @@ class Capture {
 /// @param command  path of the program and its arguments
 /// @param folder   working folder of the program
 inline ProgramResult run_program(const std::vector<std::string>& command, const std::string& folder = ".",
-                                 std::chrono::seconds time_limit = std::chrono::seconds(60)) {
+                                 std::chrono::seconds time_limit = std::chrono::seconds(240)) {
   std::vector<char*> argv;
   for (const auto& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
