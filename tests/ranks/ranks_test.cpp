@@ -257,15 +257,15 @@ TEST_F(Ranks, KilledAndResumedWithAnotherNumberGiveTheSameFile) {
 
 TEST_F(Ranks, KilledInSolversAndResumedWithAnotherNumberGiveTheSameFile) {
   write_toml(
-      "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"sbplx\"\nstart = \"none\"\nmultistart = 12\n"
-      "evaluations = 60\n[checkpoint]\nevery = 0\n",
+      "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"sbplx\"\nstart = \"none\"\nmultistart = 8\n"
+      "evaluations = 30\n[checkpoint]\nevery = 0\n",
       head_for_solvers() + kVolume);
   expect_resumable_after_kills();
 }
 
 TEST_F(Ranks, MechanismFileGivesTheSameFileAlsoIfItIsRemoved) {
   fs::copy(PKM_EXPERIMENTS "/mechanisms/linear-delta.toml", path("delta.toml"));
-  write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 60\n[checkpoint]\nevery = 0\n",
+  write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 30\n[checkpoint]\nevery = 0\n",
              R"([mechanism]
 file = "delta.toml"
 [variables]
