@@ -31,7 +31,8 @@ nitpick_ignore_regex = [
     ("cpp:identifier", r"u?int\d+_t|size_t|pkm|S|N|pkm::Abilities"),
     ("cpp:identifier", r"(Dual|Dual4|VoxelGrid|AxisVector|AxisMatrix|Vector|Matrix|MatrixUpTo|MatrixOf|SmallMatrix|"
                        r"Capsule|Scratch|SourceText|StartOutcome|UnmergedRun|StopReason|Front|kMaxJoints|Obstacles|"
-                       r"TimeGraph|ConfigValue|TomlValue|LargestSolidFinder|expression)"
+                       r"TimeGraph|ConfigValue|TomlValue|LargestSolidFinder|SampledValue|BuiltMachines|LimbCopy|Yield|"
+                       r"ToleranceModel|expression)"
                        r"(<.*>|::.*)?"),
 ]
 

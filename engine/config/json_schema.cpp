@@ -102,7 +102,7 @@ Json schema_of(const OptionSpec& spec) {
       schema = {{"type", "object"}, {"additionalProperties", {{"type", {"number", "string"}}}}};
       break;
     case OptionKind::formula:
-      schema = {{"type", {"number", "string"}}};
+      schema = spec.count == 3 ? Json{{"type", "string"}} : Json{{"type", {"number", "string"}}};
       add_bounds(spec, schema);
       break;
     case OptionKind::list:

@@ -57,7 +57,7 @@ inline OptionSpec vector_key(const std::string& name, const std::string& unit, c
           .kind = OptionKind::any_of,
           .unit = unit,
           .meaning = meaning,
-          .parts = {formulas_key("", unit, 3, ""), formula_key("", unit, "")}};
+          .parts = {formulas_key("", unit, 3, ""), {.kind = OptionKind::formula, .unit = unit, .count = 3}}};
 }
 
 inline OptionSpec point_key(const std::string& name, const std::string& meaning) {

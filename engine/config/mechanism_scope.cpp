@@ -116,31 +116,32 @@ constexpr const char* kDirection =
 }  // namespace
 
 Vector3 MechanismScope::vector(const ConfigValue& value, const std::string& unit, const std::string& what,
-                               const char* expected) {
+                               const char* expected, bool depends_on_pose) {
   if (value.is_text()) {
     const Value found = formula_of_any_kind(value, unit, what);
-    if (const Vector3* const v = std::get_if<Vector3>(&found)) return *v;
-    throw value.error_of(expression::kind_of(found) + ", the value of this formula", expected);
+    const Vector3* const v = std::get_if<Vector3>(&found);
+    if (!v) throw value.error_of(expression::kind_of(found) + ", the value of this formula", expected);
+    if (!depends_on_pose) refuse_pose(value, *v);
+    return *v;
   }
   const std::vector<ConfigValue> elements = value.elements(expected);
   if (elements.size() != 3) throw value.error(expected);
-  const auto element = [&](std::size_t i) { return formula(elements[i], unit, what); };
+  const auto element = [&](std::size_t i) {
+    return depends_on_pose ? formula(elements[i], unit, what) : of_design(elements[i], unit, what);
+  };
   return {element(0), element(1), element(2)};
 }
 
 Vector3 MechanismScope::point(const ConfigValue& value, const std::string& what) {
-  return vector(value, "m", what, kPoint);
+  return vector(value, "m", what, kPoint, true);
 }
 
 Vector3 MechanismScope::point_of_design(const ConfigValue& value, const std::string& what) {
-  const Vector3 point = vector(value, "m", what, kPoint);
-  refuse_pose(value, point);
-  return point;
+  return vector(value, "m", what, kPoint, false);
 }
 
 Vector3 MechanismScope::direction(const ConfigValue& value, const std::string& what) {
-  const Vector3 v = vector(value, "1", what, kDirection);
-  refuse_pose(value, v);
+  const Vector3 v = vector(value, "1", what, kDirection, false);
   const Term length = limbs::length(v);
   if (!(at_default(length) > 0)) throw value.error(kDirection);
   mark_as_defined(length.node());

@@ -70,7 +70,7 @@ class MechanismScope {
 
  private:
   limbs::Vector3 vector(const ConfigValue& value, const std::string& unit, const std::string& what,
-                        const char* expected);
+                        const char* expected, bool depends_on_pose);
   /// Refuses a value that depends on the pose.
   void refuse_pose(const ConfigValue& value, std::span<const limbs::Term> terms) const;
 

@@ -45,11 +45,11 @@ namespace pkm {
 namespace {
 
 /// Studies whose evaluations do not allocate. Drive forces and pose reports of the generic engine do, and so do
-/// motions, obstacles, discontinuities of columns, which limits of quantities can cause, and the search for the
-/// component of a home pose.
+/// motions, obstacles, discontinuities of columns, which limits of quantities can cause, the search for the component
+/// of a home pose, and statistics over built machines.
 std::vector<std::string> experiments() {
   const std::set<std::string> excluded = {"motions",    "mechanisms",   "motors", "obstacles",
-                                          "quantities", "connectivity", "tasks"};  // folders
+                                          "quantities", "connectivity", "tasks",  "tolerances"};  // folders
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
     if (entry.path().extension() != ".toml" || excluded.contains(entry.path().parent_path().filename().string()))

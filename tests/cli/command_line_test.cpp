@@ -41,7 +41,7 @@ TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
       {{"pose", mechanism}, "--at: found nothing; expected the pose, or --poses with a table of poses"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
-       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certified, "
+       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --samples, --certified, "
        "--designs, --csv, --force, "
        "--sensitivity, --tolerance, --threads, --workers, --instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},

@@ -68,10 +68,8 @@ TEST(CliGenerate, CppAgrees) {
 
 TEST(CliGenerate, ParametersAndSinglePrecision) {
   const std::string delta = PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml";
-  for (const std::string& mechanism : {std::string("3crr-r-cru"), delta}) {
-    expect_agreement(mechanism, {"--language", "c", "--parameters"}, kC, "20");
-    expect_agreement(mechanism, {"--language", "c", "--float"}, kC, "20");
-  }
+  expect_agreement("3crr-r-cru", {"--language", "c", "--parameters"}, kC, "20");
+  expect_agreement(delta, {"--language", "c", "--float"}, kC, "20");
   expect_agreement(delta, {"--language", "cpp", "--parameters", "--float"}, kCpp, "20");
   expect_agreement(delta, {"--language", "python", "--parameters", "--set", "l_a=220mm"}, kPython, "20");
   expect_agreement("4ppa-2par", {"--language", "c", "--mode", "upper,lower"}, kC, "20");

@@ -87,20 +87,6 @@ TEST(Quantity, LimitsAreThresholdsOfTheCommandLine) {
   EXPECT_THAT(pkmopt({"list", "objectives", "quantity"}).out, HasSubstr("statistic"));
 }
 
-TEST(Quantity, ExampleFindsTheLargestWorkspace) {
-  const StudyFolder folder;
-  const std::string file = folder.path() + "/s.h5";
-  const auto found = pkmopt({"run", kExample, "-o", file, "--quiet"});
-  ASSERT_EQ(found.exit_code, 0) << found.err;
-  const json best = pkmopt({"evaluate", "--from", file, "--json"}).json();
-  EXPECT_TRUE(best["feasible"].get<bool>());
-  EXPECT_GT(best["objectives"]["workspace-volume"].get<double>(), 0);
-  EXPECT_GE(best["constraints"]["transmission-mean"].get<double>(), -1e-9);
-  EXPECT_LE(best["outputs"]["pressure_angle-p95"].get<double>(), kLimit);
-  const json fields = pkmopt({"workspace", "--from", file, "--cells", "20", "--json"}).json()["fields"];
-  EXPECT_LE(fields["pressure_angle"]["greatest"].get<double>(), kLimit);
-}
-
 /// Runs a study of experiments/mechanisms/quantities.
 /// @return `evaluate --json` of the best design
 json best_of(const std::string& study, const std::string& file) {
