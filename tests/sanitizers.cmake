@@ -68,6 +68,8 @@ set(PKM_TESTS_OF_RELEASE
   PerformanceNumeric RunStudy.OutOfMemory CliLargestSolid.C CliLargestSolid.HasDerivatives CompareProgram.ValuesAre
   CompareProgram.RobotsMay CliTrajectory.FastestMotion ReportProgram.WorkspaceWrites ExportProgram.ModelsForSimulation
   DrawsTheExactError CliTrajectory.ReadsTheTable FollowsCurvedPathsWithin
+  Tolerance.Quantiles Tolerance.YieldLies CertifiedTolerances.OfMechanismFiles ChoiceFromACatalogue.Is
+  PoseBox.OnlyTheBalls CliLargestSolid.IsCertified Tolerances.OfFree
   Connect.HomePoseSelectsOneSide NanIsFailedAndNeverBest/ipopt RespectsBounds/ipopt CatalogueMdIsUpToDate NumberOfThreadsFromEnvironment)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.

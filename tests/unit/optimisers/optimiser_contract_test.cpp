@@ -99,7 +99,9 @@ TEST_P(OptimiserContract, ResumingAfterAnyGenerationIsBitIdentical) {
   const auto problem = this->problem();
   const auto optimiser = make_short(problem);
   const Outcome uninterrupted = run(*optimiser, problem, 9);
-  for (const std::int64_t last : uninterrupted.recorder.numbers) {
+  const auto& numbers = uninterrupted.recorder.numbers;
+  for (std::size_t k = 0; k < numbers.size(); k += 1 + numbers.size() / 12) {  // solvers have a hundred
+    const std::int64_t last = numbers[k];
     const Outcome stopped = run(*optimiser, problem, 9, last);
     if (last != uninterrupted.recorder.numbers.back()) {
       EXPECT_EQ(stopped.result.reason, StopReason::interrupted);

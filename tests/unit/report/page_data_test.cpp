@@ -215,7 +215,7 @@ TEST(PageData, MotionsIncludeQuantitiesOfTheMotion) {
       motion_from_formulas({formula("-0.01*t"), formula("0.01*t"), formula("0.25"), formula("0.1*sin(t)")}, 5),
       {formula("t"), formula("0"), formula("0")});
   const ShownDesigns views = evaluate_shown_designs(*mechanism, test::voxels(info, 6), info.modes.front(),
-                                                    {{"turns", motion}}, {"nominal", test::nominal(info)});
+                                                    {{{"turns", motion}}}, {"nominal", test::nominal(info)});
   const json page = json::parse(json_text(motions_data(views))),
              &columns = page["motions"][0]["designs"][0]["quantities"];
   const auto is_of_motion = [](const QuantityInfo& quantity) { return quantity.of_motion; };
@@ -235,7 +235,7 @@ TEST(PageData, MotionsIncludeQuantitiesOfTheMotion) {
   const auto rest = motion_from_formulas({formula("0.15"), formula("0.2"), formula("0.21"), formula("0.1*sin(t)")}, 5);
   const json none = json::parse(json_text(
       motions_data(evaluate_shown_designs(*without, test::voxels(without->info(), 6), without->info().modes.front(),
-                                          {{"turns", rest}}, {"nominal", test::nominal(without->info())}))));
+                                          {{{"turns", rest}}}, {"nominal", test::nominal(without->info())}))));
   EXPECT_TRUE(none["quantities"].empty());
   EXPECT_TRUE(none["motions"][0]["designs"][0]["quantities"].empty());
 }
