@@ -113,6 +113,41 @@ z = "-500 mm"
   EXPECT_NEAR(at.velocity[1], -0.05 * 2 * kPi * std::sin(0.2 * kPi), 1e-14);
 }
 
+// At the fraction s of the duration T, x = reach/2 sin(2 pi s); the velocity is proportional to 1/T, and the
+// acceleration to 1/T^2.
+TEST(MotionWithParameters, HasSamplesWithDerivativesToElevenDigits) {
+  const Study study = moving_study(kMotionParameters + R"toml([[motion]]
+name = "cycle"
+type = "formulas"
+duration = "T"
+x = "reach/2*sin(2*pi*t/T)"
+y = "0"
+z = "-500 mm"
+)toml");
+  const std::vector<double>& values = study.problem->parts().parameters;
+  std::vector<Dual4> design(values.begin(), values.end());
+  constexpr double kT = 0.4, kReach = 0.3;
+  design[values.size() - 2] = Dual4::variable(kT, 0);
+  design.back() = Dual4::variable(kReach, 1);
+  constexpr std::size_t kSamples = 8;
+  const auto samples = sample_with_derivatives(study.motions[0], design, kSamples);
+  for (std::size_t k = 1; k < kSamples - 1; ++k) {
+    const DualMotionSample& at = samples[k];
+    const double s = at.time.a / kT, omega = 2 * kPi / kT, x = kReach / 2 * std::sin(2 * kPi * s),
+                 v = kReach / 2 * omega * std::cos(2 * kPi * s), a = -omega * omega * x;
+    const auto expect = [](double found, double expected) {
+      EXPECT_NEAR(found, expected, 1e-11 * std::fmax(1, std::fabs(expected)));
+    };
+    expect(at.time.v[0], s);
+    expect(at.pose[0].v[0], 0);
+    expect(at.velocity[0].v[0], -v / kT);
+    expect(at.acceleration[0].v[0], -2 * a / kT);
+    expect(at.pose[0].v[1], x / kReach);
+    expect(at.velocity[0].v[1], v / kReach);
+    expect(at.acceleration[0].v[1], a / kReach);
+  }
+}
+
 TEST(MotionWithParameters, MayBeAFile) {
   const Study study = moving_study(kMotionParameters + table_of_cycle("0.2", "0", "0.1"));
   const MotionNames names = motion_names(*study.problem->parts().mechanism, study.problem->parts().parameters);
