@@ -1,8 +1,11 @@
 // `pkmopt tolerances`: the largest deviations of a design's parameters within which every robot is proved to do a task.
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
+#include "engine/config/mechanism_file.hpp"
+#include "engine/config/text_file.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/core/unit.hpp"
@@ -63,28 +66,28 @@ double size_of(const Deviation& deviation, const Parameter& parameter) {
   return *size;
 }
 
+/// The text of the target's mechanism file; std::nullopt for a built-in mechanism.
+std::optional<SourceText> description_of(const Target& target, const std::string& name) {
+  if (target.study) return target.study->description;
+  if (!looks_like_file(name)) return {};
+  return SourceText{read_text_file(name, "a mechanism in TOML"), name};
+}
+
 /// The parameters of single limbs for --copies: of every limb that uses them, those that --of names, by default all
-/// lengths. Limbs are found by the names of their joints.
-std::vector<std::string> copied_parameters(const Session& session, const TolerancesArguments& arguments,
-                                           const MechanismInfo& info) {
-  std::vector<std::string> common = assigned_names(arguments.of), copied;
-  if (common.empty())
-    for (const Parameter& parameter : info.parameters)
-      if (parameter.unit == "m") common.push_back(parameter.name);
-  for (const std::string& parameter : common)
-    for (const std::string& limb : names_of(info.joints)) {
-      if (parameter.find('.') != std::string::npos) continue;
-      DesignArguments trial = arguments;
-      trial.changes.limb_parameters = {limb + "." + parameter};
-      try {
-        if (find_named(find_target(session, trial).info().parameters, limb + "." + parameter))
-          copied.push_back(limb + "." + parameter);
-      } catch (const ConfigError&) {  // the limb does not use the parameter
-      }
-    }
+/// lengths.
+std::vector<std::string> copied_parameters(const TolerancesArguments& arguments, const Target& target) {
+  const MechanismInfo& info = target.info();
+  const std::vector<std::string> given = assigned_names(arguments.of);
+  std::vector<std::string> common, copied;
+  for (const Parameter& parameter : info.parameters)
+    if (parameter.name.find('.') == std::string::npos &&
+        (given.empty() ? parameter.unit == "m" : contains(given, parameter.name)))
+      common.push_back(parameter.name);
+  if (const auto description = description_of(target, arguments.target))
+    for (const LimbParameter& copy : limb_copies(description->text, description->file_name, common, {}))
+      copied.push_back(copy.name());
   if (copied.empty())
-    throw ConfigError({"", 0, "--copies"},
-                      "no limb of " + info.name + " has the name of its joint and uses these parameters",
+    throw ConfigError({"", 0, "--copies"}, "no limb of " + info.name + " that uses these parameters",
                       "a mechanism file with such limbs, or --of LIMB.NAME without --copies");
   return copied;
 }
@@ -167,7 +170,7 @@ std::string tolerances(const Session& session, const Target& common, TolerancesA
   for (const std::string& name : assigned_names(arguments.of))
     if (name.find('.') != std::string::npos) own.push_back(name);
   if (arguments.copies) {
-    const std::vector<std::string> copied = copied_parameters(session, arguments, common.info());
+    const std::vector<std::string> copied = copied_parameters(arguments, common);
     own.insert(own.end(), copied.begin(), copied.end());
     arguments.of = with_copies(arguments.of, copied);
   }
