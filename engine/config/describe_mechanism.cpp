@@ -4,8 +4,6 @@
 #include <set>
 #include <sstream>
 
-#include <Eigen/SVD>
-
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/mechanism_mobility.hpp"
 #include "engine/core/catalogue.hpp"
@@ -13,6 +11,7 @@
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "engine/mechanism/availability.hpp"
 #include "engine/mechanism/sampled_poses.hpp"
 

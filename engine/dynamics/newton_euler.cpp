@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/QR>
-
 #include "engine/dynamics/pose_dynamics.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm {
 namespace {

@@ -7,10 +7,10 @@
 #include <stdexcept>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include "engine/generic/mechanism.hpp"
 #include "engine/generic/newton_euler.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm::generic {
 namespace {

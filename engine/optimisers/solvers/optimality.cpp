@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/QR>
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm {
 namespace {
