@@ -4,8 +4,9 @@
 namespace pkm::expression {
 namespace {
 
-/// Calls visit(x), where x(k) loads the kLanes values of the operand from index k on: either consecutive values of a
-/// row, or a single number in all lanes. The distinction is thus made once per step, not once per value.
+/// Calls visit(x) with a function x that loads the values of an operand: x(k) is the SIMD vector of elements k, k + 1,
+/// ... of the operand's row or, if the operand is a single number, this number in all lanes. The function is thus
+/// selected once per step, not once per value.
 template <class L, class Visit>
 [[gnu::always_inline]] inline void with_operand(const Operand& operand, const double* registers, const double* rows,
                                                 const Visit& visit) {

@@ -72,8 +72,9 @@ Term Rates::differentiate(Node node) {
   if (name == "log10") return dx / (x * call(operation("log"), Term(graph_, 10.0)));
   if (name == "^") {
     const Term y = argument(1);
-    // Fold y - 1 here if the result is exact. It is then a constant even in graphs whose other constants have been
-    // replaced by inputs (without_numbers).
+    // The derivative y x^(y - 1) of x^y needs the exponent y - 1. If y is a constant and the difference is exact,
+    // compute it here: it is then a constant even in a graph whose other constants have been replaced by inputs
+    // (without_numbers).
     const double reduced = graph_[y.node()].number - 1;
     const bool exact = graph_[y.node()].is_number() && reduced + 1 == graph_[y.node()].number;
     const Term by_base = dx.is(0) ? zero : y * call(operation("^"), x, exact ? Term(graph_, reduced) : y - one) * dx;

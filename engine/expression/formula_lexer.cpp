@@ -15,7 +15,7 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
-/// Whether a value can have a part of this name; see part_of().
+/// True if `name` is that of a part of a vector (x, y, z) or of a frame (origin, R); see part_of().
 bool is_part(const std::string& name) {
   return name == "x" || name == "y" || name == "z" || name == "origin" || name == "R";
 }
@@ -46,7 +46,7 @@ class Lexer {
   }
 
  private:
-  /// An open parenthesis or bracket.
+  /// A parenthesis or bracket that is not closed yet.
   struct Open {
     std::size_t token;  ///< index of the token
     bool is_list;       ///< true: the arguments of a function, or the elements of a vector; false: groups a term
@@ -123,7 +123,8 @@ class Lexer {
     }
     if (calls) return {.text = word, .position = i, .function = function};
     if (function) refuse(text_, "has no arguments in parentheses after the function " + quote(word, i));
-    // The longest name: arm1.C rather than arm1. What follows it are parts of its value.
+    // Choose the longest known name: arm1.C rather than arm1. A word after a further dot denotes a part of the
+    // variable's value, such as x in arm1.C.x.
     while (end + 1 < text_.end() && *end == '.' && is_name_start(end[1])) {
       const auto longer = end_of_word(end + 1);
       const auto longer_index = names_.find({begin, longer});
@@ -137,7 +138,8 @@ class Lexer {
     return {.text = word, .position = i, .name = index};
   }
 
-  /// Lists either the names with dots or those without, as the unknown name is.
+  /// Reports an unknown name and lists the known names: those with dots if the unknown name has one, otherwise those
+  /// without dots.
   [[noreturn]] void refuse_unknown(const std::string& word, std::size_t i) const {
     const auto has_dot = [](const std::string& name) { return name.find('.') != std::string::npos; };
     std::vector<std::string> names;

@@ -14,19 +14,20 @@ namespace pkm::expression {
 
 struct Token {
   std::string text;
-  std::size_t position = 0;                         ///< position of its first character, from 0
-  std::optional<double> number = {};                ///< value of a number
-  std::optional<std::size_t> name = {};             ///< index of a variable
+  std::size_t position = 0;                         ///< position in the formula of the token's first character, from 0
+  std::optional<double> number = {};                ///< the value, if the token is a number
+  std::optional<std::size_t> name = {};             ///< index of the variable, if the token is its name
   const Operation* function = nullptr;              ///< called function of scalars; the next token is its '('
   const VectorFunction* vector_function = nullptr;  ///< called function of vectors; the next token is its '('
-  std::string part = "";                            ///< "x" of ".x": a part of the value before it
+  std::string part = "";  ///< "x" for the token ".x", which selects this part of the preceding value; otherwise ""
 };
 
 /// True if a variable of a formula can have this name: letters, digits and '_', not beginning with a digit, and neither
 /// `pi` nor a function.
 bool may_be_name(const std::string& name);
 
-/// Throws std::invalid_argument with the formula's text and the predicate `error`: the formula "a +" ends where ...
+/// Throws std::invalid_argument with the message: the formula "TEXT" ERROR.
+/// @param error  the predicate of this sentence, such as "has the unknown name 'x' at character 3"
 [[noreturn]] void refuse(const std::string& text, const std::string& error);
 /// A token with its position, for messages: "'x' at character 3". @param position  position of the first character,
 /// from 0; printed from 1

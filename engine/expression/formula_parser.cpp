@@ -40,18 +40,18 @@ class Parser {
   }
 
  private:
-  /// An element of the operator stack.
+  /// An element of the operator stack: an operator, a function call, or a parenthesis or bracket that is still open.
   struct Pending {
     enum class Kind { operation, parenthesis, bracket, question, colon };
     Kind kind;
-    const Token* token;                    ///< the operator; of the arguments of a function: its name
+    const Token* token;  ///< the operator, parenthesis or bracket; for a function call, the function's name
     const Operation* operation = nullptr;  ///< null for a parenthesis that only groups, and for a bracket
     std::size_t count = 0;                 ///< number of arguments or elements so far
   };
   using Kind = Pending::Kind;
   struct Operand {
     FormulaValue value;
-    const Operation* from;  ///< operation that computed the value; null: another value
+    const Operation* from;  ///< operation that computed the value; null: a number, a variable or a vector
   };
 
   void push_token(const Token& token) {
@@ -118,7 +118,7 @@ class Parser {
     }
   }
 
-  /// The last `count` operands.
+  /// Removes the last `count` operands from the value stack. @return these operands, in their order
   std::vector<Operand> take(std::size_t count) {
     const auto first = values_.end() - static_cast<std::ptrdiff_t>(count);
     std::vector<Operand> operands(first, values_.end());
@@ -183,7 +183,7 @@ class Parser {
     wants_operand_ = false;
   }
 
-  /// Refuses arguments of kinds for which an operation is not defined.
+  /// Reports that an operation is not defined for arguments of these kinds (scalar, vector, rotation, frame).
   [[noreturn]] void refuse_kinds(const Pending& called, const std::vector<FormulaValue>& values) const {
     const std::string token = quote(called.token->text, called.token->position);
     if (called.operation->rank == 0 && !(*called.operation == choice())) {

@@ -21,9 +21,11 @@ Node read_formula(Graph& graph, const std::string& text, const Names& names, std
 
 struct ParsedFormula {
   FormulaValue value;
-  std::vector<Node> norms;  ///< norms of vectors that it contains: square roots that always exist
+  std::vector<Node> norms;  ///< nodes of the vector norms in the formula: square roots that are defined for all
+                            ///< arguments
 };
-/// Parses a formula of any kind whose names may have values of any kind. Throws as read_formula() does.
+/// Parses a formula whose value and whose variables may be scalars, vectors, rotations or frames. Throws as
+/// read_formula() does.
 /// @param value_of  the value of a name, by its index in `names`
 ParsedFormula parse_formula(Graph& graph, const std::string& text, const Names& names,
                             const std::function<FormulaValue(std::size_t)>& value_of);

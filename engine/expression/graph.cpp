@@ -123,7 +123,8 @@ Graph rebuild(const Graph& graph, const std::vector<Node>& order, std::vector<No
   return made;
 }
 
-/// The element of `by_input` for an input; std::nullopt if the node is no input, or if its input is not to be replaced.
+/// Element `i` of `by_input` for the node of input i; std::nullopt if the node is no input or `by_input` has no such
+/// element.
 template <class T>
 std::optional<T> replacement(const Entry& entry, std::span<const std::optional<T>> by_input) {
   const auto input = static_cast<std::size_t>(entry.input);

@@ -81,7 +81,7 @@ class NormalForm {
  private:
   using Clauses = std::optional<std::vector<Clause>>;
 
-  /// The operands whose radical forms combine_forms() needs.
+  /// The operands of a node whose radical forms combine_forms() needs to find that of the node.
   std::vector<Node> operands_of_form(Node node) const {
     const Entry& entry = graph_[node];
     if ((entry.groups & z_) == 0 || !entry.operation) return {};
@@ -252,7 +252,7 @@ class NormalForm {
       return {};
     return SquareBound{Y, Term(graph_, square.arguments[0])};
   }
-  /// X + sqrt(P) or X - sqrt(P), where X does not depend on z.
+  /// X + sqrt(P) or X - sqrt(P), where the term X does not depend on z, and P is any node.
   struct RootSum {
     Term X;
     bool plus;  ///< true: X + sqrt(P); false: X - sqrt(P)
@@ -355,7 +355,8 @@ class NormalForm {
     return RadicalForm{sum(*AA, *BBQ), sum(*AB, *BA), radical.radicand, radical.Q};
   }
 
-  /// One clause; std::nullopt if the degree of a polynomial is too high.
+  /// The constraint that at least one of these polynomials is >= 0, as a list of one clause; std::nullopt if a
+  /// polynomial exceeds the maximum degree.
   Clauses clause(const std::vector<Coefficients>& polynomials) {
     Clause made;
     for (const Coefficients& p : polynomials) {

@@ -38,7 +38,8 @@ using Clause = std::vector<Polynomial>;
 /// @param degree   maximum degree of the polynomials, 2 or 4
 /// @param squares  also factor Y - u^2 = (sqrt(Y) - u) (sqrt(Y) + u), where u may contain a root, and constraints that
 ///                 contain the root of such a difference; this converts more constraints, to more clauses
-/// @return clauses, all of which hold if and only if f >= 0, wherever f is defined; std::nullopt if f has no such form
+/// @return the clauses: f >= 0 if and only if all of them are satisfied, wherever f is defined; std::nullopt if f has
+///         no such form
 std::optional<std::vector<Clause>> polynomial_clauses(Graph& graph, Node f, Groups z, std::size_t degree = 2,
                                                       bool squares = false);
 

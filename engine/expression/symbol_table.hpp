@@ -16,7 +16,7 @@ class Names {
     for (const std::string& name : names) add(name);
   }
 
-  /// Whether messages about unknown names list a name.
+  /// Whether error messages about an unknown name list this name among the known ones.
   enum class Listing { always, never };
   /// Appends a name that is not in the table yet.
   void add(const std::string& name, Listing listing = Listing::always) {

@@ -11,14 +11,15 @@ namespace {
 /// expansion along their last rows.
 class Minors {
  public:
-  /// @param excluded_row  index of a row that is excluded from all submatrices; A.rows(): none is excluded
+  /// @param excluded_row  index of a row of A that the submatrices do not use; A.rows(): they use all rows
   Minors(const TermMatrix& A, std::size_t excluded_row) : A_(A) {
     for (std::size_t i = 0; i < A.rows(); ++i)
       if (i != excluded_row) rows_.push_back(i);
     known_.emplace(0U, Term(A.graph(), 1.0));
   }
 
-  /// Determinant of a submatrix. @param columns  set of its columns, one bit each; it has as many rows as columns
+  /// Determinant of the first k rows (without the excluded one) and the k columns of a set. @param columns  the set:
+  /// bit j represents column j of A
   Term of(unsigned columns) {
     if (const auto found = known_.find(columns); found != known_.end()) return found->second;
     const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
@@ -177,7 +178,8 @@ Term greatest_eigenvalue(const TermMatrix& A) {
     for (std::size_t i = 1; i < of.rows(); ++i) sum = sum + of(i, i);
     return sum;
   };
-  // log lambda = sum of log(t_k) / 2^k, where t_k is the trace of the k-th power before it is divided by its trace
+  // By repeated squaring of A with the trace scaled to 1: for the maximum eigenvalue lambda, log lambda = sum of
+  // log(t_k) / 2^k, where t_k is the trace of the k-th square before it is scaled.
   TermMatrix power = A;
   Term sum = Term(A.graph(), 0.0);
   for (int k = 0; k <= kSquarings; ++k) {
