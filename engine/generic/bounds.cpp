@@ -15,7 +15,8 @@ namespace {
 
 using bounds::Ranges;
 
-/// The graph's inputs for a design and the fixed coordinates.
+/// Values of the inputs of the mechanism's expression graph, as intervals: the parameters of a design, and the fixed
+/// coordinates.
 std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
                                 const WorkspacePlan& plan, std::size_t mode) {
   const std::vector<Interval> design(parameters.begin(), parameters.end());
@@ -61,7 +62,8 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
   const std::vector<Interval> inputs = inputs_of(mechanism, e, parameters, plan, mode);
   const IntervalConstraints constraints = interval_constraints(e.model, inputs);
 
-  // Try each coordinate as the innermost one with few boxes, and use the one that gives the smallest gap.
+  // Bound the volume with few boxes for each choice of the innermost coordinate, and keep the choice with the smallest
+  // difference between upper and lower bound.
   struct Order {
     bounds::Constraints conditions;
     Ranges ranges;
@@ -122,7 +124,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
 
 namespace {
 
-/// The graph's inputs for a design; coordinates are set to 0.
+/// Values of the inputs of the mechanism's expression graph for a design, as intervals; those of the coordinates are 0.
 std::vector<Interval> inputs_of(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
                                 std::size_t mode) {
   refuse_limits_without_formula(e.model, limits);

@@ -11,12 +11,13 @@ namespace {
 
 using expression::Program;
 
-/// Quadratics at_min, at_max, after_min, before_max of a crank's range.
+/// Four quadratics in the innermost coordinate that decide whether a crank angle is in its range: at_min, at_max,
+/// after_min and before_max of limbs::CrankRange, in this order.
 using Surfaces = std::array<expression::Polynomial, 4>;
 
 /// The constraints in polynomial normal form along the coordinate of the innermost loop.
 struct NormalisedConstraints {
-  std::vector<Node> plain;  ///< constraints that have no normal form or do not depend on the coordinate
+  std::vector<Node> plain;  ///< constraints that have no normal form or do not depend on the innermost coordinate
   std::vector<expression::Clause> clauses;
   struct Crank {
     CrankRangeNodes range;
@@ -24,8 +25,8 @@ struct NormalisedConstraints {
   };
   std::vector<Crank> cranks;
 
-  /// All nodes that the program has to compute, in the order of the members; of a polynomial, its coefficients c[0] to
-  /// c[2].
+  /// All nodes that the program has to compute: constraints, then clauses, then cranks. Each polynomial of a clause or
+  /// crank contributes its coefficients c[0] to c[2].
   std::vector<Node> outputs() const {
     std::vector<Node> all = plain;
     const auto add = [&all](const expression::Polynomial& q) { all.insert(all.end(), q.c.begin(), q.c.begin() + 3); };
@@ -71,7 +72,8 @@ void simplify(expression::Graph& graph, std::vector<expression::Clause>& clauses
   }
 }
 
-/// The four quadratics in z that decide a crank's range; std::nullopt if it cannot be decided in this way.
+/// The quadratics in z that decide whether the angle of a crank is in its range; std::nullopt if quadratics do not
+/// decide it.
 std::optional<Surfaces> surfaces_of(expression::Graph& graph, const CrankRangeNodes& crank, Groups z) {
   if ((graph[crank.reach].groups & z) == 0 || (graph[crank.half_turn].groups & ~Inputs::kDesign) != 0 ||
       !graph[crank.branch].is_number())
@@ -122,8 +124,8 @@ std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector
   return groups;
 }
 
-/// Merges a disjunction of two constraints, one of which does not depend on z, into one ColumnConstraint with an
-/// alternative.
+/// Merges a clause of two constraints, of which one does not depend on z, into a single ColumnConstraint, whose
+/// alternative is the constraint that does not depend on z. Other clauses are returned unchanged.
 /// @param all  the constraints of the clause, one per polynomial
 CellPlan::Disjunction merge_constant(const expression::Clause& clause, CellPlan::Disjunction all, Node zero) {
   if (clause.size() != 2) return all;
@@ -137,7 +139,7 @@ CellPlan::Disjunction merge_constant(const expression::Clause& clause, CellPlan:
   return {merged};
 }
 
-/// Estimated time of some steps, in units of an addition.
+/// Estimated time of executing steps of a program once, relative to the time of an addition.
 double cost_of(const std::vector<Program::Step>& steps) {
   double sum = 0;
   for (const Program::Step& step : steps) {

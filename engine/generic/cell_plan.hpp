@@ -25,9 +25,11 @@ struct CellPlan {
   /// The range of a crank (limbs::CrankRange), as constraints that are quadratic along the innermost loop.
   struct Crank {
     ColumnConstraint at_min, at_max, after_min, before_max;
-    /// Registers of two values: >= 0 if the range is at most half a revolution, and >= 0 if the limb reaches the pose.
+    /// Registers of CrankRange::half_turn (>= 0 if the range is at most half a revolution) and CrankRange::reach (>= 0
+    /// if the limb reaches the pose).
     std::uint32_t half_turn, reach;
-    bool is_first;  ///< true: the joint angle is the smaller one of the two angles that assemble
+    bool is_first;  ///< true: the smaller of the two crank angles that assemble is the joint coordinate; false: the
+                    ///< greater one
   };
 
   /// @param swept  index of the swept coordinate of each axis of the grid
@@ -40,9 +42,10 @@ struct CellPlan {
 
   std::vector<std::size_t> order;
   expression::Program program;
-  /// Registers of the constraints that each loop tests; those of stage 0 belong to `outer_constraints`.
+  /// Registers of the constraints that are tested once per iteration of the outer, middle and inner loop. Constraints
+  /// that depend on no swept coordinate are in `outer_constraints`.
   Registers outer_constraints, middle_constraints, inner_constraints;
-  Registers passed_to_inner;  ///< registers of the middle loop that the inner loop reads
+  Registers passed_to_inner;  ///< registers that the inner loop reads and the middle loop computes
   /// Constraints that bound the columns; linear ones, which are the cheapest, come first.
   std::vector<ColumnConstraint> columns;
   std::vector<Disjunction> disjunctions;
@@ -50,7 +53,7 @@ struct CellPlan {
   std::optional<expression::BatchStage> middle, inner;
 
  private:
-  /// Distributes the constraints to the loops and prepares the batches.
+  /// Assigns each constraint to the loop that tests it, and prepares the SIMD batches of the middle and inner loop.
   /// @param count  number of constraints; they are the first outputs of the program
   void set_loops(std::size_t count);
   double cost(const std::array<std::int64_t, 3>& cells) const;

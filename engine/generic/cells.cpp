@@ -134,7 +134,7 @@ bool CellTest::find_ranges(const VoxelGrid& grid, std::size_t first, std::size_t
 CellTally CellTest::tally_of_ranges(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
                                     const CellRanges& ranges) const {
   const auto cells = static_cast<double>(shape(grid)[2]);
-  double sum = 0, at_ends = 0;  // branch-free, so that the loop is vectorised
+  double sum = 0, at_ends = 0;  // without branches, so that the loop over the columns is vectorised
   const auto number = [&](std::size_t j) { return std::max(ranges.to[j] - ranges.from[j], 0.0); };
   for (std::size_t j = 0; j < count; ++j) {
     sum += number(j);
@@ -193,7 +193,7 @@ void CellTest::find_crank_bits(std::size_t i, const ColumnGrid& column_grid, std
   for (std::size_t k = 0; k < in.size(); ++k) {
     const std::uint64_t f1 = scratch.at_min[k], f2 = scratch.at_max[k];
     const std::uint64_t p1 = scratch.after_min[k], p2 = scratch.before_max[k];
-    // cells in which the angle phi, or phi + pi, is in the range of the crank
+    // bit sets of the cells in which the angle phi, or phi + pi, is in the range of the crank (see limbs::CrankRange)
     const std::uint64_t phi = is_half ? p1 & p2 : p1 | p2, opposite = is_half ? ~p1 & ~p2 : ~p1 | ~p2;
     in[k] = crank.is_first ? f1 & ~f2 : ~f1 & f2;
     if_reached[k] = (f1 & f2 & phi) | (~f1 & ~f2 & opposite);

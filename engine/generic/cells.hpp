@@ -19,7 +19,8 @@ struct CellScratch {
   expression::Rows middle_rows, rows;
   std::vector<std::uint64_t> bits;  ///< bit set of the feasible cells of a slice, if it is requested
   std::vector<std::uint64_t> any, hole, at_min, at_max, after_min, before_max;
-  /// For each crank, the cells in its range; and the cells that are in its range if the limb reaches them.
+  /// Bit sets for each crank. in_range: cells whose crank angle is in its range. if_reached: cells whose crank angle is
+  /// in its range, provided that the limb reaches them.
   std::vector<std::vector<std::uint64_t>> in_range, if_reached;
   CellRanges ranges, other;
 };
@@ -30,8 +31,8 @@ struct CellTally {
   bool touches_box = false;  ///< true: a feasible cell lies at the border of the grid
 };
 
-/// Tests the cells of a grid slice by slice: a slice is one value of the outer loop of three; its columns are those of
-/// the middle loop, their cells those of the inner loop.
+/// Finds the feasible cells of a grid, slice by slice. The three coordinates are swept by nested loops: a slice
+/// consists of the cells of one iteration of the outer loop, a column of those of one iteration of the middle loop.
 class CellTest {
  public:
   explicit CellTest(CellPlan plan) : plan_(std::move(plan)) {}
@@ -57,22 +58,25 @@ class CellTest {
   /// Finds the feasible cells of columns [first, first + count) of a slice.
   CellTally test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count, bool want_bits,
                          CellScratch& scratch) const;
-  /// Finds the ranges of cells that satisfy plan_.columns. @return true if scratch.hole contains holes in them
+  /// Finds, for each of `count` columns, the range of cells that satisfy plan_.columns. @return true if some ranges
+  /// have holes, whose cells are set in scratch.hole
   bool find_ranges(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
                    CellScratch& scratch) const;
   CellTally tally_of_ranges(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
                             const CellRanges& ranges) const;
   CellTally tally_of_bits(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
                           const std::vector<std::uint64_t>& bits) const;
-  /// Clears the bits of cells that violate a disjunction, the range of a crank or a constraint of the inner loop.
+  /// Clears the bits of those cells that violate a clause (CellPlan::disjunctions), the range of a crank or a
+  /// constraint of the inner loop.
   void clear_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
                   CellScratch& scratch) const;
   /// Finds the cells of `count` columns that satisfy one constraint.
   void bits_of(const ColumnConstraint& constraint, const ColumnGrid& column_grid, std::size_t count,
                CellScratch& scratch, std::vector<std::uint64_t>& bits) const;
-  /// Evaluates limbs::CrankRange for the cells of `count` columns.
+  /// For the cells of `count` columns, finds scratch.in_range[crank] and scratch.if_reached[crank].
   void find_crank_bits(std::size_t crank, const ColumnGrid& column_grid, std::size_t count, CellScratch& scratch) const;
-  /// Tests the constraints of the inner loop for the cells of column first + column whose bit is set.
+  /// Tests the constraints of the inner loop in those cells of the column with index first + column whose bit is set,
+  /// and clears the bits of infeasible cells.
   void test_cells(const VoxelGrid& grid, std::size_t first, std::size_t column, CellScratch& scratch) const;
 
   CellPlan plan_;

@@ -10,7 +10,7 @@
 namespace pkm::generic {
 namespace {
 
-// numbers per link in the program's outputs: two end points with three coordinates each, and the radius
+// outputs of the program per link: three coordinates of each end of its axis, and its radius
 constexpr std::size_t kNumbers = 7;
 
 template <class ValueOf>

@@ -13,7 +13,7 @@ std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<
 /// Indices of the links that move and whose clearance is tested.
 std::vector<std::size_t> moving_links(const Graph& graph, const std::vector<LinkNodes>& links);
 
-/// For each link, the links from which its clearance is not tested; empty if no clearance is tested.
+/// For each link, the links that are exempt from the clearance test with it; empty if no clearance is tested at all.
 std::vector<JoinedLinks> joined_links(const Model& model);
 
 /// The clearance limit [m]; std::nullopt if there is none or it is inactive.
@@ -57,7 +57,8 @@ class ClearanceBatch {
   /// See PoseBatch::start() and PoseBatch::add().
   void start(const std::vector<double>& inputs, ClearanceScratch& scratch) const;
   bool add(const Pose<double>& pose, ClearanceScratch& scratch) const { return batch_.add(pose, scratch.poses); }
-  /// Calls visit(k) for each pose of the batch that violates the limit, in order, and empties the batch.
+  /// Calls visit(k), in ascending order, for the index k in the batch of each pose that violates the limit; then
+  /// empties the batch.
   template <class Visit>
   void finish(ClearanceScratch& scratch, const Visit& visit) const {
     if (scratch.poses.count == 0) return;

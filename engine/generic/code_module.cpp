@@ -21,14 +21,14 @@ namespace {
 using expression::Node;
 using generic::Evaluation;
 
-// Minimum inverse condition number of J at test poses, because rounding errors grow near singularities: initial value
-// in double and in single precision, and value below which no poses are searched for.
+// Minimum inverse condition number of the Jacobian at test poses, because rounding errors grow near singularities:
+// first choice in double and in single precision. If too few poses are found, lower values are tried, down to the last
+// one.
 constexpr double kMinConditioning = 2e-2, kMinConditioningOfFloats = 1e-1, kLeastConditioning = 1e-3;
-// distance [m, rad], in every coordinate, of the start of the forward kinematics from the test pose
+// distance in each coordinate [m, rad] between a test pose and the start of its forward kinematics
 constexpr double kStep = 1e-5;
 
-/// The name, with other characters than letters and digits replaced, so that it is an identifier in all target
-/// languages.
+/// Converts a name to an identifier of all target languages: replaces all characters other than letters and digits.
 std::string identifier(const std::string& name) {
   std::string text;
   for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -36,7 +36,8 @@ std::string identifier(const std::string& name) {
   return text;
 }
 
-/// Collects the nodes of all functions in the mechanism's graph, and copies what they need to the module.
+/// Collects the nodes of all generated functions in the mechanism's graph, and copies the nodes that they depend on to
+/// the module.
 class Collector {
  public:
   Collector(const Evaluation& evaluation, std::size_t mode, Module& module)
@@ -102,7 +103,7 @@ class Collector {
                             {"Jw", 6, n, e->J_wrench}}};
   }
 
-  /// The margins that `pkmopt pose` lists, except those that no formula gives.
+  /// The margins that `pkmopt pose` prints, without those that are not given by a formula.
   Output margins() {
     Output output{"margins", 0, 1, {}};
     const auto add = [&](const std::string& name, const std::string& unit, Node node) {

@@ -8,14 +8,15 @@ bool contract(const ColumnConstraint& constraint, const double* registers, const
               std::size_t count, CellRanges& ranges) {
   using L = LanesOf<set>;
   const auto& [shape, c, has_alternative, alternative] = constraint;
-  if (has_alternative && !alternative.row && registers[alternative.index] >= 0) return false;  // satisfied everywhere
+  // If the alternative is the same for all columns and satisfied, the ranges remain unchanged.
+  if (has_alternative && !alternative.row && registers[alternative.index] >= 0) return false;
   const bool may_have_holes = shape == Shape::convex || shape == Shape::any;
   const L none(0.0), all(grid.cells);
   const double per_step = 1 / grid.step;
   const auto load = [&](const expression::Operand& operand, std::size_t k) __attribute__((always_inline)) {
     return operand.row ? L::load(rows + operand.index * expression::kRow + k) : L(registers[operand.index]);
   };
-  // Converts a coordinate to a cell index, not rounded, and clamped to at most one cell outside of the column.
+  // Converts a coordinate z to a fractional cell index, clamped to [-1, number of cells].
   const auto cell_at = [&](const L& z) __attribute__((always_inline)) {
     return lesser(greater((z - grid.first) * per_step, L(-1.0)), all);
   };
@@ -55,7 +56,8 @@ bool contract(const ColumnConstraint& constraint, const double* registers, const
         to = select(discriminant >= discriminant, to, none);
       }
     } else {
-      // The roots q / a and c0 / q without cancellation; the first one is infinite if a = 0.
+      // Roots of a z^2 + b z + c0 without cancellation: q / a and c0 / q, with q as below; the first one is infinite if
+      // a = 0.
       const L a = load(c[2], k) + 0.0;
       const L discriminant = b * b - 4.0 * (a * c0), root = sqrt_or_zero(discriminant);
       const L q = (b + select(b < 0.0, -root, root)) * -0.5;

@@ -118,9 +118,10 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
                      });
   }
 
-  /// The volume; its derivatives with respect to all inputs are in design.last. A caller passes its parameters in
-  /// blocks of four (forward mode). The first block computes the results for all blocks, because the blocks differ only
-  /// in the derivatives of their inputs.
+  /// Volume of the workspace; its derivatives with respect to all inputs are cached in design.last. The caller
+  /// differentiates with respect to four parameters at a time and calls this function once for each block of four; the
+  /// first call computes the derivatives for all blocks, because only the derivatives of `inputs` differ between
+  /// blocks.
   Integral<double> measure_with_gradient(const std::vector<Dual4>& inputs, DesignScratch& design) const {
     LastGradient& last = design.last;
     const auto same_derivatives = [](const Dual4& x, const Dual4& y) { return std::ranges::equal(x.v.d, y.v.d); };
@@ -134,8 +135,8 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
     return last.volume;
   }
 
-  /// Appends the quadrature nodes of the slices that design.volume holds to the samples.
-  /// @param share  factor of their weights
+  /// Appends the quadrature nodes of the last volume, in the slices that design.volume holds, to the samples.
+  /// @param share  factor by which the quadrature weights of these nodes are multiplied
   template <class S>
   void add_samples(const S& share, std::span<const S> parameters, SampleScratch<S>& samples, DesignScratch& design,
                    WorkspaceResult<S>& result) const {

@@ -24,10 +24,11 @@ struct IntegratedCoordinates {
   }
 };
 
-/// The orders of coordinates in which slices can have closed forms. For planar slices they include each pair of swept
-/// coordinates as (v, z), for lines each swept coordinate as z; the others are outer coordinates, for lines in a single
-/// order. Integrated coordinates are outermost, except for the last one if a single coordinate is swept: slices of
-/// these two are planar.
+/// Orders of the coordinates for which slices may have closed forms. A planar slice spans two coordinates (v, z), a
+/// line the coordinate z. For planar slices, each pair of swept coordinates is tried as (v, z); for lines, each swept
+/// coordinate is tried as z, with one order of the others. All other swept coordinates are outer ones. Coordinates that
+/// are integrated over without being swept come first, except that the last one becomes v if a single coordinate is
+/// swept.
 std::vector<CoordinateOrder> orders_of(const Sweep& sweep, const WorkspacePlan& plan, bool are_lines) {
   std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end());
   std::vector<std::size_t> integrated = IntegratedCoordinates(sweep, plan).of_slices;
@@ -107,8 +108,8 @@ ColumnVolume::ColumnVolume(const Evaluation& evaluation, const WorkspacePlan& pl
     throw std::invalid_argument("mechanism " + evaluation.model.info.name + " has no exact columns: " + plans.why_not +
                                 "; set workspace.method = \"voxels\"");
   plans_ = std::move(plans.all);
-  // Derivatives lose digits at a kink of the measure that no change of the type indicates; with conics two more digits
-  // are cheap.
+  // Use a stricter tolerance than that of the volume, because derivatives are less accurate near kinks of the area or
+  // length of a slice that no critical value indicates. For conics, two more digits are cheap.
   const CoordinateOrder& order = plans_.front().order;
   slice_tolerance_ = (order.v ? 0.01 : 0.1) * columns.tolerance;
   choose_corner_curves(columns.tolerance);
@@ -142,7 +143,7 @@ SlicePlan ColumnVolume::choose_slices() const {
   const std::vector<double> inputs = inputs_of_default_design();
   IntegralScratch scratch;
   const SlicePlan* best = nullptr;
-  // maximum number of interval operations, or of surfaces times slices: about one second
+  // limit of the search: number of interval operations, or of surfaces times slices, that takes about one second
   long least = has_curves ? 100'000'000 : 10'000'000;
   for (const SlicePlan& plan : plans_) {
     const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
@@ -187,7 +188,7 @@ std::optional<Interval> ColumnVolume::prove(std::span<const double> inputs, Scra
   return edges_->prove(inputs, scratch.edges);
 }
 
-/// The volume over the coordinates inside the outermost quadrature, at most three.
+/// Volume over the innermost coordinates, at most three, for given values of the outermost ones.
 Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, std::span<double> by_input,
                                               Scratch& scratch) const {
   const bool needs_gradient = !by_input.empty();

@@ -15,7 +15,8 @@ namespace pkm::generic {
 /// Reason why the default analysis of a mechanism has no columns; empty if it has columns.
 std::string why_no_columns(const Evaluation& evaluation);
 
-/// Immutable except for the plan of slices, which is chosen once; threads can share it.
+/// Volume of the workspace of a design. The object is immutable, except that the plan of slices is chosen at its first
+/// use; threads can share it.
 class ColumnVolume {
  public:
   /// Scratch memory of one thread.
@@ -41,10 +42,10 @@ class ColumnVolume {
   /// no solid of planes, spheres and cylinders over three coordinates.
   std::optional<Interval> prove(std::span<const double> inputs, Scratch& scratch) const;
 
-  /// The quadrature over slices. It is chosen at the first use, because that can take longer than many volumes from
-  /// edges.
+  /// The quadrature over slices. Its plan is chosen when this function is first called, because the choice can take
+  /// longer than many evaluations of a volume from edges.
   const NestedIntegral& slices() const;
-  /// The quadrature over the coordinates beyond three.
+  /// The quadrature over the outermost coordinates, which exist if more than three coordinates are integrated.
   const OuterQuadrature& outermost() const { return outermost_; }
   bool has_outermost() const { return !outermost_.coordinates().empty(); }
 

@@ -61,7 +61,7 @@ S singular_ratio(const AxisMatrix<S>& A) {
   return A.rows() >= A.cols() && value_of(maximum) > 0 ? S(minimum / maximum) : S(0.0);
 }
 
-/// Index of the coordinate to which a column of included_columns() belongs.
+/// Index of the coordinate that corresponds to a column of the matrix returned by included_columns().
 std::size_t included_coordinate(const Model& model, std::size_t column) {
   return model.conditioning_coordinates.empty() ? column : model.conditioning_coordinates[column];
 }

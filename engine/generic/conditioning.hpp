@@ -23,7 +23,7 @@ void check_lengths(const Evaluation& evaluation, std::span<const double> paramet
 
 /// The conditioning at a pose. S is double or Dual4.
 /// @param J  joints x coordinates: derivatives of the joint positions with respect to the coordinates
-/// @return std::nullopt if a length that is needed is not defined, or if J is not finite
+/// @return std::nullopt if a characteristic length that is needed is not defined, or if J is not finite
 template <class S>
 std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths<S>& lengths, const Pose<S>& pose,
                                  const AxisMatrix<S>& J);
@@ -47,7 +47,8 @@ class SampleConditioning {
     scratch.lengths = characteristic_lengths(e_, parameters);
     batch_.start<S>(inputs, scratch.registers);
   }
-  /// Conditioning at a pose, for the field kConditioning. If J is not finite, it is that of a singular pose.
+  /// Conditioning at a pose: a value of the field kConditioning. If J is not finite, the value is that of a singular
+  /// pose.
   template <class S>
   S at(const Pose<S>& pose, ConditioningScratch<S>& scratch) const;
 

@@ -49,7 +49,7 @@ PoseConstraints constraints_of(const Model& model, std::size_t mode) {
 }
 
 std::vector<Node> finiteness_constraints(Graph& graph, Node constraint, Groups along) {
-  // Functions whose value is finite for all finite arguments, except for overflow.
+  // Names of functions whose value is finite for all finite arguments, except for overflow.
   static const std::vector<std::string> finite = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "turn", "tanh"};
   const auto may_be_infinite = [&graph](const expression::Entry& entry) {
     if (!entry.operation) return false;

@@ -22,10 +22,11 @@ struct PoseConstraints {
 /// The constraints of a model in one working mode.
 PoseConstraints constraints_of(const Model& model, std::size_t mode);
 
-/// A constraint that is not finite is violated, but its polynomial normal form along some coordinates does not show
-/// this for subexpressions that are constant along them. For each of these subexpressions this function returns a
-/// constraint, 0 times the subexpression, which is satisfied if it is finite.
-/// @param along  input groups of these coordinates
+/// A constraint that is not finite counts as violated. Its polynomial normal form does not show this for subexpressions
+/// that are constant along the coordinate of the polynomials. For each such subexpression that may be infinite or
+/// undefined, this function returns the additional constraint 0 * subexpression >= 0, which is satisfied if and only if
+/// the subexpression is finite.
+/// @param along  input groups of the coordinates along which polynomials are formed
 std::vector<Node> finiteness_constraints(Graph& graph, Node constraint, Groups along);
 
 /// Name of a constraint, for messages.

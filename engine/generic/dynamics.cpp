@@ -28,7 +28,8 @@ class Outputs {
   ValueOf value_;
 };
 
-/// Reads the equations of motion from the outputs. @return true if the pose assembles; otherwise `d` is incomplete
+/// Fills `d` with the equations of motion from the outputs of the program. @return false if the pose does not assemble;
+/// `d` is then incomplete
 template <class S, class ValueOf>
 bool read(const Inputs& at, std::size_t domains, Outputs<ValueOf> next, PoseDynamics<S>& d) {
   const std::size_t n = at.coordinates, m = at.joints;
@@ -103,7 +104,7 @@ void find_batch(const Evaluation& e, std::span<const double> registers, std::spa
 template <class S>
 void find_dynamics(const Evaluation& e, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found) {
-  // minimum number of states; evaluating a smaller batch is not faster than evaluating single states
+  // minimum number of states for which a SIMD batch is faster than evaluating one state after the other
   constexpr std::size_t kMinBatch = 4;
   check_masses(e, parameters);
   const Inputs& at = e.model.inputs;

@@ -35,8 +35,8 @@ class QuadricConverter {
  private:
   using Exponents = std::array<std::size_t, 3>;
 
-  /// Adds node x^i y^j z^k to a quadric, where (i, j, k) are the exponents and the node is a polynomial in the
-  /// coordinates from `axis` on, except `known`.
+  /// Adds x^i y^j z^k times a node to a quadric, where (i, j, k) are `exponents`. The node is expanded as a polynomial
+  /// in the coordinates from index `axis` on, except the coordinate `known`.
   bool expand(Node node, std::size_t axis, const Exponents& exponents, std::size_t known, NodeQuadric& result) const {
     static constexpr std::size_t kPlace[3][3][3] = {
         {{0, 3, 6}, {2, 9, 0}, {5, 0, 0}}, {{1, 8, 0}, {7, 0, 0}, {0, 0, 0}}, {{4, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
@@ -93,7 +93,8 @@ double extent(const Body& body, const Vector3& direction) {
     case Body::Kind::cylinder:
       return body.side > 0 && std::fabs(cosine) < kParallel ? centre + body.radius : kInfinity;
     case Body::Kind::slide: {
-      // The rod ends on a half sphere about E: ahead of E for the first root, behind E for the second one.
+      // The end of the rod that moves with the platform is on a half sphere about E, the end of the slide: ahead of E
+      // for the first root, behind E for the second one.
       const bool is_whole = (cosine >= 0) == body.is_first_root;
       return centre + std::max(body.from * cosine, body.to * cosine) + body.radius * (is_whole ? 1 : sine);
     }
@@ -210,7 +211,7 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
       double reach = std::numeric_limits<double>::infinity();
       for (const Body& other : design.solid.bodies) reach = std::min(reach, extent(other, body.axis));
       if (reach <= body.radius + margin) {
-        // add more than the rounding error of extent()
+        // The plane is omitted; add to `beyond` more than the rounding error of extent().
         design.beyond += std::max(reach - body.radius, 0.0) + 0.1 * margin;
         return;
       }
@@ -231,7 +232,7 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
                     .to = values[at + 12],
                     .is_first_root = rod.is_first_root};
     if (!(body.from < body.to)) design.is_empty = true;
-    // The two ends of a whole revolution coincide.
+    // The end faces of a range of a whole revolution would coincide, which edges do not support.
     if (rod.is_crank && body.to - body.from > 2 * kPi - 1e-6) return false;
     add(body, {Source::Kind::rod, at});
   }
@@ -332,7 +333,7 @@ std::optional<IntervalBody> EdgePlan::enclose(const Body& body, const Source& so
     case Source::Kind::quadric:
       break;
   }
-  // The quadric is k + b . p + p . A p.
+  // The quadric is k + b . p + p . A p, for points p.
   const auto is_number = [](const Interval& x, double number) { return x.lower == number && x.upper == number; };
   const IntervalVector b = vector(1), squares = vector(4), products = vector(7);
   if (!std::ranges::all_of(products, [&](const Interval& x) { return is_number(x, 0); })) return {};
@@ -343,7 +344,7 @@ std::optional<IntervalBody> EdgePlan::enclose(const Body& body, const Source& so
     made.radius = f[0] / length - dot(made.axis, middle);
     return made;
   }
-  // A sphere, or a cylinder along a coordinate axis: three or two of the squares have the same coefficient.
+  // A sphere has three squares with the same coefficient, a cylinder along a coordinate axis two.
   const double factor = squares[squares[0].lower != 0 ? 0 : 1].lower;
   IntervalVector centre = b * (Interval(-0.5) / Interval(factor));
   int along = 0;
@@ -371,7 +372,7 @@ bool EdgePlan::are_others_superfluous(const Design& design, std::span<const Inte
   };
   return std::ranges::all_of(clauses_, [&](const Clause& clause) {
     if (std::ranges::any_of(clause, [&](std::size_t at) { return over_box(at).is_certified_satisfied(); })) return true;
-    // At most one quadric of the disjunction may be a body; the others must be violated everywhere.
+    // At most one quadric of the clause may bound the solid; all others must be violated everywhere.
     std::size_t bodies = 0;
     for (const std::size_t at : clause) {
       Body body;

@@ -37,11 +37,12 @@ class EdgePlan {
   std::optional<Interval> prove(std::span<const double> inputs, Scratch& scratch) const;
 
  private:
-  /// A disjunction of quadric constraints: at least one of the quadrics is >= 0. Each element is the index of an output
-  /// of the program, the first of the 10 coefficients of a quadric.
+  /// A disjunction of quadric constraints: at least one of the quadrics is >= 0. Each element identifies a quadric by
+  /// the index of the program output that is the first of its 10 coefficients.
   using Clause = std::vector<std::size_t>;
   struct Rod {
-    /// Index of the first of its outputs: B - A if the coordinates are 0, then axis, zero, rod, crank, from, to.
+    /// Index of the program output that is the first of this rod's: B - A with all coordinates 0 (three outputs), axis
+    /// (three), zero (three), rod length, crank length, lower and upper end of the joint range.
     std::size_t output;
     bool is_crank, is_first_root;
   };
@@ -50,7 +51,7 @@ class EdgePlan {
     enum class Kind { rod, quadric, box };
     Kind kind;
     std::size_t output;  ///< index of the first program output that describes the body
-    double side = 0;     ///< of a bound of the box: 1 for an upper bound; otherwise unused
+    double side = 0;     ///< 1 for an upper bound of the search box; otherwise unused
   };
   /// The solid of one design.
   struct Design {
@@ -59,18 +60,20 @@ class EdgePlan {
     Solid solid;
     std::vector<Source> sources;  ///< source of each body of the solid, by body
     bool is_empty = false;
-    double beyond = 0;  ///< sum of the distances by which other bodies reach beyond the planes that were omitted
+    double beyond = 0;  ///< sum of the distances by which bodies of the solid extend beyond planes that were omitted as
+                        ///< bodies
 
     /// Upper bound of the distance of the solid's points from the origin of the coordinates.
     double reach() const { return solid.bound + norm(origin); }
   };
   /// Builds the solid of a design. @return false if a quadric is no plane, sphere or cylinder
   bool build(std::span<const double> inputs, Design& design) const;
-  /// The same body with intervals that contain its numbers and their rounding errors; std::nullopt if there is no such
-  /// body.
+  /// Encloses a body: the same body with intervals that contain its exact numbers; std::nullopt if the type of the body
+  /// is not supported.
   static std::optional<IntervalBody> enclose(const Body& body, const Source& source, const Vector3& origin,
                                              std::span<const Interval> values);
-  /// Whether it is proven that every constraint which is no body of the solid has no effect.
+  /// True if it is proven that the quadrics that are not bodies of the solid have no effect in the search box: their
+  /// clause is satisfied everywhere without them, or they are violated everywhere.
   bool are_others_superfluous(const Design& design, std::span<const Interval> values) const;
   void add_gradient(Scratch& scratch, std::span<double> by_input) const;
 

@@ -17,8 +17,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::Vector3d;
 
 Vector3d vector(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Values of nodes at a pose: dimensions and compliances of all elastic bodies, the origin of the platform frame, and
-/// the axis of a platform that is a pin.
+/// Numerical values of nodes at a pose: positions and stiffnesses of all elastic bodies, compliances of the drives,
+/// origin of the platform frame, and the pin's axis if the platform is a pin.
 class Numbers {
  public:
   Numbers(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode) {
@@ -50,8 +50,8 @@ class Numbers {
   std::map<Node, double> value_;
 };
 
-/// Index of the first column of each joint among the unknowns (three forces, then the couples of the joint), by joint;
-/// the last element is the number of unknowns.
+/// Column of the first unknown of each joint in the equilibrium matrix, by joint: its three force components, then its
+/// couples. The last element is the total number of unknowns.
 std::vector<Index> first_columns(const NewtonEuler& system) {
   std::vector<Index> first = {0};
   for (const Joint& joint : system.joints) first.push_back(first.back() + 3 + std::ssize(joint.couples));
@@ -73,7 +73,7 @@ class Energy {
   const MatrixXd& matrix() const { return Q_; }
 
  private:
-  // three components of a vector, as linear forms of the unknowns
+  // three rows: the components of a force or couple as linear forms of the unknowns x
   using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
   Rows no_rows() const { return Rows::Zero(3, Q_.cols()); }
@@ -88,7 +88,8 @@ class Energy {
       rows.col(first_[joint] + 3 + static_cast<Index>(k)) = vector(system_.joints[joint].couples[k]);
     return rows;
   }
-  /// Adds the energy of elastic drives. Joints with the same drive share its force.
+  /// Adds the energy of elastic drives. If several joints have the same drive, the force of the drive is the sum of
+  /// their forces.
   void add_drives() {
     std::map<std::size_t, Eigen::RowVectorXd> forces;
     std::map<std::size_t, double> compliances;
@@ -102,7 +103,8 @@ class Energy {
     }
     for (const auto& [drive, sum] : forces) Q_ += compliances[drive] * sum.transpose() * sum;
   }
-  /// Joints that load a beam, by index, each with the sign of its force and couples.
+  /// The joints that load a beam: pairs of the joint's index and the sign (1 or -1) with which its force and couples
+  /// act.
   using Loads = std::vector<std::pair<std::size_t, double>>;
 
   Loads loads_of_solid(std::size_t solid, std::size_t near_joint) const {
@@ -167,8 +169,8 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
   const Energy energy(system, bodies, numbers);
   const MatrixXd& Q = energy.matrix();
 
-  // Unit wrenches at the origin of the platform frame, as loads on the platform. Lengths are divided by `size`, so that
-  // ranks do not depend on units.
+  // The loads are six unit wrenches on the platform, acting at the origin of the platform frame. Lengths are divided by
+  // `size`, so that matrix ranks do not depend on units.
   const auto platform = static_cast<std::size_t>(std::ranges::find(bodies.solids, true, &SolidNodes::with_platform) -
                                                  bodies.solids.begin());
   const double size = couple_length(system);

@@ -48,12 +48,13 @@ class Equations {
   }
 
  private:
-  /// The derivatives of a function f of the pose.
+  /// The derivatives of a scalar function f of the pose, as nodes.
   struct Derivatives {
     std::vector<Term> by;  ///< f_X: partial derivatives with respect to the coordinates, by coordinate
     Term rate;             ///< time derivative f'
   };
-  /// Weights of the products f' g'. The key is the pair of the indices of f and g in functions_, with f <= g.
+  /// Total weight of each product f' g' in the kinetic energy. The key (i, j), i <= j, gives the indices of f and g in
+  /// functions_.
   using Products = std::map<std::pair<std::size_t, std::size_t>, Term>;
 
   Term number(double value) { return {model_.graph, value}; }
@@ -62,7 +63,7 @@ class Equations {
     for (const Term& term : terms) to.push_back(term.node());
   }
 
-  /// Derivatives of the angle q of an arm; also stores those of the vector `arm`, by arm' = q' axis x arm.
+  /// Derivatives of the angle q of an arm. Also sets the derivatives of the vector `arm`, by arm' = q' axis x arm.
   Derivatives angle_of(const ArmNodes& arm) {
     const Vector3 at = vector(arm.arm), rod = vector(arm.rod), tangent = cross(vector(arm.axis), at);
     const Term lever = number(1) / dot(rod, tangent);
@@ -80,8 +81,8 @@ class Equations {
     return angle;
   }
 
-  /// Index of a function in functions_; std::nullopt if the function is constant. A function whose derivatives are not
-  /// in the list yet is added.
+  /// Finds a function in functions_ by its partial derivatives, and adds it if there is none with the same ones.
+  /// @return its index; std::nullopt if the function is constant
   std::optional<std::size_t> index_of(const Derivatives& function) {
     std::vector<Node> key;
     append(function.by, key);
@@ -127,7 +128,7 @@ class Equations {
     }
   }
 
-  /// Adds the inertia terms of all products to M_X and h_X.
+  /// Adds the terms of the kinetic energy to the inertia matrix M_X and to the velocity terms h_X.
   void add_inertia(EquationNodes& e) {
     std::vector<Term> M(n_ * n_, number(0)), h(n_, number(0));
     const auto add_to = [](Term& sum, const Term& x) { sum = sum + x; };

@@ -24,7 +24,8 @@ std::vector<Program> programs_of(const Graph& graph, const std::vector<std::opti
   for (const auto& node : nodes) programs.push_back(program_of(graph, node));
   return programs;
 }
-/// Programs of the lower ends (side 0) or of the upper ends (side 1) of ranges, by coordinate.
+/// One program per coordinate, for the lower (side 0) or upper (side 1) end of its range; a program without outputs for
+/// a coordinate without a range.
 std::vector<Program> programs_of(const Graph& graph, const std::vector<std::optional<std::array<Node, 2>>>& ranges,
                                  std::size_t side) {
   std::vector<Program> programs;

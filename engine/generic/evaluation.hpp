@@ -21,15 +21,17 @@ struct Evaluation {
   expression::Program motion;  ///< outputs: joints, domains, equations; the first stage depends on the design only
   std::optional<expression::BatchStage> motion_batch;  ///< the second stage of `motion`, for SIMD batches of states
 
-  // Programs of a design. The program of a value that the file does not define has no outputs.
+  // // Programs that depend on the design only. Where the file does not define a value, its program has no outputs.
   expression::Program requirements;  ///< outputs: both ends of each joint range, Model::required
   expression::Program tests, masses, size, length, radius;
   expression::Program total_mass;            ///< output: total mass of all bodies [kg]
   std::vector<expression::Program> derived;  ///< threshold of each limit that the design determines, by limit
-  /// Bounds of the search box, default value and bounds of the reach, by coordinate.
+  /// Programs of the search box (lower and upper bound), the default value and the reach (lower and upper bound), by
+  /// coordinate.
   std::vector<expression::Program> lower, upper, default_values, reach_lower, reach_upper;
 
-  /// Computes the threshold of each limit: the given one, or one derived from the parameters, or the inactive one.
+  /// Writes the threshold of each limit: that of `limits` if it is given there, otherwise the one that the mechanism
+  /// derives from the parameters, otherwise one that every pose satisfies.
   template <class S>
   void thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const;
   /// Writes the values of the graph's inputs for a design; those of coordinates and joints are 0.
@@ -61,7 +63,7 @@ struct Evaluation {
                  const std::vector<int>& swept) const;
 };
 
-/// Calls work(scratch) with scratch memory for `count` scalars. It is on the stack if `count` is small.
+/// Calls work(scratch) with scratch memory for `count` scalars, which is on the stack if `count` is small.
 template <class S, class Work>
 auto with_scratch(std::size_t count, const Work& work) {
   constexpr std::size_t kMaxOnStack = 512;

@@ -16,7 +16,7 @@ namespace pkm::generic {
 namespace {
 
 struct PlatformError {
-  double position = 0, angle = 0;  ///< displacement of the origin [m], and angle of the rotation [rad]
+  double position = 0, angle = 0;  ///< displacement of the platform's origin [m], and angle of its rotation [rad]
 };
 
 /// The displacement of the platform between two frames. Each frame consists of the origin, then the rows of its
@@ -62,12 +62,12 @@ class ExactAccuracy {
   void place(const Pose<double>& pose, std::vector<double>& inputs) const {
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
   }
-  /// Finds the pose with the given joint positions and writes it to `inputs`.
-  /// @return false if the iteration does not converge
+  /// Finds the pose with the given joint positions and writes its coordinates to `inputs`.
+  /// @return false if Newton's method does not converge
   bool find_pose(const AxisVector<double>& joints, const AxisMatrix<double>& J, Pose<double> pose,
                  std::vector<double>& inputs) const {
     constexpr int kMaxSteps = 100;
-    // the iteration has converged if steps cease to shrink below this size [m, rad], because of rounding errors
+    // convergence criterion: once steps are below this size [m, rad], the method ends as soon as they no longer shrink
     constexpr double kConverged = 1e-9;
     double last = std::numeric_limits<double>::infinity();
     for (int step = 0; step < kMaxSteps; ++step) {

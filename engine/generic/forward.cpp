@@ -13,7 +13,8 @@ bool is_finite(std::span<const double> values) {
   return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
 }
 
-/// The loop-closure equations f(pose) = 0 for given joint positions. Allocates memory in the constructor only.
+/// The residuals f(pose) of the loop-closure equations for given joint positions. Only the constructor allocates
+/// memory.
 class LoopClosure {
  public:
   LoopClosure(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints,
@@ -58,11 +59,12 @@ class LoopClosure {
 };
 
 struct Solution {
-  std::optional<Pose<double>> pose;  ///< the pose to which the iteration converged; std::nullopt if it did not converge
-  bool is_defined_at_start = false;  ///< true: all closures are finite at the start pose
+  std::optional<Pose<double>> pose;  ///< the pose to which Newton's method converged; std::nullopt if it did not
+                                     ///< converge
+  bool is_defined_at_start = false;  ///< true: all residuals of the loop-closure equations are finite at the start pose
 };
 
-/// Newton's method with bounded steps, down to rounding accuracy.
+/// Solves the loop-closure equations by Newton's method with bounded steps, to rounding accuracy.
 Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
   constexpr int kMaxIterations = 60, kMaxHalvings = 10;
   constexpr double kMaxStep = 0.5;  // maximum step in a coordinate, relative to 1 + |coordinate| [m, rad]
@@ -78,7 +80,7 @@ Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
     for (std::size_t k = 0; k < pose.size(); ++k) size = std::max(size, std::fabs(step[k]) / (1 + std::fabs(pose[k])));
     double factor = std::min(1.0, kMaxStep / std::max(size, 1e-300));
     const Pose<double> previous = pose;
-    // halve the step until all closures are finite
+    // halve the step until all residuals are finite
     for (int halvings = 0; halvings < kMaxHalvings; ++halvings, factor /= 2) {
       pose = previous + step * factor;
       f = closure.at(pose);
@@ -103,8 +105,8 @@ std::string mode_with(const Evaluation& e, std::span<const double> parameters, c
   return "";
 }
 
-/// Indices of working modes whose closures differ. Closures of limbs in closed form do not depend on the working mode,
-/// whereas closures given by formulas may contain its signs.
+/// Indices of the working modes whose loop-closure equations have to be solved separately: all modes if the equations
+/// contain signs of the working mode, as only those given by formulas can; otherwise a single one.
 std::vector<std::size_t> modes_of_closures(const Model& model) {
   const auto is_sign = [&](Node node) {
     const auto input = static_cast<std::size_t>(model.graph[node].input);
@@ -171,13 +173,14 @@ class AssemblySet {
   }
 
   const std::vector<AssemblyMode>& modes() const { return modes_; }
-  /// The mirror_image() of the pose with index k.
+  /// The mirror image (mirror_image()) of the assembly mode with index k, as a pose.
   std::optional<Pose<double>> mirrored(std::size_t k) const {
     return mirror_image(e_, inputs(modes_[k].pose, modes_[k].working_mode));
   }
 
  private:
-  // poses at a smaller distance [m, 1] are equal; larger than the error of Newton's method by a factor of 1000
+  // Poses whose difference is smaller [m, or 1 for rotation matrices] are equal. It is 1000 times the error of Newton's
+  // method.
   static constexpr double kSamePose = 1e-6;
 
   /// Replaces the angles of a pose by equivalent angles in the principal ranges (rigid_pose.hpp), unless no working
@@ -216,10 +219,11 @@ std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const dou
                                         const AxisVector<double>& joints) {
   const StartPoses poses(e, parameters);
   AssemblySet found(e, parameters, joints, AssemblySet::Angles::principal);
-  std::vector<LoopClosure> closures;  // one element for each mode of modes_of_closures()
+  std::vector<LoopClosure> closures;  // one element for each working mode of modes_of_closures()
   for (const std::size_t mode : modes_of_closures(e.model)) {
     LoopClosure& of_mode = closures.emplace_back(e, parameters, joints, mode);
-    // number of starts since the last new pose, not counting those at which the closures are undefined
+    // number of consecutive starts that found no new pose, without those at which the loop-closure equations are
+    // undefined
     std::size_t idle = 0;
     for (std::size_t tried = 0; tried < kMaxStarts && idle < kMaxIdleStarts; ++tried) {
       const Solution solution = solve_closures(of_mode, poses[tried]);

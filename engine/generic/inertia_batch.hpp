@@ -32,7 +32,7 @@ class InertiaBatch {
   void finish(InertiaScratch&, WorkspaceResult<Dual4>&) const {}
 
  private:
-  /// Inertia matrix M_q of a single pose. @param output  output(i): value of the output of batch_ with index i
+  /// Joint-space inertia matrix M_q of a single pose. @param output  output(i) returns the value of output i of batch_
   template <class S, class OutputOf>
   AxisMatrix<S> inertia_of(const OutputOf& output) const;
 

@@ -11,7 +11,7 @@ namespace {
 
 using expression::Code, expression::Entry, expression::Term;
 
-/// Value of a node that depends on the design only; std::nullopt if it depends on other inputs, too.
+/// Enclosure of a node's value for a design; std::nullopt if the node depends on inputs other than the design.
 std::optional<Interval> design_value(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
   if ((graph[node].groups & ~Inputs::kDesign) != 0) return {};
   std::vector<Interval> registers;
@@ -27,7 +27,8 @@ bool is_zero(const Graph& graph, Node node, const std::vector<Interval>& inputs)
   const auto number = design_value(graph, node, inputs);
   return number && number->lower == 0 && number->upper == 0;
 }
-/// Whether a node that depends on the design only is certified to be in [0, pi]; the double kPi is less than pi.
+/// True if the node depends on the design only and its value is certain to be in [0, pi]. (The double kPi is less than
+/// pi.)
 bool is_value_of_acos(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
   const auto number = design_value(graph, node, inputs);
   return number && number->is_certified_satisfied() && number->upper <= kPi;
@@ -39,8 +40,8 @@ std::optional<Node> radicand(const Graph& graph, Node node) {
   return entry.arguments[0];
 }
 
-/// Rewrites c - sqrt(a) >= 0 and sqrt(a) - c >= 0 by squaring; for c = 0 the second one becomes a >= 0. All other
-/// constraints are returned unchanged.
+/// Rewrites c - sqrt(a) >= 0 and sqrt(a) - c >= 0 without the root, where c >= 0 depends on the design only: c^2 - a >=
+/// 0 and a - c^2 >= 0; for c = 0 the second one becomes a >= 0. All other constraints are returned unchanged.
 Node squared(Graph& graph, Node constraint, const std::vector<Interval>& inputs) {
   const Entry entry = graph[constraint];
   if (!entry.operation || entry.operation->code != Code::subtract) return constraint;
@@ -62,7 +63,7 @@ Node without_acos(Graph& graph, Node constraint, const std::vector<Interval>& in
   if (!entry.operation || entry.operation->code != Code::subtract) return constraint;
   const auto [left, right] = std::pair(entry.arguments[0], entry.arguments[1]);
   const auto is_acos = [&](Node node) { return graph[node].operation && graph[node].operation->name == "acos"; };
-  // true: c - acos(u); false: acos(u) - c
+  // true: the constraint is c - acos(u) >= 0; false: it is acos(u) - c >= 0
   const bool is_upper = is_acos(right) && is_value_of_acos(graph, left, inputs);
   if (!is_upper && !(is_acos(left) && is_value_of_acos(graph, right, inputs))) return constraint;
   const Term cosine = cos(Term(graph, is_upper ? left : right));
@@ -80,14 +81,14 @@ Node is_finite(Graph& graph, Node node) {
   return graph.apply(expression::operation("*"), std::array{node, graph.number(0)});
 }
 
-/// Finds the operations whose arguments are in their domain at every pose that satisfies all constraints.
+/// Decides whether the argument of an operation is in its domain at every pose that satisfies all constraints.
 class DomainTest {
  public:
   DomainTest(Graph& graph, const std::vector<bounds::NamedConstraint>& constraints) : graph_(graph) {
     for (const auto& constraint : constraints) known_.insert(constraint.node);
   }
 
-  /// Whether an operation is sqrt, acos or asin, and the constraints restrict its argument to the domain.
+  /// True if the operation is sqrt, acos or asin, and the constraints ensure that its argument is in its domain.
   bool ensures_domain(const Entry& entry) {
     const std::string& name = entry.operation->name;
     if (name == "sqrt") return known_.contains(entry.arguments[0]);

@@ -16,7 +16,8 @@ struct InertiaKernelData {
   const double* rotors;                ///< n numbers that are added to the diagonal of M_q, by joint
   double* M_q;                         ///< receives M_q: n x n rows of expression::kRow numbers, one number per pose
   double* indices;                     ///< receives the coupling indices: n rows, one number per pose
-  /// Receives for each pose 1, or 0 if it has to be evaluated alone, because it is nearly singular or infinite.
+  /// Receives for each pose 1 if its results are valid; 0 if the pose must be evaluated alone in scalar arithmetic,
+  /// because it is nearly singular or a value is infinite.
   double* found;
 };
 

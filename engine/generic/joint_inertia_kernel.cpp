@@ -28,7 +28,8 @@ struct LuDecomposition {
   /// For each step and row, whether the row is the pivot of a lane; used if the lanes have different pivots.
   Mask is_pivot[n][n];
 
-  /// Exchanges row k with the pivot row of step k, in the columns from `first` on.
+  /// Exchanges row k of m with the row that is the pivot of step k of the elimination, in columns `first`, first + 1,
+  /// ...
   [[gnu::always_inline]] inline void exchange(L (&m)[n][n], int k, int first) const {
     for (int i = k + 1; i < n; ++i)
       for (int j = first; j < n && (pivot[k] == i || pivot[k] < 0); ++j) {
@@ -73,7 +74,8 @@ struct LuDecomposition {
   }
 };
 
-/// Evaluates the kLanes poses from index k on. @return false if at least one of them has to be evaluated alone
+/// Evaluates poses k, ..., k + kLanes - 1 of the batch. @return false if at least one of them must be evaluated alone
+/// in scalar arithmetic
 template <class L, int n>
 [[gnu::always_inline]] inline bool find_lanes(const InertiaKernelData& data, std::size_t k) {
   LuDecomposition<L, decltype(L() < L()), n> lu;
@@ -85,8 +87,8 @@ template <class L, int n>
       size += magnitude(lu.u[i][j]);
     }
   lu.run();
-  // bound of the condition number, as in is_clearly_regular(): sums of the magnitudes above the diagonal of the factor
-  // U, and of the inverse diagonal
+  // Bound of the condition number as in is_clearly_regular(), from sums of magnitudes: of the elements of U above its
+  // diagonal, and of the reciprocals of its diagonal elements.
   L above(0.0), inverse(0.0);
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) above += magnitude(lu.u[i][j]);

@@ -41,7 +41,8 @@ AxisVector<double> axis_vector(std::span<const double> values) {
   return axes;
 }
 
-/// Computes PoseReport::T. @param inputs  values of the graph's inputs, including the pose
+/// Computes PoseReport::T, which maps the rates of the coordinates to the twist of the platform. @param inputs  values
+/// of the graph's inputs, including the pose
 AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inputs) {
   // index of the first element of rotation_directions among the outputs of Evaluation::frame
   constexpr std::size_t kDirections = 12;
@@ -65,8 +66,8 @@ std::vector<double> inputs_at(const Evaluation& e, std::span<const double> param
   return inputs;
 }
 
-/// Combines margins into those of Model::reported_margins.
-/// @param shown  values of all ReportedMargin::shown that exist, in their order
+/// Combines the margins of a pose into the groups that are reported as single margins (Model::reported_margins).
+/// @param shown  values of those ReportedMargin::shown that exist, in the order of the groups
 NamedValues reported_margins(const Model& model, const NamedValues& margins,
                              std::vector<double>::const_iterator shown) {
   NamedValues list;
@@ -107,7 +108,7 @@ void add_clearance(const Model& model, const NearestBodies<double>& nearest, con
         ": " + nearest.first + " and " + nearest.second + (nearest.clearance < 0 ? " overlap" : " are too near");
 }
 
-/// Adds Jq, G, J, their determinants and the conditioning to a report.
+/// Adds Jq, G and J of qdot = J Xdot, Jq qdot = G Xdot, their determinants and the conditioning to a report.
 /// @param inputs  values of the graph's inputs, including the pose and its joint positions
 void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                    std::span<const double> inputs, PoseReport& report);

@@ -11,7 +11,7 @@ namespace pkm::generic {
 PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                         std::size_t mode, const LimitSpec& limits);
 
-/// @return true if all joints have a solution
+/// True if all joint coordinates have a solution.
 /// @param inputs  values of the graph's inputs, including the pose
 bool assembles_at(const Evaluation& evaluation, const std::vector<double>& inputs);
 

@@ -74,7 +74,8 @@ class GenericMechanism final : public Mechanism,
     }
     return all;
   }
-  /// Uses the formulas of the file only, because the box of [survey] may be smaller than the reach of the limbs.
+  /// Range of a coordinate that the formulas of the file give as its reach. The search box is not used, because it may
+  /// be smaller than the reach of the limbs.
   std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const override {
     const auto i = static_cast<std::size_t>(coordinate);
     const auto from = e_.of_design<double>(e_.reach_lower[i], parameters),
@@ -186,16 +187,16 @@ class GenericMechanism final : public Mechanism,
       }
     return plan;
   }
-  /// The plan for accelerators; std::nullopt if it has limits of pose quantities, or if formulas or every pose are
-  /// requested.
+  /// The plan as passed to accelerators; std::nullopt if they do not support it, because it limits pose quantities, or
+  /// because formulas or the report of every pose are requested.
   std::optional<WorkspacePlan> accelerated_plan(const WorkspacePlan& plan, const FieldRequest& request) const {
     if (request.has_formulas() || request.every_pose) return {};
     for (std::size_t i = 0; i < info().limits.size(); ++i)
       if (info().limits[i].group == kQuantityLimit && plan.limits.given[i]) return {};
     return without_quantities(plan);
   }
-  /// The search box of the accelerator's voxels, with which the generic engine counts the same cells; null if there is
-  /// no accelerator.
+  /// The search box of the accelerator as a function of the design, so that the generic engine counts the same voxels
+  /// as the accelerator; null if there is no accelerator.
   BoxOfDesign accelerated_box(const WorkspacePlan& plan, const FieldRequest& request) const {
     WorkspacePlan unlimited = plan;
     unlimited.limits = no_limits(info());

@@ -36,7 +36,7 @@ MatrixXd beside(const MatrixXd& A, const MatrixXd& B) {
   both << A, B;
   return both;
 }
-/// Whether a vector is in the column space of A.
+/// True if a vector is in the column space of A (to within kRankThreshold). @param rank_of_A  rank of A
 bool spans(const MatrixXd& A, Index rank_of_A, const Eigen::VectorXd& vector) {
   return rank(beside(A, vector)) == rank_of_A;
 }
@@ -104,7 +104,8 @@ class JointsAtPose {
     if (nullity == 0) return MatrixXd(6, 0);
     const MatrixXd twists = decomposition.matrixV().rightCols(nullity).middleRows(static_cast<Index>(6 * platform_), 6);
     const auto of_platform = decomposed(twists);
-    // The threshold is absolute, because null vectors have length 1 and the platform may be at rest in all of them.
+    // This threshold is absolute, because null vectors have length 1, and the platform may be at rest in all of them,
+    // so that there is no reference value.
     Index count = 0;
     while (count < of_platform.singularValues().size() && of_platform.singularValues()[count] > kRankThreshold) ++count;
     return of_platform.matrixU().leftCols(count);
@@ -153,7 +154,7 @@ class JointsAtPose {
     const auto at = [&](std::size_t k) { return values_[coordinate].at(point[k]).d; };
     return {at(0), at(1), at(2)};
   }
-  /// Projection matrix onto the directions of the couples that a joint can transmit.
+  /// 3 x 3 projection matrix onto the span of the directions of the couples that a joint can transmit.
   Matrix3d couples_of(const JointNodes& joint) const {
     MatrixXd axes(3, static_cast<Index>(joint.axes.size()));
     for (std::size_t k = 0; k < joint.axes.size(); ++k)

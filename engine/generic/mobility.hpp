@@ -13,12 +13,12 @@ namespace pkm::generic {
 
 /// Degrees of freedom of the platform that the joints allow if the drives move freely.
 struct PlatformMobility {
-  std::size_t of_joints;  ///< dimension of the space of platform twists that the joints allow
-  /// Dimension of the part of this space that the coordinates describe; std::nullopt if the ends of the limbs are given
-  /// by formulas that are inconsistent with the motion of the platform frame.
+  std::size_t of_joints;  ///< dimension of the space of platform twists that the joints allow, with free drives
+  /// Dimension of the space of those platform twists that changes of the coordinates produce; std::nullopt if the ends
+  /// of the limbs are given by formulas that are inconsistent with the motion of the platform frame.
   std::optional<std::size_t> of_coordinates;
-  /// Twists that the joints allow but the coordinates do not describe, such as "rotation about z". Empty if there are
-  /// none, or if they are not along coordinate axes.
+  /// Descriptions of twists that the joints allow but changes of the coordinates do not produce, such as "rotation
+  /// about z". Empty if there are none, or if they are not along coordinate axes.
   std::vector<std::string> assumed;
 };
 

@@ -45,12 +45,13 @@ struct Result {
   std::string name;
   std::string unit;
   Node node{};
-  /// Of a domain: meaning of its violation for messages, such as "limb1 cannot reach the pose"; otherwise "".
+  /// For a constraint in Model::domains: what its violation means, for messages, such as "limb1 cannot reach the pose";
+  /// otherwise "".
   std::string consequence{};
 };
 
-/// Margins [first, first + count) of a model that are reported as a single margin: the value of `shown` if there is
-/// one, otherwise their minimum.
+/// A group of consecutive margins of a model, with indices [first, first + count), that is reported as a single margin:
+/// the value of `shown` if it is present, otherwise the minimum of the group.
 struct ReportedMargin {
   std::string name;
   std::size_t first = 0, count = 1;
@@ -83,22 +84,22 @@ struct LinkNodes {
   bool has_clearance = true;  ///< false: the link is drawn, but its clearance is not tested
 };
 
-/// The terms of limbs::CrankRange as nodes, and those constraints of a feasible pose that are equivalent to them.
+/// The terms of limbs::CrankRange as nodes, and the constraints of the model that can be replaced by them.
 struct CrankRangeNodes {
   Node at_min, at_max, after_min, before_max, half_turn, reach, branch;
   std::vector<Node> constraints;
 };
 
-/// The two surfaces of limbs::Annulus as nodes, and those constraints of a feasible pose that are equivalent to them.
+/// The two quadratic terms of limbs::Annulus as nodes, and the constraints of the model that can be replaced by them.
 struct AnnulusNodes {
   std::array<Node, 2> surfaces;
   std::vector<Node> constraints;
-  /// Index in Model::crank_ranges of the range of the same limb; std::nullopt if it has none.
+  /// Index in Model::crank_ranges of the same limb's crank range; std::nullopt if the limb has no joint range.
   std::optional<std::size_t> crank_range;
 };
 
-/// The terms of limbs::RodAndPath as nodes, the range of the joint, and those constraints of a feasible pose that are
-/// equivalent to both.
+/// The terms of limbs::RodAndPath and the range of the limb's joint as nodes, and the constraints of the model that can
+/// be replaced by both.
 struct RodAndPathNodes {
   bool is_circle;
   std::array<Node, 3> v, axis, zero;
@@ -106,8 +107,8 @@ struct RodAndPathNodes {
   std::vector<Node> constraints;
 };
 
-/// The ends C and B of the rod or telescope of a limb. C is fixed for given joints; B is fixed to the platform, or
-/// given by a formula.
+/// The inner end C and outer end B of the rod or telescope of a limb. C depends on the joint coordinates only; B is
+/// fixed to the platform, or given by a formula.
 struct RodNodes {
   std::array<Node, 3> C, B;
 };
@@ -124,19 +125,20 @@ struct ArmNodes {
   std::optional<Node> joint;  ///< joint coordinate, if the arm is driven; otherwise std::nullopt
 };
 
-/// A rigid body. Twice its kinetic energy is the sum of the terms below; ' is the time derivative.
+/// A rigid body. Its mass properties are given by its kinetic energy T: 2 T is the sum of the terms below, in which '
+/// denotes the time derivative.
 struct BodyNodes {
-  /// The term weight f' . g'.
+  /// The term weight f' . g' of 2 T, for the vectors f and g.
   struct Product {
     std::array<Node, 3> f, g;
     Node weight;
   };
-  /// The term weight q'^2 for the angle q of an arm.
+  /// The term weight q'^2 of 2 T, for the angle q of an arm.
   struct ArmRotation {
     std::size_t arm;
     Node weight;
   };
-  /// The term weight |d x d'|^2 / |d|^4 for a slender body along d that does not spin about d.
+  /// The term weight |d x d'|^2 / |d|^4 of 2 T, for a slender body along the vector d that does not spin about d.
   struct LineRotation {
     std::array<Node, 3> d;
     Node weight;
@@ -147,57 +149,60 @@ struct BodyNodes {
   std::vector<Product> products;
   std::vector<ArmRotation> arm_rotations;
   std::vector<LineRotation> line_rotations;
-  /// Principal moments of inertia about the centre of mass: along and across the line of a slender body, or about the
-  /// axes of the platform frame.
+  /// Principal moments of inertia about the centre of mass: for a slender body along and across its axis, otherwise
+  /// about the axes of the platform frame.
   std::optional<std::array<Node, 3>> inertia{};
   std::string part_of{};  ///< name of the body to which this one is rigidly attached; "" if there is none
 };
 
-/// An elastic beam that is clamped at `near` and loaded at `far`.
+/// An elastic beam that is clamped at the point `near` and loaded at the point `far`.
 struct BeamNodes {
   std::array<Node, 3> near, far;
   Node EA, EI, GJ;  ///< axial stiffness [N], bending stiffness [N m^2] and torsional stiffness [N m^2]
   Node area;        ///< area of the cross-section [m^2]
 };
 
-/// A free body of the Newton-Euler equations.
+/// A rigid body of the Newton-Euler equations, in which all joints are replaced by their reactions.
 struct SolidNodes {
   std::string name;
-  std::vector<std::size_t> bodies{};  ///< indices of the bodies of the model that it consists of; empty: it has no mass
-  double share = 1;           ///< fraction of the inertia of these bodies that it has; 1/2 for one of two parallel rods
-  std::array<Node, 3> point;  ///< a point of the body
-  /// Direction with which the body rotates, without spin about it; std::nullopt if there is none.
+  std::vector<std::size_t> bodies{};  ///< indices in Model::bodies of the bodies that this solid consists of; empty:
+                                      ///< the solid has no mass
+  double share = 1;  ///< fraction of the mass and inertia of these bodies that belongs to this solid: 1/2 for each of
+                     ///< two parallel rods
+  std::array<Node, 3> point;  ///< a point that is fixed to the solid
+  /// A vector along the body, which rotates with it (without spin about the vector); std::nullopt if there is none.
   std::optional<std::array<Node, 3>> line{};
-  /// Offset of its centre of mass from that of `bodies`; std::nullopt: none.
+  /// Offset of the solid's centre of mass from that of `bodies`; std::nullopt: there is none.
   std::optional<std::array<Node, 3>> centre_offset{};
   bool with_platform = false;  ///< true: the body rotates with the platform
 
-  /// An elastic body that one of its joints holds and all others load.
+  /// The elasticity of a solid as a beam: one of its joints clamps it, all other joints load it.
   struct Beam : BeamNodes {
     std::size_t near_joint;  ///< index of the joint that holds the body
     bool is_rod;             ///< true: a rod, pinned at both ends; false: a crank
   };
-  std::optional<Beam> beam{};  ///< elasticity of the body; std::nullopt: it is rigid
+  std::optional<Beam> beam{};  ///< elasticity of the solid; std::nullopt: it is rigid
 };
 
 /// A joint between two solids, or between a solid and the base.
 struct JointNodes {
-  /// The couples that the joint transmits: about its `axes`, or about all directions normal to them.
+  /// Which couples the joint transmits: `along`, only those about its `axes`; `all_but_about`, all that are normal to
+  /// its `axes`.
   enum class Couples { along, all_but_about };
   struct Drive {
     std::size_t joint;
     std::array<Node, 3> axis;
-    bool turns = false;  ///< true: revolute; false: prismatic
-    /// Index of the body (a point mass) that moves with the drive; std::nullopt if there is none.
+    bool turns = false;  ///< true: the driven joint is revolute; false: prismatic
+    /// Index in Model::bodies of the slide, a point mass that moves with the drive; std::nullopt if there is none.
     std::optional<std::size_t> slide{};
     std::optional<Node> compliance{};  ///< compliance of the drive [m/N or rad/(N m)]; std::nullopt: it is rigid
-    /// Elasticity of the slide, which all joints with this drive load; std::nullopt: it is rigid.
+    /// Elasticity of the slide, which is loaded by all joints that have this drive; std::nullopt: it is rigid.
     std::optional<BeamNodes> ram{};
   };
   std::string name;
   std::array<Node, 3> point;
-  std::size_t on;                   ///< index of the solid on one side of the joint
-  std::optional<std::size_t> from;  ///< index of the solid on the opposite side; std::nullopt: the base
+  std::size_t on;                   ///< index of one of the two solids that the joint connects
+  std::optional<std::size_t> from;  ///< index of the other solid that it connects; std::nullopt: the base
   Couples couples;
   std::vector<std::array<Node, 3>> axes;
   std::optional<Drive> drive{};
@@ -226,7 +231,8 @@ struct MassCheck {
   bool may_vanish;
 };
 
-/// The members of PoseDynamics as functions of the coordinates and their rates; matrices are row-major.
+/// The matrices and vectors of PoseDynamics as nodes, which depend on the coordinates and their rates; matrices are
+/// row-major.
 struct EquationNodes {
   std::vector<Node> J, J_rate_X, M_X, h_X, G_X, J_wrench;
 };
@@ -242,9 +248,9 @@ struct Model {
   std::vector<Node> joints, closures;  ///< formulas of the joint coordinates; left sides of the loop-closure equations
   std::vector<Result> domains;         ///< constraints under which the pose assembles
   std::vector<Result> margins;         ///< constraints that a feasible pose has to satisfy in addition
-  /// Constraints of the form 0 * formula >= 0, which are satisfied if the formula is finite.
+  /// Constraints 0 * formula >= 0, each of which is satisfied if and only if its formula has a finite value.
   std::vector<Node> defined;
-  /// Common unit of all domains and margins that depend on the pose; "" if their units differ.
+  /// Unit of those domains and margins that depend on the pose; "" if they have different units.
   std::string margin_unit;
   std::vector<ReportedMargin> reported_margins;
   std::vector<CrankRangeNodes> crank_ranges;
@@ -261,7 +267,7 @@ struct Model {
   std::array<std::array<Node, 3>, 3> rotation;  ///< rotation matrix, by rows
   /// Axis of the rotation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if it describes none.
   std::vector<std::optional<std::size_t>> rotation_axes;
-  /// Unit vector along this axis, by coordinate; 0 if the coordinate describes no rotation.
+  /// Unit vector along the rotation axis of each coordinate; 0 if the coordinate describes no rotation.
   std::vector<std::array<Node, 3>> rotation_directions;
   /// Axis of the translation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if none.
   std::vector<std::optional<std::size_t>> translation_axes;
@@ -272,29 +278,31 @@ struct Model {
   std::vector<DesignMarginInfo> tests;
   std::vector<Node> test_nodes;
   std::optional<SizeNodes> size;
-  /// Characteristic length and radius of the conditioning; std::nullopt if the file does not define them.
+  /// Characteristic length (of rotations) and characteristic radius (of revolute drives) of the conditioning;
+  /// std::nullopt if the file does not define them.
   std::optional<Node> length, radius;
   /// Indices of the coordinates that the conditioning includes; empty: all.
   std::vector<std::size_t> conditioning_coordinates;
-  /// Threshold that the design determines, by limit; std::nullopt if there is none.
+  /// For each limit, the threshold that follows from the design; std::nullopt if the file gives no formula for it.
   std::vector<std::optional<Node>> derived;
-  /// Index of the parameter that has the name of the limit and is its default threshold, by limit; std::nullopt if
-  /// none.
+  /// For each limit, the index of the parameter with the same name, whose value is the default threshold; std::nullopt
+  /// if there is no such parameter.
   std::vector<std::optional<std::size_t>> limit_parameters;
 
   // workspace analysis, by coordinate
-  /// Range that is searched; std::nullopt if the file does not define it.
+  /// Range of each coordinate that a workspace analysis searches; std::nullopt if the file does not define it.
   std::vector<std::optional<std::array<Node, 2>>> box;
-  /// Range outside of which no pose is feasible; std::nullopt if the file does not define it.
+  /// Range of each coordinate outside of which no pose is feasible; std::nullopt if the file does not define it.
   std::vector<std::optional<std::array<Node, 2>>> reach;
-  /// Default value of the coordinate if it is fixed; std::nullopt if the file does not define it.
+  /// Value of each coordinate where an analysis fixes it by default; std::nullopt if the file does not define it.
   std::vector<std::optional<Node>> default_values;
 
   // links
   std::vector<LinkNodes> links;
   std::vector<LinkPair> link_pairs;       ///< pairs of indices of links whose clearance is tested
   std::vector<std::size_t> moving_links;  ///< indices of the links whose clearance from obstacles is tested
-  /// Index of the clearance limit among the limits; it follows those that are inputs of the graph.
+  /// Index of the clearance limit among MechanismInfo::limits; std::nullopt if there is none. It has no input in the
+  /// graph, and follows the limits that have one.
   std::optional<std::size_t> clearance_limit;
   std::vector<RodNodes> rods;  ///< rods of those limbs that have one
 
@@ -304,7 +312,7 @@ struct Model {
   std::vector<MassCheck> masses;
   std::optional<std::array<Node, 3>> wrench_point;  ///< point of the platform at which a wrench acts
   std::optional<EquationNodes> equations;           ///< present if there are bodies
-  std::vector<Node> jacobian;                       ///< EquationNodes::J, also present if there are no bodies
+  std::vector<Node> jacobian;                       ///< EquationNodes::J, also computed for models without bodies
   std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
   /// Peak force or torque of each drive [N, N m], by joint; empty if the file defines none.
   std::vector<std::optional<Node>> peak_forces;

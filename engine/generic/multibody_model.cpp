@@ -25,7 +25,7 @@ constexpr double kRankOfVelocities = 1e-9;  // relative to the largest pivot: sm
 
 Vector3d eigen(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Velocities of a rigid body for a unit rate of each coordinate.
+/// Velocity of a point of a rigid body, and the body's angular velocity, for a unit rate of each coordinate.
 struct BodyMotion {
   Vector3d point;
   std::vector<Vector3d> v, omega;  ///< velocity of the point, and angular velocity; by coordinate
@@ -41,9 +41,9 @@ struct Connection {
   std::optional<MultibodyModel::Drive> drive{};
 };
 
-/// A unit vector normal to `line`, as close to `preferred` as possible.
+/// A unit vector normal to `line`, as close to the direction `preferred` as possible.
 Vector3d normal_to(const Vector3d& line, const Vector3d& preferred) {
-  // if the sine of the angle between the two is smaller, another direction is preferred
+  // if the sine of the angle between `line` and `preferred` is smaller, the x or y axis is used instead of `preferred`
   constexpr double kOblique = 0.1;
   const Vector3d u = line.normalized();
   for (const Vector3d& wanted : {preferred, Vector3d(Vector3d::UnitX()), Vector3d(Vector3d::UnitY())})
@@ -281,14 +281,15 @@ class MultibodyBuilder {
       connections_.push_back(added);
     }
   }
-  /// Axis of a crank if one of the two bodies of the joint is a crank; otherwise a horizontal direction.
+  /// Direction of the axis of a crank if one of the two bodies of the joint is a crank; otherwise a horizontal
+  /// direction.
   Vector3d pivot_beside(const Connection& joint) const {
     for (const Connection& other : connections_)
       if (other.type == Type::revolute && other.drive && (other.on == joint.from || other.on == joint.on))
         return other.axes[0];
     return Vector3d::UnitX();
   }
-  /// Adds a joint whose type follows from the number of axes about which it rotates.
+  /// Adds a joint whose type (revolute, universal, spherical) follows from the number of its rotation axes.
   void add_rotations(Connection joint) {
     constexpr double kOblique = 1e-9;  // maximum cosine of the angle between the axes of a universal joint
     if (joint.axes.size() == 2 && std::abs(joint.axes[0].dot(joint.axes[1])) > kOblique)
@@ -300,7 +301,7 @@ class MultibodyBuilder {
     connections_.push_back(std::move(joint));
   }
 
-  /// Whether a point moves with a body.
+  /// True if a point moves as if it were fixed to a body.
   bool is_carried(const VectorNodes& point, const BodyMotion& body) const {
     for (std::size_t j = 0; j < rates_.size(); ++j) {
       const Vector3d v = rate(point, j), carried = body.v[j] + body.omega[j].cross(at_pose(point) - body.point);
@@ -308,7 +309,8 @@ class MultibodyBuilder {
     }
     return true;
   }
-  /// Throws if a formula would make the points of a body move in a way that is not rigid.
+  /// Throws std::invalid_argument if the motion of the points of a body, as given by formulas, is not that of a rigid
+  /// body.
   void check_motions() const {
     for (const JointNodes& joint : of_.joints) {
       const bool on_slide = joint.drive && slides_.contains(joint.drive->joint);
@@ -459,7 +461,7 @@ class MultibodyBuilder {
   const JointedBodies& of_;
   std::vector<Taylor> design_;
   std::size_t mode_;
-  /// Values of the nodes and their derivatives with respect to each coordinate, by coordinate.
+  /// For each coordinate, the values of all nodes and their derivatives with respect to it.
   std::vector<Values> rates_;
   Values nearby_;
   double size_ = 0;

@@ -91,7 +91,8 @@ class System {
     return moving;
   }
 
-  /// Rotation matrix R, angular velocity and angular acceleration: omega x = R' R^T, epsilon x = R'' R^T + R' R'^T.
+  /// Computes the rotation matrix R of the platform, its angular velocity omega, [omega]x = R' R^T, and its angular
+  /// acceleration epsilon, [epsilon]x = R'' R^T + R' R'^T.
   void find_rotation_of_platform() {
     Mat first, second;  // first and second derivative of R with respect to time
     for (std::size_t i = 0; i < 3; ++i) {
@@ -106,7 +107,7 @@ class System {
     epsilon_ = axial(second * transpose(R_) + first * transpose(first));
   }
 
-  /// The body of a solid with its position and rotation, but without mass.
+  /// The rigid body of a solid with its position and motion, but without mass.
   RigidBody massless(const SolidNodes& solid) const {
     RigidBody body;
     body.name = solid.name;
@@ -115,7 +116,7 @@ class System {
       body.omega = omega_;
       body.epsilon = epsilon_;
     } else if (solid.line) {
-      // omega = d x d' / |d|^2, which has no component along d, and its derivative
+      // omega = d x d' / |d|^2, which has no component along the body's direction d; and its time derivative
       const MovingVector d = at(*solid.line);
       const double square = dot(d.x, d.x);
       body.omega = cross(d.x, d.v) * (1 / square);

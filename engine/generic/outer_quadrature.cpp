@@ -8,10 +8,11 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kCoarse = 1e-5;  // if the tolerance is at least this, the subdivision begins with a single cell
+constexpr double kCoarse = 1e-5;  // for tolerances of at least this value, the subdivision begins with a single
+                                  // subinterval.
 constexpr std::size_t kMaxCells = 100;
 
-/// Adds factor() times the gradient of the first output of a program, which has a single stage.
+/// Adds factor() times the gradient of the first output of a program with a single stage to the derivatives by input.
 template <class Factor>
 void add_gradient(const expression::Program& program, const std::vector<double>& inputs, const Factor& factor,
                   std::span<double> by_input) {
@@ -24,11 +25,11 @@ void add_gradient(const expression::Program& program, const std::vector<double>&
   for (const auto& input : program.stages().front().inputs) by_input[input.position] += adjoints[input.to];
 }
 
-/// A subinterval of the range of an outer coordinate, with its integral.
+/// A subinterval of the range of an outer coordinate, with the integral over it.
 struct OuterCell {
   Subinterval<double> interval;
   double value = 0, error = 0;
-  double inner_error = 0;  ///< integral of the errors of the inner volumes over the subinterval
+  double inner_error = 0;  ///< integral over the subinterval of the estimated error of the inner volume
   std::vector<double> by_input{};
 };
 

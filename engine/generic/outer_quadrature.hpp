@@ -29,7 +29,7 @@ class OuterQuadrature {
   Integral<double> measure(std::vector<double>& inputs, std::span<double> by_input, const Inner& inner) const {
     return measure(0, inputs, by_input, inner);
   }
-  /// The range of a coordinate. S is double or Dual4.
+  /// The range of the coordinate coordinates_[level]. S is double or Dual4.
   template <class S>
   Subinterval<S> range(std::size_t level, const std::vector<S>& inputs) const {
     const std::size_t coordinate = coordinates_[level];
@@ -39,7 +39,7 @@ class OuterQuadrature {
  private:
   Integral<double> measure(std::size_t level, std::vector<double>& inputs, std::span<double> by_input,
                            const Inner& inner) const;
-  /// The integral over the coordinates after coordinates_[level], where the coordinate of `level` has the given value.
+  /// The volume over the coordinates after coordinates_[level], with that coordinate fixed at `value`.
   Integral<double> at(std::size_t level, double value, std::vector<double>& inputs, std::span<double> by_input,
                       const Inner& inner) const;
 

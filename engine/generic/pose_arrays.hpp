@@ -8,14 +8,14 @@
 
 namespace pkm::generic {
 
-/// Computes certain nodes of the model's graph, such as the joint coordinates, at each of many poses.
+/// Evaluates selected nodes of the model's graph, such as the joint coordinates, at each of many poses.
 class PoseArrays {
  public:
   /// The joint coordinates, in the order of MechanismInfo::joints [m, rad].
   static PoseArrays joints(const Evaluation& evaluation, std::size_t mode);
   /// The Jacobian J, qdot = J Xdot, row by row: joints x coordinates.
   static PoseArrays jacobians(const Evaluation& evaluation, std::size_t mode);
-  /// One of MechanismInfo::quantities, by its index, for the default inputs and a platform at rest.
+  /// The quantity MechanismInfo::quantities[index], for the default values of extra inputs and a platform at rest.
   static PoseArrays quantity(const Evaluation& evaluation, std::size_t mode, std::size_t index);
 
   /// Number of values per pose.

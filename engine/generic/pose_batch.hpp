@@ -33,7 +33,7 @@ class PoseBatch {
   /// @return number of poses with the padding, a multiple of kLanes
   std::size_t run(PoseBatchScratch& scratch) const;
 
-  /// Evaluates a single pose, for any scalar type S; the results are in the registers outputs().
+  /// Counterpart without SIMD for a single pose and any scalar type S; the results are in the registers outputs().
   template <class S>
   void start(std::span<const S> inputs, std::vector<S>& registers) const {
     registers.resize(program_.registers());
@@ -48,7 +48,7 @@ class PoseBatch {
   }
   const std::vector<std::uint32_t>& outputs() const { return program_.outputs(); }
 
-  /// Location of an output of the batch.
+  /// Where the value of an output of the program is after run(): a row with one number per pose, or a single number.
   expression::Operand operand(std::size_t output) const { return stage_->operand(program_.outputs()[output]); }
   /// Value of an output at a pose of the batch.
   static double value(const expression::Operand& operand, std::size_t pose, const PoseBatchScratch& scratch) {

@@ -5,9 +5,9 @@
 
 namespace pkm::generic {
 
-/// Appends the finite margins of each pose: domains, margins and clearance, each in its own unit. A pose is infeasible
-/// if one of its margins is not finite, or if a joint has no solution; if such a pose has no negative margin, -1 is
-/// appended.
+/// Appends the finite margins of each pose to `margins`: domains, margins and clearance, each in its own unit. A pose
+/// is infeasible if one of its margins is not finite, or if a joint coordinate has no solution; if such a pose has no
+/// negative margin, -1 is appended so that it is recognised as infeasible.
 template <class S>
 void append_margins(const Evaluation& evaluation, std::span<const S> parameters, std::size_t mode,
                     const LimitSpec& limits, std::span<const Pose<double>> poses, Scratch& scratch,

@@ -13,7 +13,7 @@
 namespace pkm::generic {
 namespace {
 
-/// The nodes that all have to be satisfied at a feasible pose.
+/// The constraints that a feasible pose has to satisfy, as nodes of the model's graph.
 std::vector<Node> constraint_nodes(const Model& model) {
   std::vector<Node> nodes;
   for (const auto* const list : {&model.domains, &model.margins})
@@ -76,7 +76,8 @@ class GenericSides final : public PoseSides {
 
   const std::vector<int>& swept() const { return sweep_of(e_.model.info, plan_).swept; }
 
-  /// Side of one pose of a batch. The outputs of the batch are the constraints, followed by the Jacobian.
+  /// Side of the singularities on which a pose of the batch lies, or kInfeasible. The outputs of the batch are the
+  /// constraints, followed by the elements of the Jacobian.
   std::int8_t side(const PoseBatch& batch, std::size_t constraints, std::size_t pose,
                    const PoseBatchScratch& scratch) const {
     for (std::size_t i = 0; i < constraints; ++i)
@@ -89,9 +90,9 @@ class GenericSides final : public PoseSides {
   const Evaluation& e_;
   WorkspacePlan plan_;
   std::size_t mode_;
-  /// true: there are limits that formulas do not give, i.e. clearance or quantities of pose reports.
+  /// true: some limits are not given by formulas, i.e. a clearance or limits of quantities that pose reports contain
   bool has_other_limits_;
-  std::size_t constraints_;  ///< number of the outputs of `all_` that are constraints
+  std::size_t constraints_;  ///< number of constraints: the first outputs of the batch `all_`
   PoseBatch jacobian_, all_;
 };
 

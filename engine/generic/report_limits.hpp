@@ -11,15 +11,15 @@
 
 namespace pkm::generic {
 
-/// The quantity of the first such limit that is in force; null if no such limit is in force.
+/// The quantity that the first limit in force without a formula refers to; null if no such limit is in force.
 const PoseQuantity* first_report_limit(const Model& model, const LimitSpec& limits);
 
 /// Throws std::invalid_argument if a limit of a quantity without a formula is in force.
 /// @param what  the analysis that does not support such limits, for the message: "exact columns"
 void refuse_report_limits(const Model& model, const LimitSpec& limits, const std::string& what);
 
-/// Calls add(name, margin) for each limit in force of a quantity without a formula. The margin is the smallest one over
-/// the joints; NaN if the quantity is undefined.
+/// Calls add(name, margin) for each limit in force of a quantity without a formula. If the quantity has one value per
+/// joint, the margin is the minimum over the joints. It is NaN if the quantity is undefined.
 /// @param report  report of the pose, which contains the Jacobian
 template <class Add>
 void visit_report_margins(const Model& model, const LimitSpec& limits, const PoseReport& report, const Add& add) {

@@ -12,9 +12,10 @@ namespace {
 
 using Vec = Vector<double, 3>;
 
-/// Component of a joint's force along the unit vector u; std::nullopt if the equations do not determine it.
+/// Component of a joint's force along the unit vector u; std::nullopt if the equilibrium equations do not determine it.
 std::optional<double> along(const Vec& u, const std::array<std::optional<double>, 3>& force) {
-  constexpr double kNormal = 1e-9;  // components of u that are smaller are neglected
+  constexpr double kNormal = 1e-9;  // smaller components of u count as 0, so that undetermined force components normal
+                                    // to u have no effect
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (std::fabs(u[k]) < kNormal) continue;

@@ -21,11 +21,12 @@ struct RodLoad {
   std::string name;           ///< name of the rod, such as "rod 1 of arm1"
   double area = 0;            ///< area of its cross-section [m^2]
   double buckling_force = 0;  ///< compressive force at which the rod buckles [N]
-  /// Axial forces at the two ends [N], > 0 for tension; they differ because of the inertia of the rod. std::nullopt if
-  /// the equations do not determine them.
+  /// Axial force at each end of the rod [N], > 0 for tension; the two differ because of the inertia of the rod.
+  /// std::nullopt if the equations of motion do not determine them.
   std::optional<std::array<double, 2>> ends;
 
-  /// The axial force of larger magnitude of the two ends [N]; and the compression [N], >= 0. `ends` must be set.
+  /// axial(): the axial force at the end where its magnitude is larger [N]; compression(): the maximum compressive
+  /// force [N], >= 0. Both require `ends`.
   double axial() const { return std::fabs((*ends)[0]) > std::fabs((*ends)[1]) ? (*ends)[0] : (*ends)[1]; }
   double compression() const { return std::max({0.0, -(*ends)[0], -(*ends)[1]}); }
   /// Buckling force divided by the compression; std::nullopt if the rod is not under compression.

@@ -12,10 +12,12 @@ namespace {
 using NodeSurface = std::array<Node, 6>;
 using NodeClause = std::vector<NodeSurface>;
 
-/// kPlace[i][j]: index of the coefficient of z^i v^j of a conic; 6 if a conic has no such term.
+/// kPlace[i][j]: index of the coefficient of z^i v^j in Surface::coefficients of a conic; 6 if conics have no such
+/// term.
 constexpr std::size_t kPlace[3][3] = {{0, 1, 3}, {2, 4, 6}, {5, 6, 6}};
 
-/// Converts constraints to clauses of surfaces: to conics in v and z, or, if slices are lines, to polynomials in z.
+/// Converts constraints to clauses (disjunctions) of surfaces: of conics in v and z or, if slices are lines, of
+/// functions of z.
 class SurfaceConverter {
  public:
   SurfaceConverter(Graph& graph, Groups v, Groups z) : graph_(graph), v_(v), z_(z) {}
@@ -144,7 +146,8 @@ class Planner {
     if (plan_.why_not.empty()) plan_.why_not = what;
   }
 
-  /// Expresses the annuli that cranks and rods reach, and the ranges of cranks, by surfaces.
+  /// Replaces the constraints of cranks and rods by quadratic surfaces where possible: the annulus that they reach, and
+  /// the range of the crank angle.
   void convert_cranks() {
     covered_.assign(known_.all.size(), false);
     std::vector<std::optional<Signs>> reaches(known_.crank_ranges.size());
@@ -174,7 +177,8 @@ class Planner {
     for (std::size_t i = 0; i < known_.all.size(); ++i)
       covered_[i] = covered_[i] || std::ranges::find(conditions, known_.all[i]) != conditions.end();
   }
-  /// The sets of bits of the surfaces of given functions, by function; std::nullopt if one of them is no surface.
+  /// Converts each of the given nodes to a surface. @return for each node, the set of its surface; std::nullopt if one
+  /// of them cannot be converted
   std::optional<std::vector<Signs>> bits_of(std::initializer_list<Node> surfaces) {
     std::vector<NodeSurface> found;
     for (const Node surface : surfaces) {
@@ -220,7 +224,8 @@ class Planner {
     plan_.formula.all |= bit(curve);
   }
 
-  /// The constraints that depend on the first coordinate only, each followed by its derivative with respect to it.
+  /// The constraints that depend on no coordinate but the first one: nodes of each constraint and of its derivative
+  /// with respect to this coordinate.
   std::vector<Node> univariate() {
     const std::size_t coordinate = plan_.order.outer.empty() ? plan_.order.v.value_or(0) : plan_.order.outer.front();
     const Node by = graph_.input(model_.inputs.coordinate(coordinate), Inputs::coordinate_group(coordinate));
@@ -233,7 +238,8 @@ class Planner {
     return all;
   }
 
-  /// The constraints that depend on v but not on z, each followed by its first and second derivative with respect to v.
+  /// The constraints that depend on v but not on z: nodes of each constraint and of its first and second derivative
+  /// with respect to v.
   std::vector<Node> limits() {
     const Node v = graph_.input(model_.inputs.coordinate(*plan_.order.v), v_);
     std::vector<Node> all;
@@ -263,7 +269,7 @@ class Planner {
       plan_.formula.any.push_back(bits);
   }
 
-  /// Adds the lower and upper bound of z as surfaces.
+  /// Adds the constraints z >= lower bound and z <= upper bound as surfaces.
   void add_box_of_z() {
     const limbs::Term from(graph_, ends_.back()[0]), to(graph_, ends_.back()[1]);
     const std::size_t place_of_z = v_ == 0 ? 1 : kPlace[1][0];

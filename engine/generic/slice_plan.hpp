@@ -13,11 +13,12 @@ namespace pkm::generic {
 /// A constraint surface in a slice: a conic, a polynomial or a transcendental function, given by registers of the
 /// program.
 struct Surface {
-  /// Registers. Conic: coefficients of 1, v, z, v^2, v z, z^2. Polynomial, without v: those of 1, z, z^2, z^3, z^4.
-  /// Transcendental: f(z) and its derivative, which the last stage of the program computes.
+  /// Registers of its terms. Conic: coefficients of 1, v, z, v^2, v z, z^2. Polynomial (slices are lines): coefficients
+  /// of 1, z, z^2, z^3, z^4. Transcendental function: value f(z) and derivative f'(z), computed by the last stage of
+  /// the program.
   std::array<std::uint32_t, 6> coefficients;
-  bool has_z;              ///< of a conic: true if it depends on z
-  bool is_high_degree;     ///< of a polynomial: true if its degree is three or four
+  bool has_z;              ///< for a conic: true if it depends on z
+  bool is_high_degree;     ///< for a polynomial: true if its degree is three or four
   bool is_transcendental;  ///< true: slices are lines, and the constraint is no polynomial in z
 };
 
@@ -35,13 +36,15 @@ struct SlicePlan {
   expression::Program program;  ///< stages: the design, each outer coordinate, v; and z if a surface is transcendental
   std::vector<Surface> surfaces;
   Formula formula;
-  /// Registers of the constraints that do not depend on z, by the stage that computes them; satisfied if >= 0.
+  /// Registers of the constraints that do not depend on z, by the stage of the program that computes them. A constraint
+  /// is satisfied if its value is >= 0.
   std::vector<std::vector<std::uint32_t>> independent;
-  /// Constraints that depend on v but not on z. The outputs are, for each constraint, its value and its first and
-  /// second derivative with respect to v; the stages are the design, each outer coordinate, v.
+  /// Program of the constraints that depend on v but not on z. Its outputs are, for each constraint, its value and its
+  /// first and second derivative with respect to v; its stages are the design, each outer coordinate, and v.
   expression::Program limits;
-  /// The constraints in independent[1], which depend on the first coordinate only. The outputs are, for each
-  /// constraint, its value and its derivative with respect to this coordinate; the stages are those of `program`.
+  /// Program of the constraints in independent[1], which depend on no coordinate but the first. Its outputs are, for
+  /// each constraint, its value and its derivative with respect to this coordinate; it has the same stages as
+  /// `program`.
   expression::Program univariate;
   /// Registers of the lower and upper bound of each outer coordinate, of v and of z, in this order.
   std::vector<std::array<std::uint32_t, 2>> range;
@@ -50,7 +53,7 @@ struct SlicePlan {
 
 /// Plans the slices of a workspace for one order of the coordinates. If they have no closed form, SlicePlan::why_not is
 /// not empty.
-/// @param curves  true: transcendental constraints are allowed if slices are lines
+/// @param curves  true: if slices are lines, constraints may be transcendental functions of z
 /// @param box     range of each coordinate that is searched; std::nullopt: the range of the model
 SlicePlan plan_slices(const Evaluation& evaluation, std::size_t mode, const CoordinateOrder& order, bool curves,
                       const CoordinateRanges& box);

@@ -10,12 +10,13 @@ namespace pkm::generic {
 using Signs = std::uint64_t;
 inline constexpr std::size_t kMaxSurfaces = 64;
 
-/// The range of a crank (limbs::CrankRange), decided by the signs of surfaces: each set contains the surfaces that
-/// decide one of its terms.
+/// The range of a crank (limbs::CrankRange) in terms of the signs of surfaces: each member of type Signs is a set of
+/// surfaces, and the term of the same name is >= 0 if all surfaces of the set are.
 struct CrankSigns {
   Signs at_min, at_max, after_min, before_max, reach;
   std::uint32_t half_turn;  ///< register of CrankRange::half_turn
-  bool is_first;            ///< true: the joint angle is the smaller one of the two angles that assemble
+  bool is_first;  ///< true: the smaller of the two crank angles that assemble is the joint coordinate; false: the
+                  ///< greater one
 };
 
 struct Formula {

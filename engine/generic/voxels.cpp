@@ -47,14 +47,14 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
  private:
   friend GridEvaluator;
   struct WorkerScratch {
-    /// Index of the grid for which this memory is prepared; std::nullopt if there is none.
+    /// Index of the grid for which this scratch memory is prepared; std::nullopt if it is not prepared.
     std::optional<std::size_t> number;
     std::vector<double> inputs;
     CellScratch cells;
     InertiaScratch inertia;
     FormulaScratch formulas;
     ClearanceScratch clearance;
-    /// For each pose in the clearance batch, the index of the bit of its cell.
+    /// For each pose in the batch of clearance tests, the index of its cell's bit.
     std::array<std::size_t, expression::kRow> waiting;
   };
   struct Common {
@@ -137,7 +137,8 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     return pose;
   }
 
-  /// Finds the cells of a slice that satisfy all limits. @param want_bits  true: also compute scratch.cells.bits
+  /// Finds the cells of a slice that satisfy all limits. @param want_bits  true: also fill the bit set
+  /// scratch.cells.bits
   CellTally find_cells(const GriddedSlices& slices, std::size_t slice, bool want_bits, WorkerScratch& scratch) const {
     const VoxelGrid& grid = slices.grid;
     if (!clearance_ && limited_.empty()) return test_.test(grid, slice, want_bits, scratch.cells);
@@ -229,7 +230,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
   std::optional<InertiaBatch> inertia_;       ///< absent if no fields of inertia are requested
   std::optional<SampleFormulas> formulas_;    ///< absent if no fields given by formulas are requested
   std::optional<ClearanceBatch> clearance_;   ///< absent if there is no clearance limit
-  std::vector<const PoseQuantity*> limited_;  ///< quantities without a formula that have a limit in force
+  std::vector<const PoseQuantity*> limited_;  ///< quantities without a formula that a limit in force restricts
 };
 
 }  // namespace

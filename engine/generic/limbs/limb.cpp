@@ -5,12 +5,14 @@
 namespace pkm::limbs {
 namespace {
 
-/// The vector v = B - A, projected onto the plane in which the limb moves, if there is one.
+/// The vector v = B - A from the joint on the base to that on the platform; if the limb is restricted to a plane, its
+/// projection onto this plane.
 Vector3 projected(const Ends& ends) {
   const Vector3 v = ends.B - ends.A;
   return ends.across ? v - *ends.across * dot(v, *ends.across) : v;
 }
-/// Closure of a rod: (|v|^2 - length^2) / 2. Because of the factor 1/2, its gradient with respect to v is v.
+/// Loop-closure function of a rod, (|v|^2 - length^2) / 2, where v is the vector between its ends. The factor 1/2 makes
+/// v its gradient.
 Term rod_closure(const Vector3& v, const Term& length) { return (dot(v, v) - length * length) * 0.5; }
 
 }  // namespace
@@ -68,7 +70,7 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
   const Term angle = atan2(w, u) + branch * acos(k / h);
   const Term joint = centre + call(expression::angle_wrapping(), angle - centre);
   const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
-  // cosine and sine of the crank angle, multiplied by h^2
+  // cosine and sine of the crank angle, both multiplied by h^2
   const Term root = branch * sqrt(h * h - k * k), cosine = u * k - w * root, sine = w * k + u * root;
   const Vector3 to_C = (zero * cosine + beside * sine) * (crank / (h * h));
   Limb limb = {.joint = joint,

@@ -17,7 +17,7 @@ namespace pkm::limbs {
 using expression::length, expression::rotation_about;
 using expression::Rotation, expression::Term, expression::Vector3;
 
-/// A constraint margin >= 0.
+/// A constraint: satisfied if `margin` >= 0.
 struct Constraint {
   std::string name;  ///< name of the constraint, such as "reaches"
   std::string unit;
@@ -36,7 +36,8 @@ struct Constraint {
 ///   both ends and phi + pi is in the range.
 struct CrankRange {
   Term at_min, at_max;  ///< values of f at q_min and at q_max
-  /// >= 0: phi is at most half a revolution after q_min; and at most half a revolution before q_max.
+  /// >= 0 if the angle phi is at most half a revolution after q_min, and at most half a revolution before q_max,
+  /// respectively.
   Term after_min, before_max;
   Term half_turn;  ///< >= 0: the range is at most half a revolution
   Term reach;      ///< h^2 - k^2, >= 0 if the limb reaches B
@@ -58,22 +59,24 @@ using Annulus = std::array<Term, 2>;
 /// E = A + q axis, or E = A + crank (cos q zero + sin q axis x zero).
 struct RodAndPath {
   bool is_circle;
-  /// v = B - A; axis of the line or circle; zero: direction of the crank at q = 0, for a circle only.
+  /// v: from the joint A on the base to the joint B on the platform; axis: unit vector of the line or circle; zero:
+  /// direction of the crank at q = 0 (circle only).
   Vector3 v, axis, zero;
   Term crank, rod, branch;
 };
 
-/// The closed form of a limb.
+/// The inverse kinematics of a limb in closed form.
 struct Limb {
   Term joint;                           ///< formula of the joint coordinate; undefined if a constraint is violated
   std::vector<Constraint> constraints;  ///< constraints under which the limb assembles
-  /// Loop-closure equation closure = 0; with Jq = -d/dq and G = d/dX the velocities satisfy Jq qdot = G Xdot.
+  /// Residual of the loop-closure equation, closure = 0. With Jq = -d closure/dq and G = d closure/dX, the velocities
+  /// satisfy Jq qdot = G Xdot.
   Term closure;
   Vector3 C;  ///< inner end of the rod: end of the crank, elbow or slide; A for a telescope
   Vector3 S;  ///< position of the slide; A for cranks and telescopes
   std::optional<CrankRange> crank_range{};
   std::optional<Arm> arm{};
-  /// Constraints that are equivalent to `constraints`, for a planar crank with a rod.
+  /// For a planar crank with a rod: quadratic constraints that are equivalent to `constraints`.
   std::optional<Annulus> annulus{};
   std::optional<RodAndPath> path{};  ///< for a rod with ball joints, if Ends::across is not given
 };

@@ -10,7 +10,7 @@ Node coordinate(Model& model, std::size_t i) {
   return model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
 }
 
-/// The matrix without those of its rows that consist of zeros.
+/// A copy of the matrix without the rows whose elements are all 0.
 TermMatrix without_zero_rows(const TermMatrix& A) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < A.rows(); ++i)
@@ -28,8 +28,8 @@ TermMatrix without_zero_rows(const TermMatrix& A) {
 
 Term max(const Term& x, const Term& y) { return call(expression::operation("max"), x, y); }
 
-/// Maximum length of a sum of all columns with signs +-1. The sign of the first column is fixed, because v and -v have
-/// the same length.
+/// Maximum length of +-a_1 +- a_2 ... over all signs, where a_i are the columns. The sign of a_1 is fixed, because v
+/// and -v have the same length.
 Term longest_sum(const TermMatrix& columns) {
   std::vector<TermMatrix> sums = {columns.column(0)};
   for (std::size_t j = 1; j < columns.columns(); ++j) {

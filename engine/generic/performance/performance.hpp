@@ -28,8 +28,10 @@ struct NamedTerm {
 /// Velocities of the joints and of the platform for unit rates of the coordinates: one column per coordinate.
 struct FirstOrderKinematics {
   TermMatrix J;            ///< joints x coordinates: q' = J x'
-  TermMatrix translation;  ///< T_v without the directions in which the origin cannot move; at most three rows
-  /// T_w; if there are one or two rotations, whose axes are orthonormal, the components along these axes.
+  TermMatrix translation;  ///< T_v (rates of the coordinates to velocity of the origin) without rows for directions in
+                           ///< which the origin cannot move; at most three rows
+  /// T_w (rates of the coordinates to angular velocity); if there are one or two rotations, whose axes are orthonormal,
+  /// only the components along these axes.
   TermMatrix rotation;
   /// Inverse of J; std::nullopt unless there are as many joints as coordinates.
   std::optional<expression::Inverse> inverse;
@@ -42,10 +44,10 @@ FirstOrderKinematics first_order_kinematics(Model& model);
 /// @param kinematics  must have an `inverse`
 std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& kinematics);
 
-/// Bounds of the errors that act along each joint: errors of the joint itself, and errors of dimensions, multiplied by
-/// their effect on the joint coordinate at this pose.
+/// Bounds of the errors of the joint coordinates: errors of the joints themselves, plus errors of dimensions,
+/// multiplied by their effect on the joint coordinate at this pose.
 struct JointErrors {
-  std::vector<Term> bound;  ///< sum of all contributions, which is the worst case; by joint
+  std::vector<Term> bound;  ///< worst case: sum of the magnitudes of all contributions [m, rad]; by joint
   /// Sum of the squares of all contributions, which is the variance if each is a standard deviation; by joint.
   std::vector<Term> squared_spread;
 };
@@ -57,9 +59,9 @@ struct JointErrors {
 /// @param kinematics  must have an `inverse`
 std::vector<NamedTerm> accuracy_quantities(const FirstOrderKinematics& kinematics, const JointErrors& errors);
 
-/// One limb as a spring. The force along `row`, in terms of the rates of the coordinates, compresses the limb by
-/// `compliance` times its value. The row is the power of a unit force, f . (dB/dx), so that the stiffness of the limb
-/// in the coordinates is row^T row / compliance.
+/// One limb as a spring. An internal force or torque of the limb deflects it by `compliance` times its value. `row` is
+/// the power of a unit force or torque per unit rate of each coordinate (for a unit force f at the point B of the
+/// platform: f . (dB/dx)), so that the stiffness matrix of the limb in the coordinates is row^T row / compliance.
 struct LimbSpring {
   std::vector<Term> row;
   Term compliance;  ///< compliance [m/N], or [rad/(N m)] if `row` is a row of joint rates
