@@ -21,8 +21,8 @@ Node read_formula(Graph& graph, const std::string& text, const Names& names, std
 
 struct ParsedFormula {
   FormulaValue value;
-  std::vector<Node> norms;  ///< nodes of the vector norms in the formula: square roots that are defined for all
-                            ///< arguments
+  /// Nodes of the vector norms in the formula: square roots that are defined for all arguments.
+  std::vector<Node> norms;
 };
 /// Parses a formula whose value and whose variables may be scalars, vectors, rotations or frames. Throws as
 /// read_formula() does.

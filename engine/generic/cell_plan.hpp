@@ -28,8 +28,8 @@ struct CellPlan {
     /// Registers of CrankRange::half_turn (>= 0 if the range is at most half a revolution) and CrankRange::reach (>= 0
     /// if the limb reaches the pose).
     std::uint32_t half_turn, reach;
-    bool is_first;  ///< true: the smaller of the two crank angles that assemble is the joint coordinate; false: the
-                    ///< greater one
+    /// true: the smaller of the two crank angles that assemble is the joint coordinate; false: the greater one.
+    bool is_first;
   };
 
   /// @param swept  index of the swept coordinate of each axis of the grid

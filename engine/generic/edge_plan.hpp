@@ -60,8 +60,8 @@ class EdgePlan {
     Solid solid;
     std::vector<Source> sources;  ///< source of each body of the solid, by body
     bool is_empty = false;
-    double beyond = 0;  ///< sum of the distances by which bodies of the solid extend beyond planes that were omitted as
-                        ///< bodies
+    /// Sum of the distances by which bodies of the solid extend beyond planes that were omitted as bodies.
+    double beyond = 0;
 
     /// Upper bound of the distance of the solid's points from the origin of the coordinates.
     double reach() const { return solid.bound + norm(origin); }

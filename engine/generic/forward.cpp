@@ -59,8 +59,8 @@ class LoopClosure {
 };
 
 struct Solution {
-  std::optional<Pose<double>> pose;  ///< the pose to which Newton's method converged; std::nullopt if it did not
-                                     ///< converge
+  /// The pose to which Newton's method converged; std::nullopt if it did not converge.
+  std::optional<Pose<double>> pose;
   bool is_defined_at_start = false;  ///< true: all residuals of the loop-closure equations are finite at the start pose
 };
 

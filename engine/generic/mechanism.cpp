@@ -187,8 +187,8 @@ class GenericMechanism final : public Mechanism,
       }
     return plan;
   }
-  /// The plan as passed to accelerators; std::nullopt if they do not support it, because it limits pose quantities, or
-  /// because formulas or the report of every pose are requested.
+  /// The plan as passed to accelerators; std::nullopt if they do not support the analysis, because the plan limits pose
+  /// quantities, or because formulas or the poses of all cells (FieldRequest::every_pose) are requested.
   std::optional<WorkspacePlan> accelerated_plan(const WorkspacePlan& plan, const FieldRequest& request) const {
     if (request.has_formulas() || request.every_pose) return {};
     for (std::size_t i = 0; i < info().limits.size(); ++i)

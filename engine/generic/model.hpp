@@ -165,10 +165,10 @@ struct BeamNodes {
 /// A rigid body of the Newton-Euler equations, in which all joints are replaced by their reactions.
 struct SolidNodes {
   std::string name;
-  std::vector<std::size_t> bodies{};  ///< indices in Model::bodies of the bodies that this solid consists of; empty:
-                                      ///< the solid has no mass
-  double share = 1;  ///< fraction of the mass and inertia of these bodies that belongs to this solid: 1/2 for each of
-                     ///< two parallel rods
+  /// Indices in Model::bodies of the bodies that this solid consists of; empty: the solid has no mass.
+  std::vector<std::size_t> bodies{};
+  /// Fraction of the mass and inertia of these bodies that belongs to this solid: 1/2 for each of two parallel rods.
+  double share = 1;
   std::array<Node, 3> point;  ///< a point that is fixed to the solid
   /// A vector along the body, which rotates with it (without spin about the vector); std::nullopt if there is none.
   std::optional<std::array<Node, 3>> line{};

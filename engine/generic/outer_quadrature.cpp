@@ -8,8 +8,8 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kCoarse = 1e-5;  // for tolerances of at least this value, the subdivision begins with a single
-                                  // subinterval.
+// for tolerances of at least this value, the subdivision begins with a single subinterval.
+constexpr double kCoarse = 1e-5;
 constexpr std::size_t kMaxCells = 100;
 
 /// Adds factor() times the gradient of the first output of a program with a single stage to the derivatives by input.

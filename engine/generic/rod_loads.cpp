@@ -14,8 +14,8 @@ using Vec = Vector<double, 3>;
 
 /// Component of a joint's force along the unit vector u; std::nullopt if the equilibrium equations do not determine it.
 std::optional<double> along(const Vec& u, const std::array<std::optional<double>, 3>& force) {
-  constexpr double kNormal = 1e-9;  // smaller components of u count as 0, so that undetermined force components normal
-                                    // to u have no effect
+  // smaller components of u count as 0, so that undetermined force components normal to u have no effect
+  constexpr double kNormal = 1e-9;
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (std::fabs(u[k]) < kNormal) continue;

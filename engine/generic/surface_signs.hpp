@@ -15,8 +15,8 @@ inline constexpr std::size_t kMaxSurfaces = 64;
 struct CrankSigns {
   Signs at_min, at_max, after_min, before_max, reach;
   std::uint32_t half_turn;  ///< register of CrankRange::half_turn
-  bool is_first;  ///< true: the smaller of the two crank angles that assemble is the joint coordinate; false: the
-                  ///< greater one
+  /// true: the smaller of the two crank angles that assemble is the joint coordinate; false: the greater one.
+  bool is_first;
 };
 
 struct Formula {

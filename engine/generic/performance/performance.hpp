@@ -27,9 +27,10 @@ struct NamedTerm {
 
 /// Velocities of the joints and of the platform for unit rates of the coordinates: one column per coordinate.
 struct FirstOrderKinematics {
-  TermMatrix J;            ///< joints x coordinates: q' = J x'
-  TermMatrix translation;  ///< T_v (rates of the coordinates to velocity of the origin) without rows for directions in
-                           ///< which the origin cannot move; at most three rows
+  TermMatrix J;  ///< joints x coordinates: q' = J x'
+  /// T_v (rates of the coordinates to velocity of the origin) without rows for directions in which the origin cannot
+  /// move; at most three rows.
+  TermMatrix translation;
   /// T_w (rates of the coordinates to angular velocity); if there are one or two rotations, whose axes are orthonormal,
   /// only the components along these axes.
   TermMatrix rotation;
