@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// The rows of a catalogue of motors, with the keys that motors have.
+/// The rows of a catalogue as [[motor]] tables: copies without the keys that motors do not have.
 std::vector<TomlValue> motors_of(const Catalogue& catalogue) {
   std::vector<TomlValue> motors;
   for (const TomlValue& row : catalogue.rows) {
@@ -54,7 +54,8 @@ Catalogue read_catalogue(const std::string& variable, SourceText file) {
   return found;
 }
 
-/// "motor.gear" as the row of a catalogue and a key; null if the text does not begin with the name of a variable.
+/// The catalogue that a text such as "motor.gear" (VARIABLE.KEY) refers to; null if the text does not begin with the
+/// name of a variable that is a choice from a catalogue, and a dot.
 const Catalogue* catalogue_of(const std::string& text, const std::vector<Catalogue>& catalogues) {
   const auto dot = text.find('.');
   if (dot == std::string::npos) return nullptr;
@@ -62,7 +63,8 @@ const Catalogue* catalogue_of(const std::string& text, const std::vector<Catalog
   return found == catalogues.end() ? nullptr : &*found;
 }
 
-/// Replaces the texts "VARIABLE.KEY" in a value.
+/// Replaces all texts "VARIABLE.KEY" in a value, and in the values nested in it, by the values of KEY in the chosen
+/// rows.
 void replace_keys(TomlValue& value, const SourceLocation& place, const std::vector<Catalogue>& catalogues,
                   const std::vector<std::size_t>& rows) {
   for (std::size_t k = 0; k < value.items.size(); ++k) {
@@ -85,7 +87,7 @@ void replace_keys(TomlValue& value, const SourceLocation& place, const std::vect
   value.line = line;
 }
 
-/// Replaces the name of a row by its number, 1, 2, ..
+/// Replaces the name of a row in its catalogue by its number, from 1.
 void replace_name(TomlValue& value, const SourceLocation& place, const Catalogue& of) {
   const std::string expected = "one of " + join(of.names);
   if (value.kind != TomlValue::Kind::text) throw ConfigValue(value, place.file, place.key).error(expected);
@@ -97,7 +99,7 @@ void replace_name(TomlValue& value, const SourceLocation& place, const Catalogue
   value.number = static_cast<double>(value.integer);
 }
 
-/// A table of a study that may be changed; null if it has none.
+/// The value of a key of `table`, for modification; null if the table has no such key.
 TomlValue* find_table(TomlValue& table, const std::string& key) {
   const auto found = std::ranges::find(table.keys, key);
   return found == table.keys.end() ? nullptr : &table.items[static_cast<std::size_t>(found - table.keys.begin())];

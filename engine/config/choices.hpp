@@ -29,11 +29,13 @@ struct Catalogue {
 std::vector<Catalogue> read_catalogues(const TomlValue& study, const std::string& file_name,
                                        const std::function<SourceText(const ConfigValue& file)>& find);
 
-/// The rows of the study itself: those of its [baseline], otherwise the first ones.
+/// Index of the row of each catalogue with which the study itself is read: that of the row named in [baseline],
+/// otherwise 0.
 std::vector<std::size_t> rows_of_baseline(const TomlValue& study, const std::string& file_name,
                                           const std::vector<Catalogue>& catalogues);
 
-/// The parameters in [mechanism] whose values are keys of the chosen rows.
+/// Names of the parameters whose values in [mechanism] are texts "VARIABLE.KEY" and therefore depend on the chosen
+/// rows.
 std::vector<std::string> parameters_of_rows(const TomlValue& study, const std::vector<Catalogue>& catalogues);
 
 /// The study with the given row of every catalogue. Throws ConfigError if the study uses a key that a row lacks.

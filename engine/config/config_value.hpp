@@ -121,9 +121,10 @@ class ConfigValue {
   /// An error that names the value as written, what is expected, and the nearest known name.
   ConfigError error(std::string_view expected, std::string_view nearest = {}) const;
   ConfigError error_of(std::string_view found, std::string_view expected, std::string_view nearest = {}) const;
-  /// An error whose message is the given sentence.
+  /// An error whose message is the given sentence, at the position of this value.
   ConfigError refusal(std::string_view sentence) const;
-  /// Calls `work`, and converts std::invalid_argument into a refusal of this value.
+  /// Calls `work`, and converts a std::invalid_argument that it throws into a ConfigError at the position of this
+  /// value.
   template <class Work>
   auto explained(Work work) const {
     try {
@@ -134,7 +135,8 @@ class ConfigValue {
   }
 
  private:
-  /// The description of a table, with further keys that this table accepts.
+  /// The description of a table, with further keys (of a catalogue entry, or names chosen by the user) that this table
+  /// accepts.
   struct Description {
     const TableSpec* spec;
     std::vector<OptionSpec> more;

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// Splits a text into rows of cells.
+/// Splits the text of a file with comma-separated values into rows, and rows into cells.
 class Rows {
  public:
   Rows(const std::string& text, const std::string& file_name) : text_(text), file_(file_name) {
@@ -26,10 +26,10 @@ class Rows {
     }
     return false;
   }
-  int line() const { return line_; }  ///< line of the last row
+  int line() const { return line_; }  ///< line number in the file of the row that was read last
 
  private:
-  /// @return false if the cell is the last one of its row
+  /// Reads the next cell and appends it to `cells`. @return false if the cell is the last one of its row
   bool read_cell(std::vector<std::string>& cells) {
     std::string& cell = cells.emplace_back();
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
@@ -57,7 +57,7 @@ class Rows {
 };
 
 struct Header {
-  std::string name, unit;  ///< the unit is empty if it is not given
+  std::string name, unit;  ///< name and unit in the first line of the file; the unit is empty if it is not given there
 };
 
 Header header_of(const std::string& cell) {
@@ -77,7 +77,8 @@ CsvColumns read_csv_columns(const std::string& text, const std::string& file_nam
   CsvColumns found;
   found.values.resize(known.size());
   std::vector<Header> headers;
-  std::vector<std::optional<std::size_t>> targets;  // index of the known name, for each column of the file
+  // for each column of the file, the index of its name in `known`; std::nullopt: unknown
+  std::vector<std::optional<std::size_t>> targets;
   for (const std::string& cell : cells) {
     const Header& header = headers.emplace_back(header_of(cell));
     const auto at = std::ranges::find(known, header.name, &Assignable::name);
@@ -103,7 +104,7 @@ CsvColumns read_csv_columns(const std::string& text, const std::string& file_nam
       const Assignable& target = known[*targets[i]];
       const std::string& unit = headers[i].unit;
       auto value = parse_quantity(cells[i], target.unit);
-      if (!unit.empty() && unit != target.unit)  // the cell has no unit of its own
+      if (!unit.empty() && unit != target.unit)  // a number without a unit is in the unit of the column
         value = parse_quantity(cells[i] + " " + unit, target.unit);
       if (!value)
         throw ConfigError(

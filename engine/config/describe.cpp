@@ -13,7 +13,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// Mark of a value that equals the default, whether or not the study sets it.
+/// "(default)" if a value equals the default, whether or not the study sets it; otherwise "".
 const char* mark(bool is_default) { return is_default ? "(default)" : ""; }
 
 void write_parameters(std::ostream& out, const Study& study) {

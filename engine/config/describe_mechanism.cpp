@@ -24,12 +24,13 @@ std::string names_text(const std::vector<std::string>& names, std::size_t max_co
   return join(first) + (names.size() > max_count ? ", .. (" + std::to_string(names.size()) + " in all)" : "");
 }
 
-/// Why no pose is feasible: the margins that are negative at all of the first poses of a sequence.
+/// Sentence that explains why no pose is feasible: it lists the margins that are negative at all sampled poses, if
+/// there are any.
 std::string why_no_feasible_pose(const Mechanism& mechanism, std::span<const double> parameters) {
   constexpr std::size_t kTrials = 10'000;
   const SampledPoses poses(mechanism, parameters);
   std::set<std::string> satisfied;
-  NamedValues margins;  // of a pose that has most of them
+  NamedValues margins;  // margins of the sampled pose at which most margins are defined
   for (std::size_t trial = 1; trial <= kTrials; ++trial) {
     const MechanismInfo& info = mechanism.info();
     PoseReport report = mechanism.inspect(parameters, poses[trial], info.modes.front(), no_limits(info));

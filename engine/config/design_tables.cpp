@@ -109,7 +109,7 @@ void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& war
   }
 }
 
-/// The study's document, with shared ownership, if it adds quantities or their limits to its mechanism; otherwise null.
+/// The document of a study if it adds quantities, or limits of quantities, to its mechanism; otherwise null.
 StudyAdditions additions_of(const ConfigValue& root, const StudyDraft& draft) {
   const auto changes_quantities = [](const ConfigValue& train) {
     return train.has("stiffness") || train.has("peak_force") || train.has("rotor_inertia") ||
@@ -121,7 +121,7 @@ StudyAdditions additions_of(const ConfigValue& root, const StudyDraft& draft) {
   return study_additions(root.toml(), draft.study.file_name);
 }
 
-/// The mechanism that `type` or `file` names.
+/// The mechanism that the key `type` or `file` of [mechanism] names.
 std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDraft& draft) {
   std::vector<std::string> names;
   for (const auto& mechanism : draft.catalogues.mechanisms) names.push_back(mechanism.name());

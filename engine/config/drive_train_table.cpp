@@ -30,8 +30,9 @@ bool needs_no_transmission(const ConfigValue& table) {
          });
 }
 
+/// Reads the limits of a joint (speed, acceleration, force) from the table of its drive train.
 /// @param motors  the [[motor]]s of the study
-/// @param limits  those that earlier tables give for the joint
+/// @param limits  limits of this joint from earlier tables; those that this table gives replace them
 JointLimits read_limits(const ConfigValue& table, const AxisInfo& joint, const std::vector<Motor>& motors,
                         JointLimits limits) {
   const bool turns = joint.turns();
@@ -40,7 +41,7 @@ JointLimits read_limits(const ConfigValue& table, const AxisInfo& joint, const s
     limits.acceleration = most->positive(turns ? "rad/s^2" : "m/s^2");
   if (const auto force = table.find("peak_force")) {
     const std::string unit = turns ? "N m" : "N";
-    // A formula of the parameters is known to the mechanism only: NaN.
+    // If the peak force is a formula of the parameters, only the mechanism can evaluate it; NaN marks this here.
     limits.force =
         !force->is_text() ? force->positive(unit) : parse_quantity(force->text("text"), unit).value_or(std::nan(""));
   }

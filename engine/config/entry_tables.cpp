@@ -31,7 +31,7 @@ std::string entry_name(const ConfigValue& table, const std::string& type, const 
   return name;
 }
 
-/// The tables [[name]], whose keys depend on their types.
+/// The elements of the array of tables [[name]]; their keys depend on their types and are checked later.
 std::vector<ConfigValue> tables_in(const ConfigValue& root, const std::string& name) {
   const auto list = root.find(name);
   if (!list) return {};

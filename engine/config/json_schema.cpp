@@ -21,7 +21,7 @@ constexpr const char* kQuantity = "^[ ]*[-+]?[0-9.]";  // how text with a unit b
 Json schema_of(const OptionSpec& spec);
 Json schema_of(const TableSpec& table);
 
-/// "relative accuracy of the volume", "duration of a move [s]"
+/// Text of a key in the schema, such as "relative accuracy of the volume" or "duration of a move [s]".
 std::string description(const OptionSpec& spec) {
   const bool has_unit =
       spec.unit != "1" && spec.unit != kUnitOfEntry && spec.meaning.find('[' + spec.unit + ']') == std::string::npos;
@@ -43,7 +43,7 @@ Json json_of(const OptionValue& value) {
       value);
 }
 
-/// Bounds of numbers and integers.
+/// Adds the minimum and maximum of a number or an integer to its schema.
 void add_bounds(const OptionSpec& spec, Json& schema) {
   const auto bound = [&spec](double value) {
     return spec.kind == OptionKind::integer ? Json(static_cast<std::int64_t>(value)) : Json(value);
@@ -53,7 +53,7 @@ void add_bounds(const OptionSpec& spec, Json& schema) {
   if (spec.positive) schema["exclusiveMinimum"] = 0;
 }
 
-/// A word of `choices`; numbers among them may also be written as integers.
+/// Schema of a word that must be one of `choices`; if some of them are numbers, they may also be written as integers.
 Json word_schema(const std::vector<std::string>& choices) {
   if (choices.empty()) return {{"type", "string"}};
   Json words = choices;

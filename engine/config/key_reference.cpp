@@ -27,7 +27,7 @@ const TableSpec* inline_table(const OptionSpec& key) {
   return nullptr;
 }
 
-/// What a value has to be; tables are given by their names only.
+/// Text in the reference that states which values a key accepts; tables are given by their names only.
 std::string value_text(const OptionSpec& key) {
   switch (key.kind) {
     case OptionKind::table:
@@ -48,7 +48,8 @@ std::string value_text(const OptionSpec& key) {
 
 void add_rows(const std::vector<OptionSpec>& keys, const std::string& prefix, std::string& rows);
 
-/// @param shown  text for the key in the row
+/// Appends the row of a key to `rows`, and those of the keys in its inline table.
+/// @param shown  the key as written in the row, with the names of enclosing tables
 void add_row(const OptionSpec& key, const std::string& shown, std::string& rows) {
   const std::string initial = key.required ? "required" : key.initial ? '`' + to_text(*key.initial) + '`' : "";
   rows += "| `" + shown + "` | " + cell(value_text(key)) + " | " + initial + " | " + cell(key.meaning) + " |\n";

@@ -126,7 +126,7 @@ BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia,
   const Term quarter = mass * 0.25, turning = inertia / (*part.length * *part.length);
   const Vector3 centre = (part.from + part.to) * Term(draft.model.graph, 0.5);
   BodyNodes body{name, mass.node(), nodes(centre), {}, {}, {}};
-  // The arm rotates about its pivot, which moves along the axis of rotation.
+  // A part that is itself an arm rotates about its pivot, which moves along the axis of rotation only.
   if (part.on_arm && part.on_arm->is_arm) {
     add_square(nodes(part.from), mass, body);
     body.arm_rotations.push_back({part.on_arm->arm, (mass * 0.25 * *part.length * *part.length + inertia).node()});

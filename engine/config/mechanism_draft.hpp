@@ -28,7 +28,7 @@ struct LimbPart {
   std::optional<limbs::Term> length = {};  ///< length of the part, if it is constant; otherwise std::nullopt
   /// Vector along the part, of any length; std::nullopt: the part does not rotate.
   std::optional<limbs::Vector3> line = {};
-  /// Set if the part begins at the end of an arm (`from`), or is the arm itself.
+  /// The arm on whose end the part begins (`from`), or which the part is itself; std::nullopt for other parts.
   struct OnArm {
     std::size_t arm;
     limbs::Vector3 pivot;
@@ -40,8 +40,8 @@ struct LimbPart {
 
 /// A limb that has been read, under the name by which other tables refer to it.
 struct NamedLimb {
-  std::string name;                              ///< name of this copy, for example "arm2"
-  std::string group;                             ///< name in the file, which all copies share, for example "arm"
+  std::string name;                              ///< name of the limb; for a copy, with its number: "arm2"
+  std::string group;                             ///< name of the [[limb]] in the file, which all copies share: "arm"
   std::map<std::string, limbs::Vector3> points;  ///< points to which other tables can refer: "A", "B", "C", "S"
   std::vector<LimbPart> parts;
 
@@ -75,8 +75,8 @@ struct NamedLimb {
   std::optional<limbs::Vector3> universal = {};
 };
 
-/// A limb with the key `across`, which is the vector `normal`. The component of B - A along `normal` must be the same
-/// at every pose.
+/// A limb whose table has the key `across`, a vector `normal` to the plane in which the limb moves: the component of B
+/// - A along it must be the same at every pose.
 struct LimbInPlane {
   ConfigValue across;
   limbs::Vector3 A, B, normal;
@@ -105,11 +105,11 @@ struct MechanismDraft {
   limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
-  /// Ranges of the platform's x, y, z within each limb's reach; std::nullopt: unknown.
+  /// For each limb, the ranges of the platform's x, y and z within its reach; std::nullopt: unknown.
   std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;
   std::vector<SignChoice> sign_choices;  ///< the signs of the working modes, in the order of the graph's inputs
 
-  /// Stiffness of the drive of each joint [N/m or N m/rad]; std::nullopt: rigid.
+  /// For each joint, the stiffness of its drive [N/m or N m/rad]; std::nullopt: rigid.
   std::vector<std::optional<limbs::Term>> drive_stiffness;
   std::vector<OwnParameter> own;
   /// The table of the selected mass model in [masses]; std::nullopt: there is no [masses].
@@ -136,9 +136,9 @@ std::string si_unit(const ConfigValue& unit);
 
 /// Adds a parameter that belongs to a single limb to the draft.
 void add_own_parameter(const LimbParameter& own, const Parameter& parameter, MechanismDraft& draft);
-/// Calls `read` with the limb's own parameters in scope, also in formulas of [let].
+/// Calls `read` while the parameters that belong to this limb are in scope, also in formulas of [let].
 void read_as_limb(const std::string& limb, const std::function<void()>& read, MechanismDraft& draft);
-/// The parameters of single limbs on which a joint or a limit depends.
+/// The parameters of single limbs that have an effect, because a joint or a limit depends on them.
 std::vector<LimbParameter> effective_parameters(const MechanismDraft& draft);
 /// Refuses a parameter of a single limb if the limb does not exist, or if no formula of the limb uses the parameter.
 void refuse_idle_parameters(const MechanismDraft& draft);

@@ -140,8 +140,8 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
   }
 }
 
-/// Reads the origin of the platform's frame, which may depend on formulas of [let], and adds the frame to the names of
-/// formulas. Called again, it does nothing.
+/// Reads the origin of the platform's frame, which may depend on formulas of [let], and makes the frame available to
+/// later formulas. A second call has no effect.
 void read_origin(const ConfigValue& platform, MechanismDraft& draft) {
   if (draft.has_origin) return;
   draft.has_origin = true;
@@ -225,8 +225,8 @@ void remove_undefined_conditioning(generic::Model& model) {
     model.info.characteristic_length.clear();
 }
 
-/// The unit that all constraints on the pose have. It is "" if their units differ, or if one of them is the argument of
-/// a square root or a similar operation, whose unit is not recorded.
+/// Unit of all constraints on the pose; "" if their units differ, or if the unit of one of them is unknown, because it
+/// is the argument of a square root or of a similar operation.
 std::string common_margin_unit(const generic::Model& model) {
   std::optional<std::string> unit;
   for (const auto* const conditions : {&model.domains, &model.margins})
@@ -317,7 +317,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
 
 std::vector<LimbParameter> limb_copies(const std::string& text, const std::string& file_name,
                                        const std::vector<std::string>& common, const std::vector<LimbParameter>& own) {
-  MechanismDraft without;  // gives the names of the limbs
+  MechanismDraft without;  // the mechanism without the new parameters, which provides the names of the limbs
   read_draft(text, file_name, own, "", nullptr, without);
   std::vector<LimbParameter> all = own;
   for (const std::string& parameter : common)

@@ -103,7 +103,7 @@ class JointReader {
   static generic::BeamNodes beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far) {
     return {nodes(near), nodes(far), section.EA.node(), section.EI.node(), section.GJ.node(), section.area.node()};
   }
-  /// The elastic beam of a body, which is held by the joint added last.
+  /// The body as an elastic beam, which is clamped by the joint added last.
   SolidNodes::Beam held_beam(const NamedLimb::Section& section, const Vector3& near, const Vector3& far,
                              bool is_rod) const {
     return {beam_of(section, near, far), joints_.size() - 1, is_rod};
@@ -178,7 +178,8 @@ class JointReader {
       for (std::size_t i = 0; i < model_.bodies.size(); ++i)
         if (model_.bodies[i].name == "slider of " + limb.name) drive.slide = i;
 
-    std::optional<std::size_t> inner;  // index of the crank, the cylinder or the first link
+    // index of the crank, of the cylinder or of the first of two links; std::nullopt: the limb has none of them
+    std::optional<std::size_t> inner;
     if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
     if (telescope) {
       joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, {}, first.line));
@@ -214,7 +215,7 @@ class JointReader {
       } else {
         joints_.push_back(limb_joint(limb, limb.name + ".S" + number, near, outer, {}, last.line));
         joints_.back().drive = drive;
-        drive.slide = {};  // counts the mass of the slider only once for both rods
+        drive.slide = {};  // of two rods, only the joint of the first one carries the mass of the slider
       }
       make_universal(limb, far - near, outer, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = held_beam(*section, near, far, true);
@@ -289,11 +290,11 @@ class JointReader {
     }
   }
 
-  /// Assigns each mass to the solid to which it belongs.
+  /// Assigns each mass to the solid that contains it.
   void assign_masses() {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyNodes& body = model_.bodies[i];
-      // The drive of the limb includes this mass.
+      // The force of the limb's drive already includes the acceleration of this mass.
       if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;
       std::string owner = body.part_of.empty() ? body.name : body.part_of;
       for (const NamedLimb& limb : draft_.limbs)
@@ -310,7 +311,8 @@ class JointReader {
     }
   }
 
-  /// Refuses bodies without a joint, and systems with fewer unknowns than equations, in which motions remain free.
+  /// Refuses bodies without a joint, and systems with fewer unknown reactions than equations of equilibrium, because
+  /// such bodies can move although all drives are locked.
   void refuse_loose_bodies() {
     std::vector<bool> has_joint(solids_.size(), false);
     std::size_t unknowns = 0;

@@ -41,7 +41,7 @@ struct DrivenLimb : limbs::Limb {
 };
 
 /// Reads the drive of a limb, and computes the limb's closed form.
-/// @param q  the joint variable
+/// @param q  joint coordinate as a variable of the loop-closure equation
 DrivenLimb read_drive(const LimbCopy& copy, const limbs::Ends& at, const limbs::Term& q);
 
 /// Names of the parts that a limb with this table and drive has; [[body]] refers to them by these names.

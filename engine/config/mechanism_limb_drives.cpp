@@ -11,8 +11,8 @@ namespace {
 
 using limbs::Ends, limbs::Term, limbs::Vector3;
 
-/// The sign that selects the solution of a copy's inverse kinematics. Formulas of quantities and margins refer to it by
-/// a name such as "arm1_branch".
+/// The branch sign (+1 or -1), which selects one of two solutions of the inverse kinematics, as an input of the graph.
+/// Formulas of quantities and margins refer to it by a name such as "arm1_branch".
 Term branch(const LimbCopy& copy) {
   const ConfigValue value = copy.table.at("branch", "\"+\" or \"-\"");
   const Term sign = copy.draft.add_sign(value.word()[0], true);

@@ -49,7 +49,7 @@ void refuse_known(const ConfigValue& table, const std::string& name, const Mecha
       throw table.find("name")->refusal("there is already a limb called '" + name + "'");
 }
 
-/// Reads the rotation of each copy of a limb; a single one, the identity, if it has no copies.
+/// Reads the rotation matrix of each copy of a limb; if the limb has no copies, the result contains only the identity.
 std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) {
   const auto number = [&draft](double x) { return Term(draft.model.graph, x); };
   const auto copies = table.find_table("copies");
@@ -145,7 +145,7 @@ std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   return side * (copy.draft.scope.positive(pair->at("spacing", "the rods' distance"), "m", copy.name) * 0.5);
 }
 
-/// Collects what other tables can refer to by the name of the limb: points, parts, and the axes of its joints.
+/// Collects the properties of a limb that other tables can refer to: points, parts, and the axes of its joints.
 NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& driven) {
   const ConfigValue& table = copy.table;
   NamedLimb limb{.name = copy.name,
@@ -171,8 +171,8 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
   return limb;
 }
 
-/// Adds the polynomial constraints that are equivalent to the range of the joint and to the reach of the limb, and the
-/// annulus of its reach.
+/// Adds alternative forms of the constraints of a limb, which workspace analyses can use instead: the annulus or path
+/// that it reaches, and the range of its crank.
 /// @param has_range  true if the last two margins of the model are those of the joint's range
 void add_equivalent_constraints(const limbs::Limb& limb, bool has_range, generic::Model& model) {
   std::vector<expression::Node> constraints;

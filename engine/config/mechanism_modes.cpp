@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kSigns = "[\"+\"], [\"-\"], [\"+\", \"-\"] or [\"-\", \"+\"], the default first";
 
-/// Reads the texts that stand for the values of a sign in the names of modes.
+/// Reads the words that stand for the values of a sign ('+', '-') in the names of working modes.
 void read_names(const ConfigValue& table, SignChoice& choice) {
   choice.is_branch = table.flag_at("branch");
   const auto names = table.find("names");

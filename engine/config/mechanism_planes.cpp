@@ -18,7 +18,7 @@ using generic::Inputs;
 
 // Number of designs, the first of which is the default one, and number of poses per design.
 constexpr std::uint32_t kDesigns = 8, kPoses = 16;
-// Change of the component, relative to |B - A|, up to which it is attributed to rounding.
+// Changes of the component of B - A that are smaller, relative to |B - A|, are attributed to rounding.
 constexpr double kConstant = 1e-9;
 
 std::string length_text(double length) {
@@ -95,7 +95,7 @@ void refuse_changing_planes(MechanismDraft& draft) {
     for (std::uint32_t k = 0; k < kPoses; ++k) {
       const std::vector<double> values = poses.next(nodes);
       for (std::size_t i = 0; i < offsets.size(); ++i) {
-        // The limb does not exist at this pose.
+        // The limb cannot be assembled at this pose.
         if (!std::isfinite(values[2 * i]) || !std::isfinite(values[2 * i + 1])) continue;
         offsets[i].add(values[2 * i]);
         sizes[i].add(std::sqrt(values[2 * i + 1]));

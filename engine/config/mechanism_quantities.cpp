@@ -58,7 +58,7 @@ void visit_quantity_limits(const ConfigValue& study, const MechanismInfo& info, 
 /// The margin of a limit: value - threshold for a minimum, threshold - value for a maximum. If the value is itself a
 /// minimum or maximum, this operation is moved outwards, min(a, b) - t = min(a - t, b - t), so that the polynomial
 /// normal form can eliminate it.
-/// @param most  number of minima and maxima that may still be moved outwards; it is reduced by each of them
+/// @param most  maximum number of minima and maxima that are moved outwards; decreased by one for each of them
 Node margin_of(expression::Graph& graph, Node value, Node threshold, bool is_minimum, int& most) {
   const expression::Entry entry = graph[value];
   const auto is = [&](expression::Code code) { return entry.operation && entry.operation->code == code; };

@@ -23,7 +23,8 @@ class MechanismScope {
   /// Refuses a name that is invalid in formulas or in use.
   void add(const ConfigValue& at, const std::string& name, const Value& value);
   void add(const ConfigValue& at, const std::string& name, expression::Node node) { add(at, name, model_.term(node)); }
-  /// Adds a name that every file may use, and may also give to something of its own: then it has this other meaning.
+  /// Adds a name that the program defines in every file. A file may define the same name itself, which replaces its
+  /// value.
   void add_predefined(const std::string& name, const Value& value);
   /// Adds the name of a point of a limb, "arm1.C".
   void add_point(const std::string& name, const limbs::Vector3& point);
@@ -40,9 +41,9 @@ class MechanismScope {
   /// Reads a number, text with a unit of the dimension of `unit`, or a formula of the names defined so far. If the
   /// formula can be undefined, add_domains() adds the condition that it is defined, under the name `what`.
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// The same for a formula whose value may also be a vector, a rotation or a frame.
+  /// Like formula(), but the value may also be a vector, a rotation or a frame.
   Value formula_of_any_kind(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// Reads a formula of parameters only.
+  /// Reads a formula that depends on parameters only, like formula().
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// Reads a formula of parameters whose value has to be positive (with may_vanish, not negative). A number that
   /// violates this is refused; a formula may violate it for some designs.
@@ -89,7 +90,8 @@ class MechanismScope {
   generic::Model& model_;
   expression::Names names_;
   std::vector<Value> values_;
-  std::vector<std::string> origins_;  ///< "parameters.a (line 7)"; "": predefined
+  /// For each name, where it is defined, such as "parameters.a (line 7)"; "": by the program.
+  std::vector<std::string> origins_;
   std::vector<PartialOperation> partial_operations_;
   std::unordered_set<expression::Node> visited_;
   bool motion_allowed_ = false;

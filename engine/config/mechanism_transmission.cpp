@@ -35,7 +35,8 @@ LimbForce single_force_of(const NamedLimb& limb) {
   const Term one(B[0].graph(), 1.0);
   if (limb.drive == "slider" && !limb.has_rod) return {unit(*limb.axis), one, B};
   Vector3 rod = B - (limb.drive == "telescope" ? A : C);
-  if (limb.revolute) {  // parallel revolute joints transmit no force along their axes, so the force is normal to them
+  // axes of revolute joints are parallel: no force along them is transmitted, so the force is normal to them
+  if (limb.revolute) {
     const Vector3 n = unit(*limb.revolute);
     rod = rod - n * dot(rod, n);
   }
@@ -85,7 +86,8 @@ void add_transmission(const ConfigValue& root, const ConfigValue* study, Mechani
   expression::Graph& graph = model.graph;
   const std::size_t n = draft.limbs.size();
   std::vector<LimbForce> all;
-  std::vector<std::vector<Vector3>> velocities(n);  // velocity of B, for each limb and each coordinate whose rate is 1
+  // for each limb, the velocity of B for a unit rate of each coordinate
+  std::vector<std::vector<Vector3>> velocities(n);
   TermMatrix powers(graph, n, n);
   for (std::size_t i = 0; i < n; ++i) {
     all.push_back(single_force_of(draft.limbs[i]));

@@ -27,11 +27,11 @@ class MotionFormulas {
   TomlValue table_of(std::span<const double> parameters) const;
 
  private:
-  /// A formula, and its position: of a key in its table, or of an element in its list.
+  /// A formula in the table, and its position: indices of the key in its table, of the element in its list, and so on.
   struct Place {
     std::vector<std::size_t> path;
     std::string text;
-    std::optional<Formula> value;  ///< empty: the formula depends on the time
+    std::optional<Formula> value;  ///< the compiled formula; std::nullopt: it depends on the time
   };
   void find(const ConfigValue& value, const std::vector<std::size_t>& path, bool may_use_time);
   void add(const ConfigValue& value, const std::vector<std::size_t>& path, bool may_use_time);
@@ -39,8 +39,8 @@ class MotionFormulas {
   std::string formula_of_time(const std::string& text, std::span<const double> parameters) const;
 
   TomlValue table_;
-  std::vector<std::string> names_;    ///< of parameters that formulas may use
-  std::vector<std::size_t> numbers_;  ///< their indices among all parameters
+  std::vector<std::string> names_;    ///< names of the parameters that formulas may use
+  std::vector<std::size_t> numbers_;  ///< index of each of these names among all parameters
   std::vector<Place> places_;
   std::vector<std::size_t> used_;
 };

@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-/// The same keys, whose numbers may be formulas of parameters (motion_formulas.hpp).
+/// Copies of descriptions of keys in which numbers may be formulas of parameters (motion_formulas.hpp).
 std::vector<OptionSpec> with_formulas(std::vector<OptionSpec> keys) {
   for (OptionSpec& key : keys)
     if (key.kind == OptionKind::number) key.kind = OptionKind::formula;

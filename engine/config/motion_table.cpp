@@ -44,7 +44,7 @@ struct Pace {
   PeakRates most = {};
 };
 
-/// The pace given in the table of a point, otherwise `general`, that of the whole motion.
+/// The pace for the move to a point: that in the table of the point, otherwise `general`, that of the whole motion.
 Pace pace_of(const ConfigValue& table, const Pace& general) {
   const auto peak = [&table](const char* key) { return table.find_number(key).value_or(kUnbounded); };
   const Pace pace{table.find_number("time"),

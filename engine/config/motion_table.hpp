@@ -17,7 +17,7 @@ struct MotionNames {
   std::vector<AxisInfo> coordinates;
   std::vector<InputInfo> inputs = {};
   std::vector<Parameter> parameters = {};
-  std::vector<double> values = {};  ///< of the parameters
+  std::vector<double> values = {};  ///< value of each of the parameters [SI]
 };
 MotionNames motion_names(const Mechanism& mechanism, std::span<const double> parameters);
 

@@ -14,8 +14,9 @@ enum class TextKind { study, mechanism };
 
 struct RenamedKey {
   TextKind kind;
-  std::vector<std::string> path;  ///< table and old name: {"workspace", "certain"}; {"report"} for [[report]]
-  std::string name;               ///< present name
+  /// Path of the old name: {"workspace", "certain"} for the key `certain` of [workspace]; {"report"} for [[report]].
+  std::vector<std::string> path;
+  std::string name;  ///< present name
 };
 std::span<const RenamedKey> renamed_keys();
 

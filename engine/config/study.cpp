@@ -74,7 +74,7 @@ void warn_of_empty_workspace(Study& study) {
       design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
   }
   if (parts.mechanism->refuse(design)) return;
-  constexpr double kMaxSeconds = 1;  // s
+  constexpr double kMaxSeconds = 1;  // time limit of this check [s]
   const StopScope limit(kMaxSeconds);
   try {
     if (study.problem->workspace(design).volume > 0) return;
@@ -229,7 +229,8 @@ Study read_document(const StudySource& source, const Catalogues& catalogues) {
   return study;
 }
 
-/// Finds the mechanism file of a study that was read before.
+/// Function that returns the recorded text of the mechanism file, instead of reading a file, for a study from a study
+/// file.
 FindFile known_description(const std::optional<SourceText>& description) {
   return [&description](const ConfigValue& file) {
     if (!description) throw file.refusal("the contents of the mechanism file are not available here");
@@ -237,7 +238,7 @@ FindFile known_description(const std::optional<SourceText>& description) {
   };
 }
 
-/// Catalogues of a study that was read before are part of its text.
+/// Refuses a catalogue that is not part of the text of a recorded study, which contains all its catalogues.
 SourceText unknown_catalogue(const ConfigValue& file) {
   throw file.refusal("the contents of the catalogue are not available here");
 }

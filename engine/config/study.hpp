@@ -43,7 +43,7 @@ struct Stage {
 struct StudyEntry {
   std::string type;
   std::string name;
-  std::string role;  ///< "maximise, in m^2 rad", ">= 0.5 m^2 rad", "cuts the workspace"
+  std::string role;  ///< how the entry is used, as text: "maximise, in m^2 rad", ">= 0.5 m^2 rad", "cuts the workspace"
   std::vector<OptionSpec> specs;
   Options options;
 };
@@ -51,9 +51,10 @@ struct StudyEntry {
 /// A published result to compare with: [[reference]].
 struct Reference {
   std::string name;
-  std::vector<std::optional<double>> design;           ///< per variable; empty where the source gives no design
-  std::vector<std::pair<std::string, double>> values;  ///< objectives and outputs by name
-  std::optional<double> seconds;                       ///< computing time
+  /// Published value of each variable; std::nullopt where the source gives none.
+  std::vector<std::optional<double>> design;
+  std::vector<std::pair<std::string, double>> values;  ///< published values of objectives and outputs, by name
+  std::optional<double> seconds;                       ///< published computing time
 };
 
 struct Study {
@@ -65,7 +66,8 @@ struct Study {
   std::string name;                       ///< default: the file's stem
   std::uint64_t seed = 1;
   std::optional<std::string> output;
-  /// Mechanism, parameters, variables and survey plan are in problem->parts().
+  /// The design problem. Its parts() contain the mechanism, the parameters, the variables and the plan of the workspace
+  /// analysis.
   std::shared_ptr<const DesignProblem> problem;
   std::optional<std::vector<double>> baseline;  ///< values of all parameters of the mechanism
   std::vector<StartDesign> starts;              ///< designs of another study for the first stage, best first
@@ -73,8 +75,8 @@ struct Study {
   std::optional<double> round;                  ///< [final]: step [SI] to which the best design is rounded
   std::string round_unit = "1";                 ///< the unit that all variables share; "1" if their units differ
   double exact_seconds = 10;               ///< [workspace] exact: time limit of the exact values; 0: none are computed
-  std::optional<double> checkpoint_every;  ///< [s]; std::nullopt: adaptive
-  std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
+  std::optional<double> checkpoint_every;  ///< interval between checkpoints [s]; std::nullopt: adaptive
+  std::vector<std::string> warnings;       ///< sentences for the user about problems that do not prevent a run
   std::vector<std::string> differences;    ///< differences between the records and the text of a study file
 
   std::vector<Reference> references;
@@ -82,8 +84,8 @@ struct Study {
   std::vector<std::string> unfollowed_motions;  ///< motions with follow = false
 
   std::optional<ToleranceModel> tolerances;  ///< [tolerance]
-  /// The machine as built, whose limbs have errors of their own: the problem of the study without robust quantities and
-  /// yields. Null without [tolerance].
+  /// The problem of a machine as built, whose limbs have separate errors: that of the study without robust quantities
+  /// and yields. Null if the study has no [tolerance].
   std::shared_ptr<const DesignProblem> machine;
 
   std::vector<StudyEntry> objectives, constraints, outputs;

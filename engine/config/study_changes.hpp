@@ -21,7 +21,8 @@ struct StudyChanges {
   std::vector<std::string> limit;       ///< thresholds of poses
   std::vector<std::string> cells;       ///< numbers of voxels by coordinate, or one number for all coordinates
   std::vector<std::string> start_from;  ///< name of the study file whose designs the first stage starts from
-  std::vector<std::string> start;       ///< these designs, one list each, see engine/runner/start_from.hpp
+  /// Designs of that study file, one list "name=value,.." each, see engine/runner/start_from.hpp.
+  std::vector<std::string> start;
 
   /// Parameters of single limbs, such as "arm2.l_b", that the mechanism must have in addition to those that the study
   /// names. They do not change the study.

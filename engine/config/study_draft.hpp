@@ -20,9 +20,10 @@ struct StudyDraft {
   std::function<SourceText(const ConfigValue& file)> description;
   Study study;
   ProblemParts parts;
-  std::vector<LimbParameter> limb_parameters = {};  ///< single-limb parameters in study or command line
-  std::vector<StudyChanges> changes = {};           ///< changes in the text, then those of the command line
-  std::vector<Catalogue> from_catalogues = {};      ///< the variables that are choices
+  /// Parameters of single limbs that the study or the command line names.
+  std::vector<LimbParameter> limb_parameters = {};
+  std::vector<StudyChanges> changes = {};  ///< [[override]]s in the text of the study, then changes by the command line
+  std::vector<Catalogue> from_catalogues = {};  ///< catalogues of the variables that are choices from a catalogue
   ImpliedConstraints implied = ImpliedConstraints::added;
   /// Parameters of single limbs that the machine as built has in addition, because of [tolerance].
   std::vector<LimbParameter> copies = {};

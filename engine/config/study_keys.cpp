@@ -184,7 +184,7 @@ const TableSpec& tolerance_table() {
   static const std::vector<OptionSpec> alternatives = {
       {.unit = kUnitOfEntry, .meaning = "largest error of a uniform distribution", .positive = true},
       {.kind = OptionKind::table, .table = &error}};
-  static const TableSpec error_of_limb = [] {  // a single copy
+  static const TableSpec error_of_limb = [] {  // error of a parameter in a single limb: without the key `copies`
     TableSpec table = error;
     table.keys.pop_back();
     return table;

@@ -10,10 +10,11 @@ namespace pkm {
 /// addition, the options of the catalogue entry that their `type` or `optimiser` names.
 const TableSpec& study_keys();
 
-// Keys of a [[constraint]] besides the options of its catalogue entry:
+// The keys of [[constraint]]s besides the options of their catalogue entries: of a constraint that limits poses; of any
+// other constraint with a margin; and of an objective that `min` or `max` makes a constraint.
 const TableSpec& pose_constraint_keys();
 const TableSpec& margin_constraint_keys();
-const TableSpec& bounded_objective_keys();  ///< if an objective becomes a constraint by `min` or `max`
+const TableSpec& bounded_objective_keys();
 
 /// Keys of [workspace], [[region]] and [[drive_train]].
 const TableSpec& workspace_keys();

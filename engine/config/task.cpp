@@ -80,7 +80,7 @@ class TaskOfRobot {
   bool has(const std::string& coordinate) const { return find_named(info().coordinates, coordinate) != nullptr; }
   bool is_other_robots(const std::string& key) const { return contains(coordinates_, key) && !has(key); }
 
-  /// A value of a coordinate in the robot's frame.
+  /// Converts a value of a coordinate from the frame of the task to that of the robot. A formula remains a formula.
   TomlValue moved(const std::string& coordinate, const TomlValue& value) const {
     const auto origin = std::ranges::find(origin_, coordinate, &std::pair<std::string, double>::first);
     if (origin == origin_.end()) return value;
@@ -117,7 +117,8 @@ class TaskOfRobot {
     return filtered(table, [this](const std::string& key) { return !is_other_robots(key); });
   }
 
-  /// The same, with the values of this robot's coordinates converted to its frame.
+  /// A copy of the table without the coordinates that only other robots have, and with the values of this robot's
+  /// coordinates converted to its frame.
   TomlValue in_robot_frame(const TomlValue& table) const {
     TomlValue own = without_other_coordinates(table);
     for (std::size_t i = 0; i < own.keys.size(); ++i)

@@ -35,10 +35,10 @@ struct TaskRobot {
 
 /// One line of a comparison: a value, or a margin, which is >= 0 if the robot can perform this part of the task.
 struct TaskValue {
-  std::string name;  ///< "region bin, all poses"
+  std::string name;  ///< text of the line, such as "region bin, all poses"
   std::string unit;
   bool is_margin = false;
-  double value = 0;         ///< NaN: not available
+  double value = 0;         ///< the value or margin [SI]; NaN: not available
   std::string reason;       ///< why it is not available
   bool is_mistake = false;  ///< an [[output]] of the task that the robot refuses; a mistake if all robots refuse it
 };

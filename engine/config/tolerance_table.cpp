@@ -18,9 +18,10 @@ struct Tolerance {
   std::string name;
   ConfigValue value;
   double bound, sigma;
-  bool is_independent;      ///< the copies of the parameter have independent errors
-  bool says_so;             ///< `copies` is in the file
-  std::string common = {};  ///< "l_a"
+  /// true: the parameter has an independent error in each limb; false: the same error in all limbs.
+  bool is_independent;
+  bool says_so;             ///< true: the file sets the key `copies`
+  std::string common = {};  ///< name of the parameter without that of a limb: "l_a"
 };
 
 const std::vector<std::string> kSettings = {"samples", "correlation"};
@@ -89,7 +90,7 @@ std::vector<Tolerance> read_errors(const ConfigValue& table, const std::vector<P
   return all;
 }
 
-/// The copies of the parameters in single limbs, of those that have independent errors.
+/// For each parameter that has independent errors in the limbs, one parameter per limb, such as "arm2.l_a".
 std::vector<LimbParameter> find_copies(const std::vector<Tolerance>& tolerances, const StudyDraft& draft) {
   std::vector<std::string> common;
   for (const Tolerance& each : tolerances)
@@ -154,7 +155,8 @@ std::vector<std::vector<double>> cholesky(const std::vector<std::vector<double>>
   return factor;
 }
 
-/// Reads `correlation`, and divides the errors into groups that are drawn together.
+/// Reads the key `correlation`, and divides the errors into groups; errors of one group are correlated and sampled
+/// together.
 void read_correlations(const ConfigValue& table, ToleranceModel& model) {
   const std::size_t count = model.errors.size();
   std::vector<std::vector<double>> matrix(count, std::vector<double>(count));
@@ -207,7 +209,8 @@ void read_correlations(const ConfigValue& table, ToleranceModel& model) {
   }
 }
 
-/// The quantities of a built machine itself: without yields, and without statistics over machines.
+/// Converts the quantities of a study to those of a single machine: removes yields, and replaces statistics over
+/// machines by the value for the machine.
 void remove_statistics(ProblemParts& parts) {
   for (auto* const list : {&parts.objectives, &parts.design_margins, &parts.workspace_margins, &parts.reports}) {
     std::erase_if(*list, [](const NamedQuantity& q) { return q.sampled && q.sampled->is_yield(); });
@@ -215,9 +218,9 @@ void remove_statistics(ProblemParts& parts) {
   }
 }
 
-/// The problem that is evaluated for each sample. Sets SampledValue::row of the quantities of `parts`, the problem of
-/// the study.
-/// @param machine  the problem of a machine as built, with the quantities of the study
+/// The problem that is evaluated for each sampled machine. Its quantities are those of which the study needs
+/// statistics; their indices are written to SampledValue::row in `parts`, the problem of the study.
+/// @param machine  the problem of a machine as built, with all quantities of the study
 ProblemParts sampled_problem(ProblemParts machine, ProblemParts& parts) {
   std::vector<NamedQuantity> robust;
   bool has_yield = false;

@@ -107,7 +107,7 @@ TomlValue convert(const toml::node& node, Source& source) {
   return value;
 }
 
-/// Nesting depth of tables and arrays: by brackets, and by the parts of a key between them.
+/// Nesting depth of tables and arrays: number of open brackets, and number of parts of the keys in them.
 struct Depth {
   std::size_t brackets = 0, parts = 0;
 };
@@ -119,7 +119,8 @@ int line_too_deep(std::string_view text) {
   constexpr Depth kMax{32, 16};
   Depth depth;
   int line = 1;
-  const auto skip_string = [&text, &line](std::size_t begin) {  // the index of the string's last character
+  // returns the index of the last character of the string that begins at `begin`
+  const auto skip_string = [&text, &line](std::size_t begin) {
     const char quote = text[begin];
     const bool long_one = text.substr(begin).starts_with(std::string(3, quote));
     for (std::size_t i = begin + (long_one ? 3 : 1); i < text.size(); ++i) {

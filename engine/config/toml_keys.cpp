@@ -101,7 +101,7 @@ class KeyScanner {
       bool is_table;
       Path path;
     };
-    std::vector<Open> open;  // the brackets around the position
+    std::vector<Open> open;  // inline tables and arrays that are open at the current position, outermost first
     for (bool at_key = false;;) {
       skip_blank(!open.empty());
       if (at_ >= text_.size()) return;
@@ -138,7 +138,7 @@ class KeyScanner {
   std::string_view text_;
   std::size_t at_ = 0;
   int line_ = 1;
-  Path table_;  ///< table of the last header
+  Path table_;  ///< names of the table whose header was read last
   std::vector<TomlKey> keys_;
 };
 

@@ -11,7 +11,8 @@ namespace pkm {
 
 /// One part of a key as it is written: `b` of `a.b = 1`, of `[a.b]`, or of `a = { b = 1 }`.
 struct TomlKey {
-  std::vector<std::string> path;    ///< names of the enclosing tables, then its own name; lists have no index
+  /// Names of the enclosing tables, then the key's own name; arrays contribute no index.
+  std::vector<std::string> path;
   std::size_t begin = 0, size = 0;  ///< bytes of the name in the text, without quotes
   int line = 0;                     ///< 1-based
 };

@@ -11,8 +11,8 @@ namespace pkm {
 
 struct ReplacedKey {
   int line = 0;          ///< 1-based
-  std::string old_path;  ///< "workspace.certain"
-  std::string name;      ///< "certified"
+  std::string old_path;  ///< path of the replaced key: "workspace.certain"
+  std::string name;      ///< its present name: "certified"
 };
 
 struct UpgradedText {

@@ -37,7 +37,8 @@ std::int64_t set_cells(const MechanismInfo& info, WorkspacePlan& plan, const Cel
   const std::vector<int>& swept = sweep_of(info, plan).swept;
   auto& cells = std::get<VoxelOptions>(plan.method).cells;
   std::int64_t all = 1;
-  for (std::size_t k = 0; k < swept.size(); ++k) all *= cells[k] = cells_of(axis_of(info, swept[k]).name);  // to 2^60
+  // Each factor is at most 2^20.
+  for (std::size_t k = 0; k < swept.size(); ++k) all *= cells[k] = cells_of(axis_of(info, swept[k]).name);
   for (FixedCoordinate& fixed : plan.fixed)
     if (integrated(fixed)) fixed.cells = cells_of(axis_of(info, fixed.coordinate).name);
   return all;
