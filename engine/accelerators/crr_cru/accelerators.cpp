@@ -6,8 +6,8 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// Index of the coordinate that a plan fixes if it sweeps three of the four coordinates; -1 if it sweeps fewer. If the
-/// plan names none, it is the index of phi.
+/// Index of the coordinate that a plan fixes if it sweeps the other three of x, y, z, phi; -1 if it sweeps fewer. If
+/// the plan does not name the fixed coordinate, it is phi.
 int fixed_coordinate(const WorkspacePlan& plan) {
   for (int coordinate = 0; coordinate < 4; ++coordinate) {
     std::vector<int> swept = {0, 1, 2, 3};

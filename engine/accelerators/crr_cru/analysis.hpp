@@ -26,14 +26,15 @@ struct AnalysisSettings {
     std::ranges::copy(request.rotors, all.rotors.begin());
     return all;
   }
-  /// The conditioning at one phi; it does not depend on the position.
+  /// The conditioning at the yaw angle phi; it does not depend on the position of the platform.
   template <class S>
   S conditioning_at(const Geometry<S>& g, const S& phi) const {
     const auto [s, c] = sincos(phi);
     const S length = request.characteristic_length ? S(*request.characteristic_length) : characteristic_length(g);
     return conditioning(arms(g, s, c), length);
   }
-  /// Adds one sample, of the given weight, that represents all positions at one phi.
+  /// Adds one sample of the conditioning, with the given weight, that represents all feasible positions at the yaw
+  /// angle phi.
   template <class S>
   void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, WorkspaceResult<S>& workspace) const {
     if (!(value_of(weight) > 0)) return;

@@ -26,11 +26,11 @@ struct AnnulusLines {
 template <InstructionSet set>
 void mask_annulus(const AnnulusLines& lines, std::size_t words, std::uint64_t* rows);
 
-/// The cells of a plane as rows of bits. The cell (u, v) is feasible if bit u of u_row, bit v of v_row and bit v of row
-/// number u of v_at_u are set.
+/// Feasible cells of a plane with the coordinates u and v as bit masks. The cell (u, v) is feasible if three bits are
+/// set: bit u of u_row, bit v of v_row, and bit v of the row with index u of v_at_u.
 struct PlaneRows {
   const std::uint64_t *u_row, *v_row, *v_at_u;
-  /// Numbers of cells along u and v; number of words of a row whose bits are cells along v.
+  /// Number of cells along u and along v; number of 64-bit words per row of v_at_u.
   std::size_t u_cells, v_cells, words;
 };
 

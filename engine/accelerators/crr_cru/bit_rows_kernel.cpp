@@ -5,15 +5,16 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// The contiguous cells [first, end) of each line that a test selects.
+/// The cells with indices [first, end) of each line, which satisfy one of the two inequalities of the annulus.
 template <class L>
 struct CellRange {
   L first, end;
 };
 
-/// The cells of each line that pass a test against the circle of squared radius `limit2`. Rounding is monotonic, so
-/// these cells are contiguous. The endpoints of the chord give the first and the last cell up to rounding errors; the
-/// cells next to the endpoints are decided by the test itself.
+/// The cells of each line whose squared distance from the centre of the annulus passes a comparison with `limit2`, the
+/// squared radius of a circle. Rounding is monotonic, so these cells are contiguous. The endpoints of the chord give
+/// the first and the last cell up to rounding errors; the cells next to the endpoints are decided by the comparison
+/// itself.
 template <class L, class Passes>
 [[gnu::always_inline]] inline CellRange<L> cells_that_pass(const AnnulusLines& lines, const L& away2, double limit2,
                                                            const Passes& passes) {
@@ -39,7 +40,7 @@ struct Words {
   Part part[kLanes / W];
 };
 
-/// Word for the cells [start, start + 64), in which the bits of all cells with an index >= `cell` are set.
+/// One 64-bit word per line for the cells [start, start + 64): bits of cells with an index >= `cell` are set.
 template <int W>
 [[gnu::always_inline]] inline Words<W> bits_from(const Lanes<W>& cell, double start) {
   constexpr double kShift = 0x1p52;  // adding it to an integer below 2^52 places the integer in the lowest bits

@@ -6,7 +6,8 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// Converts a box of the swept coordinates into ranges of x, y, z and phi.
+/// Ranges of x, y, z and phi: those of the box along the swept coordinates, and unrestricted ones where the box gives
+/// none.
 PoseBox pose_box(const FixedCoordinate& fixed, const std::optional<Box>& swept) {
   PoseBox box = kEverywhere;
   if (!swept) return box;
@@ -100,7 +101,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   SlicedDesign<S> sliced(std::span<const S> parameters) const {
     return sliced_design(design(geometry(settings_.platform, parameters), settings_.limits, box_), settings_.fixed);
   }
-  /// Converts a design to another scalar type, with zero derivatives.
+  /// The design that these parameters describe, in another scalar type with zero derivatives.
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(std::span<const To>(constants<To, kParameters>(parameters)));

@@ -21,9 +21,9 @@ struct ColumnScratch {
   Decomposition decomposition;
 };
 
-/// Adds derivatives to a critical value that was found by bisection. They follow from the implicit function theorem,
-/// applied to the condition that two critical points of the slice coincide (README.md); they are 0 if no column and no
-/// gap vanishes at the value.
+/// Adds derivatives to a critical value of the outer coordinate that was found by bisection. There, two critical points
+/// of the slice coincide (README.md), and the implicit function theorem applied to this equation gives the derivatives.
+/// They are 0 if neither a column nor a gap between columns vanishes at the value.
 /// @param plain     the design in double precision
 /// @param by_outer  the design with zero derivatives, for derivatives with respect to the outer coordinate
 /// @param at        the critical value
@@ -121,7 +121,7 @@ double roundoff(const SlicedDesign<S>& s, const std::vector<Subinterval<S>>& int
   return 4e-16 * size * size * (value_of(intervals.back().upper) - value_of(intervals.front().lower));
 }
 
-/// Returns true if u is a turning point of a circle that bounds the column. The length of the column then varies like a
+/// True if u is a turning point of a circle that bounds the column in v. The length of the column then varies like a
 /// square root near u.
 template <class S>
 bool has_sqrt_singularity(const Slice<S>& slice, const Column& column, double u) {
@@ -135,8 +135,8 @@ bool has_sqrt_singularity(const Slice<S>& slice, const Column& column, double u)
   return false;
 }
 
-/// Calls visit(slice, column, u, weight) at the nodes of a quadrature rule over u in every cell of the slice at a value
-/// of the outer coordinate.
+/// Calls visit(slice, column, u, weight) at the nodes of a quadrature rule over u in every cell of the decomposition of
+/// the slice at `outer`.
 template <class S, class Visit>
 void visit_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                    const Visit& visit) {
@@ -150,8 +150,8 @@ void visit_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& ru
   }
 }
 
-/// Area of the slice [m^2], by quadrature over u of the exact lengths of its columns.
-/// @param columns  incremented by the number of columns that are evaluated
+/// Area of the slice at `outer` [m^2], by quadrature over u of the exact lengths of its columns.
+/// @param columns  increased by the number of columns that are evaluated
 template <class S>
 S area_of_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                   std::int64_t& columns) {
@@ -166,7 +166,8 @@ S area_of_columns(const SlicedDesign<S>& s, const S& outer, const GaussRule& rul
   return sum;
 }
 
-/// Calls visit(position, weight) at the nodes of a product rule in the slice: over u, and over every interval of v.
+/// Calls visit(position, weight) at the nodes of a product quadrature rule in the slice at `outer`: over u, and over
+/// every interval of v.
 template <class S, class Visit>
 void visit_positions(const SlicedDesign<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                      const Visit& visit) {

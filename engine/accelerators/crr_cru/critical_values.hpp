@@ -9,7 +9,7 @@
 
 namespace pkm::crr_cru {
 
-/// A design of which one coordinate is fixed, and which is analysed slice by slice along the outer coordinate.
+/// A design with one fixed coordinate, for an analysis by slices at values of the outer coordinate.
 template <class S>
 struct SlicedDesign {
   Design<S> design;
@@ -32,8 +32,8 @@ Slice<S> slice_at(const SlicedDesign<S>& s, const S& outer) {
                              : slice(s.design, s.positions, s.axes, outer);
 }
 
-/// Adds the bounds of phi, given by kappa_p >= c_min and the box, and the phi at which the fixed position is at the end
-/// of a stroke.
+/// Adds the critical values of phi: its bounds, given by the box and by the limit kappa_p >= c_min, and the values at
+/// which the fixed position is at an end of a slide's stroke.
 template <class S>
 void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = s.design.g;

@@ -14,7 +14,7 @@ namespace pkm::crr_cru {
 
 class InertiaTables {
  public:
-  /// Fills the tables for one phi.
+  /// Fills the tables for one yaw angle phi.
   /// @param coordinate  for each axis of the grid, its coordinate: 0 to 2 for x, y, z; 3 for phi, on which the tables
   /// do not depend
   /// @param along       axis of the grid along which rows run
@@ -88,7 +88,7 @@ class InertiaTables {
     /// Inertia of each cell, followed by kLanes unused elements, which kernels may read.
     std::vector<double> pp, pq, qq;
     std::array<std::size_t, 3> stride;
-    bool varies;  ///< true if the values vary along rows of the grid
+    bool varies;  ///< true: the inertia varies along the rows of the grid; false: it is the same in all cells of a row
     std::size_t index(const Cell& cell) const {
       return static_cast<std::size_t>(cell[0]) * stride[0] + static_cast<std::size_t>(cell[1]) * stride[1] +
              static_cast<std::size_t>(cell[2]) * stride[2];

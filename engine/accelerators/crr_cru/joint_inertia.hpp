@@ -11,8 +11,9 @@
 
 namespace pkm::crr_cru {
 
-/// Inertia of the rods of a limb, reduced to its platform joint C_i, in the plane of the limb. Elements of a symmetric
-/// 2 x 2 matrix [kg]; p is the lower and q the higher of the two world axes in this plane.
+/// Inertia of the rods of a limb as an equivalent mass at its platform joint C_i: the elements of a symmetric 2 x 2
+/// matrix [kg] for velocities in the plane of the limb; p is the lower and q the higher of the two world axes in this
+/// plane.
 template <class S>
 struct PlaneInertia {
   S pp, pq, qq;
@@ -21,11 +22,12 @@ struct PlaneInertia {
 /// The part of the joint-space inertia M_q that depends on phi alone.
 template <class S>
 struct YawInertia {
-  std::array<std::array<S, 3>, 4> arm;  ///< vector from D to the platform joint C_i of each limb [m]
-  /// Velocity s_i of C_i in the plane of each limb if slide 4 moves with unit velocity, along the lower and the higher
-  /// world axis.
+  /// For each limb, vector from the point D of the moving platform to the platform joint C_i [m].
+  std::array<std::array<S, 3>, 4> arm;
+  /// For each limb, the velocity s_i of C_i in the plane of the limb if slide 4 moves with unit velocity: components
+  /// along the lower and the higher of the two world axes in this plane.
   std::array<std::array<S, 2>, 4> per_slide;
-  /// Contributions of the platforms and of the masses that slide along the rails [kg].
+  /// Terms of M_q due to the platforms and to the masses that move with the slides along the rails [kg].
   S xx, yy, zz, vx, vy, vz, k;
   std::array<double, 4> rotors{};  ///< inertia of the drive train at each joint [kg]
 };

@@ -27,7 +27,7 @@ PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::siz
           A * v[1] * v[1] - B * 2.0 * (u[1] * v[1]) + C * u[1] * u[1]};
 }
 
-/// Adds the mass that moves with the slide of a limb to M_X.
+/// Adds the mass that moves with the slide of a limb to the inertia matrix M_X of the coordinates.
 /// @param by_phi  velocity of C_i along the rail, divided by the rate of phi [m]
 template <class S>
 void add_on_rail(std::size_t e, const S& mass, const S& by_phi, Matrix<S, 4, 4>& M) {
@@ -38,8 +38,8 @@ void add_on_rail(std::size_t e, const S& mass, const S& by_phi, Matrix<S, 4, 4>&
   M(3, 3) += by_phi * moment;
 }
 
-/// Adds a point mass that is fixed to the moving platform to M_X.
-/// @param at  its distance from D along the line from D to C_4 [m]
+/// Adds a point mass that is fixed to the moving platform to the inertia matrix M_X of the coordinates.
+/// @param at  distance of the point mass from D along the line from D to C_4 [m]
 template <class S>
 void add_on_arm(const S& mass, const S& at, const S& sin_phi, const S& cos_phi, Matrix<S, 4, 4>& M) {
   for (std::size_t k = 0; k < 3; ++k) M(k, k) += mass;

@@ -88,7 +88,7 @@ struct Limits {
 
 inline Limits limits(const LimitSpec& spec) { return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0)}; }
 
-/// Axes of a limb: indices of the world axes along its directions e (rail), p and q, and the signs of p and q.
+/// The frame of a limb: indices of the world axes along its directions e (rail), p and q, and the signs of p and q.
 struct LimbAxes {
   std::size_t e, p, q;
   double p_sign, q_sign;

@@ -48,7 +48,9 @@ struct EndpointLabel {
     on_circle  ///< point of a circle of the annulus of limb number `index`, below or above the centre
   } kind;
   std::uint8_t index;
-  bool upper, outer;  ///< upper: the endpoint is an upper one; outer: the circle is the outer one of the annulus
+  /// Upper: true for an upper endpoint, false for a lower one; outer: true if the circle is the outer one of the
+  /// annulus.
+  bool upper, outer;
 
   constexpr EndpointLabel(Kind k = slide, std::size_t i = 0, bool is_upper = false, bool is_outer = false)
       : kind(k), index(static_cast<std::uint8_t>(i)), upper(is_upper), outer(is_outer) {}

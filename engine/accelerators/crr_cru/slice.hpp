@@ -88,18 +88,18 @@ Slice<S> slice(const Design<S>& d, const PositionSet<S>& set, const SliceAxes& a
   return s;
 }
 
-/// A critical value of u, at which an endpoint of the column at u changes its formula.
+/// A critical value of u: at it, the formula of an endpoint in v of the column changes.
 struct CriticalPoint {
   enum class Kind : std::uint8_t { end_of_u, turning_point, intersection_with_v, intersection_of_circles };
   Kind kind = Kind::end_of_u;
-  std::uint8_t first = 0;   ///< index of an endpoint of u, or of a circle: 2 annulus + (0 inner, 1 outer)
-  std::uint8_t second = 0;  ///< index of an endpoint of v, or of a circle of the other annulus
-  std::int8_t sign = 1;     ///< selects one of the two solutions if there are two
+  std::uint8_t first = 0;   ///< index of an endpoint of the set u, or of a circle: 2 * annulus + (0: inner, 1: outer)
+  std::uint8_t second = 0;  ///< index of an endpoint of the set v, or of a circle of the other annulus
+  std::int8_t sign = 1;     ///< +1 or -1: which of two intersections it is; unused if there is only one
 
   static CriticalPoint end_of_u(std::size_t end) { return {.first = static_cast<std::uint8_t>(end)}; }
 };
 
-/// A cell of the decomposition: an interval of u over which the column of v has endpoints of the same formulas.
+/// A cell of the decomposition of a slice: an interval of u over which each endpoint of the feasible v has one formula.
 struct Column {
   CriticalPoint lower, upper;  ///< lower and upper end of the interval of u
   /// Labels of the endpoints of v, whose kind is v_bound or on_circle: lower and upper endpoint of each interval.
@@ -141,21 +141,21 @@ Slice<double> values(const Slice<S>& s) {
   return v;
 }
 
-/// Endpoint of a set of intervals.
-/// @param end  2 interval + (0: lower endpoint, 1: upper endpoint)
+/// An endpoint of one of the intervals of a set.
+/// @param end  2 * (index of the interval) + (0: lower endpoint, 1: upper endpoint)
 template <class S>
 const S& end_of(const IntervalSet<S>& set, std::size_t end) {
   return end % 2 == 0 ? set.interval[end / 2].lower : set.interval[end / 2].upper;
 }
 
-/// Squared radius of a circle of a slice.
-/// @param circle  2 annulus + (0: inner circle, 1: outer circle)
+/// Squared radius of a circle that bounds an annulus of a slice.
+/// @param circle  2 * (index of the annulus) + (0: inner circle, 1: outer circle)
 template <class S>
 const S& radius2(const Slice<S>& s, std::size_t circle) {
   return circle % 2 == 0 ? s.annulus[circle / 2].in2 : s.annulus[circle / 2].out2;
 }
 
-/// The u of a critical point; meaningless if the critical point does not exist.
+/// The value of u at a critical point; meaningless if the critical point does not exist.
 /// @param exists  if not null, receives whether the critical point exists
 template <class S>
 S abscissa(const Slice<S>& s, const CriticalPoint& point, bool* exists = nullptr) {
@@ -196,7 +196,7 @@ Arc<S> arc_of(const Slice<S>& s, EndpointLabel label) {
   return {&annulus, label.outer ? &annulus.out2 : &annulus.in2, label.upper ? 1.0 : -1.0};
 }
 
-/// The v of an endpoint that is not on a circle; it does not depend on u.
+/// The v of an endpoint that is not on a circle, but an endpoint of the set v of the slice; it does not depend on u.
 template <class S>
 const S& bound_of_v(const Slice<S>& s, EndpointLabel label) {
   return end_of(s.v, 2u * label.index + label.upper);

@@ -22,7 +22,7 @@ struct VoxelWorker {
   std::array<std::vector<double>, 4> dci;
 };
 
-/// A design on its grid, divided into slices, one for each outer cell.
+/// A design on its voxel grid. The grid is divided into slices, one for each cell along the outer coordinate.
 struct GriddedSlices : GriddedDesign {
   Design<double> d;
   Masses<double> masses;
@@ -30,7 +30,7 @@ struct GriddedSlices : GriddedDesign {
   bool over_phi;  ///< true: phi is the outer coordinate, and each slice has its own phi; false: phi is fixed
   std::array<std::size_t, 3> swept;  ///< the index of the coordinate of each axis of the grid, ascending
   double fixed;                      ///< value of the fixed coordinate
-  const CellsAtPhi& common;          ///< the cells that all slices share if phi is fixed
+  const CellsAtPhi& common;          ///< if phi is fixed: the feasible cells that all slices share
 };
 
 class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
@@ -74,7 +74,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     return s;
   }
 
-  /// Finds the feasible cells at one phi.
+  /// Finds the feasible cells at one value of phi, and writes them to `to`.
   /// @return false if there are none
   bool fill(const GriddedSlices& s, double phi, CellsAtPhi& to) const {
     if (!to.cells.fill(s.d, settings_.fixed, s.grid, phi)) return false;

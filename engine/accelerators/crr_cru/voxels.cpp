@@ -40,7 +40,7 @@ Box default_box(const Design<double>& d, const FixedCoordinate& fixed) {
 void SliceCells::fill_axis(Axis& axis, const VoxelGrid& grid, std::size_t which) {
   const auto cells = static_cast<std::size_t>(grid.cells[which]);
   if (axis.cells == cells && axis.lower == grid.lower[which] && axis.step == grid.step[which])
-    return;  // the axis is filled already, because it does not depend on phi
+    return;  // this axis is independent of phi and was filled for an earlier phi
   axis.cells = cells;
   axis.lower = grid.lower[which];
   axis.step = grid.step[which];

@@ -41,8 +41,8 @@ S characteristic_length(const Geometry<S>& g) {
   return g.platform == Platform::jointed ? g.l : S(g.l + g.r);
 }
 
-/// Inverse condition number of J with the phi column divided by `length` [m]. z is a separate block of J with the
-/// singular value 1; the other block is the 3 x 3 matrix of x, y, phi.
+/// Inverse condition number of the Jacobian J with its column for phi divided by `length` [m]. J consists of two
+/// blocks: the element for z with the singular value 1, and a 3 x 3 matrix for x, y, phi.
 template <class S>
 S conditioning(const std::array<Arm<S>, 4>& arm, const S& length) {
   const S one(1.0), zero(0.0);

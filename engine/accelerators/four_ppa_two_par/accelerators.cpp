@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kY = 1;  ///< index of the coordinate y, which these analyses fix or integrate over
 
-/// The value of y at which a plan fixes the platform [m]; by default, the middle of the range of y.
+/// The y of the plane on which a plan fixes the platform [m]; by default, the middle of the range of y.
 template <class S>
 S plane(const Geometry<S>& g, const FixedCoordinate& y) {
   return y.kind == FixedCoordinate::Kind::value ? S(y.value) : S(g.L0 * 0.5);
@@ -173,10 +173,11 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     planes.blocks = counts(planes) ? counter_.tiles(largest) : counter_.blocks(largest);
     return planes;
   }
-  /// Returns true if only the number of feasible cells is needed, and cells need no clearance test.
+  /// True if it is sufficient to count feasible cells, because no samples are needed and there is no clearance test.
   bool counts(const GriddedPlanes& planes) const { return !planes.test && !request_.needs_samples(); }
-  /// The part of the grid on a plane that has to be searched. A pose can represent its mirror images, because all of
-  /// them have the same conditioning.
+  /// The part of the grid on a plane that has to be searched. If samples of a pose also represent its mirror images,
+  /// which have the same conditioning, it is a part from which symmetry gives all cells; otherwise, it is the whole
+  /// grid.
   GridPart representative_part(const GriddedPlanes& planes, const VoxelPlane& at) const {
     return planes.test || planes.wanted.distinguishes_images() ? counter_.whole() : counter_.representative_part(at);
   }

@@ -14,8 +14,8 @@ struct ColumnLimits {
   /// Grid along x and z. per_cell: number of cells per length of z; offset: position of z = -d in cells, relative to
   /// the centre of the first cell.
   double x_step, cells, per_cell, offset;
-  L x_0, w;                     ///< x_1 of the first column; the sum w = x_1 + x_2
-  L top_1, top_2;               ///< minimum of -z_c of each limb; infinite if no pose is feasible at this theta
+  L x_0, w;        ///< x_1 of the first column; w = x_1 + x_2, which is the same for all columns at one theta
+  L top_1, top_2;  ///< minimum of -z_c of each limb; infinite if no pose is feasible at this theta
   std::int64_t x_begin, x_end;  ///< columns outside this range have no feasible cells at any theta of the batch
 
   explicit ColumnLimits(const ColumnsAtThetas& at) {
@@ -51,7 +51,7 @@ struct ColumnLimits {
     x_end = index(high / x_step + 2);
   }
 
-  /// The feasible cells along z of column number i, for each theta of the batch.
+  /// The feasible cells along z of the column with index i, for each theta of the batch.
   struct Cells {
     L first, end;
     decltype(L() < L()) exist;

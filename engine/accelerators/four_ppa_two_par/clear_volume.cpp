@@ -10,8 +10,8 @@ namespace {
 ///
 ///   max(0, L0 - max(2 h_1, 2 h_2, h_1 + h_2 + a sin theta)),   theta >= 0.
 ///
-/// The leaning limb has the smaller h. Both h increase with z, and so does their difference, which is negative or 0:
-/// the length has at most one kink and one root.
+/// The leaning limb (that with the greater inclination beta) has the smaller h. Both h increase with z, and so does
+/// their difference, which is negative or 0: the length has at most one kink and one root.
 double integral_of_stroke(const SlicedDesign<double>& d, const Slice<double>& t, const Column<double>& column,
                           const ClosedInterval& clear) {
   static const GaussRule rule = gauss_legendre(12);
@@ -42,7 +42,7 @@ double integral_of_stroke(const SlicedDesign<double>& d, const Slice<double>& t,
   return sum;
 }
 
-/// Length of the clear intervals of a column, or its integral over y.
+/// Total length [m] of those intervals of z in a column in which the links are clear, or its integral over y.
 double measure(const SlicedDesign<double>& d, const Slice<double>& t, const Column<double>& column,
                const ClearanceTest& test, bool over_y, ClearanceScratch& scratch) {
   double sum = 0;
@@ -88,7 +88,7 @@ Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest
   constexpr double kInnerTolerance = 0.02;
   const Quadrature outer{.regularity = Regularity::kinks}, inner{.regularity = Regularity::kinks, .depth = 12};
   static const GaussRule coarse = gauss_legendre(5);
-  // Estimate of the result, which also finds the intervals.
+  // A first estimate of the volume. The call also finds the intervals of integration.
   const Integral<double> guess = clear_volume_by_rule(d, test, over_y, coarse, coarse, scratch);
   double range = 0;
   for (const Subinterval<double>& interval : scratch.intervals) range += interval.upper - interval.lower;

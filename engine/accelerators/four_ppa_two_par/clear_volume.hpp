@@ -13,8 +13,8 @@ namespace pkm::four_ppa_two_par {
 
 inline constexpr double kFinestClearTolerance = 1e-4;  ///< smallest relative tolerance of clear_volume()
 
-/// Volume of the clear poses on the plane of the design [m^2 rad] or, for a design at y = L0/2, integrated over y [m^3
-/// rad].
+/// Volume of the poses with sufficient clearance: on the plane y of the design [m^2 rad] or, with `over_y`, which
+/// requires the plane y = L0/2, integrated over y [m^3 rad].
 /// @param over_y     true: integrates over y
 /// @param tolerance  requested relative error
 Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,

@@ -12,7 +12,7 @@ bool is_lower(int group) {
   return group != kPlatform && (kind == kLowerBars || kind == kLowerConnector);
 }
 
-/// Returns true if a change of z moves the links of a group relative to all other links: sliders and upper bars.
+/// True if a change of z moves the links of a group relative to those of all other groups: sliders and upper bars.
 bool moves(int group) {
   const int kind = group % kGroupsPerLimb;
   return group != kPlatform && (kind == kSliders || kind == kUpperBars);
@@ -24,8 +24,8 @@ double radius(const Geometry<double>& g, int group) {
   return group % kGroupsPerLimb == kSliders ? g.R_s : g.R_u;
 }
 
-/// Returns true if the distance of a pair is the same at every pose, i.e. equals its lower bound. If this distance is
-/// too small, no pose is clear.
+/// True if the clearance between two groups is the same at every pose, and therefore equals its lower bound. If it is
+/// too small, no pose satisfies the limit.
 bool is_constant(const Geometry<double>& g, const GroupPair& pair) {
   if (pair.first == kPlatform) return is_lower(pair.second) && g.d_d <= g.d;
   return pair.first == group_of(0, kLowerConnector) && pair.second == group_of(1, kLowerConnector);
@@ -69,7 +69,7 @@ ClearanceTest::ClearanceTest(const Geometry<double>& g, double min_clearance) : 
       h_min_ = infinity;
     } else if (platform_and_lower && below <= g.l_d) {
       const double radii = min_clearance + g.R_p + g.R_d;
-      if (radii > g.d) h_min_ = infinity;  // no pose is clear: the point D_j is only d above the platform
+      if (radii > g.d) h_min_ = infinity;  // no pose satisfies the limit: the point D_j is only d above the platform
       sin_beta_min_ = radii / below;
     } else {
       (moves(pair.first) || moves(pair.second) ? moving_pairs_ : suspended_pairs_).push_back(pair);

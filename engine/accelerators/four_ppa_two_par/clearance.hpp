@@ -37,7 +37,7 @@ class ClearanceTest {
   /// Returns true if the limits h_min() and sin_beta_min() imply the clearance, so that no pair has to be tested.
   bool complete() const { return suspended_pairs_.empty() && moving_pairs_.empty(); }
 
-  /// Actual minus required clearance at a pose [m]. If it is positive, it is only a lower bound.
+  /// Actual minus required clearance at a pose [m]. A positive result is only a lower bound.
   double excess(const Placement<double>& p) const;
 
   /// Finds the intervals of delta, within [low, high] of a half slice, in which the suspended links are clear.
@@ -60,12 +60,12 @@ class ClearanceTest {
   Geometry<double> g_;
   double min_clearance_;
   double h_min_ = 0, sin_beta_min_ = 0;
-  std::vector<GroupPair> suspended_pairs_;  ///< pairs whose distance does not depend on z
-  std::vector<GroupPair> moving_pairs_;     ///< pairs whose distance depends on z
+  std::vector<GroupPair> suspended_pairs_;  ///< pairs of link groups whose clearance does not depend on z
+  std::vector<GroupPair> moving_pairs_;     ///< pairs of link groups whose clearance depends on z
 };
 
-/// Splits the clearance limit of `l`. Conditions on h and beta replace l.h_min and l.sin_beta_min; all other conditions
-/// are combined in the returned test of poses, which is std::nullopt if there are none.
+/// Replaces the clearance limit of `l`: parts that are equivalent to bounds of h and beta are added to l.h_min and
+/// l.sin_beta_min; the rest is returned as a test of poses, std::nullopt if nothing remains to be tested.
 std::optional<ClearanceTest> reduce_clearance(const Geometry<double>& g, Limits<double>& l);
 
 }  // namespace pkm::four_ppa_two_par

@@ -59,7 +59,8 @@ S area_over_y(const SlicedDesign<S>& d, Slice<S> t, const GaussRule& rule) {
   const auto add = [&](const S& value) {
     if (value_of(value) > value_of(from) && value_of(value) < value_of(middle)) y[n++] = value;
   };
-  const auto add_stroke = [&](const S& H) {  // H_1 = y - shift, H_2 = min(y + shift, L0 - y - shift)
+  // H_1 = y - shift, H_2 = min(y + shift, L0 - y - shift): strokes of the two limbs on their shorter sides
+  const auto add_stroke = [&](const S& H) {
     add(H + shift);
     add(H - shift);
     add(g.L0 - H - shift);

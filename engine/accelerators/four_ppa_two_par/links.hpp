@@ -15,7 +15,8 @@ namespace pkm::four_ppa_two_par {
 template <class S>
 struct Placement {
   S sin_theta;
-  std::array<S, 2> x, drop, z_c, h;  ///< one value per limb [m]; drop is the height of C_j above D_j
+  /// Values of the two limbs [m]: x, height `drop` of the point C_j above D_j, z_c and h (README.md).
+  std::array<S, 2> x, drop, z_c, h;
 };
 
 /// Placement of the limbs in the mode lower,lower. It is meaningless if a limb does not reach the pose.
@@ -87,8 +88,8 @@ Links<S> links(const Geometry<S>& g, const Placement<S>& p) {
   return all;
 }
 
-/// Two groups between whose links the clearance is measured. If both are the sliders of one limb, it is measured
-/// between these two sliders.
+/// Two groups of links between which the clearance is measured. If both are the group of sliders of one limb, it is
+/// measured between its two sliders.
 struct GroupPair {
   int first, second;
 };

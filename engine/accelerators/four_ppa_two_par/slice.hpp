@@ -67,10 +67,10 @@ enum class EndKind { beta_max, beta_min, parallel };
 
 template <class S>
 struct Slice {
-  S w;  ///< b - a cos(theta) [m]
+  S w;  ///< sum x_1 + x_2 = b - a cos(theta) [m]
   S sin_theta, cos_theta;
   std::array<S, 2> depth;  ///< Delta_1 and Delta_2 [m]; if one is <= 0, its limb has no feasible z
-  S delta_low, delta_end;  ///< range of delta, without the effect of `depth` [m]
+  S delta_low, delta_end;  ///< range of delta = |sigma_1 - sigma_2| that all limits except those of `depth` allow [m]
   EndKind end = EndKind::beta_max;
   bool empty = true;  ///< true if no x is feasible
 };
@@ -141,8 +141,8 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_theta)
   return t;
 }
 
-/// The half of a slice in which one given limb is the leaning one. The length of the z interval at a delta in [low,
-/// end] is min(flat, slope - delta).
+/// The half of a slice in which a given limb is the leaning one, i.e. has the greater inclination. At delta = |sigma_1
+/// - sigma_2| in [low, end], the feasible interval of z has the length min(flat, slope - delta) [m].
 template <class S>
 struct HalfSlice {
   S flat, slope;
@@ -163,7 +163,7 @@ HalfSlice<S> half_slice(const Slice<S>& t, std::size_t leaning) {
   return h;
 }
 
-/// sin p, cos p and u at one value of delta.
+/// sin p, cos p and u = |x - b/2| at a value of delta, where 2p = beta_1 + beta_2.
 template <class S>
 struct Chord {
   S sin_p, cos_p, u;
@@ -179,12 +179,12 @@ Chord<S> chord(const SlicedDesign<S>& d, const Slice<S>& t, const S& delta) {
   return c;
 }
 
-/// The feasible z interval at one x of a half slice.
+/// The feasible interval of z at one x in a half of a slice.
 template <class S>
 struct Column {
   std::array<S, 2> x, sigma;  ///< x_j and sigma_j of both limbs [m]
   S length;                   ///< length of the z interval [m]
-  S derivative;               ///< derivative of u with respect to delta
+  S derivative;               ///< derivative of u = |x - b/2| with respect to delta
   std::size_t leaning;
 
   /// z_c of limb j at the height `rise` above the lower end of the interval, at which z_c of the leaning limb is

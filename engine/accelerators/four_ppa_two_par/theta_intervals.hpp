@@ -33,7 +33,7 @@ S switching_function(const SlicedDesign<S>& d, std::size_t index, const S& theta
   return switching_functions(slice(d, s, c))[index];
 }
 
-/// The cases that, together with the signs of the switching functions, select the formula of the area.
+/// Properties of a slice that, together with the signs of the switching functions, select the formula of its area.
 struct Formula {
   EndKind end;
   bool low;                         ///< true if delta_low > 0
@@ -42,7 +42,7 @@ struct Formula {
   bool stroke_limits_2_at_far_end;  ///< true if the stroke that limits limb 2 is the one to the far end of the rail
   bool operator==(const Formula&) const = default;
 };
-/// Combinatorial type of a slice.
+/// Combinatorial type of a slice: two slices with equal signatures have the same formula of the area.
 struct Signature {
   std::optional<Formula> formula;                   ///< std::nullopt: the slice is empty
   std::array<double, kSwitchingFunctions> value{};  ///< values of the switching functions; compared by sign

@@ -24,8 +24,8 @@ struct VoxelPlane {
   const VoxelGrid& grid;      ///< its numbers of cells and its theta range are those of the VoxelCounter
 };
 
-/// The part of a grid that represents all cells by symmetry. On the middle plane both limbs have the same stroke, so
-/// that the workspace is symmetric in theta and in x; the grid need not be.
+/// The part of a grid that has to be searched; by symmetry, it represents all cells. On the middle plane, y = L0/2,
+/// both limbs have the same stroke, so that the workspace is symmetric in theta and in x; the grid need not be.
 struct GridPart {
   std::int64_t xs, thetas;  ///< numbers of x and of theta values, beginning with the first of the grid
   bool mirrored_x = false, mirrored_theta = false;

@@ -30,8 +30,8 @@ S stroke_factor(const Limits<S>& l, const WorkspacePlan& plan) {
   return S(y.value >= value_of(l.s_min[1]) && y.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
 }
 
-/// Adds columns along x as samples. The conditioning does not depend on x. If derivatives are not requested, the
-/// conditioning of all samples is computed at the end, in SIMD batches.
+/// Appends columns along x to the samples of a workspace analysis. The conditioning does not depend on x. Without
+/// derivatives, the conditioning of all samples is computed at the end, in SIMD batches.
 template <class S>
 class ColumnSamples {
  public:
@@ -64,7 +64,8 @@ class ColumnSamples {
     }
   }
 
-  /// Computes the remaining values; must be called after the last add().
+  /// Computes the conditioning of all samples in one batch, if derivatives are not requested; to be called after the
+  /// last add().
   void finish() {
     if constexpr (std::is_same_v<S, double>) {
       if (!index_) return;

@@ -13,16 +13,17 @@ namespace pkm::hybrid {
 /// The columns along x at one beta. A plain struct, so that kernels share no inline code with files that are compiled
 /// for another instruction set.
 struct ColumnsAtBeta {
-  Product<double> C, Q, P, L, H;  ///< squares of the roots in the curves that bound x in the slice
+  Product<double> C, Q, P, L, H;  ///< for each curve that bounds x in the slice, the square of its root
   double sign, lo_C, hi_C;        ///< limb C: sign of n3, and the constants of its two bounds of x
-  double z_high, hole_end;        ///< maximum z of all columns, and maximum z of the hole
+  double z_high, hole_end;        ///< maximum z of all columns; maximum z at which the feasible x has a hole
   double x_lower, x_step, cells;
-  /// Each z, and the range of x that limbs A and B allow there; padded to a multiple of kLanes.
+  /// For each column: its z, and the range [left, right] of x that limbs A and B allow; padded to a multiple of kLanes.
   const double *z, *left, *right;
   std::size_t first_z, end_z;  ///< columns exist for the indices [first_z, end_z) of z
 };
 
-/// Feasible cells along x for each z: the cells [first, hole) and [after, end), as integers.
+/// Indices of the feasible cells along x, one element per z: cells [first, hole) and [after, end); all are whole
+/// numbers.
 struct CellRuns {
   std::vector<double> first, hole, after, end;
 };

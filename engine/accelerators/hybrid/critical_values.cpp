@@ -92,8 +92,8 @@ bool has_heights(const SampledSlice& sample, const Degeneracy& degeneracy) {
   return degeneracy.kind == Degeneracy::Kind::edges || (has(degeneracy.first) && has(degeneracy.second));
 }
 
-/// The x of an edge, with its first two derivatives with respect to z. The value x and the first derivative also have
-/// derivatives with respect to beta.
+/// The x of an edge as a function of z: value, first and second derivative with respect to z. The value and the first
+/// derivative also have derivatives with respect to beta.
 struct EdgeDerivatives {
   Dual<1> x, derivative;
   double curvature;
@@ -195,7 +195,7 @@ class CriticalValueSearch {
     return s;
   }
 
-  /// Begins an interval of beta, given a sample slightly above its lower endpoint.
+  /// Begins an interval of beta, given a sampled slice slightly above its lower endpoint.
   void begin(double at, const std::optional<Degeneracy>& degeneracy, const SampledSlice& above) {
     open_ = !above.decomposition.strips.empty();
     if (!open_) return;

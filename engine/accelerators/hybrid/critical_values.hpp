@@ -22,11 +22,11 @@ struct SampledSlice {
   Decomposition decomposition;
 };
 
-/// The degeneracy of a slice at a critical value of beta.
+/// What degenerates in a slice at a critical value of beta: two features of the boundary coincide there.
 struct Degeneracy {
   enum class Kind : std::uint8_t {
-    heights,  ///< the bounds of z `first` and `second` coincide
-    edges,    ///< the edges `left` and `right` intersect at the bound of z `first`
+    heights,  ///< the bounds `first` and `second` of z coincide
+    edges,    ///< the edges `left` and `right` intersect at the bound `first` of z
     /// The edges `left` and `right` are tangent at the height of `first`, where two strips meet or one vanishes.
     tangency
   } kind = Kind::heights;
@@ -79,7 +79,7 @@ inline bool has_sqrt_singularity(const Degeneracy& degeneracy) {
          (degeneracy.kind == Degeneracy::Kind::heights && vanishing_curve(degeneracy.second) != kCurves);
 }
 
-/// Distance of the features that coincide at the critical value, where it is 0.
+/// Distance of the two features of a slice that coincide at the critical value of beta; 0 there.
 template <class S>
 S distance(const Slice<S>& s, const Degeneracy& degeneracy) {
   if (degeneracy.kind == Degeneracy::Kind::tangency) {  // the distance is the minimum or maximum over z
@@ -91,7 +91,7 @@ S distance(const Slice<S>& s, const Degeneracy& degeneracy) {
   return height(s, degeneracy.second) - height(s, degeneracy.first);
 }
 
-/// The beta of a degeneracy, with derivatives by the implicit function theorem.
+/// The critical value of beta at which a degeneracy occurs, with derivatives by the implicit function theorem.
 template <class S>
 S lift_critical_value(const SlicedDesign<S>& d, const SlicedDesign<Dual<1>>& by_beta, double at,
                       const Degeneracy& degeneracy) {

@@ -13,7 +13,7 @@ double chain_intersection(const Slice<double>& s, const Edge& first, const Edge&
   return (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
 }
 
-/// Difference of the x of two edges at one z, with its derivative.
+/// Difference of the x of two edges at one z, and its derivatives with respect to z.
 struct Gap {
   double value, derivative;
   double second;  ///< bound of the magnitude of the second derivative

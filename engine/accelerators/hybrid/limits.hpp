@@ -24,7 +24,7 @@ struct Limits {
   S z_clear, beta_min, beta_max;  ///< minimum height [m], and range of beta [rad]
   S tau_s, tau_p, tau_c;
   SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< sine and cosine of the maximum angles
-  S gap, lw_min, lw_max;  ///< minimum distance of carriages A and B, and range of the length of the shaft [m]
+  S gap, lw_min, lw_max;  ///< minimum distance of the carriages A and B; range of the length of the shaft [m]
 };
 
 template <class S>

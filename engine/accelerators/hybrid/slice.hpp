@@ -107,23 +107,24 @@ struct Curve : Product<S> {
 enum Side : std::uint8_t { kLeft, kRight };
 inline constexpr std::size_t kSides = 2;
 
-/// A bound of x as a function of z: one curve of a slice, on one side.
+/// A bound of x as a function of z: a curve of the slice, as a lower or an upper bound.
 struct Edge {
   std::uint8_t curve = 0;
   Side side = kLeft;
   bool operator==(const Edge&) const = default;
 };
 
-inline constexpr std::size_t kLowerEnds = 9, kUpperEnds = 9;  ///< numbers of bounds of z
+inline constexpr std::size_t kLowerEnds = 9, kUpperEnds = 9;  ///< number of lower and number of upper bounds of z
 /// Indices of those bounds of z at which the root of a curve vanishes: two for P, one (upper) for L, one (lower) for Q.
 inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
 
 template <class S>
 struct Slice {
   std::array<Curve<S>, kCurves> curve;
-  /// Sign of the root in the bound of x, for each side and curve.
+  /// Sign of the root in each bound of x, by side and curve: the bound is constants[side][curve] + sign * root of the
+  /// curve.
   std::array<std::array<double, kCurves>, kSides> signs;
-  /// Constant that is added to the root, for each side and curve [m].
+  /// Constant term of each bound of x [m], by side and curve.
   std::array<std::array<S, kCurves>, kSides> constants;
   std::array<S, kLowerEnds> lower;  ///< lower bounds of z [m]; inactive ones have values below all z in reach
   std::array<S, kUpperEnds> upper;

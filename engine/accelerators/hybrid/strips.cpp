@@ -94,7 +94,8 @@ class Envelope {
     return best;
   }
 
-  /// Divides the interval between p, where curve i is active, and q, where curve j is active.
+  /// Divides the interval between the nodes p, where curve i is active, and q, where curve j is active, into intervals
+  /// with one active curve each.
   void divide(const Node& p, std::size_t i, const Node& q, std::size_t j, int depth) {
     if (i != j) {
       const Node n = node_at(s_, intersection(s_, edge(i), edge(j), p.z, q.z));

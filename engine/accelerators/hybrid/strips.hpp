@@ -18,7 +18,7 @@
 
 namespace pkm::hybrid {
 
-/// A bound of a strip in z: one of the slice's bounds of z, or the intersection of two edges.
+/// An end of a strip in z: one of the bounds of z of the slice, or the intersection of two edges.
 struct StripBound {
   enum class Kind : std::uint8_t { lower, upper, hole, intersection };
   double z = 0;
@@ -43,8 +43,13 @@ inline bool same_type(const Strip& p, const Strip& q) {
 struct Decomposition {
   /// Non-empty strips in ascending z; beside a hole, two strips have the same interval of z.
   std::vector<Strip> strips;
-  std::size_t lower = 0, upper = 0;                        ///< indices of the active lower and upper bound of z
-  enum class Hole { none, below, all } hole = Hole::none;  ///< part of the z range in which x has a hole
+  std::size_t lower = 0, upper = 0;  ///< indices of those lower and upper bounds of z that are active
+  enum class Hole {
+    none,
+    below,
+    all
+    /// In which part of the range of z the feasible x has a hole.
+  } hole = Hole::none;
 };
 inline bool same_type(const Decomposition& p, const Decomposition& q) {
   return std::ranges::equal(p.strips, q.strips, [](const Strip& a, const Strip& b) { return same_type(a, b); });
