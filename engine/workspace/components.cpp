@@ -47,7 +47,7 @@ class InspectedSides final : public PoseSides {
 
 }  // namespace
 
-/// The grid of one design.
+/// The search for components on the voxel grid of one design.
 class ComponentFinder::Search {
  public:
   Search(const ComponentFinder& finder, std::span<const double> parameters, const VoxelMap& map, Scratch& scratch)
@@ -111,7 +111,8 @@ class ComponentFinder::Search {
   }
   bool is_periodic(std::size_t axis) const { return is_periodic_[axis]; }
 
-  /// Sides of poses. The result is valid until the next call.
+  /// For each pose, the side of the singularities on which it lies (PoseSides). The result is valid until the next
+  /// call. @param feasible  true: all poses are known to be feasible
   const std::vector<std::int8_t>& sides(std::span<const Pose<double>> poses, bool feasible) {
     sides_.resize(poses.size());
     finder_.sides_->find(poses, feasible, scratch_, sides_);
@@ -119,7 +120,7 @@ class ComponentFinder::Search {
   }
   std::int8_t side(const Pose<double>& pose) { return sides({&pose, 1}, false)[0]; }
 
-  /// Calls visit(cell, side) with the side of pose_of(cell) for each cell, in batches.
+  /// Calls visit(cell, side) for each cell, where `side` is that of the pose pose_of(cell); evaluates in batches.
   template <class PoseOf, class Visit>
   void find_sides(const std::vector<std::size_t>& cells, const PoseOf& pose_of, bool feasible, const Visit& visit) {
     constexpr std::size_t kBatch = 512;
@@ -139,7 +140,8 @@ class ComponentFinder::Search {
     return finder_.crossing_ == Crossing::allowed || (a == b && a != PoseSides::kSingular);
   }
 
-  /// @return true if sampled poses of a straight line, at distances of up to half a cell, can be reached from its ends
+  /// @return true if all poses sampled on the straight line between two poses, at most half a cell apart, are
+  ///         compatible with its start
   bool is_free(const Pose<double>& from, const Pose<double>& to) {
     double cells = 1;
     for (std::size_t axis = 0; axis < axes_; ++axis) {
@@ -253,7 +255,8 @@ ConnectedComponents ComponentFinder::find(std::span<const double> parameters, co
 
   DisjointSets sets(search.count());
   const auto is_joined = [&](std::size_t cell, std::size_t next) { return sets.root(cell) == sets.root(next); };
-  std::vector<std::size_t> faces, rest;  // by the cell before each face
+  // faces between two cells, each represented by the cell in front of it along the axis
+  std::vector<std::size_t> faces, rest;
   for (std::size_t axis = search.axes(); axis-- > 0;) {
     const auto next_of = [&](std::size_t cell) { return *search.next(cell, axis); };
     const auto test = [&](const std::vector<std::size_t>& tested) {
@@ -268,8 +271,8 @@ ConnectedComponents ComponentFinder::find(std::span<const double> parameters, co
       const auto next = search.next(cell, axis);
       if (next && search.are_compatible(side[cell], side[*next]) && !is_joined(cell, *next)) rest.push_back(cell);
     }
-    // Of neighbouring faces between the same two sets, the middle one is tested first: it usually joins the sets, so
-    // that the others need no test.
+    // Consecutive faces that separate the same two sets are tested beginning with the middle one: if it joins the sets,
+    // the others need no test.
     faces.clear();
     const auto pair_of = [&](std::size_t cell) { return std::pair(sets.root(cell), sets.root(next_of(cell))); };
     for (auto first = rest.begin(); first != rest.end();) {
@@ -291,7 +294,8 @@ ConnectedComponents ComponentFinder::find(std::span<const double> parameters, co
   std::vector<WorkspaceComponent> found;
   for (const std::size_t cell : cells) {
     if (!belongs(cell)) continue;
-    const std::size_t root = sets.root(cell);  // not after `cell`
+    // the cell of its set with the lowest index, so that it has been visited before
+    const std::size_t root = sets.root(cell);
     if (root == cell) {
       found.push_back({.first = cell, .side = crossing_ == Crossing::allowed ? PoseSides::kSingular : side[cell]});
       components.label[cell] = static_cast<std::uint32_t>(found.size());
@@ -348,7 +352,8 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
         wave.push_back(*other);
       }
   const auto cost_of = [&](std::size_t cell) {
-    const double d = distance[cell] == 0 ? std::numeric_limits<double>::infinity() : distance[cell];  // 0: no boundary
+    // distance 0: the component has no boundary
+    const double d = distance[cell] == 0 ? std::numeric_limits<double>::infinity() : distance[cell];
     return 1 + 8 / (d * d);
   };
 
@@ -386,7 +391,7 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
   found.cells.push_back(search.pose(from));
   for (const std::size_t cell : cells) found.cells.push_back(search.centre(cell));
   found.cells.push_back(search.pose(to));
-  for (std::size_t i = 1; i < found.cells.size(); ++i)  // angles continue beyond a full turn
+  for (std::size_t i = 1; i < found.cells.size(); ++i)  // choose angles without jumps by a full turn
     for (std::size_t axis = 0; axis < search.axes(); ++axis) {
       if (!search.is_periodic(axis)) continue;
       double& angle = search.coordinate(found.cells[i], axis);
@@ -395,7 +400,7 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
     }
   const auto equal = [](const Pose<double>& a, const Pose<double>& b) { return std::ranges::equal(a, b); };
   found.cells.erase(std::unique(found.cells.begin(), found.cells.end(), equal), found.cells.end());
-  // Straight lines to the farthest point that they reach.
+  // From each corner, go straight to the farthest point that a free straight line connects with it.
   found.corners.push_back(found.cells.front());
   for (std::size_t i = 0; i + 1 < found.cells.size();) {
     std::size_t j = found.cells.size() - 1;

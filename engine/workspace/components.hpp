@@ -22,7 +22,7 @@ namespace pkm {
 
 struct WorkspaceComponent {
   std::int64_t cells = 0;
-  std::size_t first = 0;  ///< its cell with the lowest index
+  std::size_t first = 0;  ///< lowest index of its cells
   std::int8_t side = 0;   ///< sign of det J; PoseSides::kSingular if components may cross singularities
 };
 

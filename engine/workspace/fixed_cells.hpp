@@ -35,8 +35,8 @@ void find_fixed_cells(std::span<const int> coordinates, const WorkspacePlan& pla
   }
 }
 
-/// Sets each coordinate that is integrated over to the centre of its cell in one combination of cells.
-/// @param number      number of the combination, from 0; the first coordinate varies fastest
+/// Sets each coordinate that is integrated over to the centre of one of its cells.
+/// @param number      number of the combination of cells, from 0; the cell of the first coordinate varies fastest
 /// @param coordinate  coordinate(index): reference to the value of a coordinate
 template <class Coordinates>
 void set_fixed_cells(std::span<const FixedCells> fixed, std::size_t number, const Coordinates& coordinate) {

@@ -83,7 +83,7 @@ class GridEvaluator : public VoxelEvaluator {
  private:
   const Self& self() const { return static_cast<const Self&>(*this); }
 
-  /// Merges the results of the blocks in order, so that the samples have the same order as without a team.
+  /// Merges the results of the blocks in their order, so that samples have the same order as in a serial evaluation.
   template <class Design, class PerWorker>
   void evaluate_in_parallel(const Design& design, std::vector<PerWorker>& buffers,
                             WorkspaceResult<double>& result) const {

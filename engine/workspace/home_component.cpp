@@ -60,7 +60,7 @@ class HomeComponent final : public VoxelEvaluator {
   }
 
  private:
-  /// Map in which only the cells of the component that contains the home pose are feasible.
+  /// Voxel map of a design in which only the cells of the component that contains the home pose are feasible.
   VoxelMap component(std::span<const double> parameters, Scratch& scratch) const {
     VoxelMap map = map_->map(parameters);
     const ConnectedComponents components = finder_.find(parameters, map, scratch);

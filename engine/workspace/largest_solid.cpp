@@ -16,18 +16,20 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kCellsOfSearch = 40;                               // per axis, for plans of columns
-constexpr int kCoarseDensity = 2, kSampleDensity = 4, kFinalDensity = 6;  // intervals per radius
-constexpr std::size_t kBoxFace = std::size_t(-1);  // CriticalPoint::margin of the faces of the search box
+constexpr std::int64_t kCellsOfSearch = 40;  // cells per axis of the initial search, for plans of columns
+// sample intervals along a radius: first run, second run, final test
+constexpr int kCoarseDensity = 2, kSampleDensity = 4, kFinalDensity = 6;
+// value of CriticalPoint::margin that stands for a face of the search box
+constexpr std::size_t kBoxFace = std::size_t(-1);
 
-/// NaN if it is undefined.
+/// Determinant of the Jacobian G of a pose; NaN if it is undefined.
 double determinant_of(const PoseReport& report) {
   return report.det_G.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 using Faces = std::array<std::array<double, 2>, 3>;
 
-/// The sizes and free coordinates of the centre as variables, in units of a length.
+/// Variables of the optimisation: free coordinates of the solid's centre, then its sizes, divided by a length, unit().
 class SolidVariables {
  public:
   SolidVariables(const SolidSpec& spec, const Solid& start) : spec_(spec) {
@@ -55,7 +57,7 @@ class SolidVariables {
       made.dimensions[ball] = x[variable_of(ball)] * ratio(ball) * unit_;
     return made;
   }
-  /// Derivatives of CriticalPoint::distance, in units of unit().
+  /// Gradient of CriticalPoint::distance with respect to the variables; the distance, too, is divided by unit().
   Eigen::VectorXd gradient(const CriticalPoint& point) const {
     Eigen::VectorXd g = Eigen::VectorXd::Zero(count());
     for (std::size_t i = 0; i < free_.size(); ++i) g[static_cast<Eigen::Index>(i)] = point.normal[free_[i]];
@@ -65,7 +67,8 @@ class SolidVariables {
     }
     return g;
   }
-  /// log(volume), its gradient and its Hessian, which is diagonal.
+  /// Logarithm of the solid's volume (without a constant), its gradient and the diagonal of its Hessian, which is
+  /// diagonal.
   double log_volume(const Eigen::VectorXd& x, Eigen::VectorXd& gradient, Eigen::VectorXd& hessian) const {
     double sum = 0;
     gradient = hessian = Eigen::VectorXd::Zero(count());
@@ -97,20 +100,20 @@ class SolidRefinement {
   SolidRefinement(const SolidSpec& spec, const Faces& faces, SolidMargins& margins, const Solid& start)
       : spec_(spec), faces_(faces), margins_(margins), variables_(spec, start), like_(start) {}
 
-  /// A point of the iteration.
+  /// A point x of the iteration, with the constraints linearised there.
   struct Iterate {
     Eigen::VectorXd x;
     std::vector<CriticalPoint> points;
-    Eigen::VectorXd multipliers = {};  ///< by critical point
+    Eigen::VectorXd multipliers = {};  ///< Lagrange multiplier of each critical point
     double log_volume = 0;
     Eigen::VectorXd gradient, hessian;
-    double violation = 0;            ///< largest, in units of SolidVariables::unit()
+    double violation = 0;            ///< largest constraint violation, in units of SolidVariables::unit()
     Eigen::MatrixXd curvature = {};  ///< approximate Hessian of the Lagrangian at the end of a run
   };
 
   /// Iterates until convergence.
-  /// @param last  end of an earlier run, with fewer samples, which is continued unless a constraint is violated there:
-  ///              then they missed a minimum of its margin
+  /// @param last  result of an earlier run with fewer samples, from which this run continues. If a constraint is
+  ///              violated there, the earlier run has missed a minimum of its margin, and this run starts anew
   Iterate run(const SolidSamples& samples, const Iterate* last = nullptr) {
     samples_ = &samples;
     constexpr double kMissed = 1e-6;  // violation in units of the size
@@ -127,12 +130,13 @@ class SolidRefinement {
       now.multipliers = multipliers;
       const double length = step.lpNorm<Eigen::Infinity>();
       residual_ = length + now.violation;
-      // Differences of the merit function below this one are rounding errors, multiplied by the penalty.
+      // Predicted decreases of the merit function below this value are dominated by rounding errors times the penalty.
       constexpr double kRounding = 1e-10;
       const bool is_final = predicted < kRounding;
       if (residual_ < kTolerance || iteration == kMaxIterations || final_steps == kMaxFinalSteps ||
           radius < kTolerance) {
-        // The multipliers without the curvature, which an almost singular update may have made very large.
+        // Compute the final multipliers with the initial curvature: an almost singular update may have made the current
+        // one very large.
         now.multipliers = solve_step(now, initial_curvature(now), kNearby).multipliers;
         now.curvature = curvature;
         return now;
@@ -151,7 +155,8 @@ class SolidRefinement {
     }
   }
 
-  /// The same with the violations removed by shrinking, tested with other samples.
+  /// Shrinks the solid of the last iterate until no constraint is violated at `dense`, a set of more samples. @return
+  /// the solid; all its dimensions are 0 if this fails
   Solid finish(Iterate& last, const SolidSamples& dense) {
     Solid found = solid(last.x);
     constexpr int kMaxRounds = 60;
@@ -189,7 +194,7 @@ class SolidRefinement {
     return points;
   }
 
-  /// Adds the points of the solid nearest to the faces of the search box.
+  /// Appends, for each face of the search box, the point of the solid nearest to it.
   void add_faces(const Solid& solid, std::vector<CriticalPoint>& points) const {
     for (std::size_t axis = 0; axis < spec_.shape.axes(); ++axis)
       for (std::size_t end = 0; end < 2; ++end) {
@@ -203,8 +208,10 @@ class SolidRefinement {
       }
   }
 
+  /// Evaluates the objective and all constraints at x.
   /// @param before  the iterate from which `x` was reached; null: none
-  /// @param length  of the step from there; after small steps only the critical points of `before` are followed
+  /// @param length  length of the step from `before`; after a small step, the critical points of `before` are only
+  ///                updated
   Iterate evaluate(const Eigen::VectorXd& x, const Iterate* before, double length) {
     constexpr double kSmallStep = 0.02;
     Iterate made{.x = x};
@@ -219,8 +226,8 @@ class SolidRefinement {
       }
       add_faces(here, made.points);
     }
-    // Keep points that decided the last step and are no local minima any more: a margin with many equal minima
-    // (a sphere in a cylinder) would otherwise be represented by different ones in each iteration.
+    // Keep points that were active in the last step, but are no local minima any more: a margin with many equal minima
+    // (a sphere in a cylinder) would otherwise be represented by different points in each iteration.
     for (Eigen::Index k = 0; before && k < before->multipliers.size(); ++k) {
       const CriticalPoint& old = before->points[static_cast<std::size_t>(k)];
       if (old.margin == kBoxFace || old.norm == 0 || before->multipliers[k] < 1e-6 || nearest(made.points, old, 0.05))
@@ -250,7 +257,8 @@ class SolidRefinement {
     return now.points.size() > before;
   }
 
-  /// The point of the same constraint nearest to another; null if none is within `reach` in the unit solid.
+  /// The critical point of the same constraint that is nearest to `to` in the unit solid; null if none is within
+  /// `reach`.
   static const CriticalPoint* nearest(const std::vector<CriticalPoint>& points, const CriticalPoint& to, double reach) {
     const CriticalPoint* best = nullptr;
     for (const CriticalPoint& point : points) {
@@ -268,13 +276,13 @@ class SolidRefinement {
 
   struct Step {
     Eigen::VectorXd step, multipliers;
-    double predicted = 0;  ///< decrease of the merit function
+    double predicted = 0;  ///< predicted decrease of the merit function
   };
 
-  /// Minimises c'd + d'Bd/2 + penalty * t subject to the linearised constraints, which t >= 0 relaxes, and |d| <=
-  /// radius. Constraints that hold for all these d are omitted.
+  /// Computes a step d: minimises c'd + d'Bd/2 + penalty * t for |d| <= radius, where t >= 0 relaxes the linearised
+  /// constraints. Constraints that are satisfied for all these d are omitted.
   Step solve_program(const Iterate& at, const Eigen::MatrixXd& B, const Eigen::VectorXd& c, double radius) const {
-    std::vector<std::size_t> near;  // points
+    std::vector<std::size_t> near;  // indices of the critical points that are not omitted
     for (std::size_t k = 0; k < at.points.size(); ++k)
       if (at.points[k].distance <= variables_.gradient(at.points[k]).lpNorm<1>() * radius * variables_.unit())
         near.push_back(k);
@@ -312,7 +320,8 @@ class SolidRefinement {
     return solve_program(now, curvature, -now.gradient, radius);
   }
 
-  /// Second-order correction: the nearest point that satisfies the constraints, linearised at the trial point.
+  /// Second-order correction of a trial step: moves to the nearest point that satisfies the constraints, linearised at
+  /// the trial point. @return the corrected iterate, or `trial` if that has the lower merit function
   Iterate corrected(Iterate trial, double radius) {
     if (trial.violation < kTolerance / 10) return trial;
     const Eigen::Index n = variables_.count();
@@ -344,7 +353,7 @@ class SolidRefinement {
   const SolidSpec& spec_;
   const Faces& faces_;
   SolidMargins& margins_;
-  const SolidSamples* samples_ = nullptr;  ///< of the current run
+  const SolidSamples* samples_ = nullptr;  ///< samples of the current run
   SolidVariables variables_;
   Solid like_;
   double residual_ = 0;
@@ -468,10 +477,11 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
   LargestSolid none;
   none.solid.dimensions.assign(spec_.shape.balls(), 0.0);
 
-  // On the grid: cells that are feasible in all orientations and, if required, have determinants of one sign.
+  // First search on the voxel grid: use cells that are feasible in all orientations and, if required, whose
+  // determinants have one sign.
   std::vector<std::uint8_t> good = map.feasible;
   std::vector<std::size_t> cells;
-  std::vector<Pose<double>> poses;  // of the cells
+  std::vector<Pose<double>> poses;  // poses at the centres of these cells
   Cell cell;
   for (cell[0] = 0; cell[0] < grid.cells[0]; ++cell[0])
     for (cell[1] = 0; cell[1] < grid.cells[1]; ++cell[1])
@@ -502,7 +512,7 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
     if (size > 0) sign /= size;
   }
 
-  // By the constraints themselves, first with few samples.
+  // Then refine with the constraints themselves, first with few samples.
   SolidMargins constraints = margins(parameters, sign);
   SolidRefinement refinement(spec_, faces, constraints, *start);
   const SolidRefinement::Iterate coarse = refinement.run(coarse_samples_);
@@ -518,7 +528,8 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
   for (std::size_t k = 0; k < last.points.size(); ++k) {
     const CriticalPoint& point = last.points[k];
     const double multiplier = last.multipliers[static_cast<Eigen::Index>(k)];
-    constexpr double kTouches = 1e-9, kActive = 1e-6;  // distance in units of the size; multiplier of the unit distance
+    // maximum distance of a contact, in units of the size; minimum multiplier of an active constraint
+    constexpr double kTouches = 1e-9, kActive = 1e-6;
     if (point.norm == 0 || (std::fabs(point.distance) > kTouches * refinement.unit() && multiplier < kActive)) continue;
     Contact contact{.pose = constraints.pose(refinement.solid(last.x).at(spec_.shape, point.unit), point.orientation),
                     .multiplier = multiplier < kActive ? 0 : multiplier / (refinement.unit() * point.norm),

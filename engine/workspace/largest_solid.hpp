@@ -18,17 +18,20 @@ namespace pkm {
 struct Contact {
   std::string constraint;  ///< "limb1 reaches", or "box, x max": a face of the search box
   Pose<double> pose;
-  double multiplier = 0;   ///< derivative of log(volume) by the constraint's value; 0: redundant here
+  /// Derivative of log(volume) with respect to the constraint's value; 0: the constraint is redundant at the contact.
+  double multiplier = 0;
   std::size_t margin = 0;  ///< index of the constraint
-  UnitPoint unit{};        ///< of a face of the search box: the point of the unit solid
+  UnitPoint unit{};        ///< the contact as a point of the unit solid
 };
 
 struct LargestSolid {
   Solid solid;
-  double volume = 0;  ///< 0: there is none
+  double volume = 0;  ///< volume of the solid; 0: no solid was found
   std::vector<Contact> contacts;
-  double residual = 0;      ///< of the last step, relative to the size: accuracy of the dimensions
-  double determinant = 0;   ///< if det(G) = 0 is a constraint: the factor of its margin
+  /// Norm of the last step and of the violation, relative to the size: accuracy of the dimensions.
+  double residual = 0;
+  /// If det(G) = 0 is a constraint: factor by which det(G) is multiplied to obtain its margin; otherwise 0.
+  double determinant = 0;
   std::size_t samples = 0;  ///< number of poses at which the constraints were tested at the end
   bool is_regular = true;   ///< det(G) does not change its sign in the solid, as far as sampled; true if undefined
 };
@@ -39,7 +42,7 @@ class LargestSolidFinder {
   /// Throws std::invalid_argument with one sentence if the solid cannot be found in workspaces of this plan.
   /// @param mechanism   must outlive this object
   /// @param is_regular  the solid must not contain parallel singularities (det(G) = 0), where det(G) is defined
-  /// @param reported    margins beside those of the mechanism's limits
+  /// @param reported    further margins that must be >= 0, beside those of the mechanism's limits
   LargestSolidFinder(const Mechanism& mechanism, const WorkspacePlan& plan, SolidSpec spec, bool is_regular,
                      std::vector<ReportMargin> reported = {});
 
@@ -55,13 +58,14 @@ class LargestSolidFinder {
 
   const SolidSpec& spec() const { return spec_; }
   const LimitSpec& limits() const { return plan_.limits; }
-  bool is_regular() const { return is_regular_; }  ///< whether solids with parallel singularities are excluded
+  bool is_regular() const { return is_regular_; }  ///< true: solids that contain parallel singularities are excluded
   const Sweep& sweep() const { return sweep_; }
   std::vector<std::string> dimension_names() const;
 
  private:
   std::vector<Pose<double>> orientations(std::span<const double> parameters) const;
-  /// @param determinant  0: det(G) is no constraint
+  /// The margins that must be >= 0 in the solid, for one design.
+  /// @param determinant  factor of det(G) in its margin; 0: det(G) is no constraint
   SolidMargins margins(std::span<const double> parameters, double determinant) const;
   /// Signs of det G at feasible poses; 0 where it is 0 or undefined.
   std::vector<std::int8_t> determinant_signs(std::span<const double> parameters, std::span<const Pose<double>> poses,
@@ -69,7 +73,7 @@ class LargestSolidFinder {
   LargestSolid find(std::span<const double> parameters, const VoxelMap& map, bool is_regular) const;
 
   const Mechanism& mechanism_;
-  WorkspacePlan plan_;  ///< with voxels; fixed coordinates as given
+  WorkspacePlan plan_;  ///< the study's plan, as a plan of voxels; with its fixed coordinates
   SolidSpec spec_;
   bool is_regular_;
   std::vector<ReportMargin> reported_;

@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-/// Evaluator whose result is the average, with equal weights, of the results of several evaluators.
+/// Evaluator that averages the results of several evaluators with equal weights.
 class AverageEvaluator final : public WithGradients<AverageEvaluator> {
  public:
   /// @param serial_members  true if the averaged evaluators do not use the thread team themselves

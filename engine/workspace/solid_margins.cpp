@@ -171,7 +171,8 @@ CriticalPoint SolidMargins::minimise(const Solid& solid, std::size_t margin, std
   Gradient at_unit = scaled_gradient(unit);
   for (int iteration = 0; iteration < kMaxIterations && std::isfinite(norm_of(at_unit.by_axis)); ++iteration) {
     std::vector<UnitPoint> directions;
-    // curvatures[k]: for direction k, the outward derivative on the sphere that it is tangent to; 0 if it is free
+    // curvatures[k]: 0 if directions[k] is in the interior of a ball; if it is tangent to a sphere, the outward
+    // derivative of the margin
     std::vector<double> curvatures;
     std::array<bool, 3> stays_on_boundary{};  // whether the point stays on the boundary of each ball, by ball
     for (std::size_t ball = 0; ball < shape_.balls(); ++ball) {
@@ -282,7 +283,7 @@ std::vector<CriticalPoint> SolidMargins::critical_points(const Solid& solid, dou
   std::vector<CriticalPoint> found;
   std::vector<Pose<double>> poses(all.points.size());
   std::vector<double> margins;
-  // for each margin, the difference below which two values count as equal (rounding errors)
+  // for each margin, the difference up to which two values count as equal, because of rounding errors
   std::vector<double> equal(count_);
   for (std::size_t orientation = 0; orientation < orientations_.size(); ++orientation) {
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = pose(solid.at(shape_, all.points[i]), orientation);
@@ -305,13 +306,14 @@ std::vector<CriticalPoint> SolidMargins::critical_points(const Solid& solid, dou
       for (std::size_t margin = 0; margin < count_; ++margin) {
         const double value = of_pose[margin];
         if (!std::isfinite(value)) continue;
-        // among neighbouring samples of equal value, such as along an edge, only the first is a minimum
+        // among neighbouring samples with equal margins, such as along an edge, only the first one counts as a minimum
         const auto is_larger = [&](std::size_t k) {
           const double excess = margin_at(k, margin) - value;
           return !(excess < -equal[margin]) && (!(excess <= equal[margin]) || k > i);
         };
         if (!std::ranges::all_of(all.neighbours[i], is_larger)) continue;
-        // If the first-order distance exceeds the range by far, the margin cannot come near zero within the solid.
+        // If the first-order distance from the zero of the margin far exceeds the range, no point of the solid comes
+        // near it.
         const Gradient first = gradient(margin, poses[i]);
         if (value > 4 * range * norm_of(first.by_axis)) continue;
         const CriticalPoint point = minimise(solid, margin, orientation, all.points[i]);

@@ -15,8 +15,8 @@ struct CriticalPoint {
   /// Margin divided by the norm of its gradient: first-order signed distance from the zero of the margin [m].
   double distance = 0;
   std::array<double, 3> normal{};  ///< gradient with respect to the swept coordinates, divided by its norm
-  /// Norm of the gradient; 0 if the margin does not exist at this point: `distance` and `normal` then describe a plane
-  /// across the ray from the centre.
+  /// Norm of the gradient of the margin. 0 if the margin does not exist at this point: `distance` and `normal` then
+  /// describe a plane normal to the line from the solid's centre to the point.
   double norm = 0;
 };
 
@@ -49,7 +49,7 @@ class SolidMargins {
   CriticalPoint linearised(const Solid& solid, std::size_t margin, std::size_t orientation, const UnitPoint& unit);
   /// @return true if all margins are >= 0 at a point of the workspace, in all orientations
   bool is_feasible(const std::array<double, 3>& point);
-  /// Derivatives of a margin with respect to the variables of the parameters' derivatives.
+  /// Derivatives of a margin at a pose with respect to the parameters, for the seeds of `parameters` (forward mode).
   Dual4 by_parameters(std::span<const Dual4> parameters, std::size_t margin, const Pose<double>& pose);
   PoseReport report(const Pose<double>& pose) const;
 

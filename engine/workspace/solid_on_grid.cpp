@@ -6,8 +6,8 @@
 namespace pkm {
 namespace {
 
-/// Ratios of the dimensions to each other that are tried; in each list the first ratio is 1 unless the ratios are
-/// given.
+/// The proportions that are tried, as lists with one dimension per ball. They are the given ratio or, if the
+/// proportions are free, ratios 1, 1/4, 1/2, 2 and 4 of each dimension to the first one.
 std::vector<std::vector<double>> proportions(const SolidSpec& spec) {
   if (!spec.ratio.empty()) return {spec.ratio};
   std::vector<std::vector<double>> all = {{1}};
@@ -23,8 +23,8 @@ std::vector<std::vector<double>> proportions(const SolidSpec& spec) {
   return all;
 }
 
-/// Cells in a row along the last axis: cell indices i and j along the first two axes relative to the central cell, and
-/// along the last axis all offsets from -half to half.
+/// A row of cells along the last axis, relative to the central cell of a solid: offsets i and j along the first two
+/// axes, and all offsets from -half to half along the last one.
 struct RowOfCells {
   std::int64_t i, j, half;
 };
@@ -48,7 +48,7 @@ class GridSearch {
     std::optional<Solid> best;
     double best_volume = 0;
     for (const std::vector<double>& ratio : proportions(spec_)) {
-      // step of the scale factor at which one dimension grows by two cells
+      // the scale factor of the solid is increased in steps, each of which extends one dimension by two cells
       double step = std::numeric_limits<double>::infinity();
       for (std::size_t axis = 0; axis < spec_.shape.axes(); ++axis)
         step = std::min(step, 2 * grid_.step[axis] / ratio[spec_.shape.ball_of(axis)]);
@@ -73,7 +73,7 @@ class GridSearch {
   }
 
  private:
-  /// Visits the good cells at which the current solid does not extend beyond the grid.
+  /// Calls visit(cell) for each good cell for which the current solid, centred at it, does not extend beyond the grid.
   template <class Visit>
   void for_each_centre(const Visit& visit) const {
     std::array<std::int64_t, 3> first{}, end{};
@@ -88,8 +88,8 @@ class GridSearch {
           if (good_[grid_.index(cell)]) visit(cell);
   }
 
-  /// Computes the rows of cells of a solid with these dimensions, outermost rows first, because bad cells are most
-  /// likely there.
+  /// Computes the rows of cells that a solid with these dimensions covers. The outermost rows come first, because their
+  /// cells are most likely to be bad.
   void set_rows(const std::vector<double>& dimensions) {
     rows_.clear();
     const std::size_t axes = spec_.shape.axes();
@@ -98,7 +98,7 @@ class GridSearch {
     for (std::int64_t i = -half_[0]; i <= half_[0]; ++i)
       for (std::int64_t j = -half_[1]; j <= half_[1]; ++j) {
         const std::array<std::int64_t, 2> offset = {i, j};
-        // by ball: squared distance of the row from the centre of the ball, in units of its squared radius
+        // for each ball: squared distance of the row from its centre, relative to its squared radius
         std::array<double, 3> squares{};
         for (std::size_t axis = 0; axis < 2; ++axis) {
           const std::size_t ball = spec_.shape.ball_of(axis);
@@ -113,7 +113,7 @@ class GridSearch {
                              [](const RowOfCells& row) { return row.i * row.i + row.j * row.j; });
   }
 
-  /// Whether all cells of the rows around a central cell exist and are good.
+  /// True if all cells of the current solid, centred at this cell, exist and are good.
   bool fits(const Cell& cell) const {
     return std::ranges::all_of(rows_, [&](const RowOfCells& row) {
       const Cell first = {cell[0] + row.i, cell[1] + row.j, cell[2] - row.half};

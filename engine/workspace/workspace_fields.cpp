@@ -36,7 +36,7 @@ class Evaluator {
  public:
   using Poses = std::function<Pose<double>(std::size_t)>;
 
-  /// Appends the other fields to `fields`, filled with NaN.
+  /// Appends all fields but `feasible` to `fields`; their values are NaN until they are evaluated.
   /// @param poses  poses(i) is the i-th pose
   /// @param block  number of poses per block
   Evaluator(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
@@ -112,9 +112,10 @@ class Evaluator {
   }
   static bool min_is_worst(const PoseQuantity& quantity) { return quantity.worst == PoseQuantity::Worst::minimum; }
 
-  /// Computes and stores at one cell either all quantities of the joint-space inertia or all others.
-  /// @param field     index of the field of the first quantity; the others follow in the order of add_quantities()
-  /// @param evaluate  evaluate(quantity, values) computes the values of a quantity
+  /// Stores, at one cell, the values of either all quantities of the joint-space inertia or all other quantities.
+  /// @param field     index of the field of the first of these quantities; the others follow in the order of
+  ///                  add_quantities()
+  /// @param evaluate  evaluate(quantity, values) computes the values of a quantity, one per joint if it has several
   template <class Evaluate>
   void store(std::size_t field, std::size_t cell, bool from_inertia, const Evaluate& evaluate) const {
     std::array<double, kMaxJoints> values;
@@ -143,8 +144,8 @@ class Evaluator {
     for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(joints_ + i, cell) = (*report.joints)[i];
   }
 
-  /// The margin with the sign that agrees with the field `feasible`: rounding can give the opposite sign, some poses
-  /// have no margin, and feasible poses of components that do not count have to be negative.
+  /// Adjusts the sign of a margin to the field `feasible`: > 0 if feasible, otherwise < 0. Rounding errors can give the
+  /// opposite sign, some poses have no margin, and feasible poses of components that do not count have to be negative.
   static double with_sign(double margin, bool feasible) {
     constexpr double kMinMagnitude = 1e-12;
     if (!std::isfinite(margin)) return feasible ? 1 : -1;

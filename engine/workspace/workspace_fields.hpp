@@ -7,7 +7,7 @@
 //
 //   feasible           1 or 0, as counted by voxel workspace analysis
 //   margin             minimum margin of the pose: > 0 in feasible cells, < 0 in the others; 0 on the boundary surface.
-//                      Feasible poses of components that do not count have the negative margin
+//                      Feasible poses of components that do not count as workspace have the negative margin
 //   conditioning       inverse condition number of the Jacobian in [0, 1], with the mechanism's characteristic length
 //   LTI ..             quantities that are formulas ([[quantity]]), named as in the mechanism file or the study
 //   rho1 ..            joint positions, named as in the mechanism

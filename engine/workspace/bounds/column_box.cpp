@@ -25,9 +25,9 @@ std::int64_t ColumnGrid::step_above(double z, std::int64_t from, std::int64_t to
 
 namespace {
 
-constexpr std::int64_t kMinSplitSize = 64;  // steps of the grid: shorter segments are not split around a root
+constexpr std::int64_t kMinSplitSize = 64;  // segments of fewer steps of the z grid are not split around a root
 
-/// Merges adjacent segments with the same open constraints.
+/// Merges adjacent segments of a column whose undecided constraints are the same.
 void merge(std::vector<Segment>& segments) {
   std::size_t last = 0;
   for (std::size_t i = 1; i < segments.size(); ++i) {
@@ -50,7 +50,8 @@ ColumnPruner::Root ColumnPruner::enclose_root(std::size_t constraint, const Segm
   const Interval by_z = over_box.by_axis[z];
   root.is_enclosed = over_box.is_last_derivative_known && !by_z.holds(0);
   root.is_increasing = by_z.lower > 0;
-  // Choose z_c: near the root at the centre of the box, or the end of the segment that is nearer to it.
+  // Choose the expansion point z_c: near the root over the centre of the box, or, if this root is outside of the
+  // segment, the nearer end of the segment.
   const auto value_at = [&](double height) {
     return constraints_.value(constraint, Interval(height), scratch.centre).middle();
   };
@@ -134,7 +135,7 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
   merge(pending);
   std::ranges::reverse(pending);
   box.open.clear();
-  Interval length(0.0);  // feasible length of the open segments
+  Interval length(0.0);  // enclosure of the feasible length in the open segments
   while (!pending.empty()) {
     Segment segment = pending.back();
     pending.pop_back();
@@ -180,7 +181,7 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
       root = enclose_root(k, segment, sides, centre, scratch);
       may_bisect = may_bisect || !root.is_enclosed;
       if (root.is_enclosed) {
-        // One step wider than necessary, because a proof checker may round differently.
+        // Extend R by one step on either side, because a proof checker may round differently.
         const std::int64_t low =
             std::max(grid_.step_below(root.range.lower, segment.from, segment.to) - 1, segment.from);
         const std::int64_t high = std::min(grid_.step_above(root.range.upper, low, segment.to) + 1, segment.to);

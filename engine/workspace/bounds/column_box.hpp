@@ -45,28 +45,30 @@ struct ColumnGrid {
   std::int64_t step_above(double z, std::int64_t from, std::int64_t to) const;
 };
 
-/// An interval of z over a box.
+/// An interval of the column coordinate z, over a box of the outer coordinates.
 struct Segment {
   std::int64_t from, to;
-  OpenConstraints open;  ///< constraints that are undecided; all others are satisfied
+  /// Indices of the constraints that are undecided on the segment; all others are satisfied on it.
+  OpenConstraints open;
 };
 
-/// One step of the proof for the next segment of a box.
+/// One step of the proof that the columns over a box are decided correctly. It refers to the first open segment.
 struct Step {
   enum class Kind : char {
     violated = 'x',    ///< `constraint` is violated on the segment, which is infeasible
     satisfied = 'h',   ///< `constraint` is satisfied on the segment
     contracted = 't',  ///< all roots of `constraint` lie in [from, to], by the mean value theorem about `expansion`
     split = 's',       ///< divided at `from` and `to` into up to three segments
-    one_root = 'r',    ///< the only open constraint has exactly one root over every x, by expansion about `expansion`
-    open = 'n',        ///< undecided
+    /// The only undecided constraint has exactly one root over every x, by the mean value theorem about `expansion`.
+    one_root = 'r',
+    open = 'n',  ///< undecided
   };
   Kind kind;
   std::size_t constraint = 0;
   std::int64_t from = 0, to = 0, expansion = 0;  ///< steps of the ColumnGrid
 };
 
-/// A box of the outer coordinates, with its segments.
+/// A box of the outer coordinates x, with the segments of the column coordinate z over it.
 struct ColumnBox {
   std::array<std::array<double, 2>, kMaxOuterAxes> side{};
   Interval feasible_length{0.0};  ///< total length of the z segments that are feasible over the whole box
@@ -94,7 +96,7 @@ class ColumnPruner {
   void prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* steps, bool skipped) const;
 
  private:
-  /// The root of a constraint along z over a box.
+  /// The root z*(x) of a constraint along z, for all x in a box.
   struct Root {
     bool is_continuous = false;  ///< the constraint is continuous on box and segment
     bool is_enclosed = false;    ///< it is strictly monotonic in z there; `range` and `mean` are valid

@@ -11,7 +11,7 @@ using expression::Graph, expression::Groups, expression::Node, expression::Progr
 
 namespace {
 
-// Groups of inputs: the constant ones, and one for each axis.
+// Groups of the graph's inputs: one for inputs that are constant, and one for each axis.
 constexpr Groups kConstant = 1;
 constexpr Groups axis_group(std::size_t axis) { return 2U << axis; }
 
@@ -87,7 +87,7 @@ void Constraints::set_box(const IntervalBox& box, Scratch& scratch) const {
   for (std::size_t axis = 0; axis + 1 < axes_.size(); ++axis)
     if (registers_[axis]) scratch.registers_[*registers_[axis]] = box[axis];
   scratch.box_version_ = ++scratch.version_;
-  scratch.last_side_ = Interval::empty();  // differs from every side
+  scratch.last_side_ = Interval::empty();  // an empty side, which differs from that of every box
 }
 
 void Constraints::run(const Subprogram& subprogram, const Interval& last_side, Scratch& scratch) const {

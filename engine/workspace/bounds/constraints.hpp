@@ -65,9 +65,9 @@ class Constraints {
   Derivatives derivatives(std::size_t k, const Interval& last_side, Scratch& scratch) const;
 
  private:
-  /// The steps of the program that some of its outputs depend on.
+  /// Those steps of the program that selected outputs depend on, for evaluating these outputs alone.
   struct Subprogram {
-    std::vector<std::uint32_t> outputs;  ///< registers
+    std::vector<std::uint32_t> outputs;  ///< registers that hold these outputs
     std::vector<expression::Program::Step> outer_steps, last_steps;
     std::size_t index = 0;
   };
@@ -82,7 +82,8 @@ class Constraints {
   Subprogram extract(const expression::Program& program, std::size_t first_output, std::size_t count);
 
   std::vector<std::size_t> axes_;
-  std::vector<std::optional<std::uint32_t>> registers_;  ///< by axis: its register; std::nullopt: unused
+  /// By axis: the register of its input; std::nullopt: no constraint depends on the axis.
+  std::vector<std::optional<std::uint32_t>> registers_;
   std::vector<Constraint> all_;
   Scratch initial_;
 };

@@ -16,17 +16,17 @@ using AxisSides = std::vector<Interval>;
 using Gradient = ParametricConstraints::Gradient;
 
 struct SearchBox {
-  AxisSides sides;                  ///< coordinates, deviations
-  std::vector<std::uint32_t> open;  ///< undecided constraints
-  double scale = 0;                 ///< up to which no point of the box violates a constraint
-  std::uint64_t number = 0;         ///< in order of creation
+  AxisSides sides;                  ///< sides along the coordinates, then along the deviations
+  std::vector<std::uint32_t> open;  ///< indices of the undecided constraints
+  double scale = 0;                 ///< no point of the box with all |d_i| <= scale violates a constraint
+  std::uint64_t number = 0;         ///< number of the box in the order of creation
   // Results of examine():
   bool is_decided = false;
-  std::size_t axis = 0;  ///< of the next bisection
+  std::size_t axis = 0;  ///< axis of the next bisection
   std::optional<Violation> violation;
 };
 
-/// Orders a heap by the lowest scale, then by creation.
+/// Order of the boxes in a heap: that with the lowest scale first; of equal ones, that created first.
 struct IsExaminedLater {
   bool operator()(const SearchBox& a, const SearchBox& b) const {
     return a.scale != b.scale ? a.scale > b.scale : a.number > b.number;
@@ -53,7 +53,7 @@ class DeviationBranchAndBound {
     for (std::size_t k = 0; k < constraints_.size(); ++k) all.open.push_back(static_cast<std::uint32_t>(k));
     heap_.push_back(all);
     DeviationBox found;
-    double undivided = kUnbounded;  // the lowest bound of boxes that are too small to be bisected
+    double undivided = kUnbounded;  // minimum scale of the boxes that are too small to be bisected
     std::vector<SearchBox> round;
     while (!heap_.empty() && heap_.front().scale < target()) {
       found.stopped = options_.stop();
@@ -104,7 +104,7 @@ class DeviationBranchAndBound {
     box.is_decided = box.scale >= target;
     if (box.is_decided) return;
     std::vector<std::uint32_t> open;
-    std::vector<double> priority(axes);  // of the axes for the bisection
+    std::vector<double> priority(axes);  // by axis; the axis with the maximum priority is bisected
     double scale = target;
     for (const std::uint32_t k : box.open) {
       Gradient& g = worker.gradient;
@@ -124,8 +124,9 @@ class DeviationBranchAndBound {
     box.axis = static_cast<std::size_t>(std::ranges::max_element(priority) - priority.begin());
   }
 
-  /// Bounds a constraint over a box from below: at the vertex of the axes in which it is monotonic, by the mean value
-  /// form along the others. Enclosures of its derivatives over the box, or over a larger one, are in worker.gradient.
+  /// Lower bound of constraint k over a box, as an interval whose lower end is the bound. Axes in which the constraint
+  /// is monotonic are set to the end with the smaller value; along the others the mean value form is used.
+  /// worker.gradient must contain enclosures of the derivatives over the box, or over a larger one.
   Interval lower_bound(std::size_t k, const AxisSides& sides, Worker& worker) const {
     const std::vector<Interval>& by_axis = worker.gradient.by_axis;
     worker.point = sides;
@@ -143,7 +144,8 @@ class DeviationBranchAndBound {
     return constraints_.value(k, worker.point, worker.scratch) + change;
   }
 
-  /// The scale up to which the constraint is satisfied, from its values for d = 0 and its derivatives.
+  /// A scale t such that constraint k is satisfied for all |d_i| <= t: from a lower bound of its value for d = 0, and
+  /// from its derivatives with respect to the deviations.
   double scale_of(std::size_t k, const AxisSides& sides, Worker& worker) const {
     AxisSides nominal = sides;
     Interval slope(0.0);
@@ -157,7 +159,8 @@ class DeviationBranchAndBound {
     return slope.upper > 0 ? rounding::quotient_down(reserve, slope.upper) : kUnbounded;
   }
 
-  /// Searches for a violation at the midpoint of the box, and at the vertex in which the constraint is the smallest.
+  /// Searches for a violation of constraint k at the midpoint of the box and at the vertex at which the constraint is
+  /// the smallest; keeps it in box.violation if it has a smaller scale than those known.
   void find_violation(std::size_t k, const AxisSides& sides, SearchBox& box, Worker& worker) const {
     std::vector<double> middle, vertex;
     for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -175,7 +178,8 @@ class DeviationBranchAndBound {
     const std::size_t poses = ranges_.size();
     for (const std::vector<double>* point : {&middle, &vertex})
       keep(search_.at_pose(k, std::span(*point).first(poses), known(), worker.scratch));
-    // The constraint can be far from linear: its gradient for d = 0 does not show every corner.
+    // The search above uses gradients at d = 0. If the constraint is far from linear, the worst corner may be another
+    // one: also search along the ray towards the vertex of the box.
     std::vector<double> unused, direction(vertex.begin() + static_cast<std::ptrdiff_t>(poses), vertex.end());
     double scale = 0;
     for (const double d : direction) scale = std::max(scale, std::fabs(d));
@@ -184,8 +188,8 @@ class DeviationBranchAndBound {
     keep(search_.along(k, std::span(vertex).first(poses), direction, scale, known(), worker.scratch));
   }
 
-  /// Adds the share of each axis in the uncertainty of a constraint: of its derivative or, where that is unknown, of
-  /// its value along the axis.
+  /// Adds to the priority of each axis its share of the uncertainty of constraint k. The share is that in the width of
+  /// the mean value form or, if derivatives are unknown, in the width of the value along the axis.
   void add_priority(std::size_t k, const AxisSides& sides, std::vector<double>& priority, Worker& worker) const {
     std::vector<double> own(sides.size());
     if (worker.gradient.is_known) {
@@ -201,7 +205,8 @@ class DeviationBranchAndBound {
         worker.point[i] = middle;
       }
     }
-    // Unbounded shares count as equal, in proportion to the whole range of their axes.
+    // If a share is unbounded, only the axes with unbounded shares count, in proportion to their sides relative to the
+    // whole range.
     const bool bounded = std::ranges::all_of(own, [](double x) { return std::isfinite(x); });
     double sum = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {

@@ -18,22 +18,23 @@
 namespace pkm::bounds {
 
 struct DeviationBoxOptions {
-  double gap = 0.02;  ///< target: 1 - certified scale / scale of the violation
+  double gap = 0.02;  ///< stop as soon as 1 - certified scale / scale of the smallest violation is at most this
   std::size_t max_boxes = 1000000;
-  std::function<bool()> stop = [] { return false; };  ///< called often, by any thread
+  std::function<bool()> stop = [] { return false; };  ///< returns true to stop the search; called often, by any thread
 };
 
 struct DeviationBox {
-  double certified = 0;                ///< scale up to which all constraints are proved
-  std::optional<Violation> violation;  ///< the smallest one that is known; std::nullopt: none up to the largest scale
-  std::size_t boxes = 0;               ///< number of boxes examined
+  double certified = 0;  ///< scale up to which all constraints are proved
+  /// The known violation of the smallest scale; std::nullopt: none is known up to the largest scale.
+  std::optional<Violation> violation;
+  std::size_t boxes = 0;  ///< number of boxes examined
   bool stopped = false;
 };
 
-/// The certified scale does not depend on the number of threads.
-/// @param ranges  of the coordinates; the remaining axes of the constraints are deviations
+/// Finds the largest box of deviations. The certified scale does not depend on the number of threads.
+/// @param ranges  ranges of the coordinates, the first axes of the constraints; the remaining axes are deviations
 /// @param scale   the largest scale of interest
-/// @param known   a violation that is known
+/// @param known   a violation that is known already
 DeviationBox largest_deviation_box(const ParametricConstraints& constraints,
                                    std::span<const std::array<double, 2>> ranges, double scale,
                                    std::optional<Violation> known, const DeviationBoxOptions& options);

@@ -26,8 +26,8 @@ class ParametricConstraints {
   };
   /// Memory of one worker.
   struct Scratch {
-    std::vector<std::vector<Interval>> inputs;  ///< by graph
-    std::vector<std::vector<double>> numbers;   ///< by graph: the same in double precision
+    std::vector<std::vector<Interval>> inputs;  ///< values of all inputs of each graph, as intervals
+    std::vector<std::vector<double>> numbers;   ///< values of all inputs of each graph, in double precision
     std::vector<Interval> registers;
     std::vector<double> number_registers;
   };
@@ -50,13 +50,15 @@ class ParametricConstraints {
   bool is_violated(std::size_t k, const Interval& value) const {
     return value.is_certified_violated() || (all_[k].is_strict && value.upper <= 0);
   }
-  /// The same for a value in double precision; NaN is a violation.
+  /// True if a value in double precision means that constraint k is violated. NaN means a violation.
   bool is_violated(std::size_t k, double value) const { return !(all_[k].is_strict ? value > 0 : value >= 0); }
 
-  /// @param sides  by axis
+  /// Enclosure of the value of constraint k over a box; gradient() also encloses its derivatives.
+  /// @param sides  side of the box along each axis
   Interval value(std::size_t k, std::span<const Interval> sides, Scratch& scratch) const;
   void gradient(std::size_t k, std::span<const Interval> sides, Gradient& to, Scratch& scratch) const;
-  /// @return the value; `by_axis` receives the derivatives
+  /// Value of constraint k at a point, in double precision; `by_axis` receives its derivatives with respect to the
+  /// axes.
   double gradient(std::size_t k, std::span<const double> point, std::vector<double>& by_axis, Scratch& scratch) const;
 
  private:

@@ -159,16 +159,19 @@ struct Box {
   std::vector<std::size_t> open;  ///< undecided constraints
   bool is_regular = false;        ///< true if all matrices are proved to have full rank
   // Results of examine():
-  bool is_outside = false;               ///< no pose of the box is in the solid
-  IntervalBox sample;                    ///< a pose of the box: the midpoint, or the pose nearest to the solid's centre
-  std::optional<std::size_t> violated;   ///< a constraint that is violated at the sample, which is in the solid
-  std::optional<std::size_t> undecided;  ///< the first matrix without a proof of full rank
-  int determinant_sign = 0;              ///< sign of its determinant at the sample; 0: unknown
-  bool is_singular_at_sample = false;    ///< that matrix is singular there to working precision
+  bool is_outside = false;  ///< no pose of the box is in the solid
+  /// A pose of the box: its midpoint, or, if that is not in the solid, the pose of the box nearest to the solid's
+  /// centre.
+  IntervalBox sample;
+  /// Index of a constraint that is violated at the sample; the sample is then proven to be in the solid.
+  std::optional<std::size_t> violated;
+  std::optional<std::size_t> undecided;  ///< index of the first matrix that is not proven to have full rank on the box
+  int determinant_sign = 0;              ///< sign of this matrix's determinant at the sample; 0: unknown
+  bool is_singular_at_sample = false;    ///< this matrix is singular at the sample, to working precision
   std::size_t axis = 0;                  ///< axis of the next bisection
 };
 
-/// A rank-deficient matrix, and its pose.
+/// Name of a rank-deficient matrix, and the pose (or a small box of poses) at which it is singular.
 struct Singularity {
   std::string detail;
   IntervalBox pose;
@@ -239,7 +242,8 @@ class PoseBranchAndBound {
     return pose;
   }
 
-  /// For each ball, the sum of squares of which the solid is the set with a sum of at most 1; the largest one.
+  /// The solid is a product of balls: sets of poses at which a sum of squares is at most 1. Encloses the maximum of
+  /// these sums over the balls, for the poses of a box.
   Interval sum_of_squares(const IntervalBox& box) const {
     Interval largest(0.0);
     for (const std::vector<std::size_t>& ball : balls_) {
@@ -266,7 +270,8 @@ class PoseBranchAndBound {
     return sample;
   }
 
-  /// A singularity at the sample of a box, or between it and the sample of an earlier box. Solids are convex.
+  /// A singularity of the undecided matrix: at the sample of this box, or on the line to the sample of an earlier box
+  /// with a determinant of opposite sign, which is in the solid because solids are convex.
   std::optional<Singularity> find_singularity(const Box& box) {
     const std::string& name = matrices_->name(*box.undecided);
     if (box.is_singular_at_sample) return Singularity{name + ", to working precision", box.sample};
@@ -282,8 +287,8 @@ class PoseBranchAndBound {
     return {};
   }
 
-  /// A small box between two poses that contains a root of the determinant (bisection); std::nullopt if the entries are
-  /// not continuous there.
+  /// A small box that contains a root of the determinant of a matrix, by bisection of the line between a pose with a
+  /// negative and one with a positive determinant; std::nullopt if the elements of the matrix are not continuous in it.
   std::optional<IntervalBox> bracket_root(std::size_t matrix, const IntervalBox& negative,
                                           const IntervalBox& positive) {
     Scratch& scratch = scratch_.front();
@@ -308,7 +313,8 @@ class PoseBranchAndBound {
 
   /// Decides constraints and matrices on a box, and looks for a counterexample at its sample.
   void examine(Box& box, Scratch& scratch) const {
-    std::array<double, kMaxAxes> variation{};  // by axis: bound of the open constraints' change, summed
+    // by axis: sum over the undecided constraints of their variation along the axis (upper bounds)
+    std::array<double, kMaxAxes> variation{};
     std::vector<std::size_t> open;
     const Interval sums = sum_of_squares(box.sides);
     box.is_outside = sums.lower > 1;
@@ -351,7 +357,8 @@ class PoseBranchAndBound {
     box.axis = bisection_axis(box, variation);
   }
 
-  /// @param value  at `sample`, a pose of the box
+  /// Enclosure of a constraint over a box by the mean value form.
+  /// @param value  value of the constraint at `sample`, a pose of the box
   Interval mean_value_form(Interval value, const IntervalBox& sample, const IntervalBox& sides,
                            const Derivatives& derivatives) const {
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
@@ -381,10 +388,11 @@ class PoseBranchAndBound {
         double least = std::numeric_limits<double>::infinity();
         const auto add_part = [&](double from, double to, double derivative) {
           if (!(from <= to)) return;
-          // a t + b (t + offset)^2 for t from `from` to `to`, as a square
+          // encloses a t + b (t + offset)^2 for t in [from, to], by completing the square
           const Interval a(derivative), t(from, to), vertex = a / (two * b);
           const double bound = (b * square(t + offset + vertex) - a * offset - a * vertex / two).lower;
-          least = bound > -std::numeric_limits<double>::infinity() ? std::min(least, bound) : bound;  // also NaN
+          // if the bound is NaN, `least` becomes NaN
+          least = bound > -std::numeric_limits<double>::infinity() ? std::min(least, bound) : bound;
         };
         add_part(change.lower, std::fmin(change.upper, 0), derivatives.by_axis[axis].upper);
         add_part(std::fmax(change.lower, 0), change.upper, derivatives.by_axis[axis].lower);
@@ -410,7 +418,8 @@ class PoseBranchAndBound {
     return constraints_.value(k, vertex[ranges_.size() - 1], scratch.vertex);
   }
 
-  /// The axis along which the open constraints vary most, otherwise that of the longest side relative to the whole.
+  /// The axis along which the undecided constraints vary most; if none is undecided, that of the longest side relative
+  /// to the range of the axis.
   std::size_t bisection_axis(const Box& box, const std::array<double, kMaxAxes>& variation) const {
     const auto share = [&](std::size_t axis) {
       const double whole = ranges_[axis][1] - ranges_[axis][0];
@@ -420,7 +429,9 @@ class PoseBranchAndBound {
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) longest = std::max(longest, share(axis));
     std::size_t best = 0;
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) {
-      if (8 * share(axis) < longest) continue;  // bounds the aspect ratio of boxes
+      if (8 * share(axis) < longest)
+        // excludes axes along which the box is short, so that its aspect ratio is bounded
+        continue;
       const double priority =
           std::isfinite(variation[axis]) && !box.open.empty() ? variation[axis] + 1e-300 * share(axis) : share(axis);
       if (priority <= maximum) continue;
@@ -430,7 +441,8 @@ class PoseBranchAndBound {
     return best;
   }
 
-  /// Appends the halves of a box. @return false if its side has no midpoint in double precision
+  /// Bisects a box along box.axis and appends both halves. @return false if its side has no midpoint in double
+  /// precision
   static bool bisect(const Box& box, std::vector<Box>& to) {
     const Interval& side = box.sides[box.axis];
     const double middle = side.middle();
@@ -450,15 +462,15 @@ class PoseBranchAndBound {
   std::span<const std::array<double, 2>> ranges_;
   const std::vector<std::vector<std::size_t>>& balls_;
   const BoundsOptions& options_;
-  std::vector<Scratch> scratch_;  ///< by worker
+  std::vector<Scratch> scratch_;  ///< scratch memory of each worker thread
 
-  /// Poses at which a determinant has different signs.
+  /// Two poses at which the determinant of a matrix has opposite signs.
   struct Bracket {
     std::optional<IntervalBox> negative, positive;
     int searches = 0;  ///< number of bracket_root() calls
   };
   static constexpr int kMaxSearches = 100;  // limited, because a determinant also changes its sign at poles
-  std::vector<Bracket> brackets_;           ///< by matrix
+  std::vector<Bracket> brackets_;           ///< one element per matrix
   std::optional<Singularity> singularity_;
 };
 

@@ -104,7 +104,7 @@ std::string proof_text(const Statement& statement, const VolumeBounds& bounds, c
   if (tree.bytes() > kMaxBytes)
     throw std::runtime_error("the proof has " + std::to_string(tree.bytes() / 1'000'000) +
                              " MB; at most 100 MB are supported: increase the gap");
-  // Allow for the rounding errors of a checker that adds up the boxes in another order.
+  // Subtract or add more than the rounding errors of a checker that adds the volumes of the boxes in another order.
   const double slack = (1e-12 + 1e-15 * static_cast<double>(bounds.boxes)) * bounds.upper;
   std::ostringstream to;
   to << "pkmopt proof 1\n# " << statement.title << "\nvolume " << text_of(std::max(0.0, bounds.lower - slack)) << ' '

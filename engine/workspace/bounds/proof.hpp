@@ -17,7 +17,7 @@ struct Statement {
   std::vector<std::size_t> positions;    ///< by axis: index among the graph's inputs
   Ranges ranges;                         ///< range of each axis
   std::vector<Interval> inputs;          ///< all inputs of the graph
-  std::vector<std::string> input_names;  ///< by input, for people; may be ""
+  std::vector<std::string> input_names;  ///< names of the graph's inputs, for readers of the proof; may be ""
   std::string title;
 };
 

@@ -10,13 +10,15 @@
 namespace pkm::bounds {
 namespace {
 
-/// A part of the box: a node of the tree of bisections.
+/// A part of the search box: a node of the tree of bisections.
 struct Part {
   IntervalBox sides;
-  std::vector<std::size_t> open;  ///< constraints that are not satisfied everywhere
-  bool is_removed = false;        ///< the part, or both halves
-  bool is_free = false;           ///< feasible and regular everywhere
-  std::size_t child = 0;          ///< index of the lower half, which the upper half follows; 0: a leaf
+  /// Indices of the constraints that are not proven to be satisfied everywhere on the part.
+  std::vector<std::size_t> open;
+  bool is_removed = false;  ///< true: no path enters the part, or both its halves are removed
+  bool is_free = false;     ///< true: all poses of the part are feasible and regular
+  /// Index in the tree of the lower half; the upper half has the next index; 0: the part is a leaf.
+  std::size_t child = 0;
 };
 
 class BranchAndPrune {
@@ -168,10 +170,11 @@ class BranchAndPrune {
     return true;
   }
 
-  /// Unites all leaves below two nodes that touch. @param shift  is added to the coordinates of the second node
+  /// Unites, in the disjoint sets, leaves below part a with leaves below part b that touch them. @param shift  is added
+  /// to the coordinates of part b, for ends of periodic axes
   void join(std::size_t a, std::size_t b, const std::array<double, kMaxAxes>& shift) {
     if (parts_[a].is_removed || parts_[b].is_removed) return;
-    // Periodic ends touch up to rounding.
+    // The two ends of a periodic axis coincide only up to rounding errors.
     constexpr double kTouch = 1e-12;
     for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
       const Interval &first = parts_[a].sides[axis], &second = parts_[b].sides[axis];
@@ -195,10 +198,10 @@ class BranchAndPrune {
   const Matrices* matrices_;
   std::span<const SeparationAxis> axes_;
   const BoundsOptions& options_;
-  std::vector<Scratch> scratch_;  ///< by worker
-  std::vector<int> signs_;        ///< by matrix: sign of the determinant at the first pose
+  std::vector<Scratch> scratch_;  ///< scratch memory of each worker thread
+  std::vector<int> signs_;        ///< for each matrix, the sign of its determinant at the first pose
   std::vector<Part> parts_;       ///< the tree; the first one is the whole box
-  DisjointSets sets_;             ///< of parts
+  DisjointSets sets_;             ///< sets of connected parts, by index of the part
 };
 
 }  // namespace

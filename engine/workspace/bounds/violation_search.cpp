@@ -11,12 +11,13 @@ namespace pkm::bounds {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kSamples = 1000;        // of poses, approximately
-constexpr std::size_t kStarts = 16;           // of the pattern search, in addition to one for each constraint
-constexpr double kFinalStep = 1e-4;           // of the pattern search, relative to the ranges
-constexpr double kScaleAccuracy = 1e-7;       // relative, of a violation along a ray
-constexpr double kGradientDistance = 1e-3;    // of Violation::gradient from the violation, relative
-constexpr double kSearchedBeyondLimit = 1.5;  // a first-order scale above limit * this is not followed
+constexpr std::size_t kSamples = 1000;  // approximate number of sampled poses
+constexpr std::size_t kStarts = 16;     // number of pattern searches, in addition to one for each constraint
+constexpr double kFinalStep = 1e-4;  // step at which a pattern search ends, relative to the ranges of the coordinates
+constexpr double kScaleAccuracy = 1e-7;     // relative accuracy of the scale of a violation along a ray
+constexpr double kGradientDistance = 1e-3;  // relative distance from a violation at which its gradient is computed
+// violations whose first-order scale exceeds the limit by this factor are ignored
+constexpr double kSearchedBeyondLimit = 1.5;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -24,7 +25,7 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// The corner of the cube in which a linear function with this gradient is the smallest.
+/// The vertex s of the cube |s_i| <= 1 at which a linear function with this gradient has its minimum.
 std::vector<double> worst_corner(std::span<const double> gradient) {
   std::vector<double> s;
   for (const double g : gradient) s.push_back(g > 0 ? -1 : g < 0 ? 1 : 0);
@@ -88,7 +89,8 @@ std::optional<Violation> ViolationSearch::at_pose(std::size_t k, std::span<const
   if (!(scale < kSearchedBeyondLimit * limit)) return {};
   std::optional<Violation> best;
   std::vector<double> s = worst_corner(std::span(gradient).subspan(pose.size()));
-  for (int corner = 0; corner < 3; ++corner) {  // the signs of the gradient can differ in the corner
+  // repeated, because the gradient at the violation may indicate another vertex
+  for (int corner = 0; corner < 3; ++corner) {
     const auto found = along(k, pose, s, scale, best ? best->scale : limit, scratch);
     if (!found) break;
     best = found;
@@ -99,7 +101,7 @@ std::optional<Violation> ViolationSearch::at_pose(std::size_t k, std::span<const
     s = there;
   }
   if (!best) return {};
-  // A root can have no derivatives at the violation itself.
+  // The gradient is computed slightly closer to d = 0, because a square root may have no derivatives at the violation.
   point = best->point;
   for (std::size_t i = pose.size(); i < point.size(); ++i) point[i] *= 1 - kGradientDistance;
   constraints_.gradient(k, point, best->gradient, scratch);
@@ -131,7 +133,7 @@ std::vector<double> ViolationSearch::minimise(std::size_t k, std::vector<double>
 }
 
 std::optional<Violation> ViolationSearch::search(double limit, const std::function<bool()>& stop) const {
-  // a grid that includes the ends of all ranges
+  // the samples are a regular grid that includes the ends of all ranges
   std::size_t levels = 3, count = 1, free = 0;
   for (const auto& range : ranges_) free += range[0] < range[1];
   if (free > 0)
@@ -158,7 +160,7 @@ std::optional<Violation> ViolationSearch::search(double limit, const std::functi
     for (std::size_t i = begin; i < end && !stop(); ++i)
       for (std::size_t k = 0; k < all; ++k) scales[i * all + k] = first_order(k, sample(i), gradient, scratch[worker]);
   });
-  // the best sample of each constraint, and the best ones of all
+  // start from the best sample of each constraint, and from the kStarts best samples of all constraints
   std::vector<std::size_t> order(scales.size()), starts;
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, {}, [&](std::size_t i) { return std::tuple(scales[i], i); });

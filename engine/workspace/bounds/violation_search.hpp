@@ -19,15 +19,17 @@
 namespace pkm::bounds {
 
 struct Violation {
-  double scale = 0;  ///< maximum of |d_i|
+  double scale = 0;  ///< maximum of |d_i| over the deviations d_i of the violation
   std::size_t constraint = 0;
-  std::vector<double> point;     ///< coordinates, deviations
-  std::vector<double> gradient;  ///< of the constraint by the axes, close to the point; empty if the scale is 0
+  /// Values of the coordinates, then of the deviations, at which the constraint is violated.
+  std::vector<double> point;
+  /// Derivatives of the constraint with respect to all axes, close to `point`; empty if the scale is 0.
+  std::vector<double> gradient;
 };
 
 class ViolationSearch {
  public:
-  /// @param ranges  of the coordinates; the remaining axes are deviations
+  /// @param ranges  ranges of the coordinates, the first axes; the remaining axes are deviations
   ViolationSearch(const ParametricConstraints& constraints, std::span<const std::array<double, 2>> ranges)
       : constraints_(constraints), ranges_(ranges) {}
 
@@ -36,19 +38,21 @@ class ViolationSearch {
   /// @param stop   returns true to stop with what has been found
   std::optional<Violation> search(double limit, const std::function<bool()>& stop) const;
 
-  /// A violation of constraint k at a pose in the corners given by its gradients; std::nullopt if none is found below
-  /// `limit`.
+  /// A violation of constraint k at a pose. The vertices of the box of deviations that the gradients indicate are
+  /// tried; std::nullopt if no violation with a scale below `limit` is found.
   std::optional<Violation> at_pose(std::size_t k, std::span<const double> pose, double limit,
                                    ParametricConstraints::Scratch& scratch) const;
 
-  /// The first violation of constraint k at a pose along the ray d = t s; std::nullopt if none is found up to `limit`.
-  /// @param s      not longer than 1 along each axis, with the length 1 along one of them
+  /// The violation of constraint k at a pose with the smallest t along the ray d = t s of the deviations d;
+  /// std::nullopt if none is found up to t = `limit`.
+  /// @param s      direction with max |s_i| = 1
   /// @param scale  initial estimate of t
   std::optional<Violation> along(std::size_t k, std::span<const double> pose, std::span<const double> s, double scale,
                                  double limit, ParametricConstraints::Scratch& scratch) const;
 
  private:
-  /// The scale of (1): 0 if the constraint is violated for d = 0, infinity if it does not depend on d.
+  /// First-order estimate (1) of the scale at which constraint k is violated: 0 if it is violated for d = 0, infinity
+  /// if it does not depend on the deviations d.
   /// @param gradient  receives the derivatives at the pose
   double first_order(std::size_t k, std::span<const double> point, std::vector<double>& gradient,
                      ParametricConstraints::Scratch& scratch) const;

@@ -70,7 +70,7 @@ class BranchAndBound {
     std::size_t node = 0;  ///< index in the tree
   };
 
-  /// Enclosure of a leaf, in an array of its own because all of them are read after each round.
+  /// Enclosure of the volume over a leaf, in an array of its own because all of them are read after each round.
   struct Enclosure {
     Interval volume{0.0};
     double width = 0;  ///< width of `volume`; 0 if bisection cannot reduce it
@@ -96,7 +96,7 @@ class BranchAndBound {
     return selected;
   }
 
-  /// The axis of the longest side, relative to the whole.
+  /// Axis of the longest side of a box, relative to the range of the axis.
   std::size_t longest_axis(const ColumnBox& box) const {
     const auto share = [&](std::size_t axis) {
       return (box.side[axis][1] - box.side[axis][0]) / (whole_[axis][1] - whole_[axis][0]);
@@ -127,10 +127,10 @@ class BranchAndBound {
   std::array<std::array<double, 2>, kMaxOuterAxes> whole_;
   ColumnGrid grid_;
   ColumnPruner pruner_;
-  std::vector<ColumnPruner::Scratch> scratch_;  ///< by worker
+  std::vector<ColumnPruner::Scratch> scratch_;  ///< scratch memory of each worker thread
   std::vector<Leaf> leaves_;
   std::vector<Enclosure> enclosures_;                  ///< by leaf
-  std::vector<std::pair<double, std::size_t>> order_;  ///< (-width, leaf)
+  std::vector<std::pair<double, std::size_t>> order_;  ///< pairs (-width of the enclosure, index of the leaf), sorted
 };
 
 }  // namespace
