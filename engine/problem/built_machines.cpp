@@ -23,7 +23,8 @@ void ToleranceModel::sample(std::size_t index, std::span<const double> design, s
     const std::size_t count = group.errors.size();
     normal.resize(count);
     drawn.resize(count);
-    const auto is_within = [&] {  // truncation: the group is drawn again until all errors are within their bounds
+    // rejection sampling of the truncated distribution: errors of a group are drawn until all are within their bounds
+    const auto is_within = [&] {
       for (std::size_t i = 0; i < count; ++i)
         if (!(std::fabs(drawn[i]) <= errors[group.errors[i]].bound)) return false;
       return true;

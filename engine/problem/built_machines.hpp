@@ -17,19 +17,20 @@ namespace pkm {
 
 class DesignProblem;
 
-inline constexpr const char* kYield = "yield";  ///< name of the objective
+/// Name of the catalogue entry: the share of built machines that satisfy all constraints.
+inline constexpr const char* kYield = "yield";
 
 /// Error of one parameter of a built machine: uniformly distributed within +- bound, or normally distributed with a
 /// standard deviation and truncated to +- bound.
 struct ParameterError {
-  std::string name;       ///< of the parameter: "l_a", "arm2.l_a"
+  std::string name;       ///< name of the parameter, such as "l_a" or "arm2.l_a"
   std::size_t parameter;  ///< index among the parameters of the built machine
-  double bound;           ///< > 0 [SI]
-  double sigma = 0;       ///< > 0 and <= bound [SI]; 0: uniform
+  double bound;           ///< maximum magnitude of the error, > 0 [SI]
+  double sigma = 0;       ///< standard deviation, > 0 and <= bound [SI]; 0: the error is uniformly distributed
 };
 
-/// A parameter of a single limb that exists in built machines only. Without its error, it has the value of the
-/// parameter that all limbs share.
+/// A parameter of a single limb that only built machines have, with an error of its own. Its value before the error is
+/// that of the parameter that all limbs share.
 struct LimbCopy {
   std::size_t own, common;
 };
@@ -59,9 +60,10 @@ struct ToleranceModel {
 struct SampledValue {
   enum class Statistic { worst, mean, quantile, yield, yield_lower, yield_upper };
   Statistic statistic;
-  double probability = 0;         ///< of a quantile: the share of machines with a worse value
-  bool greater_is_better = true;  ///< which values are worse
-  std::size_t row = 0;            ///< index among the objectives of BuiltMachines::problem; unused for a yield
+  double probability = 0;         ///< for a quantile: share of machines with a worse value
+  bool greater_is_better = true;  ///< true: smaller values are worse; false: greater ones
+  /// For other statistics than a yield: index of the quantity among the objectives of BuiltMachines::problem.
+  std::size_t row = 0;
 
   bool is_yield() const { return statistic >= Statistic::yield; }
 };
@@ -72,14 +74,15 @@ struct Yield {
   /// Number of machines that violate each constraint. The workspace of a machine that violates a constraint of the
   /// design alone is not analysed, unless a robust quantity uses it.
   std::vector<std::size_t> violated = {};
-  std::size_t failed = 0;  ///< number of machines for which a constraint is undefined, and none is violated
+  std::size_t failed = 0;  ///< number of machines that violate no constraint, but for which a constraint is undefined
 
   double share() const { return static_cast<double>(good) / static_cast<double>(machines); }
   /// Wilson score interval of the share, with 95 % confidence.
   std::array<double, 2> interval() const;
 };
 
-/// Values of all samples for one design. NaN: not computed, or the machine cannot be evaluated.
+/// Objectives, margins and derivatives of all sampled machines of one design, as row-major arrays. NaN: not computed,
+/// or the machine cannot be evaluated.
 struct MachineValues {
   std::size_t machines = 0;
   std::vector<double> objectives;   ///< machines x objectives of BuiltMachines::problem
@@ -93,16 +96,16 @@ struct MachineValues {
 /// combination.
 std::vector<std::pair<std::size_t, double>> sample_weights(const SampledValue& sampled, std::span<const double> values);
 
-/// Counts the machines all of whose margins are >= 0.
+/// Counts the sampled machines that satisfy all constraints, i.e. all of whose margins are >= 0.
 Yield yield_of(const MachineValues& values);
-/// The statistic of a yield.
+/// The share of good machines or, depending on the statistic, the lower or upper bound of its confidence interval.
 double yield_statistic(const SampledValue& sampled, const Yield& yield);
 
-/// What has to be evaluated for each sample.
+/// The distribution of built machines, and the problem that is evaluated for each sampled machine.
 struct BuiltMachines {
   ToleranceModel tolerances;
-  /// Its objectives are the robust quantities of the study; its margins are those of all constraints if the study has a
-  /// yield, otherwise none.
+  /// Objectives: the quantities of which the study needs statistics over built machines. Margins: those of all
+  /// constraints if the study has a yield, otherwise none.
   std::shared_ptr<const DesignProblem> problem;
 };
 

@@ -36,7 +36,8 @@ std::vector<bool> used_analyses(const ProblemParts& parts) {
 /// Placeholder for the value of an external function that is not called.
 const ExternalValue kNotCalled{.failure = "the function is not called here", .is_computed = true};
 
-/// Throws DesignError if not even the order of magnitude of a volume is known: a search must not choose such a design.
+/// Throws DesignError if the relative error of a volume is so large that even its order of magnitude is unknown: an
+/// optimiser must not select such a design.
 void refuse_unknown(double volume, double relative_error) {
   if (!(volume > 0) || relative_error < 1) return;
   std::ostringstream text;
@@ -52,9 +53,9 @@ struct DesignProblem::Buffers {
   std::vector<Dual4> duals;  ///< the parameters with derivatives
   WorkspaceResults<double> workspaces;
   WorkspaceResults<Dual4> dual_workspaces;
-  MachineValues machines;        ///< of the design that was evaluated last
+  MachineValues machines;        ///< values of the built machines of the design that was evaluated last
   std::vector<Scratch> workers;  ///< scratch memory for the machines, by worker
-  std::vector<double> machine;   ///< parameters of a machine
+  std::vector<double> machine;   ///< parameters of the machine that this thread evaluates
 };
 
 struct DesignProblem::OtherRows {
@@ -62,7 +63,7 @@ struct DesignProblem::OtherRows {
   std::map<std::vector<std::size_t>, std::shared_ptr<const DesignProblem>> problems;
 };
 
-/// Scratch memory of the problems with other rows.
+/// Scratch memory for the problems with other rows of the catalogues, by problem.
 struct ScratchOfRows {
   std::map<const DesignProblem*, Scratch> of;
 };
@@ -262,7 +263,8 @@ void DesignProblem::evaluate_machine(std::span<const double> parameters, std::op
 void DesignProblem::evaluate_machines(std::span<const double> parameters,
                                       std::optional<std::span<const std::size_t>> by, Scratch& scratch) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  constexpr std::size_t kMachinesPerCheck = 64;  // of microseconds; the evaluation of a longer one checks by itself
+  // interval of checks for a stop request; for machines that take microseconds, longer evaluations check themselves
+  constexpr std::size_t kMachinesPerCheck = 64;
   const ToleranceModel& tolerances = parts_.built->tolerances;
   const std::shared_ptr<const DesignProblem>& problem = parts_.built->problem;
   Buffers& buffers = scratch.get<Buffers>();
@@ -286,7 +288,7 @@ void DesignProblem::evaluate_machines(std::span<const double> parameters,
       try {
         problem->evaluate_machine(machine, by, own, part(values.objectives, shape.objectives),
                                   part(values.margins, shape.margins), part(values.derivatives, shape.derivatives()));
-      } catch (const DesignError&) {  // its values remain NaN
+      } catch (const DesignError&) {  // the values of this machine remain NaN
       }
     }
   });

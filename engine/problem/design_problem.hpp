@@ -30,7 +30,8 @@ struct NamedQuantity {
   /// A statistic over built machines, which replaces the value; the bounds apply to it.
   std::optional<SampledValue> sampled = {};
 
-  /// The analysis that the value of a design uses; that of a statistic uses the analyses of the machines only.
+  /// Whether the value needs the workspace analysis of the design itself. A statistic over built machines needs those
+  /// of the machines instead.
   bool uses_analysis_of_design() const { return uses_workspace && !sampled; }
 };
 
@@ -55,14 +56,17 @@ struct ProblemParts {
   std::vector<NamedQuantity> workspace_margins;  ///< all other constraints, including those on external functions
   std::vector<NamedQuantity> reports;
   std::vector<FollowedMotion> followed;
-  std::vector<Choice> choices;       ///< from catalogues
+  std::vector<Choice> choices;       ///< variables that are choices of a row from a catalogue
   std::vector<std::size_t> rows;     ///< the chosen row of each catalogue, which determines the mechanism
-  std::vector<std::size_t> of_rows;  ///< indices of the parameters whose values these rows determine
-  /// Makes the problem with other rows; its variables, objectives and constraints are the same.
+  std::vector<std::size_t> of_rows;  ///< indices of the parameters whose values are those of the chosen rows
+  /// Makes the problem of the same study with other rows of the catalogues; variables, objectives and constraints are
+  /// the same. Null without catalogues.
   std::function<std::shared_ptr<const DesignProblem>(const std::vector<std::size_t>& rows)> with_rows = nullptr;
   std::shared_ptr<ExternalFunctions> functions = std::make_shared<ExternalFunctions>();
-  std::shared_ptr<const BuiltMachines> built = nullptr;  ///< if a quantity is a statistic over built machines
-  std::vector<LimbCopy> copies = {};                     ///< parameters that change with others in derivatives by these
+  /// Built machines, if a quantity is a statistic over them; otherwise null.
+  std::shared_ptr<const BuiltMachines> built = nullptr;
+  /// Parameters of single limbs that change together with the common parameter in derivatives with respect to it.
+  std::vector<LimbCopy> copies = {};
 };
 
 /// Complete evaluation of one design, for the command line and the group /final of the study file.
@@ -72,7 +76,8 @@ struct DesignReport {
   Status status = Status::failed;
   std::string reason;  ///< why a value is missing (also for a rejected design); "" if no value is missing
   WorkspaceResult<double> workspace;
-  std::optional<Yield> yield = {};  ///< if the problem has a yield that was computed
+  /// Yield over the built machines; std::nullopt: the problem has none, or it was not computed.
+  std::optional<Yield> yield = {};
 };
 
 class DesignProblem final : public Problem {
@@ -93,8 +98,8 @@ class DesignProblem final : public Problem {
   Unsupported why_no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
-  /// The problem with the rows of the catalogues that a design chooses. Without choices it is this one. The reference
-  /// is valid as long as this problem. Throws DesignError if there is no such problem.
+  /// The problem with the rows of the catalogues that `parameters` selects; this problem if there are no catalogues.
+  /// The reference is valid as long as this object. Throws DesignError if there is no such problem.
   const DesignProblem& of(std::span<const double> parameters) const;
   /// The full parameter vector of a design. @param design  one value per variable
   std::vector<double> parameters(std::span<const double> design) const;
@@ -112,31 +117,33 @@ class DesignProblem final : public Problem {
   std::vector<double> derivatives(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
-  /// The problems with other rows that have been made so far.
+  /// Cache of the problems with other rows of the catalogues.
   struct OtherRows;
-  /// The analyses of a design: first of the workspace, then of each region. An analysis that no quantity uses is empty.
+  /// Results of the workspace analyses of a design: first that of the workspace, then one for each region. The result
+  /// of an analysis that no quantity uses is empty.
   template <class S>
   using WorkspaceResults = std::vector<WorkspaceResult<S>>;
 
   struct Buffers;  ///< scratch memory of evaluations
 
-  /// @param is_report  analyses the main workspace in any case
+  /// Evaluates a design. @param is_report  true: analyse the workspace even if no quantity uses it
   Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result,
                  bool is_report = false) const;
   /// Evaluates all built machines of a design, in parallel, and writes their values to the buffers in `scratch`.
-  /// @param by  indices of the parameters of the design by which derivatives are computed; nullopt: no derivatives
+  /// @param by  indices of the parameters with respect to which derivatives are computed; std::nullopt: no derivatives
   void evaluate_machines(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
                          Scratch& scratch) const;
   /// Evaluates one built machine, as far as possible: all values are set that can be computed.
   void evaluate_machine(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
                         Scratch& scratch, std::span<double> objectives, std::span<double> margins,
                         std::span<double> derivatives) const;
-  /// A statistic over the machines in the buffers.
+  /// Value of a statistic over the built machines, whose values are in the buffers of `scratch`.
   double statistic(const SampledValue& sampled, Scratch& scratch) const;
-  /// Statistic of the smooth values, with its derivatives by the directions [first, first + count) of `directions`.
+  /// Statistic of the smooth approximations of the machines' values, with derivatives: by the directions with indices
+  /// [first, first + count) of `directions` ones.
   Dual4 smooth_statistic(const SampledValue& sampled, std::size_t first, std::size_t count, std::size_t directions,
                          Scratch& scratch) const;
-  /// Why a machine cannot be evaluated; "" if all can.
+  /// Reason why a built machine of this design cannot be evaluated; "" if all can.
   std::string why_machine_fails(std::span<const double> parameters) const;
   /// Computes the values of external functions of a design, after compute(). @return why a call failed; "" if none
   /// failed
@@ -152,7 +159,8 @@ class DesignProblem final : public Problem {
   /// derivatives to `derivatives`, and the values of the workspace analyses to the buffers in `scratch`.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> derivatives,
                      Scratch& scratch) const;
-  /// Runs the workspace analyses that quantities use. @param all  true: analyses the main workspace in any case
+  /// Runs the workspace analyses that quantities use. @param all  true: also that of the workspace if no quantity uses
+  /// it
   template <class S>
   void analyse(std::span<const S> parameters, bool all, Scratch& scratch, WorkspaceResults<S>& results) const;
 

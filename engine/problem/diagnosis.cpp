@@ -14,7 +14,8 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kPosesPerAxis = 9;  // along each swept coordinate; odd, so that the midpoint is included
+// poses along each swept coordinate; an odd number, so that the midpoint is included
+constexpr std::int64_t kPosesPerAxis = 9;
 constexpr std::size_t kMaxLineLength = 1000;
 constexpr std::size_t kMaxAnalyses =
     16;  // maximum number of repeated analyses of designs that seem to have an empty workspace
@@ -71,10 +72,10 @@ bool has_empty_workspace(const Designs& designs, const TableRow& at) {
       analyses, [&](std::size_t analysis) { return designs.problem->workspace(parameters, analysis).volume == 0; });
 }
 
-/// Whether a feasible design is useful. A design is useless if its workspace is empty and all objectives have the value
-/// of an empty workspace. The analysis is repeated for at most kMaxAnalyses designs with such objective values: a
-/// design with a non-empty workspace has such values only with special formulas, such as max(0, volume - 1) or a
-/// constant.
+/// True if at least one feasible design is useful. A design is useless if its workspace is empty and all objectives
+/// have the values of an empty workspace. The workspace analysis is repeated for at most kMaxAnalyses designs with such
+/// objective values: a design with a non-empty workspace has such values only with special formulas, such as max(0,
+/// volume - 1) or a constant.
 bool has_useful_design(const Designs& designs) {
   std::size_t analyses_left = kMaxAnalyses;
   for (const EvaluationTable* table : designs.tables)
@@ -173,7 +174,7 @@ Reason reason_of_failures(const Designs& designs, std::size_t failed, std::size_
   return reason;
 }
 
-/// Numbers of designs by status: "30 infeasible, 10 rejected".
+/// Text with the number of designs of each status: "30 infeasible, 10 rejected".
 std::string counts_text(const std::array<std::size_t, 4>& count) {
   constexpr std::array<const char*, 4> kWords = {"feasible", "infeasible", "rejected", "failed"};
   std::vector<std::string> parts;
@@ -182,7 +183,7 @@ std::string counts_text(const std::array<std::size_t, 4>& count) {
   return join(parts);
 }
 
-/// "volume is 0 for each of the 40 feasible designs".
+/// Sentence such as "volume is 0 for each of the 40 feasible designs".
 std::string empty_objectives_text(const Designs& designs, std::size_t feasible) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < designs.objectives.size(); ++i) {

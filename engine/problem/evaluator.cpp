@@ -50,7 +50,9 @@ void begin_evaluation(const Problem& problem, std::span<const double> design, Sc
 // that need Problem::complete() keep a negative time, kNotEvaluated - time. Throws Stopped.
 void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t first, std::size_t last,
                    Scratch& scratch) {
-  constexpr std::size_t kRowsPerCheck = 64;  // of microseconds; the evaluation of a longer row checks by itself
+  // interval of checks for a stop request; for rows that take microseconds, the evaluation of a longer row checks
+  // itself
+  constexpr std::size_t kRowsPerCheck = 64;
   const bool is_complete = !problem.needs_completion();
   auto begin = Clock::now();
   for (std::size_t row = first; row < last; ++row) {
@@ -95,7 +97,7 @@ double mean_seconds(const EvaluationTable& table, std::size_t first) {
   return sample > 0 ? sum / static_cast<double>(sample) : 0;
 }
 
-// Rows [first, end) of one rank if `count` rows are distributed statically by index.
+// Rows [first, end) that a rank evaluates if `count` rows, from row `first` on, are distributed statically by index.
 std::pair<std::size_t, std::size_t> static_share(std::size_t rank, std::size_t ranks, std::size_t first,
                                                  std::size_t count) {
   return {first + rank * count / ranks, first + (rank + 1) * count / ranks};
@@ -248,7 +250,7 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
                            table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);
   };
   // Idle time that is accepted before rows are distributed dynamically: relative to the mean time of the threads, and
-  // in s.
+  // absolute [s].
   constexpr double kMaxIdleShare = 0.05, kMinIdleTime = 1e-3;
   // Batches that take longer per thread are always distributed dynamically: unforeseen delays would cost more than the
   // messages for claiming rows (at most 3 %).

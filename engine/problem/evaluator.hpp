@@ -51,7 +51,7 @@ class ParallelEvaluator final : public Evaluator {
     bool imbalanced = true;         ///< static distribution by index would have left ranks idle
     std::size_t local_batches = 0;  ///< later batches that every rank evaluated without communication
   };
-  using Rows = std::pair<std::size_t, std::size_t>;  // first, end
+  using Rows = std::pair<std::size_t, std::size_t>;  // first row, end row (excluded)
 
   /// @param design_seconds  expected time per design on one thread [s]; 0: unknown
   void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double design_seconds);
@@ -61,8 +61,8 @@ class ParallelEvaluator final : public Evaluator {
 
   int threads_;
   std::vector<std::size_t> threads_of_ranks_;
-  std::vector<Scratch> scratch_;         ///< by worker
-  std::array<BatchTimings, 3> timings_;  ///< by Detail
+  std::vector<Scratch> scratch_;         ///< scratch memory of each worker thread
+  std::array<BatchTimings, 3> timings_;  ///< timings of the batches of each level of detail, indexed by Detail
 };
 
 }  // namespace pkm

@@ -70,13 +70,17 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const W
   std::vector<ExpressionName> names;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
-    if (find_named(info.limits, parameter.name)) continue;   // this name denotes the threshold in effect
-    if (!expression::may_be_name(parameter.name)) continue;  // a parameter of one limb: "arm2.l_b"
+    if (find_named(info.limits, parameter.name))
+      // as a name in expressions, it denotes the threshold in effect
+      continue;
+    if (!expression::may_be_name(parameter.name))
+      // a parameter of a single limb, such as "arm2.l_b", whose name formulas cannot contain
+      continue;
     names.push_back({parameter.name, parameter.unit, parameter.meaning, Origin::parameter, i});
   }
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const LimitInfo& limit = info.limits[i];
-    if (limit.group == kQuantityLimit) continue;  // this name denotes the statistic of the quantity
+    if (limit.group == kQuantityLimit) continue;  // as a name in expressions, it denotes the statistic of the quantity
     names.push_back({limit.name, limit.unit, "threshold in effect: " + limit.meaning, Origin::threshold, i});
   }
   if (const Size* const size = mechanism.size())

@@ -15,7 +15,7 @@ std::vector<std::size_t> indices(const Scores& scores) {
   return all;
 }
 
-/// Sum of the scores of each design.
+/// For each design, the sum of its scores.
 std::vector<double> sums(const Scores& scores) {
   std::vector<double> result;
   for (std::size_t i = 0; i < scores.size(); ++i)

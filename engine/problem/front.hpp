@@ -19,7 +19,8 @@ struct Front {
   /// than the reference point in every objective contribute. Empty and NaN if there is no reference point yet.
   std::vector<double> reference = {};
   double hypervolume = std::numeric_limits<double>::quiet_NaN();
-  double spread = std::numeric_limits<double>::quiet_NaN();    ///< spacing of the part in the population (crowding.hpp)
+  /// Spacing of those designs of the front that are in the population (crowding.hpp); NaN: unknown.
+  double spread = std::numeric_limits<double>::quiet_NaN();
   double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< distance to the reference front; NaN without one
 };
 

@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMaxReasons = 4;  // maximum for one tally: more would hide the important ones
+constexpr std::size_t kMaxReasons = 4;  // maximum number of reasons of one tally: more would hide the important ones
 
 std::string three_digits(double value) {
   char text[32];
@@ -38,7 +38,8 @@ std::size_t MarginTally::index_of(const std::string& name) {
 
 void MarginTally::add(const std::vector<std::pair<std::string, double>>& margins) {
   ++samples_;
-  std::vector<std::pair<std::size_t, bool>> known;  // margins of this sample, and whether it satisfies them
+  // indices of the margins of this sample that are not NaN, and whether the sample satisfies each of them
+  std::vector<std::pair<std::size_t, bool>> known;
   for (const auto& [name, margin] : margins) {
     if (std::isnan(margin)) continue;
     const std::size_t index = index_of(name);

@@ -28,9 +28,11 @@ class MarginTally {
   struct Count {
     std::string name;
     std::size_t known = 0, satisfied = 0;
-    double closest = 0;                        ///< maximum of the negative values
-    std::vector<std::size_t> known_with = {};  ///< indexed by earlier margin: number of samples in which both are known
-    std::vector<std::size_t> satisfied_with = {};  ///< indexed by earlier margin: number of samples that satisfy both
+    double closest = 0;  ///< maximum of the negative values of this margin, i.e. the smallest violation
+    /// For each earlier margin, the number of samples in which both margins are known.
+    std::vector<std::size_t> known_with = {};
+    /// For each earlier margin, the number of samples that satisfy both margins.
+    std::vector<std::size_t> satisfied_with = {};
   };
   /// Index of a margin in `counts_`; added if it is new.
   std::size_t index_of(const std::string& name);

@@ -96,7 +96,8 @@ class SampledMotion {
 
  private:
   DesignMotion named_;
-  std::vector<MotionSample> samples_;  ///< of the study's own parameters
+  /// Samples for the parameters of the study; all designs share them unless the motion depends on parameters.
+  std::vector<MotionSample> samples_;
 };
 
 }  // namespace pkm

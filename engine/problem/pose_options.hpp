@@ -15,6 +15,7 @@ inline OptionSpec characteristic_length_option() {
           .meaning = "length that the Jacobian's angular column is divided by; default: the mechanism's own"};
 }
 
+/// Option for the sharpness of a smooth approximation.
 /// @param value  name of the non-smooth value that is approximated
 inline OptionSpec sharpness_option(const std::string& value) {
   return {.name = "sharpness",

@@ -31,7 +31,7 @@ struct MarginInfo {
 /// An output: a value that is computed and stored, but neither optimised nor constrained.
 using OutputInfo = MarginInfo;
 
-/// A design between Problem::evaluate() and Problem::complete().
+/// A design whose evaluation has been begun by Problem::evaluate() and has to be completed by Problem::complete().
 struct EvaluatedDesign {
   std::span<const double> design;
   EvaluationSlot slot;

@@ -9,7 +9,7 @@ std::vector<QuantityGradient> quantity_gradients(const DesignProblem& problem, c
   std::vector<std::size_t> all(report.parameters.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::vector<double> values = problem.derivatives(report.parameters, all);
-  const std::size_t width = all.size() + 1;  // the value comes before its derivatives
+  const std::size_t width = all.size() + 1;  // length of a row: the value, then its derivatives
   std::vector<QuantityGradient> gradients;
   const auto add = [&](const std::string& name, const std::string& unit, double value, bool maximise) {
     const auto by = std::span(values).subspan(gradients.size() * width + 1, all.size());

@@ -15,7 +15,7 @@ namespace pkm {
 struct QuantityGradient {
   std::string name, unit;
   double value;
-  double worse_sign;       ///< sign of a change that makes the quantity worse: -1 or 1
+  double worse_sign;       ///< -1 or 1: sign of a change of the value that makes the quantity worse
   std::vector<double> by;  ///< derivatives with respect to all parameters [SI]
 };
 
@@ -25,10 +25,11 @@ std::vector<QuantityGradient> quantity_gradients(const DesignProblem& problem, c
 
 /// Worst value of a quantity for parameters within +- their tolerances.
 struct WorstCase {
-  double first_order;  ///< first-order estimate, from the gradient
-  double rss;          ///< change: root of the sum of the squared contributions of the parameters
+  double first_order;  ///< first-order estimate of the worst value, from the gradient
+  double rss;          ///< root of the sum of the squared first-order changes due to each parameter
   double evaluated;  ///< value at the vertex of the tolerance box that is worst to first order; NaN: evaluation failed
 };
+/// Worst value of one quantity within tolerances of the parameters.
 /// @param gradients  quantity_gradients() of the design
 /// @param k          index of the quantity in `gradients`
 /// @param tolerance  by parameter, >= 0 [SI]

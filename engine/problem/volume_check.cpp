@@ -6,7 +6,8 @@ namespace pkm {
 
 VolumeBounds verify_volume(const DesignProblem& problem, DesignReport& report, double gap,
                            const std::function<bool()>& stop) {
-  constexpr double kRoundoff = 1e-9;  // relative; rounding errors of closed forms, not part of the error estimate
+  // rounding errors of closed forms, relative to the volume; the error estimate does not include them
+  constexpr double kRoundoff = 1e-9;
   const ProblemParts& parts = problem.of(report.parameters).parts();
   const VolumeBounds bounds =
       parts.mechanism->bounds()->volume(report.parameters, parts.plan, parts.request.mode, {.gap = gap, .stop = stop});
