@@ -30,7 +30,7 @@ struct Function {
 struct Sample {
   std::vector<double> pose, velocity, acceleration;
   std::vector<double> wrench;  ///< load on the platform with six components [N, N m]
-  std::vector<double> start;   ///< a nearby pose, from which the iteration of the forward kinematics starts
+  std::vector<double> start;   ///< a nearby pose, from which Newton's method for the forward kinematics starts
   std::vector<double> joints, jacobian, margins, quantities;
   std::vector<double> forces;  ///< forces of the joints; empty if the mechanism has no masses
 };

@@ -106,7 +106,7 @@ void scale_own_law(const MovesOfMotion& moves, const MovesOfMotion::Move& move, 
   found.duration = (move.period.end - move.period.begin) / std::sqrt(best);
 }
 
-/// The squared path speeds at both ends of every interval of a move, and the constant path acceleration in it.
+/// For each interval of a move, the squared path speeds at both of its ends, and the constant path acceleration in it.
 template <class S>
 struct MoveStates {
   const std::vector<PathPoint<S>>* points;
@@ -167,8 +167,8 @@ double thermal_reserve(const MovesOfMotion& moves, const DesignWithLimits& desig
   return minimum;
 }
 
-/// Determines the factor of all squared speeds for which no motor's root-mean-square torque exceeds its continuous
-/// torque.
+/// Finds the factor, at most 1, of the squared speeds of all moves with which no motor's root-mean-square torque
+/// exceeds its continuous torque.
 void limit_continuous_torque(const MovesOfMotion& moves, const DesignWithLimits& design, ShortestTimes& found) {
   constexpr double kSlowest = 1e-8;
   // Violations up to this, relative to the squared torque, are within the accuracy of reduce_torques().
@@ -363,7 +363,7 @@ Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes&
       state.squares = std::move(profile.squares);
       state.accelerations = std::move(profile.accelerations);
     } else {
-      // The limit is active at the factor, which is differentiated implicitly, at the fixed time of the extremum.
+      // The active limit determines the factor: differentiate it implicitly at the fixed time of the extremum.
       std::vector<PathPoint<Dual4>> at;
       path_points<Dual4>(design.mechanism, parameters, design.mode, {&result.limiting, 1}, design.wrench, at);
       const PathPoint<Dual<1>> constant = constant_point<Dual<1>>(points_at(design, {&result.limiting, 1})[0]);

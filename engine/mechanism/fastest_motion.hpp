@@ -21,8 +21,8 @@ namespace pkm {
 
 enum class FastestLaw { optimal, own };
 
-/// Limits a time of a sample to the interior of a move, at least 1e-9 of the move's duration from both ends: at the
-/// ends, the acceleration can be that of the next move or pause.
+/// Moves a time into the interior of a move, at least 1e-9 of the move's duration away from both ends: at an end, the
+/// acceleration could be that of the next move or pause.
 double time_inside(const MovePeriod& move, double time);
 
 /// The moves of a motion, prepared for many designs. Immutable and thread-safe.
@@ -38,7 +38,7 @@ class MovesOfMotion {
     MovePeriod period;
     std::shared_ptr<const GeometricPath> path;  ///< path of the move, with FastestLaw::optimal; otherwise null
     std::vector<MotionSample> samples;          ///< samples of the move at the ends of these intervals
-    /// Differences of the path parameter (FastestLaw::own: of the time) between consecutive samples.
+    /// For consecutive samples, the differences of the path parameter or, with FastestLaw::own, of the time [s].
     std::vector<double> steps;
   };
   const std::vector<Move>& moves() const { return moves_; }

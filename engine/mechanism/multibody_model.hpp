@@ -39,8 +39,8 @@ struct MultibodyModel {
     double inertia = 0;                  ///< inertia of the drive train at the joint [kg or kg m^2]
     double viscous = 0, coulomb = 0;     ///< friction at the joint [N s/m or N m s/rad, N or N m]
   };
-  /// The joint coordinate is positive if the child has moved relative to the parent in the positive sense along or
-  /// about the axis.
+  /// A joint between two bodies. Its coordinate is positive if the child has moved relative to the parent in the
+  /// positive sense along or about the axis.
   struct Joint {
     std::string name;
     JointType type;

@@ -170,7 +170,8 @@ struct AccelerationInterval {
 AccelerationInterval<double> acceleration_interval(const PathPoint<double>& p, double y, const MotionLimits& limits,
                                                    const DriveTrains* trains, double scale = 1);
 
-/// The end of the interval of path accelerations that the linear limit of the given number determines.
+/// The value of the path acceleration u at which the linear limit of the given number is attained: an end of the
+/// interval of path accelerations.
 template <class S>
 S end_of_interval(const PathPoint<S>& p, const S& y, const MotionLimits& limits, const DriveTrains* trains,
                   int number) {
@@ -182,16 +183,16 @@ S end_of_interval(const PathPoint<S>& p, const S& y, const MotionLimits& limits,
   return end;
 }
 
-/// The largest squared path speed y that the speed bounds allow (infinite if there are none), and the number of the
-/// speed bound that determines it, in the order of visit_speed_bounds().
+/// The maximum of the squared path speed y that the speed bounds allow (infinite if there are none), and the number of
+/// the bound that determines it, in the order of visit_speed_bounds().
 struct LargestSquare {
   double y = std::numeric_limits<double>::infinity();
   int number = -1;
 };
 LargestSquare largest_square(const PathPoint<double>& p, const MotionLimits& limits, const DriveTrains* trains);
 
-/// The limit that is violated most at (y, u). The violation is the demand divided by the limit, minus 1; negative
-/// values satisfy the limit.
+/// The limit that is violated most for given y and u. The violation is the demand divided by the limit, minus 1; if it
+/// is negative, the limit is satisfied.
 struct Violation {
   double value = -1;
   LimitOfMotion limit;

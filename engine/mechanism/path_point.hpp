@@ -19,13 +19,16 @@ namespace pkm {
 
 template <class S>
 struct PathPoint {
-  AxisVector<S> q1, q2;  ///< q' and q'' of each joint
-  /// Force coefficients of each joint, including the reflected inertia of drive trains; empty without masses.
+  AxisVector<S> q1, q2;  ///< first and second derivative of each joint coordinate with respect to the path parameter
+  /// Coefficients of the joint forces tau = A u + B y + C, including the reflected inertia of drive trains; empty
+  /// without masses.
   AxisVector<S> A, B, C;
-  double tool11 = 0, tool12 = 0, tool22 = 0;  ///< X'.X', X'.X'' and X''.X'', formed by the coordinates that are lengths
+  /// X'.X', X'.X'' and X''.X'', where X' and X'' are the derivatives of the pose with respect to the path parameter,
+  /// for coordinates that are lengths only.
+  double tool11 = 0, tool12 = 0, tool22 = 0;
 };
 
-/// Converts a point to another scalar type, with zero derivatives.
+/// Converts a path point to another scalar type, with zero derivatives.
 template <class T>
 PathPoint<T> constant_point(const PathPoint<double>& p) {
   const auto convert = [](const AxisVector<double>& x) {

@@ -19,7 +19,7 @@ void add_reactions(const Mechanism& mechanism, std::span<const double> parameter
 /// Magnitude of a joint's force or couple over the samples, computed from the components that are determined at every
 /// sample. A force or couple that is only a rounding error compared with the other one is set to zero.
 struct LoadSummary {
-  /// For the x, y and z components: true if the component is determined at every sample.
+  /// For each of the components x, y and z: true if it is determined at every sample.
   std::array<bool, 3> determined = {true, true, true};
   double peak = 0, rms = 0;  ///< maximum, and root of the mean square, of the magnitude [N, N m]
   std::size_t at = 0;        ///< index of the first sample that attains the maximum within rounding

@@ -223,7 +223,7 @@ class SampledLimits {
   std::vector<double> factors_;  ///< for each move, the factor of its squared speeds
 };
 
-/// Appends the periods of a move during which limits are active.
+/// Appends to `active` the periods of a move during which a limit is active.
 void add_active_periods(const MovesOfMotion::Move& move, const FastestMove& fastest, const DesignWithLimits& design,
                         const MovePeriod& period, double factor, std::vector<ActivePeriod>& active) {
   constexpr double kActive = 1e-6;  // a limit that is used to within this, relative to the limit, is active

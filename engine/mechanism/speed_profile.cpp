@@ -11,8 +11,8 @@ namespace {
 using By = BindingLimit::By;
 constexpr double kUnboundedSquare = 1e30;
 
-/// The interval of path accelerations that are allowed at point i and lead to x_(i+1) in [0, next], and the limits that
-/// determine its ends.
+/// The interval of path accelerations at point i that the limits allow and that lead to a squared speed in [0, next] at
+/// point i + 1; and the limits that determine the ends of the interval.
 struct AllowedAccelerations {
   double lower, upper;
   BindingLimit at_lower, at_upper;
@@ -41,8 +41,8 @@ class ProfileSolver {
     return found;
   }
 
-  /// The largest x at point i from which [0, next] can be reached at point i + 1; infinite if it is unbounded. It is
-  /// bracketed by growing steps from `next`.
+  /// The largest squared speed x at point i from which a squared speed in [0, next] can be reached at point i + 1;
+  /// infinite if it is unbounded. It is bracketed by growing steps from `next`.
   double controllable(std::size_t i, double next, SpeedProfile::Backward& active) const {
     const auto width = [&](double x) { return allowed(i, x, next).width(); };
     const LargestSquare bound = largest_square(points_[i], limits_, trains_);
@@ -82,7 +82,8 @@ class ProfileSolver {
   std::span<const double> scales_;
 };
 
-/// Derivative, with respect to x, of the end of the interval of path accelerations that the limit `number` determines.
+/// Derivative, with respect to the squared speed x, of the path acceleration at which the limit of this number is
+/// attained.
 double end_slope(const PathPoint<double>& point, double x, const MotionLimits& limits, const DriveTrains* trains,
                  int number) {
   return end_of_interval(constant_point<Dual<1>>(point), Dual<1>::variable(x, 0), limits, trains, number).v[0];
@@ -135,8 +136,8 @@ ProfileWithDerivatives differentiate(const SpeedProfile& profile, std::span<cons
   for (std::size_t i = n; i-- > 0;) {
     const BindingLimit& upper = profile.backward[i].upper;
     BindingLimit lower = profile.backward[i].lower;
-    // If x_(i+1) has to be 0, both ends of the interval coincide for all x below the root; the limit of the
-    // deceleration determines the root.
+    // If the squared speed at the next point has to be 0, both ends of the interval of path accelerations coincide for
+    // all x below the root; the limit of the deceleration determines the root.
     if (upper.by == By::next && lower.by == By::floor) lower.by = By::deceleration;
     const double x = profile.controllable[i], step2 = 2 * profile.steps[i];
     if (upper.by == By::speed) {
@@ -146,7 +147,8 @@ ProfileWithDerivatives differentiate(const SpeedProfile& profile, std::span<cons
       });
       continue;
     }
-    // c_i is the value of x at which the upper and the lower end of the interval of u coincide.
+    // The largest controllable squared speed is the x at which the upper and the lower end of the interval of path
+    // accelerations coincide.
     const auto value = [&](const BindingLimit& bound) {
       if (bound.by == By::next) return (reachable[i + 1] - x) / step2;
       if (bound.by == By::floor) return Dual4(-x / step2);

@@ -31,18 +31,21 @@ struct BindingLimit {
 };
 
 struct SpeedProfile {
-  std::vector<double> steps;    ///< D_i: distances of consecutive points in the path parameter
-  std::vector<double> squares;  ///< squared speeds x_0 .. x_N [1/s^2 times the squared unit of the path]; x_0 = x_N = 0
-  std::vector<double> accelerations;  ///< path accelerations u_0 .. u_(N-1) in the intervals
-  double duration = 0;                ///< sum of 2 D_i / (sqrt x_i + sqrt x_(i+1)) [s]
-  std::vector<double> controllable;   ///< c_0 .. c_N: largest squared speeds from which the end can be reached
-  /// The limits that determine c_i: those on the upper and the lower end of u, or a speed bound in `upper` (`lower` is
-  /// then unused).
+  std::vector<double> steps;  ///< distances of consecutive points in the path parameter
+  /// Squared path speed x_i at each point [1/s^2 times the squared unit of the path]; 0 at the first and the last
+  /// point.
+  std::vector<double> squares;
+  std::vector<double> accelerations;  ///< constant path acceleration u_i in each interval between consecutive points
+  double duration = 0;                ///< duration of the motion [s]
+  /// For each point, the largest squared speed c_i from which rest at the end can be reached.
+  std::vector<double> controllable;
+  /// The limits that determine the controllable squared speed c_i of a point: those at the upper and at the lower end
+  /// of the interval of path accelerations, or a speed bound in `upper`; `lower` is then unused.
   struct Backward {
     BindingLimit upper, lower;
   };
-  std::vector<Backward> backward;     ///< limits that determine c_0 .. c_(N-1)
-  std::vector<BindingLimit> forward;  ///< the limit that determines u_i, for each i
+  std::vector<Backward> backward;  ///< limits that determine the controllable squared speed of each point but the last
+  std::vector<BindingLimit> forward;  ///< for each interval, the limit that determines its path acceleration
 };
 
 /// Computes the fastest profile from rest to rest. Throws DesignError if a pose cannot be held at rest or no limit

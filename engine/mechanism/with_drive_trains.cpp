@@ -50,7 +50,7 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
     return bare_->quantities(parameters, mode, limits, at);
   }
 
-  /// Null if the mechanism's voxel analysis does not support rotors; every cell is then tested individually.
+  /// Null if the mechanism's voxel analysis does not support rotors; the inverse kinematics then tests every cell.
   const Voxels* voxels() const override {
     return bare_->voxels() && (!has_inertia() || bare_->voxels()->supports_rotors()) ? this : nullptr;
   }

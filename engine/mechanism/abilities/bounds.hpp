@@ -25,7 +25,7 @@ struct BoundsOptions {
 struct VolumeBounds {
   double lower = 0, upper = 0;
   int innermost = 0;         ///< index, among MechanismInfo::coordinates, of the coordinate along which the columns run
-  std::size_t boxes = 0;     ///< number of boxes whose bounds are summed to the result
+  std::size_t boxes = 0;     ///< number of boxes into which the search box was divided; the bounds are sums over them
   std::size_t examined = 0;  ///< number of boxes examined, including those that were bisected
   bool stopped = false;
 
@@ -34,8 +34,9 @@ struct VolumeBounds {
 
 /// A box of poses, or a cylinder or sphere in it, as Cartesian product of intervals and balls.
 struct PoseSolid {
-  std::vector<std::array<double, 2>> ranges;  ///< of each coordinate; lower = upper fixes the coordinate
-  /// Coordinates of each ball: only the ellipsoid inscribed in the box of their ranges belongs to the solid.
+  std::vector<std::array<double, 2>> ranges;  ///< range of each coordinate; lower = upper fixes the coordinate
+  /// Indices of the coordinates of each ball: of the box of their ranges, only the inscribed ellipsoid belongs to the
+  /// solid.
   std::vector<std::vector<std::size_t>> balls = {};
 };
 
@@ -43,7 +44,8 @@ struct PoseSolid {
 struct PropertyResult {
   enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
-  std::string detail = {};  ///< name of the constraint or matrix that fails or is undecided; not_examined: the reason
+  /// Name of the constraint or matrix for which the property fails or is undecided; if it was not examined: the reason.
+  std::string detail = {};
   std::optional<Pose<double>> pose = {};  ///< a pose at which the property fails, or near which it is undecided
   /// The instant of the motion at which `pose` is attained [s]; std::nullopt for a box of poses.
   std::optional<double> time = {};
@@ -51,7 +53,7 @@ struct PropertyResult {
 
 struct PoseCertificate {
   PropertyResult feasible;
-  /// For the property that there is no parallel or serial singularity; not examined if a pose is infeasible.
+  /// Result for regularity, i.e. that there is no parallel or serial singularity; not examined if a pose is infeasible.
   PropertyResult regular;
   std::size_t boxes = 0;  ///< number of boxes examined
   bool stopped = false;
@@ -60,7 +62,7 @@ struct PoseCertificate {
 /// Result of the attempt to prove that no path leads from one pose to another.
 struct Separation {
   enum class Kind { boxes, signs, undecided };
-  /// What separates the poses: boxes without feasible poses, or different signs of a determinant.
+  /// What proves the separation: boxes without feasible poses, or different signs of a determinant at the two poses.
   Kind kind = Kind::undecided;
   std::string detail = {};  ///< Kind::signs: name of the matrix; Kind::undecided: the reason
   std::size_t boxes = 0;    ///< number of boxes examined
