@@ -17,7 +17,8 @@ ExactValues::ExactValues(const ProblemParts& parts) : parts_(parts) {
   if (parts.mechanism->columns()->supports_box()) columns.box = parts.plan.box();
   ProblemParts exact = parts;
   exact.plan.method = columns;
-  exact.with_rows = nullptr;  // these problems use the method of the study
+  // the problems with other rows of the catalogues would use the method of the study instead
+  exact.with_rows = nullptr;
   try {
     if (parts.built) {
       ProblemParts machine = parts.built->problem->parts();

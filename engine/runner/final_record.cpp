@@ -18,12 +18,13 @@
 namespace pkm {
 namespace {
 
-// Beginnings of notes, by which the notes of an earlier run are recognised and replaced.
+// Beginnings of the texts of notes. Notes of an earlier run are recognised by them and replaced.
 constexpr const char* kWideBounds = "certified bounds of the ";
 constexpr const char* kAlong = "along the motion ";
 constexpr const char* kReduced = "reduced by 0.1 %, the ";
 
-constexpr double kReduction = 1e-3;               // of the dimensions of a largest solid, as in kReduced
+// relative reduction of the dimensions of a largest solid before it is certified; kReduced states it in notes
+constexpr double kReduction = 1e-3;
 constexpr std::size_t kMaxSolidBoxes = 600'000;   // boxes examined per solid; takes some seconds
 constexpr std::size_t kMaxMotionBoxes = 200'000;  // time intervals examined per motion; takes some seconds
 

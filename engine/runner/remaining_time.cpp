@@ -132,7 +132,7 @@ std::optional<double> RemainingTime::update(std::size_t stage, std::int64_t left
     samples_.clear();
     bound_.reset();
   }
-  // As long as recorded evaluations are replayed, the beginning of the measurement moves with them.
+  // While recorded evaluations are replayed, no evaluation is made: postpone the beginning of the measurement.
   if (made == last_.made) begin_.seconds = made == begin_.made ? seconds : begin_.seconds;
   last_ = {seconds, made};
   const double window = std::max(kMinWindow, (seconds - begin_.seconds) / 3);

@@ -101,7 +101,8 @@ bool Run::run_stage(std::size_t index) {
     return false;
   }
   update_best(record.table, result.best_row);
-  // A multistart run that was not reproduced was restarted, and may be shorter than recorded.
+  // An unmerged multistart run whose recorded evaluations were not reproduced was restarted; the stage may then have
+  // fewer evaluations than recorded.
   const bool restarted = !warnings_.empty();
   if (input.recorded && !restarted && record.table.size() < input.recorded->size())
     throw ReplayMismatch("stage " + std::to_string(index + 1) + " ended after " + std::to_string(record.table.size()) +

@@ -49,7 +49,7 @@ RunOutcome Run::complete() {
   return outcome;
 }
 
-// The file is written before the optional final steps, which may take long.
+// Writes the file before the optional final steps, because these may take long.
 void Run::compute_final_results() {
   const StopScope stop([this] { return is_grace_period_over(); });
   try {

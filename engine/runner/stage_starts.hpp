@@ -34,8 +34,8 @@ std::vector<double> baseline_or_centre(const Study& study);
 /// design consists of the values of that study's variables.
 std::vector<StartDesign> distinct_best_designs(const StudyContents& contents, std::size_t limit);
 
-/// @return ranges of the objectives on the front found by earlier stages (or the best design's objectives), and its
-/// reference point; empty for a single objective
+/// @return for several objectives: their ranges on the front found by earlier stages (or the objectives of the best
+///         design), and the reference point of this front; empty for a single objective
 PreviousFront previous_front(const Study& study, const StudyContents& contents);
 
 }  // namespace pkm
