@@ -60,7 +60,7 @@ void add_shape(const SolidBox& box, Isosurface& surface) {
     for (std::size_t i = 0; i < 3; ++i) corner[i] += bits >> i & 1 ? box.half[i] : -box.half[i];
   }
   for (std::uint32_t i = 0; i < 3; ++i) {
-    // The bits of the axes u and v, which form a right-handed frame (u, v, i) with the axis i.
+    // u and v are the bits of the other two axes, such that (u, v, i) is a right-handed frame.
     const std::uint32_t u = 1U << (i + 1) % 3, v = 1U << (i + 2) % 3;
     for (const std::uint32_t side : {0U, 1U}) {
       const std::uint32_t a = first + side * (1U << i), b = a + (side ? u : v), c = a + (side ? v : u);

@@ -30,7 +30,7 @@ class Nodes {
   Index size{};  ///< number of nodes along each axis
 
   std::size_t number(const Index& n) const { return (n[0] * size[1] + n[1]) * size[2] + n[2]; }
-  /// Number of the cell that gives a node its margin.
+  /// Index of the cell whose margin is that of a node.
   std::size_t cell(const Index& n) const {
     return (nearest(n, 0) * cells_[1] + nearest(n, 1)) * cells_[2] + nearest(n, 2);
   }
@@ -41,7 +41,7 @@ class Nodes {
     return false;
   }
   double margin(const Index& n) const { return is_outer(n) ? -1 : margin_[cell(n)]; }
-  /// Centre of the cell that gives a node its margin.
+  /// Centre of the cell whose margin is that of a node.
   Point centre(const Index& n) const {
     Point at;
     for (std::size_t i = 0; i < 3; ++i) at[i] = grid_.centre(i, static_cast<std::int64_t>(nearest(n, i)));
@@ -129,7 +129,7 @@ class SurfaceBuilder {
   using Tetrahedron = std::array<const Corner*, 4>;
 
   void cut(Tetrahedron t, bool left_handed) {
-    // Move the feasible corners to the front; each swap of two corners changes the handedness.
+    // Sort the feasible corners of the tetrahedron to the front; each swap of two corners changes its handedness.
     std::size_t inside = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       if (!(t[i]->margin > 0)) continue;

@@ -133,7 +133,7 @@ std::vector<PathEdge> boundary_edges(const std::vector<MeshPolygon>& polygons) {
   std::ranges::sort(edges, {}, key);
   for (std::size_t k = 0; k < edges.size(); ++k)
     if (k + 1 < edges.size() && key(edges[k]) == key(edges[k + 1]))
-      ++k;  // skips both, because an edge and its reverse cancel
+      ++k;  // skip an edge and its reverse, which cancel because the edge is between two polygons
     else
       boundary.push_back(edges[k]);
   return boundary;

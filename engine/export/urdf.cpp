@@ -56,7 +56,7 @@ std::vector<TreeLink> tree_links(const std::vector<PlacedLink>& links) {
   return found;
 }
 
-/// An end of a capsule. It is stationary if it has the same position at the other pose.
+/// An end of a capsule. It is stationary if it has the same position at the second pose.
 struct End {
   Position point;
   bool is_stationary;

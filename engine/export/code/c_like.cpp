@@ -124,8 +124,8 @@ std::string forward_body_of_c(const Module& module, const std::string& locals, c
                               const std::string& inverse_of_next, const std::string& jacobian, const std::string& J,
                               const std::string& found) {
   const std::string n = std::to_string(module.coordinates.size());
-  // A step to a pose at which the inverse kinematics has no solution is halved. Near a solution, the steps become
-  // smaller until rounding errors dominate; then the iteration ends.
+  // Newton's method in the generated code: a step to a pose at which the inverse kinematics has no solution is halved.
+  // Near a solution, steps become smaller until rounding errors dominate; then the iteration ends.
   return "  " + locals + R"(
   real last = INFINITY;
   if (!)" +
