@@ -26,10 +26,10 @@ std::optional<Gain> gain_over(double baseline, double value, Direction direction
 /// @return std::nullopt if nothing has been evaluated
 std::optional<DesignRecord> best_so_far(const StudyContents& contents);
 
-/// Explains why a finished study found nothing.
+/// Explains why a finished study has found no useful design (no feasible one, or empty workspaces only).
 /// @param problem  the study's problem, used to evaluate designs again; null if this program cannot read the study's
 ///                 text: the diagnosis is then less detailed
-/// @return std::nullopt if the study found something, or has not finished
+/// @return std::nullopt if the study has found a useful design, or has not finished
 std::optional<Diagnosis> diagnose(const StudyContents& contents, const DesignProblem* problem);
 
 /// Counts the failed evaluations of all stages and finds the reasons of some.
@@ -37,8 +37,8 @@ std::optional<Diagnosis> diagnose(const StudyContents& contents, const DesignPro
 Failures collect_failures(const StudyContents& contents, const DesignProblem* problem);
 
 /// Label of the best evaluation in tables: "best"; "best so far" before the study's end; "compromise" for several
-/// objectives. If a finished study found nothing: "least infeasible", or "empty workspace" if designs are feasible but
-/// every workspace is empty.
+/// objectives. For a finished study without a feasible design: "least infeasible"; if designs are feasible but every
+/// workspace is empty: "empty workspace".
 std::string best_design_label(const StudyContents& contents);
 
 /// One sentence for each final design whose exact volume lies outside its certified bounds, which indicates a numerical

@@ -18,7 +18,7 @@ std::vector<std::vector<std::string>> point_labels(const ProblemRecord& problem,
 double hypervolume_of(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
   const std::vector<double>& reference = stage.front->reference;
   if (reference.empty()) return std::nan("");
-  std::vector<double> reference_point;  // all objectives minimised
+  std::vector<double> reference_point;  // scores of the reference point: maximised objectives with the opposite sign
   for (std::size_t k = 0; k < reference.size(); ++k)
     reference_point.push_back(problem.objectives[k].direction == Direction::maximise ? -reference[k] : reference[k]);
   return hypervolume(front.values, front.objectives, reference_point);
