@@ -117,7 +117,8 @@ void merge_non_dominated(const Scores& old, const Scores& fresh, const std::vect
   }
 }
 
-/// Calls work.template operator()<Front>(), where Front is the class above for this number of objectives.
+/// Calls work.template operator()<Front>(), where Front is RunningMinimum for two objectives, Staircase for three and
+/// MemberList for more.
 template <class Work>
 void dispatch_front_type(std::size_t objectives, const Work& work) {
   if (objectives == 2)

@@ -53,7 +53,7 @@ struct Generation {
   /// Maximum number of evaluations still to be made; nullopt: the evaluation limit of the stage minus the evaluations
   /// made.
   std::optional<std::int64_t> left = {};
-  /// True: reported without synchronising the MPI ranks, which are compared at the end of the stage only.
+  /// True: reported by this MPI rank alone. The ranks are compared at the end of the stage only.
   bool alone = false;
   const Front* front = nullptr;  ///< the Pareto front so far, with several objectives; otherwise null
 };
@@ -66,7 +66,7 @@ class Monitor {
   /// Reports a generation.
   /// @return false to stop the stage, which then ends with StopReason::interrupted
   virtual bool generation(const Generation& generation) = 0;
-  /// Called between generations.
+  /// Called between generations, to check for a stop request.
   /// @return false to stop the stage, which then ends with StopReason::interrupted
   virtual bool goes_on() { return true; }
   /// Shows a warning, which is one sentence, to the user.

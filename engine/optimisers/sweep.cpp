@@ -106,7 +106,8 @@ class Sweep final : public Optimiser {
   }
 
  private:
-  // The following two functions return false if the monitor stopped them before the last generation.
+  // Each of these two functions evaluates its grid. It returns false if the monitor stopped it before the last
+  // generation.
   bool one_at_a_time(const StageInput& input, SweepRecorder& recorder, EvaluationTable& table) const {
     const DesignSpace& space = input.problem.space();
     std::vector<double> centre(space.dimension());

@@ -77,7 +77,8 @@ class Nsga2Selection final : public SurvivorSelection {
 
   void select_by_fronts() {
     non_dominated_sort(scores_, front_index_);
-    std::vector<std::vector<std::size_t>> members;  // element k: the members of front k, as indices into feasible_rows_
+    // members of each front, by index of the front; a member is an index into feasible_rows_
+    std::vector<std::vector<std::size_t>> members;
     for (std::size_t i = 0; i < feasible_rows_.size(); ++i) {
       if (front_index_[i] >= members.size()) members.resize(front_index_[i] + 1);
       members[front_index_[i]].push_back(i);

@@ -48,7 +48,8 @@ bool MultistartMerger::append_and_report(const EvaluationTable& run_table, std::
   }
   const RankKey candidate = scalarised_->rank(row);
   if (best_of_start_.row < 0 || candidate < best_of_start_) best_of_start_ = candidate;
-  // With several objectives, the best row of the stage is the compromise of its front, which is set in finish().
+  // With several objectives, the best row of the stage is the compromise solution of its front, which finish()
+  // determines.
   if (best_.row < 0 || (scalarisation_.kind == Scalarisation::Kind::none && candidate < best_)) best_ = candidate;
   population_ = {best_of_start_.row};
   return input_.monitor.generation({.number = static_cast<std::int64_t>(row),

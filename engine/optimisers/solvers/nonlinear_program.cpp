@@ -58,7 +58,8 @@ void NonlinearProgram::evaluate_new_row(std::span<const double> u) {
   const DesignSpace& space = context_.problem.space();
   const std::size_t row = table_.extend(1);
   const auto design = table_.design(row);
-  // A coordinate of the start design is used as it is, without the rounding of a conversion.
+  // use the coordinates of the start design exactly, without rounding errors of a conversion to unit coordinates and
+  // back
   for (std::size_t i = 0; i < design.size(); ++i)
     design[i] = u[i] == start_unit_[i] ? start_design_[i] : space.from_unit(i, u[i]);
   context_.evaluator.evaluate(context_.problem, table_, row);

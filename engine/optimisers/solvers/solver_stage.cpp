@@ -99,7 +99,8 @@ class SolverStageRun {
   bool merge_and_check_stop() {
     if (ranks::size() > 1) {
       if (!is_rank_0()) {
-        // Rank 0 decides when to stop. The rate of queries is limited, because each costs a message.
+        // Only rank 0 decides when to stop; other ranks query its decision, not too often, because each query costs a
+        // message.
         const auto now = std::chrono::steady_clock::now();
         if (now - last_stop_query_ < std::chrono::milliseconds(100)) return !merger_.stopped();
         last_stop_query_ = now;
