@@ -39,7 +39,7 @@ CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size
 }
 
 /// Used if the study fixes the rotation: analyses the workspace on coarse voxels at several values of the rotation,
-/// within the range in which poses are feasible.
+/// within the range of it in which poses are feasible.
 /// @param fixed  index of the rotation in WorkspaceFields::fixed
 CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDesign& design, std::size_t fixed) {
   CouplingByRotation result;

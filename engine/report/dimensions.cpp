@@ -19,8 +19,8 @@ std::vector<double> end_distances(const std::vector<PlacedLink>& links) {
   return distances;
 }
 
-/// Rank of a distance as a dimension, of which the lowest is preferred. 0: along one link, 1: within one part, 2:
-/// between two parts.
+/// Rank of a distance between two link ends as a dimension of the drawing; the lowest rank is preferred. 0: the
+/// distance is along one link, 1: within one part, 2: between two parts.
 int preference(const std::vector<PlacedLink>& links, std::size_t from, std::size_t to) {
   if (from / 2 == to / 2) return 0;
   return links[from / 2].part == links[to / 2].part ? 1 : 2;

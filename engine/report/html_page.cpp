@@ -84,7 +84,7 @@ std::string html_page(const std::string& data) {
       {"{{style}}", assets.style}, {"{{data}}", data}, {"{{plotly}}", assets.plotly}, {"{{script}}", assets.script}};
   std::string page;
   std::string_view rest = assets.html;
-  // In the order in which the placeholders occur in the template.
+  // The list has the order in which the placeholders occur in the template.
   for (const auto& [placeholder, text] : placeholders) {
     const std::size_t at = rest.find(placeholder);
     page.append(rest.substr(0, at)).append(text);

@@ -23,11 +23,11 @@ struct PageStudy {
 
 /// A largest solid in the workspace of a design, from an objective, constraint or output of its study.
 struct ShownSolid {
-  std::string name;  ///< of the objective, constraint or output
+  std::string name;  ///< name of the objective, constraint or output that measures the solid
   SolidShape shape;
   Solid solid;
-  std::vector<std::string> dimension_names;  ///< one per dimension
-  double volume;                             ///< area over two axes
+  std::vector<std::string> dimension_names;  ///< names of the solid's dimensions, one for each
+  double volume;                             ///< volume of the solid, or its area if it has two axes
 };
 
 /// A design with its workspace.
@@ -37,8 +37,8 @@ struct ShownDesign {
   std::optional<WorkspaceFields> workspace;  ///< workspace of the design; std::nullopt if it has none, see `problem`
   /// For each fixed coordinate, the range around its value in which some poses of the workspace remain feasible.
   std::vector<std::array<double, 2>> fixed_range = {};
-  std::string problem = {};             ///< why there is no workspace
-  std::vector<ShownSolid> solids = {};  ///< over the coordinates of the workspace
+  std::string problem = {};             ///< reason why the design has no workspace; "" if it has one
+  std::vector<ShownSolid> solids = {};  ///< largest solids in the workspace, if the study measures them
 };
 
 /// Resolution at which a page samples its designs.

@@ -47,7 +47,8 @@ Json surface_json(const ShownDesigns* shown, const ShownDesign* design, const Wo
   return json;
 }
 
-/// The centre and the extents by axis, the axes of each ball (see SolidShape), and what is printed about the solid.
+/// JSON of a solid: its centre, its extents by axis, the axes of each ball (see SolidShape), and the text that
+/// describes it.
 Json solid_json(const ShownSolid& shown) {
   Json json = {{"name", shown.name}, {"shape", shown.shape.name()}, {"volume", shown.volume}};
   for (std::size_t axis = 0; axis < shown.shape.axes(); ++axis) {
@@ -67,6 +68,7 @@ Json axis_json(const WorkspaceAxis& axis) {
   return json;
 }
 
+/// JSON of the workspace of a design.
 /// @param shown, design  null if only the feasible cells are known
 Json workspace_json(const std::string& name, const WorkspaceFields& found, const ShownDesigns* shown,
                     const ShownDesign* design) {
