@@ -42,7 +42,8 @@ struct ProblemRecord {
   std::string mechanism;  ///< name of the mechanism, for example "4ppa-2par"
   std::vector<ParameterRecord> parameters;
   std::vector<Variable> variables;
-  std::optional<std::vector<ChoiceName>> choices;  ///< of all variables that are choices
+  /// Names of the values of those variables that are choices from catalogues; std::nullopt: there are none.
+  std::optional<std::vector<ChoiceName>> choices;
   std::vector<ObjectiveInfo> objectives;
   std::vector<MarginInfo> margins;
   std::vector<OutputInfo> reports;
