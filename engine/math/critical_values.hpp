@@ -23,7 +23,7 @@ template <class S>
 struct CriticalValue {
   S at;
   bool root_below = false;  ///< the measure has a square-root singularity when `at` is approached from below
-  bool root_above = false;  ///< the measure has one when `at` is approached from above
+  bool root_above = false;  ///< the measure has a square-root singularity when `at` is approached from above
 };
 
 /// A root t(p) of f(p, t) = 0 with its derivatives with respect to the design parameters p, by the implicit function

@@ -82,7 +82,8 @@ class Staircase {
   }
 
  private:
-  /// x non-decreasing, y decreasing; the first and the last are sentinels on the lines through the reference point.
+  /// The non-dominated points, with x non-decreasing and y decreasing; the first and the last element are sentinels on
+  /// the lines through the reference point.
   std::vector<Point<2>> steps_;
   double area_ = 0;
 };

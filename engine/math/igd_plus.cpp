@@ -16,7 +16,7 @@ double igd_plus(std::span<const double> points, std::size_t objectives, std::spa
   if (front.empty()) throw std::invalid_argument("IGD+: the front is empty; expected at least one point");
   double sum = 0;
   for (std::size_t z = 0; z < front.size(); z += objectives) {
-    // square of the minimum of the modified distance of front point z from the points
+    // square of the minimum, over the points, of the modified distance from the front point z
     double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t a = 0; a < points.size(); a += objectives) {
       double square = 0;

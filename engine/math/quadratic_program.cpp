@@ -39,7 +39,7 @@ QuadraticSolution solve(const QuadraticProgram& program) {
       min_error = error;
       best = {x, multipliers};
     } else if (gap < kGap) {
-      break;  // rounding errors grow
+      break;  // stop: from here on, rounding errors only increase the error of the iterates
     }
     if (gap < kGap && residual < kResidual) break;
     const Eigen::VectorXd ratio = multipliers.cwiseQuotient(slack);

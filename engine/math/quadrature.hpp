@@ -208,7 +208,7 @@ void refine(const F& f, double tolerance, const Quadrature& settings, int depth,
   cell.integral = sum;
 }
 
-/// Integral of f over one subinterval. @param tolerance  absolute
+/// Integral of f over one subinterval. @param tolerance  absolute error that is accepted
 template <class S, class F>
 Integral<S> integrate_interval(const F& f, const Subinterval<S>& interval, double tolerance,
                                const Quadrature& settings = {}) {
@@ -219,7 +219,7 @@ Integral<S> integrate_interval(const F& f, const Subinterval<S>& interval, doubl
 }
 
 /// Integral of f over several subintervals.
-/// @param tolerance  relative to the total
+/// @param tolerance  error that is accepted, relative to the total integral
 /// @param floor      absolute error that is always accepted: the error due to the rounding of f, which bisection cannot
 ///                   reduce
 /// @param scratch    scratch memory
