@@ -13,7 +13,8 @@ struct DesignMotion : NamedMotion {
   std::vector<std::size_t> parameters = {};
   /// The motion for all parameters of the mechanism; empty if it depends on none. Throws DesignError if there is none.
   std::function<std::shared_ptr<const Motion>(std::span<const double>)> of_design = nullptr;
-  Unsupported why_no_derivatives = {};  ///< by these parameters; empty: it has derivatives
+  /// Reason why the motion has no derivatives with respect to these parameters; empty: it has derivatives.
+  Unsupported why_no_derivatives = {};
 
   /// The motion of a design, given by all parameters of the mechanism. Throws DesignError if it has none.
   std::shared_ptr<const Motion> at(std::span<const double> design) const {
@@ -24,9 +25,9 @@ struct DesignMotion : NamedMotion {
 /// A sample of a motion with its derivatives by the design. Velocity and acceleration are those at a fixed fraction of
 /// the motion's duration, not at a fixed time.
 struct DualMotionSample {
-  Dual4 time;                                ///< [s]
-  Pose<Dual4> pose;                          ///< [m, rad]
-  AxisVector<Dual4> velocity, acceleration;  ///< time derivatives of the pose
+  Dual4 time;                                ///< time of the sample [s]
+  Pose<Dual4> pose;                          ///< coordinates of the pose [m, rad]
+  AxisVector<Dual4> velocity, acceleration;  ///< first and second time derivative of the pose
 };
 
 /// Samples of the motion of a design, as sample() takes them. The derivatives are central differences of fourth order;

@@ -10,9 +10,9 @@ namespace pkm {
 namespace {
 
 constexpr std::size_t kSpeedSamples = 10'000;
-constexpr double kAtRest = 1e-6;         // relative to the maximum speed
-constexpr double kInstant = 1e-6;        // relative to the duration: shorter pauses are ignored
-constexpr double kStopAccuracy = 1e-15;  // relative to the duration
+constexpr double kAtRest = 1e-6;   // speed, relative to the maximum speed, below which the platform counts as at rest
+constexpr double kInstant = 1e-6;  // duration, relative to that of the motion; shorter pauses are ignored
+constexpr double kStopAccuracy = 1e-15;  // accuracy of the times of stops, relative to the duration of the motion
 
 }  // namespace
 
@@ -46,7 +46,8 @@ std::vector<MovePeriod> find_moves(const Motion& motion) {
       begin = stop;
     }
   }
-  // Near a stop of an instant, the speed can round to 0.
+  // Near an instantaneous stop, rounding can make the speed 0 at several times: replace the resulting short pause by
+  // its middle.
   const double instant = kInstant * duration;
   for (std::size_t k = 0; k < moves.size(); ++k) {
     if (k == 0 && moves[k].begin < instant) moves[k].begin = 0;

@@ -22,10 +22,11 @@ struct InputSample {
 
 /// A motion at one time.
 struct MotionSample {
-  double time = 0;                            ///< [s]
-  Pose<double> pose;                          ///< [m, rad]
-  AxisVector<double> velocity, acceleration;  ///< time derivatives of the pose
-  std::vector<InputSample> inputs = {};       ///< in the order of MechanismInfo::inputs; empty: constant default values
+  double time = 0;                            ///< time since the start of the motion [s]
+  Pose<double> pose;                          ///< coordinates of the pose [m, rad]
+  AxisVector<double> velocity, acceleration;  ///< first and second time derivative of the pose
+  /// Values of MechanismInfo::inputs, in their order; empty: constant default values.
+  std::vector<InputSample> inputs = {};
 };
 
 /// A motion, given by a function of time and by an equivalent expression graph. Immutable and thread-safe.
@@ -37,7 +38,7 @@ class Motion {
   Motion(double duration, At at, Write write) : duration_(duration), at_(std::move(at)), write_(std::move(write)) {}
   /// Duration [s], > 0; the motion begins at time 0.
   double duration() const { return duration_; }
-  /// @param time  in [0, duration()]
+  /// Pose, velocity and acceleration at a time. @param time  in [0, duration()]
   MotionSample at(double time) const { return at_(time); }
   /// Adds the coordinates of the pose to a graph, as expressions of the time in [0, duration()].
   std::vector<expression::Node> write(TimeGraph& to) const;

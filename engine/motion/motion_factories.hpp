@@ -14,8 +14,8 @@ namespace pkm {
 /// A pause, followed by a rest-to-rest move on a straight line in the space of the coordinates.
 struct Move {
   double wait = 0;        ///< pause before the move [s]
-  AxisVector<double> to;  ///< pose at its end
-  double duration = 0;    ///< [s], > 0
+  AxisVector<double> to;  ///< pose at the end of the move
+  double duration = 0;    ///< duration of the move, > 0 [s]
 };
 
 /// A sequence of moves, at rest at each point.
@@ -25,10 +25,10 @@ std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, co
 
 /// Upper bounds of peak speeds and accelerations of a move, for the position and for each angle; infinite: unlimited.
 struct PeakRates {
-  double acceleration = std::numeric_limits<double>::infinity();          ///< [m/s^2]
-  double angular_acceleration = std::numeric_limits<double>::infinity();  ///< [rad/s^2]
-  double speed = std::numeric_limits<double>::infinity();                 ///< [m/s]
-  double angular_speed = std::numeric_limits<double>::infinity();         ///< [rad/s]
+  double acceleration = std::numeric_limits<double>::infinity();  ///< maximum acceleration of the position [m/s^2]
+  double angular_acceleration = std::numeric_limits<double>::infinity();  ///< maximum angular acceleration [rad/s^2]
+  double speed = std::numeric_limits<double>::infinity();                 ///< maximum speed of the position [m/s]
+  double angular_speed = std::numeric_limits<double>::infinity();         ///< maximum angular speed [rad/s]
 };
 
 /// The shortest duration [s] of a move that satisfies the limits; 0 if no limited coordinate moves.
@@ -57,14 +57,15 @@ std::shared_ptr<const Motion> oscillation(const SpaceAxes& axes, const AxisVecto
 struct PickAndPlace {
   SpaceAxes axes;
   AxisVector<double> start;
-  double lift = 0.025, reach = 0.305;  ///< [m]
-  double lift_time = 0.1;              ///< T_v [s], > 0
-  double reach_time = 0.3;             ///< T_h [s], > 0
-  double overlap = 0;                  ///< o [s], in [0, min(T_v, T_h)]; 0: rest at both corners of the path
-  double direction = 0;                ///< d [rad], from x towards y
-  double turn = 0;                     ///< [rad]
-  double wait = 0;                     ///< pause after the movement in each direction [s]
-  bool back = false;                   ///< true: the cycle includes the return along the same path
+  double lift = 0.025, reach = 0.305;  ///< height of the lift, and length of the horizontal line [m]
+  double lift_time = 0.1;              ///< duration T_v of the lift and of the lowering, > 0 [s]
+  double reach_time = 0.3;             ///< duration T_h of the horizontal movement, > 0 [s]
+  /// Overlap o of consecutive movements [s], in [0, min(T_v, T_h)]; 0: rest at both corners of the path.
+  double overlap = 0;
+  double direction = 0;  ///< direction d of the horizontal movement: angle from the x axis towards the y axis [rad]
+  double turn = 0;       ///< rotation of the platform during the horizontal movement [rad]
+  double wait = 0;       ///< pause after the movement in each direction [s]
+  bool back = false;     ///< true: the cycle includes the return along the same path
   TimeLaw law = TimeLaw::quintic;
 };
 std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);

@@ -10,8 +10,9 @@ namespace {
 
 constexpr std::size_t kPanels =
     480;  // intervals of the composite quadrature; a multiple of 3, for speeds with kinks at thirds
-constexpr double kFromStop = 1e-7;  // relative to the length: distance from an end at which derivatives are computed
-constexpr double kTimeAccuracy = 1e-15;  // relative to the duration of the move
+// distance from the ends, relative to the length of the path, at which derivatives are computed instead of at the ends
+constexpr double kFromStop = 1e-7;
+constexpr double kTimeAccuracy = 1e-15;  // accuracy of times, relative to the duration of the move
 
 }  // namespace
 

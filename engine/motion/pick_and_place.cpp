@@ -10,8 +10,8 @@ namespace {
 /// @param along  horizontal displacement and rotation over the whole movement
 MotionSample sample_way(const PickAndPlace& cycle, double time, double t, const AxisVector<double>& from,
                         const AxisVector<double>& along) {
-  const double reach_begins = cycle.lift_time - cycle.overlap;                     // t_h
-  const double lowering_begins = reach_begins + cycle.reach_time - cycle.overlap;  // t_d
+  const double reach_begins = cycle.lift_time - cycle.overlap;                     // time t_h of PickAndPlace
+  const double lowering_begins = reach_begins + cycle.reach_time - cycle.overlap;  // time t_d of PickAndPlace
   const PathState up = evaluate(cycle.law, t, cycle.lift_time, cycle.lift);
   const PathState down = evaluate(cycle.law, t - lowering_begins, cycle.lift_time, cycle.lift);
   const PathState s = evaluate(cycle.law, t - reach_begins, cycle.reach_time, 1);

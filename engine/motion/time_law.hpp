@@ -23,7 +23,7 @@ struct PathState {
 };
 
 /// Distance, speed and acceleration of a move at a time. Before its start and after its end, the move is at rest.
-/// @param time  since its start
+/// @param time  time since the start of the move [s]
 PathState evaluate(TimeLaw law, double time, double duration, double distance);
 
 /// The travelled fraction of a move, in [0, 1], as an expression of the time.
