@@ -22,7 +22,7 @@ struct PlacedLink {
 
 /// Converts obstacles to capsules, to draw them like links: a capsule is unchanged, a box becomes its twelve edges.
 inline std::vector<PlacedLink> drawn_obstacles(const Obstacles& obstacles) {
-  constexpr double kEdgeRadius = 0.02;  // relative to the smallest half size of the box
+  constexpr double kEdgeRadius = 0.02;  // radius of the drawn edges, relative to the smallest half size of the box
   std::vector<PlacedLink> drawn;
   for (const Obstacle& obstacle : obstacles) {
     const auto* const box = std::get_if<SolidBox>(&obstacle.shape);
