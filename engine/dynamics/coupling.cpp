@@ -7,7 +7,8 @@
 namespace pkm {
 namespace {
 
-/// @tparam N number of rows, or Eigen::Dynamic
+/// See extreme_eigenvectors().
+/// @tparam N  number of rows, or Eigen::Dynamic
 template <int N>
 std::optional<ExtremeEigenvectors> extreme(std::span<const double> elements, int n) {
   constexpr int kMax = N == Eigen::Dynamic ? static_cast<int>(ExtremeEigenvectors::kMax) : N;

@@ -41,7 +41,7 @@ Matrix<S, 4, 4> matrix_of(const JointInertia<S>& elements) {
 /// Unit eigenvectors of the smallest and of the largest eigenvalue of a symmetric matrix; undefined if an element is
 /// not finite.
 struct ExtremeEigenvectors {
-  static constexpr std::size_t kMax = 8;  ///< rows
+  static constexpr std::size_t kMax = 8;  ///< maximum number of rows of the matrix
   std::array<double, kMax> smallest{}, largest{};
 };
 /// @param elements n x n, row-major; n at most ExtremeEigenvectors::kMax
