@@ -102,7 +102,7 @@ class CycleTime final : public Quantity {
   DesignMotion motion_;
   FastestLaw law_;
   std::size_t nodes_;
-  std::shared_ptr<const MovesOfMotion> moves_;  ///< of the study's own parameters
+  std::shared_ptr<const MovesOfMotion> moves_;  ///< moves of the motion, if the motion does not depend on the design
   std::string mode_;
   Wrench<double> wrench_;
   Unsupported why_no_derivatives_;

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// The last solid of a thread: value, derivatives and other blocks of derivatives use the same one.
+/// The solid that a thread found last: the value of a design and all blocks of its derivatives use the same solid.
 struct SolidScratch {
   const Quantity* owner = nullptr;
   std::vector<double> parameters;

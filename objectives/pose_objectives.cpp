@@ -23,7 +23,7 @@ std::string name_of(const PoseQuantity& quantity) {
   return name;
 }
 
-/// Range of the values: ", in [0, 1]"; "" if it is unbounded.
+/// Text with the range of a quantity's values, such as ", in [0, 1]"; "" if it is unbounded.
 std::string range_text(const PoseQuantity& quantity) {
   if (!std::isfinite(quantity.lower) || !std::isfinite(quantity.upper)) return {};
   return ", in [" + shortest(quantity.lower) + ", " + shortest(quantity.upper) + "]";
@@ -56,7 +56,8 @@ std::vector<OptionSpec> options_of(const PoseQuantity& quantity, bool with_stati
   return options;
 }
 
-/// @param statistic  fixed statistic; "": given by the option `statistic`
+/// Catalogue entry for a statistic of a pose quantity.
+/// @param statistic  the statistic, such as "mean"; "": the option `statistic` selects it
 ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, const std::string& meaning,
                      Direction direction, const std::string& statistic) {
   return {

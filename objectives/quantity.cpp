@@ -23,7 +23,7 @@ const PoseQuantity& quantity_of(const EntryContext& context) {
   return quantity;
 }
 
-/// "minimum", "5 % quantile".
+/// A statistic in words, such as "minimum" or "5 % quantile".
 std::string words_for(const std::string& statistic) {
   if (statistic[0] == 'p') return statistic.substr(1) + " % quantile";
   if (statistic == "std") return "standard deviation";

@@ -74,10 +74,11 @@ class SizeMeasure final : public Quantity {
 
   std::string name_, mode_;
   Measure measure_;
-  std::optional<SampledMotion> motion_;  ///< empty: over the workspace
+  /// The motion along which poses are tested; std::nullopt: the poses of the workspace.
+  std::optional<SampledMotion> motion_;
 };
 
-/// @param what  "base area of the box of all links"
+/// @param what  description of the measure, such as "base area of the box of all links"
 ObjectiveEntry size_entry(const std::string& name, const std::string& what, const std::string& unit, Measure measure) {
   OptionSpec motion = motion_option(), samples = samples_option();
   motion.required = false;

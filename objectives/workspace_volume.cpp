@@ -6,7 +6,8 @@
 namespace pkm {
 namespace {
 
-/// From 0 to the volume of the study's box, if there is one and no fixed coordinate is integrated over.
+/// Possible values of the volume: from 0 to the volume of the study's box, if there is one and no fixed coordinate is
+/// integrated over.
 Range range_of(const EntryContext& context) {
   Range range{.lower = 0};
   const WorkspacePlan& plan = context.plan;
