@@ -13,7 +13,7 @@ namespace {
 
 struct Bounds {
   std::optional<double> max;
-  double min = 0;  ///< used if there is no max
+  double min = 0;  ///< lower bound of the formula; used if there is no upper bound
 };
 
 Bounds bounds(const Options& options) {
