@@ -41,7 +41,7 @@ Json support_json(const Entry& entry, const std::vector<OptionSpec>& specs, cons
   Json json = {{"name", mechanism.info().name}, {"serves", !refusal}, {"unit", nullptr}, {"reason", nullptr}};
   if (refusal) {
     json["reason"] = *refusal;
-    // If the entry needs options, its unit depends on them and stays null.
+    // If the entry has required options, its unit depends on them and stays null.
   } else if (entry.unit && !needs_options(specs)) {
     WorkspacePlan plan;
     plan.limits = no_limits(mechanism.info());

@@ -38,7 +38,7 @@ void report_volume(const Target& target, const WorkspacePlan& plan, const Volume
   out.add("seconds", seconds, formatted("%.2f", seconds));
 }
 
-/// Why the requested gap was not reached; "" if it was.
+/// Sentence that explains why the requested relative gap of the bounds was not reached; "" if it was reached.
 std::string shortfall(const VolumeBounds& bounds, double requested_gap, std::int64_t max_boxes) {
   if (bounds.gap() <= requested_gap) return "";
   if (bounds.stopped) return "stopped before the requested gap was reached";
@@ -97,9 +97,9 @@ PoseSolid solid_of(const Target& target, const WorkspacePlan& plan, const std::s
 
 /// A property to be proven for all poses of a solid or a motion.
 struct PosesClaim {
-  std::string key;       ///< in JSON and in the text
-  std::string if_holds;  ///< printed if it is proven
-  std::string property;  ///< the adjective for the error message
+  std::string key;       ///< name of the property in JSON and in the text
+  std::string if_holds;  ///< word that is printed if the property is proven
+  std::string property;  ///< adjective for the property in the error message
 };
 
 /// Adds the result of one proof to the output.
@@ -152,7 +152,7 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   const RigorousBounds& bounds =
       require_capability(target.mechanism->bounds(), "certify", "formulas for interval arithmetic", info);
   const double gap = parse_gap(arguments.gap, "--gap");
-  std::string region;  // of poses to be certified
+  std::string region;  // the set of poses to be certified: "box", "cylinder", "sphere" or "motion"
   for (const auto& [kind, is_given] : {std::pair("box", !arguments.box.empty()),
                                        {"cylinder", !arguments.cylinder.empty()},
                                        {"sphere", !arguments.sphere.empty()},

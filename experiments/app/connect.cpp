@@ -21,7 +21,7 @@ namespace pkm {
 namespace {
 
 struct ConnectArguments : DesignArguments, ModeArguments, GridArguments {
-  std::vector<std::string> start, end;  ///< of --from and --to
+  std::vector<std::string> start, end;  ///< coordinates of the two poses: values of --from and --to
   std::string motion;
   std::int64_t boxes = 1000000;
   int threads = 0;
@@ -93,12 +93,12 @@ std::string motion_text(const MechanismInfo& info, const std::vector<Pose<double
   return text + "]\n";
 }
 
-/// The answer to the question whether there is a path.
+/// Result for the question whether there is a path between the two poses.
 struct Answer {
   std::string verdict;  ///< "yes", "no" or "undecided"
   std::string reason;
-  std::vector<Pose<double>> points;  ///< of the path, if one was found
-  std::size_t boxes = 0;             ///< examined by interval arithmetic
+  std::vector<Pose<double>> points;  ///< points of the path, if one was found
+  std::size_t boxes = 0;             ///< number of boxes that interval arithmetic examined
 };
 
 /// Certifies the paths one after the other, until one is proven to be feasible and regular everywhere.

@@ -13,9 +13,10 @@ namespace pkm {
 struct FastestArguments {
   bool fastest = false;
   std::string law = "optimal";
-  std::string motor;                                                   ///< name of a motor; "": the motors of the study
-  std::size_t nodes = 2000;                                            ///< per move
-  std::vector<std::string> peak_speed, peak_acceleration, peak_force;  ///< lists of joint=value
+  std::string motor;         ///< name of a motor; "": the motors of the study
+  std::size_t nodes = 2000;  ///< number of intervals into which each move is divided
+  /// Values of --peak-speed, --peak-acceleration and --peak-force: lists of joint=value.
+  std::vector<std::string> peak_speed, peak_acceleration, peak_force;
   std::string tool_speed, tool_acceleration;
 };
 void add_fastest_options(CLI::App& command, FastestArguments& arguments);

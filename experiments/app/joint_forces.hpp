@@ -34,8 +34,8 @@ void report_reactions(const Reactions& reactions, Printout& out);
 /// @param pose  the pose, at which the mechanism must be assembled
 void report_rods(const Target& target, const std::string& mode, const Pose<double>& pose, const Reactions& reactions,
                  Printout& out);
-/// Adds the extreme values of the same quantities along a trajectory to the output and to out.json["summary"]. The
-/// trajectory must have reactions.
+/// Adds the extreme values of the rods' axial forces, stresses and buckling loads along a trajectory to the output and
+/// to out.json["summary"]. The trajectory must have reactions.
 void report_rods(const Target& target, const std::string& mode, const Trajectory& trajectory, Printout& out);
 
 /// Adds the peak and root-mean-square magnitudes of forces and couples along a trajectory to the output and to

@@ -19,7 +19,7 @@ std::string option_of(SolidKind kind) {
   return kind == SolidKind::cylinder ? "--largest-cylinder" : "--largest-sphere";
 }
 
-/// The margins of --least: values of quantities, less their minimum.
+/// The requirements of --least as margins: value of a quantity minus its required minimum.
 std::vector<ReportMargin> minimum_values(const SolidArguments& arguments, const Mechanism& mechanism) {
   std::vector<const PoseQuantity*> quantities;
   std::vector<Assignable> known;
@@ -155,7 +155,8 @@ void report_solids(const std::vector<RequestedSolid>& requested, const Target& t
     json["volume"] = found.volume;
     json["unit"] = unit;
     rows.push_back({unit == "m^2" ? "area" : "volume", number(found.volume, unit)});
-    std::vector<std::string> centre, places;  // of the option of `certify`
+    // "coordinate=value" for the centre; arguments of the option of `certify`, see `rows`
+    std::vector<std::string> centre, places;
     const SolidShape& shape = finder->spec().shape;
     for (std::size_t axis = 0; axis < shape.axes(); ++axis) {
       const std::string& coordinate =

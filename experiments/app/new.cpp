@@ -125,7 +125,7 @@ std::string bound(double value, const Parameter& p) {
   return shortest(std::clamp(std::stod(formatted("%.2g", value)), p.lower, p.upper));
 }
 
-/// Parameters that can be varied (positive default value, range not empty), lengths first.
+/// Parameters that can become variables (positive default value, range not empty), lengths first.
 std::vector<const Parameter*> candidates(const std::vector<Parameter>& parameters) {
   std::vector<const Parameter*> all;
   for (const bool length : {true, false})

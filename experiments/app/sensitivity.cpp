@@ -46,7 +46,8 @@ std::vector<double> tolerances(const MechanismInfo& info, const std::vector<std:
     for (const Parameter& p : info.parameters)
       each.push_back(p.unit == "m" ? length.value_or(0) : p.unit == "rad" && !length ? *angle : 0);
   } else {
-    std::vector<Assignable> known;  // a tolerance is not subject to the bounds of its parameter
+    // names, units and ranges of the tolerances; a tolerance is not subject to the bounds of its parameter
+    std::vector<Assignable> known;
     for (const Parameter& p : info.parameters) known.push_back({p.name, p.unit});
     each = parse_some_assignments(lists, place.key, known);
   }

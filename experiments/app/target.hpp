@@ -58,8 +58,8 @@ struct MotionArguments : ModeArguments {
 /// Parses the arguments. Rates that are not given are 0; inputs have their default values.
 MotionSample parse_motion(const Mechanism& mechanism, const MotionArguments& arguments);
 
-/// Returns a capability of the mechanism that a command needs. Throws ConfigError if the mechanism does not have it
-/// (null).
+/// Returns a capability of the mechanism that a command needs. Throws ConfigError if the mechanism does not have it,
+/// i.e. if `capability` is null.
 /// @param what  name of the capability, for the message
 template <class Capability>
 const Capability& require_capability(const Capability* capability, const std::string& command, const std::string& what,

@@ -9,7 +9,7 @@ namespace {
 
 using generic::ToleranceViolation;
 
-/// A tolerance in the unit in which people read it, with four digits, rounded down: "+-0.1181 mm".
+/// Text of a tolerance in a unit that suits its size, with four digits, rounded down: "+-0.1181 mm".
 std::string tolerance_text(double tolerance, const std::string& si_unit) {
   const DisplayUnit unit = display_unit(si_unit);
   double value = tolerance / unit.size;
@@ -20,7 +20,7 @@ std::string tolerance_text(double tolerance, const std::string& si_unit) {
   return "+-" + formatted("%.4g", value) + (unit.name == "1" ? "" : " " + unit.name);
 }
 
-/// A value in the unit in which people read it, with seven digits.
+/// Text of a value in a unit that suits its size, with seven digits.
 std::string value_text(double value, const std::string& si_unit) {
   const DisplayUnit unit = display_unit(si_unit);
   return formatted("%.7g", value / unit.size) + (unit.name == "1" ? "" : " " + unit.name);

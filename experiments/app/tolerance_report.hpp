@@ -16,14 +16,15 @@ class ToleranceReport {
 
   void add_to(Printout& out) const;
   CsvTable table() const;
-  /// Why the certified tolerances are smaller than requested; "" if they are not.
+  /// Sentence that explains why the certified tolerances are smaller than requested: why the gap to the smallest
+  /// violation is larger than `gap`, or that the design itself fails; "" if they are not.
   std::string shortfall(double gap, std::int64_t max_boxes) const;
 
  private:
   bool design_fails() const { return found_.violation && found_.violation->scale == 0; }
-  /// The tolerance of a parameter [SI], not rounded up.
+  /// The tolerance of parameter i at a scale [SI], rounded down.
   double tolerance(std::size_t i, double scale) const { return rounding::product_down(scale, proportions_.sizes[i]); }
-  /// The tolerances at a scale: a number if all are equal, otherwise relative to those of the table.
+  /// Text of the tolerances at a scale: a number if all are equal, otherwise a factor of those in the table.
   std::string text_of(double scale) const;
   std::string relative_text(double scale) const;
   Json by_name(double scale) const;

@@ -30,7 +30,7 @@ struct TolerancesArguments : DesignArguments, ModeArguments, TableOutput {
   int threads = 0;
 };
 
-/// An entry of --of: NAME or NAME=SIZE.
+/// An entry of the list --of: NAME or NAME=SIZE.
 struct Deviation {
   std::string name, size;
 };
@@ -49,9 +49,10 @@ std::vector<Deviation> split_deviations(const std::vector<std::string>& lists) {
   return all;
 }
 
-constexpr double kDefaultSize = 1e-3;  // of the tolerances of lengths, relative to each other [m]
+// default size of the tolerance of a length [m]; only the ratios of the sizes matter
+constexpr double kDefaultSize = 1e-3;
 
-/// The size [SI] of the tolerance of a parameter, for the proportions.
+/// The size [SI] of a parameter's tolerance; the ratios of the tolerances are those of their sizes.
 double size_of(const Deviation& deviation, const Parameter& parameter) {
   const SourceLocation place{"", 0, "--of"};
   if (deviation.size.empty() && parameter.unit == "m") return kDefaultSize;
@@ -73,8 +74,8 @@ std::optional<SourceText> description_of(const Target& target, const std::string
   return SourceText{read_text_file(name, "a mechanism in TOML"), name};
 }
 
-/// The parameters of single limbs for --copies: of every limb that uses them, those that --of names, by default all
-/// lengths.
+/// For --copies, the parameters of single limbs that deviate independently: of every limb, those of its parameters that
+/// --of names, by default all lengths.
 std::vector<std::string> copied_parameters(const TolerancesArguments& arguments, const Target& target) {
   const MechanismInfo& info = target.info();
   const std::vector<std::string> given = assigned_names(arguments.of);
@@ -112,7 +113,8 @@ Target with_limb_parameters(const Session& session, const DesignArguments& given
   return target;
 }
 
-/// The entries of --of, to which those of single limbs are added for --copies, with the sizes of the common parameters.
+/// The entries of --of and, for --copies, an entry for each parameter of a single limb, with the size of the common
+/// parameter.
 std::vector<std::string> with_copies(std::vector<std::string> of, const std::vector<std::string>& copied) {
   if (of.empty()) return of;
   const std::vector<Deviation> given = split_deviations(of);
@@ -123,7 +125,8 @@ std::vector<std::string> with_copies(std::vector<std::string> of, const std::vec
   return of;
 }
 
-/// The parameters that deviate: those of --of, by default all lengths, as far as poses depend on them.
+/// The parameters that deviate, with the sizes of their tolerances: those of --of, by default all lengths; only
+/// parameters on which poses depend.
 ToleranceProportions proportions_of(const Target& target, const std::vector<std::string>& of) {
   const SourceLocation place{"", 0, "--of"};
   const std::vector<Parameter>& known = target.info().parameters;
@@ -151,7 +154,7 @@ ToleranceProportions proportions_of(const Target& target, const std::vector<std:
   return proportions;
 }
 
-/// Refuses any yield but 1, which is the only one that a certified tolerance has.
+/// Throws ConfigError unless the yield is 1, the only one that a certified tolerance has.
 void check_yield(const std::string& text) {
   if (text.empty() || parse_number(text, "--yield", "1") == 1) return;
   throw ConfigError({"", 0, "--yield"}, text,

@@ -70,8 +70,8 @@ void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
   expect_surface(arguments, names);
 }
 
-/// The fields of exact errors at feasible poses; empty unless one of them is to be drawn, because they take longer than
-/// all other fields.
+/// The fields of exact errors (accuracy_exact, ..) at feasible poses; empty unless one of them is to be drawn, because
+/// computing them takes longer than all other fields.
 std::vector<WorkspaceField> exact_fields(const Target& target, const WorkspaceArguments& arguments,
                                          const std::vector<Pose<double>>& poses) {
   const auto compute = [&](const std::vector<Pose<double>>& at) {
