@@ -15,7 +15,8 @@ class AngleElimination {
  public:
   AngleElimination(Graph& graph, const std::function<bool(Node)>& is_sign) : graph_(graph), is_sign_(is_sign) {}
 
-  /// Sine and cosine of an angle; std::nullopt if it contains no inverse function.
+  /// Sine and cosine of an angle as formulas without inverse functions; std::nullopt if the angle contains no inverse
+  /// function.
   std::optional<SineAndCosine> of(Node angle) const {
     const Entry entry = graph_[angle];
     if (!entry.operation) return {};
@@ -55,7 +56,7 @@ class AngleElimination {
   static bool is_wrapping(const Entry& entry) {
     return entry.operation && *entry.operation == expression::angle_wrapping();
   }
-  /// The angle b for a + wrap(b - a), which differs from it by full turns.
+  /// If a sum is a + wrap(b - a), the angle b, from which the sum differs by full turns; otherwise std::nullopt.
   std::optional<Node> unwrapped_sum(Node a, Node wrapping) const {
     if (!is_wrapping(graph_[wrapping])) return {};
     const Entry difference = graph_[graph_[wrapping].arguments[0]];

@@ -19,7 +19,7 @@ namespace {
 using bounds::ParametricConstraint, bounds::ParametricConstraints;
 using expression::Term;
 
-/// Whether a node depends on parameters only, and not on thresholds or signs.
+/// Whether a formula depends on parameters only, and not on thresholds or signs.
 bool depends_on_parameters_only(const Model& model, Node node) {
   return std::ranges::all_of(model.graph.reachable({&node, 1}), [&](Node each) {
     const std::int32_t input = model.graph[each].input;
@@ -27,7 +27,7 @@ bool depends_on_parameters_only(const Model& model, Node node) {
   });
 }
 
-/// All constraints of a pose.
+/// The formulas of all constraints that a pose has to satisfy.
 std::vector<Node> constraint_nodes(const Model& model) {
   std::vector<Node> nodes = model.defined;
   for (const auto* const list : {&model.domains, &model.margins})
@@ -35,8 +35,8 @@ std::vector<Node> constraint_nodes(const Model& model) {
   return nodes;
 }
 
-/// The model with formulas in place of thresholds that depend on parameters, and with the requirements of a design
-/// among the constraints of a pose.
+/// A copy of the model in which formulas replace the thresholds that depend on parameters, and in which a pose also has
+/// to satisfy the requirements of the design.
 Model model_with_thresholds(Model model, const LimitSpec& limits) {
   const Inputs& at = model.inputs;
   model.margins.insert(model.margins.end(), model.required.begin(), model.required.end());
@@ -79,7 +79,7 @@ class ToleranceProblem {
     found.largest_scale = largest_scale();
     found.no_singularities = no_singularities_;
     const std::optional<bounds::Violation> known = search(found.largest_scale, stop);
-    // Constraints for smaller deviations have tighter enclosures.
+    // Constraints that have to be valid for smaller deviations only have tighter enclosures.
     const ParametricConstraints close = constraints(known ? known->scale : found.largest_scale);
     const bounds::DeviationBox box = bounds::largest_deviation_box(close, ranges_, found.largest_scale, known,
                                                                    {options.gap, options.max_boxes, stop});
@@ -90,7 +90,7 @@ class ToleranceProblem {
     return found;
   }
 
-  /// A violation with a small scale up to `scale`, by local search.
+  /// Searches locally for a violation with a small scale of at most `scale`. @return std::nullopt if none was found
   std::optional<bounds::Violation> search(double scale, const std::function<bool()>& stop) const {
     const ParametricConstraints wide = constraints(scale);
     return bounds::ViolationSearch(wide, ranges_).search(scale, stop);
@@ -99,7 +99,7 @@ class ToleranceProblem {
   std::size_t axes_of_poses() const { return ranges_.size(); }
 
  private:
-  /// The scale at which a parameter could become 0.
+  /// The scale of the deviations at which a parameter could become 0.
   double largest_scale() const {
     double scale = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < proportions_.parameters.size(); ++i) {
@@ -110,7 +110,7 @@ class ToleranceProblem {
     return scale;
   }
 
-  /// The graph's inputs for the box of robots with a given scale.
+  /// Values of the graph's inputs for all robots whose deviations are at most `scale` times the sizes.
   std::vector<Interval> inputs(double scale) const {
     std::vector<Interval> robots(parameters_.begin(), parameters_.end());
     for (std::size_t i = 0; i < proportions_.parameters.size(); ++i)
@@ -120,9 +120,9 @@ class ToleranceProblem {
     return values;
   }
 
-  /// All constraints as functions of the coordinates (of the time, for a motion) and of the deviations, relative to
-  /// their sizes.
-  /// @param scale  the constraints are valid for deviations up to this one
+  /// All constraints, and the conditions against singularities, as functions of the coordinates (for a motion, of the
+  /// time) and of the deviations relative to their sizes.
+  /// @param scale  the functions are valid for relative deviations of at most this
   ParametricConstraints constraints(double scale) const {
     ParametricConstraints made;
     const Model model = model_with_thresholds(e_.model, limits_);
@@ -137,7 +137,8 @@ class ToleranceProblem {
     all.clear();
     std::vector<bounds::NamedMatrix> matrices = jacobians(e_.model, graph, values);
     const auto is_sign = [&](Node node) {
-      const auto input = static_cast<std::size_t>(graph[node].input);  // huge for other nodes
+      // -1, if the node is no input, becomes a huge number
+      const auto input = static_cast<std::size_t>(graph[node].input);
       return input >= e_.model.inputs.sign(0) && input < e_.model.inputs.sign(e_.model.inputs.signs);
     };
     for (bounds::NamedMatrix& matrix : matrices) {
@@ -148,7 +149,8 @@ class ToleranceProblem {
     return made;
   }
 
-  /// Substitutes the motion and the deviations, and adds the constraints.
+  /// Replaces the coordinates in the constraints by formulas of the motion, if there is one, and the parameters by sums
+  /// of value and deviation, and adds the constraints to `to`.
   void add(ParametricConstraints& to, Graph graph, std::vector<ParametricConstraint>& constraints,
            std::vector<Interval> values) const {
     const Inputs& at = e_.model.inputs;
@@ -179,7 +181,7 @@ class ToleranceProblem {
     to.add(std::move(graph), constraints, axes, std::move(values));
   }
 
-  /// Whether a formula is negative for the design in the middle of the poses.
+  /// Whether a formula is negative for the robot without deviations at the middle of all ranges of pose or time.
   bool is_negative(const Graph& graph, Node node, const std::vector<std::size_t>& axes,
                    std::vector<Interval> values) const {
     for (std::size_t i = 0; i < ranges_.size(); ++i) values[axes[i]] = Interval(ranges_[i][0], ranges_[i][1]).middle();
@@ -237,14 +239,14 @@ ToleranceProportions cheapest_proportions(const Mechanism& mechanism, std::span<
                                           const LimitSpec& limits, const std::string& mode, const PoseSet& poses,
                                           const ToleranceProportions& costs, const std::function<bool()>& stop) {
   constexpr int kMaxCuts = 100;
-  constexpr double kClose = 0.995;       // scale of the violation at which the cutting planes end
-  constexpr double kLargestShare = 0.1;  // of a tolerance in its parameter
+  constexpr double kClose = 0.995;       // the iteration ends if the smallest violation found has at least this scale
+  constexpr double kLargestShare = 0.1;  // maximum size of a tolerance, relative to its parameter
   double largest = 0;
   for (const std::size_t parameter : costs.parameters) largest = std::max(largest, std::fabs(parameters[parameter]));
-  if (largest == 0) return costs;  // refused by certified_tolerances()
+  if (largest == 0) return costs;  // all parameters are 0: certified_tolerances() reports this as an error
   const std::size_t count = costs.parameters.size();
   std::vector<ToleranceRow> rows(count);
-  double scale = std::numeric_limits<double>::infinity();  // of the given proportions, which are tried first
+  double scale = std::numeric_limits<double>::infinity();  // factor of the given proportions, which are tried first
   for (std::size_t i = 0; i < count; ++i) {
     const double value = std::fabs(parameters[costs.parameters[i]]);
     rows[i] = {std::vector<double>(count), kLargestShare * (value > 0 ? value : largest)};
@@ -267,10 +269,11 @@ ToleranceProportions cheapest_proportions(const Mechanism& mechanism, std::span<
     }
     if (cut > 0 && (!found || found->scale > kClose)) break;
     if (found) {
-      if (found->gradient.empty()) break;  // the design itself does not do the task
+      if (found->gradient.empty()) break;  // the robot without deviations does not do the task
       ToleranceRow row;
       for (std::size_t i = 0; i < count; ++i) {
-        const double effect = std::fabs(found->gradient[problem.axes_of_poses() + i]);  // of the whole tolerance
+        // change of the constraint if parameter i deviates by its whole tolerance
+        const double effect = std::fabs(found->gradient[problem.axes_of_poses() + i]);
         row.coefficients.push_back(effect / made.sizes[i]);
         row.bound += found->scale * effect;
       }

@@ -16,31 +16,31 @@ namespace pkm::generic {
 
 /// The task of a robot: all poses of a box, or all instants of a motion.
 struct PoseSet {
-  std::vector<std::array<double, 2>> ranges = {};  ///< of each coordinate; lower = upper fixes the coordinate
-  const Motion* motion = nullptr;                  ///< instead of the ranges
+  std::vector<std::array<double, 2>> ranges = {};  ///< range of each coordinate; lower = upper fixes it
+  const Motion* motion = nullptr;                  ///< motion that replaces the ranges; null: the ranges are used
 };
 
-/// Deviations of parameters, which are independent of each other, in proportion to a common scale.
+/// Deviations of parameters, which are independent of each other: each is at most a common scale times its size.
 struct ToleranceProportions {
   std::vector<std::size_t> parameters;  ///< indices of the parameters that deviate
-  std::vector<double> sizes;            ///< maximum deviation of each at scale 1 [SI], > 0
+  std::vector<double> sizes;            ///< maximum deviation of each of these parameters at scale 1 [SI], > 0
 };
 
-/// A robot that does not do the task.
+/// A robot with deviations of its parameters that does not do the task; at scale 0 it is the design itself.
 struct ToleranceViolation {
-  double scale = 0;                ///< maximum deviation, relative to the sizes
-  std::vector<double> parameters;  ///< all parameters of the robot [SI]
-  std::string constraint;          ///< that it violates, or the singularity that it reaches
-  Pose<double> pose;               ///< where
-  std::optional<double> time;      ///< when [s], in a motion
+  double scale = 0;                ///< maximum over the parameters of deviation / ToleranceProportions::sizes
+  std::vector<double> parameters;  ///< values of all parameters of the robot [SI]
+  std::string constraint;          ///< name of the constraint that it violates, or of the singularity that it reaches
+  Pose<double> pose;               ///< pose at which this happens
+  std::optional<double> time;      ///< time in the motion at which this happens [s]; std::nullopt for ranges of poses
 };
 
 struct CertifiedTolerances {
-  double scale = 0;                             ///< all robots up to this scale are proved to do the task
-  std::optional<ToleranceViolation> violation;  ///< the one with the smallest scale that is known
-  double largest_scale = 0;                     ///< at which a parameter could become 0; larger ones are not examined
-  Unsupported no_singularities = {};            ///< why singularities were not examined; empty if they were
-  std::size_t boxes = 0;                        ///< number of boxes examined
+  double scale = 0;  ///< all robots whose deviations have at most this scale are proved to do the task
+  std::optional<ToleranceViolation> violation;  ///< the robot of smallest scale that is known not to do the task
+  double largest_scale = 0;           ///< scale at which a parameter could become 0; larger scales are not examined
+  Unsupported no_singularities = {};  ///< reason why singularities were not examined; empty if they were
+  std::size_t boxes = 0;              ///< number of boxes examined
   bool stopped = false;
 };
 
@@ -51,14 +51,15 @@ std::vector<bool> affects_poses(const Mechanism& mechanism, const LimitSpec& lim
 /// Proportions of approximately minimum cost, if a tolerance t_i costs sizes[i] / t_i. The tolerances at scale 1 are
 /// close to the largest ones, but not certified; none exceeds a tenth of its parameter. Cutting planes: the violations
 /// that a local search finds give linear constraints of the tolerances.
-/// @param costs  the parameters that deviate, and the costs as sizes
+/// @param costs  the parameters that deviate; costs.sizes[i] is the cost of a tolerance of 1 [SI] of parameters[i]
 /// @param stop   returns true to stop with the proportions found so far
 ToleranceProportions cheapest_proportions(const Mechanism& mechanism, std::span<const double> parameters,
                                           const LimitSpec& limits, const std::string& mode, const PoseSet& poses,
                                           const ToleranceProportions& costs, const std::function<bool()>& stop);
 
-/// @param mechanism  as for affects_poses()
-/// @param options    gap: target of 1 - certified scale / scale of the violation
+/// Finds the largest scale of the deviations up to which all robots are proved to do the task.
+/// @param mechanism  one that evaluation_of() accepts
+/// @param options    gap: the search ends if 1 - certified scale / scale of the known violation is at most this
 /// Throws std::invalid_argument with one sentence if a limit has no formula, or if all parameters that deviate are 0.
 CertifiedTolerances certified_tolerances(const Mechanism& mechanism, std::span<const double> parameters,
                                          const LimitSpec& limits, const std::string& mode, const PoseSet& poses,

@@ -1,5 +1,5 @@
-// Jacobians of the loop-closure equations as formulas of the pose for interval arithmetic, and formulas of a motion in
-// place of the pose.
+// Jacobians of the loop-closure equations as formulas of the pose for interval arithmetic, and the replacement of the
+// pose by formulas of a motion.
 #pragma once
 
 #include <vector>
@@ -14,15 +14,17 @@ namespace pkm::generic {
 /// Throws std::invalid_argument with a message if a limit in force has no formula, which interval arithmetic needs.
 void refuse_limits_without_formula(const Model& model, const LimitSpec& limits);
 
-/// Jacobians of the loop-closure equations by the coordinates (G) and by the joints (Jq), as functions of the pose.
-/// @param graph   receives the graph of the entries, in which inputs replace all constants
-/// @param inputs  the values of these inputs are appended
+/// Jacobians of the loop-closure equations with respect to the coordinates (G) and to the joint coordinates (Jq), as
+/// functions of the pose.
+/// @param graph   receives the formulas of the elements, in which inputs replace all constant numbers
+/// @param inputs  values of the graph's inputs, to which those numbers are appended
 std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std::vector<Interval>& inputs);
 
-/// Why singularities are not examined; empty if they are.
+/// Reason why singularities cannot be examined; empty if they can.
 Unsupported refuse_jacobians(const Inputs& at);
 
-/// Substitutes the formulas of a motion for the coordinates. @return index of the time among the inputs
+/// Replaces the coordinates in the formulas `roots` by formulas of a motion, i.e. functions of the time. @return index
+/// of the time among the inputs of the graph
 std::size_t substitute_motion(const Motion& motion, const Inputs& at, Graph& graph, std::vector<Interval>& inputs,
                               std::vector<Node>& roots);
 

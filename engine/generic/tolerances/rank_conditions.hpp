@@ -7,9 +7,9 @@
 
 namespace pkm::generic {
 
-/// Formulas that differ from 0 if and only if a matrix has full column rank: det A, or det(A^T A) if it has more rows
-/// than columns; for a diagonal matrix its elements.
-/// @param graph  of the entries, to which the formulas are added
+/// Formulas that all differ from 0 if and only if a matrix has full column rank: det A, or det(A^T A) if it has more
+/// rows than columns; for a square diagonal matrix its diagonal elements.
+/// @param graph  graph of the matrix elements, to which the formulas are added
 std::vector<expression::Node> rank_conditions(expression::Graph& graph, const bounds::NamedMatrix& matrix);
 
 }  // namespace pkm::generic

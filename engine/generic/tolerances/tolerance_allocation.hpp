@@ -12,13 +12,15 @@
 
 namespace pkm::generic {
 
-/// sum_i coefficients[i] t_i <= bound, with coefficients >= 0 that are not all 0, and bound > 0
+/// A linear constraint of the tolerances: sum_i coefficients[i] t_i <= bound, with coefficients >= 0 that are not all
+/// 0, and bound > 0.
 struct ToleranceRow {
   std::vector<double> coefficients;
   double bound = 0;
 };
 
-/// Tolerances of approximately minimum cost that satisfy all rows. Every tolerance must be in a row.
+/// Tolerances t_i of approximately minimum cost sum_i c_i / t_i that satisfy all rows. Every tolerance must have a
+/// positive coefficient in at least one row.
 /// @param costs  c_i > 0
 std::vector<double> allocate_tolerances(const std::vector<double>& costs, const std::vector<ToleranceRow>& rows);
 
