@@ -21,7 +21,7 @@ Vector3 any_normal(const Vector3& axis) {
   return v * (1 / norm(v));
 }
 
-/// Trigonometric polynomial a[0] + a[1] cos t + a[2] sin t, by its coefficients.
+/// Coefficients a of the trigonometric polynomial a[0] + a[1] cos t + a[2] sin t.
 using Linear = std::array<double, 3>;
 Trigonometric product(const Linear& a, const Linear& b) {
   return {a[0] * b[0] + 0.5 * (a[1] * b[1] + a[2] * b[2]), a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0],
@@ -42,14 +42,15 @@ Quadric quadric_of(const Face& face) {
   return q;
 }
 
-/// |p|^2 as an affine function of the points p of a face; std::nullopt if the face is not on a sphere.
+/// On a face that is part of a sphere, |p|^2 is an affine function of the point p: returns this function; std::nullopt
+/// for other faces.
 std::optional<Affine> square_on(const Face& face) {
   if (face.surface != Surface::sphere) return {};
   const double r = face.body->radius;
   return Affine{face.centre * 2.0, r * r - dot(face.centre, face.centre)};
 }
 
-/// Expresses the equation of a sphere or plane as a function of p - c instead of p.
+/// The equation of a sphere or plane, rewritten as an equation of the vector from the point c to p.
 Quadric relative_to(const Vector3& c, const Quadric& q) {
   return {.square = q.square, .v = q.v + c * (2 * q.square), .k = q.square * dot(c, c) + dot(q.v, c) + q.k};
 }
@@ -66,14 +67,14 @@ void sphere_and_plane(const Face& sphere, const Face& other, const Vector3& norm
     curves.push_back(circle(sphere, other, sphere.centre + normal * distance, normal, std::sqrt(radius_2)));
 }
 
-/// Adds the intersection curves of a cylinder with another surface. On the generator o(t) + s axis at the angle t, they
-/// satisfy A s^2 + 2 B(t) s + C(t) = 0.
+/// Adds the intersection curves of a cylinder with another surface. Their points are o(t) + s axis: the point at height
+/// s of the straight line on the cylinder at the angle t, where s is a root of A s^2 + 2 B(t) s + C(t) = 0.
 void on_cylinder(const Face& cylinder, const Face& other, std::vector<Curve>& curves) {
   const Vector3 &a = cylinder.body->axis, &c = cylinder.centre;
   const Quadric q = quadric_of(other);
   const double r = cylinder.body->radius, slant = dot(a, q.axis);
   const Vector3 x = any_normal(a) * r, y = cross(a, x);
-  // p(t) . d as a trigonometric polynomial in t
+  // For a vector d: p(t) . d as a trigonometric polynomial in t, where p(t) = c + x cos t + y sin t.
   const auto along = [&](const Vector3& d) { return Linear{dot(c, d), dot(x, d), dot(y, d)}; };
   const double A = q.square - q.across * slant * slant;
   const Linear m = along(q.axis), h = along(q.v), g = along(a), e = along(c);
@@ -86,7 +87,7 @@ void on_cylinder(const Face& cylinder, const Face& other, std::vector<Curve>& cu
   for (std::size_t i = 0; i < 3; ++i) C[i] += h[i] + q.square * (i == 0 ? 1.0 : 2.0) * e[i];
   C[0] += q.square * r * r + q.k;
   Curve curve{.faces = {&cylinder, &other}, .square = square_on(other)};
-  if (other.surface == Surface::plane) {  // s = -C / (2 B), where B is constant
+  if (other.surface == Surface::plane) {  // a plane: A = 0 and B is constant, so that s = -C / (2 B)
     const Vector3 shift = a * (-0.5 / B[0]);
     curve.o = c + shift * C[0];
     curve.x = x + shift * C[1];
@@ -220,7 +221,7 @@ bool add_implicit(const Face& torus, const Face& other, std::vector<Curve>& curv
   return true;
 }
 
-/// Coefficients of cos and sin of k (t - t_0) in D(t), at index k - 1, for k = 1, 2.
+/// D(t) about t_0: the coefficients of cos k (t - t_0) and of sin k (t - t_0), at index k - 1, for k = 1, 2.
 struct Shifted {
   double cosine[2], sine[2];
 };

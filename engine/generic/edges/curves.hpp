@@ -21,24 +21,25 @@
 
 namespace pkm::generic::edges {
 
-/// Left side of the equation square |p|^2 - across (p . axis)^2 + v . p + k = 0 of a plane, sphere or cylinder, by its
-/// coefficients.
+/// Coefficients of the function square |p|^2 - across (p . axis)^2 + v . p + k of a point p, which is 0 on a plane,
+/// sphere or cylinder.
 struct Quadric {
   double square = 0, across = 0;
   Vector3 axis{}, v{};
   double k = 0;
 };
 
-/// An intersection curve. o, x, y, w and D have the meaning that they have in the table above.
+/// An intersection curve of two faces' surfaces. The members o, x, y, w and D are those of the table at the top of this
+/// file.
 struct Curve {
   enum class Kind : std::uint8_t { trigonometric, line, on_torus, implicit };
   Kind kind = Kind::trigonometric;
   std::array<const Face*, 2> faces{};
-  Vector3 o{}, x{}, y{}, w{};  ///< w: 0 for a curve without a square root
+  Vector3 o{}, x{}, y{}, w{};  ///< coefficients of p(t); w is 0 for a curve without a square root
   bool has_root = false;       ///< true: the curve has two branches, with +sqrt(D) and -sqrt(D)
   Trigonometric D{};
   std::optional<Affine> square{};  ///< |p|^2 as an affine function of p, if one of the surfaces is a sphere
-  Quadric with{};                ///< on_torus only: equation of the second surface, relative to the centre of the torus
+  Quadric with{};  ///< on_torus only: function of the second surface, for the vector from the centre of the torus
   std::optional<Quadric> cut{};  ///< function that vanishes where the two surfaces touch each other, if there is one
   TorusFunction function{};      ///< implicit only: the function of the second surface on the first one, a torus
 };
@@ -48,34 +49,35 @@ struct Arc {
   const Curve* curve;
   double branch = 1;
   double t_0 = 0, direction = 1;
-  int order = 0;  ///< multiplicity of the root of D at u = 0; 0 if D has no root there
+  int order = 0;  ///< multiplicity of the root that D has at u = 0; 0 if it has no root there
   double length = 0;
   TorusArc implicit{};
 };
 
 /// Adds the intersection curves of the surfaces of two faces.
-/// @param bound  lines extend by this length in both directions
+/// @param bound  straight lines extend by this length in both directions [m]
 /// @return false if the surfaces are the same
 bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves);
 /// The circle that separates an end face of a slide or crank from its fold.
 Curve equator(const Face& end, const Face& fold);
 
-/// A root t of Curve::D and its multiplicity.
+/// A root t of the trigonometric polynomial Curve::D, and its multiplicity (`order`).
 struct CurveRoot {
   double t;
   int order;
 };
 
-/// Divides a curve that is not implicit into arcs.
+/// Divides a curve, of any kind but `implicit`, into arcs and appends them to `arcs`.
+/// @param bound  straight lines extend by this length in both directions [m]
 /// @param roots  scratch memory
-/// @return false if D vanishes identically
+/// @return false if D is 0 everywhere
 bool add_arcs(const Curve& curve, double bound, std::vector<CurveRoot>& roots, std::vector<Arc>& arcs);
 
 /// The point of a torus at the angles q of the crank and b around the fold.
 CurvePoint point_on(const Face& torus, const Enclosure& q, const Enclosure& b);
 
-/// Encloses the points of an arc over an interval of u.
-/// @param u  Enclosure::variable(): the slope of the result is dp/du
+/// Enclosure of the points of an arc for an interval of its parameter u.
+/// @param u  made by Enclosure::variable(), so that the slope of the result is dp/du
 CurvePoint point(const Arc& arc, const Enclosure& u);
 Enclosure evaluate(const Quadric& quadric, const CurvePoint& at);
 

@@ -24,20 +24,20 @@ using Vector3 = Vector<double, 3>;
 inline double norm(const Vector3& v) { return std::sqrt(dot(v, v)); }
 
 struct Enclosure {
-  double value = 0, slope = 0;  ///< value and derivative at the middle of the interval
-  double bend = 0;              ///< upper bound of the magnitude of the second derivative in the interval
+  double value = 0, slope = 0;  ///< value and first derivative of the function at the middle of the interval
+  double bend = 0;              ///< upper bound of the magnitude of the function's second derivative in the interval
   double h = 0;                 ///< half the width of the interval; 0 at a single point, and for constants
 
   Enclosure() = default;
-  Enclosure(double number) : value(number) {}  // not explicit: constants mix with it in formulas
+  Enclosure(double number) : value(number) {}  // not explicit: formulas mix enclosures with constants
   Enclosure(double f, double f1, double bound, double half) : value(f), slope(f1), bend(bound), h(half) {}
   static Enclosure variable(double middle, double half) { return {middle, 1, 0, half}; }
 
-  /// Upper bound of the distance of the function from its value at the middle.
+  /// Upper bound, in the interval, of the difference between the function and its value at the middle.
   double reach() const { return (std::fabs(slope) + 0.5 * bend * h) * h; }
   double max_magnitude() const { return std::fabs(value) + reach(); }
   double max_slope() const { return std::fabs(slope) + bend * h; }
-  /// Certified, up to rounding errors: the derivative has no zero.
+  /// true: the function is strictly monotone in the interval, proved up to rounding errors
   bool is_monotone() const { return std::fabs(slope) > bend * h; }
 
   friend Enclosure operator-(const Enclosure& x) { return {-x.value, -x.slope, x.bend, x.h}; }
@@ -57,7 +57,9 @@ struct Enclosure {
   }
   Enclosure& operator+=(const Enclosure& y) { return *this = *this + y; }
 
-  /// f(x), given the value and the derivative of f at the value of x, and bounds on |f'| and |f''| on its range.
+  /// The composition f(x) of a function f and this enclosure x.
+  /// @param f, f1           value and derivative of f at the value of x at the middle
+  /// @param max_f1, max_f2  bounds of |f'| and |f''| on the range of x
   Enclosure through(double f, double f1, double max_f1, double max_f2) const {
     return {f, f1 * slope, max_f2 * max_slope() * max_slope() + max_f1 * bend, h};
   }
@@ -91,8 +93,7 @@ inline SineCosine sine_cosine(const Enclosure& x) {
   const double max_sine = std::min(1.0, std::fabs(s) + reach), max_cosine = std::min(1.0, std::fabs(c) + reach);
   return {x.through(s, c, max_cosine, max_sine), x.through(c, -s, max_sine, max_cosine)};
 }
-/// sin(x) / x
-/// @param of_x  sine and cosine of x, i.e. sine_cosine(x)
+/// Enclosure of sin(x) / x. @param of_x  the result of sine_cosine(x)
 inline Enclosure sinc(const Enclosure& x, const SineCosine& of_x) {
   const double t = x.value, t2 = t * t, s = of_x.sine.value, c = of_x.cosine.value;
   const bool is_small = std::fabs(t) < 0.3;  // for smaller |t| the series is accurate to 1e-16

@@ -9,8 +9,9 @@ bool is_up_to_half_turn(const Body& body) { return body.kind == Body::Kind::slid
 
 using Bits = std::array<bool, kFunctions>;
 
-/// Whether a point belongs to the body of a slide or crank, by the rule of limbs::CrankRange. A slide follows the rule
-/// of a crank whose range is less than half a revolution.
+/// Whether a point belongs to the body of a slide or crank, by the rule of limbs::CrankRange. A slide is treated like a
+/// crank whose range is less than half a revolution.
+/// @param is  is[i]: whether function i of the body (see function()) is positive at the point
 bool is_in_body(const Bits& is, bool is_first_root, bool half_turn) {
   const bool after_from = is[2], before_to = !is[3];
   if (is[0] != is[1]) return is_first_root == is[0];
@@ -124,8 +125,8 @@ Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoin
 
 const Rule& membership(const Body& body, const Part* face) {
   static const Rule single = rule_of([](const Bits& is) { return is[0]; });
-  // Rules by is_first_root, by whether the range is up to half a turn, and by 0 for the body or 1 + Part for a part of
-  // its boundary.
+  // Rules by three indices: is_first_root; whether the range is at most half a turn; 0 for the body, or 1 + Part for a
+  // part of its boundary.
   static const auto rules = [] {
     std::array<std::array<std::array<Rule, 4>, 2>, 2> all;
     for (const bool first : {false, true})
@@ -183,7 +184,8 @@ Moments forms(const Face& face, const Vector3& p, const Vector3& dp) {
     }
     case Surface::torus: {
       const double u = dot(P, body.zero), w = dot(P, body.beside), l = body.crank, rod = body.radius;
-      const double outer = dot(P, P) + l * l > rod * rod ? 1 : -1;  // sign of the distance from the axis on the torus
+      // 1 or -1: sign of crank + rod cos b, the distance from the axis of the torus
+      const double outer = dot(P, P) + l * l > rod * rod ? 1 : -1;
       const double distance = outer * std::sqrt(u * u + w * w);
       if (distance == 0) break;
       const double ddistance = (u * dot(dp, body.zero) + w * dot(dp, body.beside)) / distance;
@@ -191,7 +193,7 @@ Moments forms(const Face& face, const Vector3& p, const Vector3& dp) {
       const double middle = 0.5 * (body.from + body.to);
       const auto [s, c] = portable::sincos(middle);
       const double q = portable::atan2(outer * (w * c - u * s), outer * (u * c + w * s));
-      // derivative of b, multiplied by the length of the rod
+      // derivative of the angle b with respect to the parameter of the edge, multiplied by the length of the rod
       const double db = cosine * dot(dp, body.axis) - sine * ddistance;
       m.radius = {q * distance * db, q * distance * cosine * db};
       break;

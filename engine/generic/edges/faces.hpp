@@ -9,8 +9,8 @@
 
 namespace pkm::generic::edges {
 
-/// The faces of a body. A slide or crank has the half spheres about the first and the last point of the path of E, and
-/// the fold, which is a cylinder or a torus. All other bodies have one face, `first`.
+/// The parts of a body's boundary. A slide or crank has half spheres about the first and the last point of the path of
+/// the rod's end E, and the fold, a cylinder or torus around this path. All other bodies have one part, `first`.
 enum class Part : std::uint8_t { first, second, fold };
 
 enum class Surface : std::uint8_t { plane, sphere, cylinder, torus };
@@ -21,59 +21,63 @@ struct Affine {
   double k = 0;
 };
 
-/// A body with the vectors and affine functions from which its implicit functions are computed.
+/// A body with vectors and affine functions of a point p, from which its implicit functions (see function()) are
+/// computed.
 struct PreparedBody : Body {
   explicit PreparedBody(const Body& body);
   Vector3 beside{};                ///< crank only: the unit vector axis x zero
-  std::array<Vector3, 2> end{};    ///< slide, crank: the point E at q = from, and at q = to
-  std::array<Vector3, 2> along{};  ///< slide, crank: unit vectors along the path of E at these two points
+  std::array<Vector3, 2> end{};    ///< slide, crank: the rod's end E at q = from, and at q = to
+  std::array<Vector3, 2> along{};  ///< slide, crank: unit vectors along the path of E at q = from, and at q = to
   Affine height;                   ///< (p - centre) . axis; for a plane, p . axis
   Affine distance;                 ///< |p - centre|^2 + crank^2 - radius^2 without its term |p|^2
-  /// At each of the two points E: |p - E|^2 - rod^2 without its term |p|^2, and (p - E) . along.
+  /// For E at q = from, and at q = to: |p - E|^2 - rod^2 without its term |p|^2; and (p - E) . along.
   std::array<Affine, 2> from_end, ahead;
 };
 
 struct Face {
   const PreparedBody* body;
-  std::size_t number;  ///< index of the body to which the face belongs
+  std::size_t number;  ///< index of the face's body
   Part part = Part::first;
   Surface surface = Surface::plane;
   Vector3 centre{};  ///< centre of the surface; for a plane, its point that is closest to the origin
   /// 1: the outward normal points away from the centre (of a plane: along the axis); -1: the opposite direction.
   double side = 1;
-  Vector3 away_from_pole{};  ///< sphere only: direction from the pole of its differential form to the centre
+  /// Sphere only: unit vector from the point at which its differential form (see forms()) is singular, to the centre.
+  Vector3 away_from_pole{};
 };
 
-/// Appends the faces of a body that are not empty. @param number  index of the body
+/// Appends those faces of a body that are not empty to `faces`. @param number  index of the body
 void add_faces(const PreparedBody& body, std::size_t number, std::vector<Face>& faces);
 
-/// A point p of a curve.
+/// Enclosure of a point p of a curve.
 struct CurvePoint {
   Enclosure3 p;
   Enclosure square;  ///< |p|^2; for many curves a tighter enclosure than the sum of the squares
 };
 
-/// The implicit functions of a body. Planes, spheres and cylinders have one, positive inside. Slides and cranks, with
-/// the distance function g(q) = |p - E(q)|^2 - rod^2, have: 0, 1: g at both ends of the range; 2, 3: (p - E) . E' there
-/// (E' of unit length); 4: the discriminant of g = 0, positive where q exists; 5: positive where a double root of g is
-/// on the near side of the axis of a crank (slide: 1).
+/// Number of implicit functions of a body; function() returns the value of the one with index `number` at a point p.
+/// Planes, spheres and cylinders have one function, which is positive inside. Slides and cranks have six, with the
+/// distance function g(q) = |p - E(q)|^2 - rod^2: 0 and 1: g at q = from and at q = to; 2 and 3: (p - E) . E' there,
+/// where E' has unit length; 4: the discriminant of g = 0, positive where a root q exists; 5: positive where a double
+/// root of g is on the near side of the axis of a crank (slide: 1).
 inline constexpr std::size_t kFunctions = 6;
 Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoint& at);
-/// Exponent of the unit of length in the unit of a function, from which its rounding error is estimated.
+/// The power of the unit of length in the unit of a body's function (see function()); its rounding error is estimated
+/// from it.
 std::size_t degree(const Body& body, std::size_t function);
 
-/// Set of combinations of the signs of a body's functions. Combination c, in which function i is positive if bit i of c
-/// is set, is in the set if bit c is set.
+/// Set of combinations of the signs of a body's functions (see function()). In combination c, function i is positive if
+/// bit i of c is set; the set contains combination c if bit c of the set is 1.
 using SignSets = std::uint64_t;
-/// kPositive[i]: the set of combinations in which function i is positive.
+/// kPositive[i]: the set of all combinations in which function i is positive.
 inline constexpr std::array<SignSets, kFunctions> kPositive{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
                                                             0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
 
-/// Decides whether a point belongs to a body, or, if the point lies on the surface of one of its faces, to that face.
-/// `holds` is the set of combinations of signs in which it does.
+/// Decides by the signs of a body's functions whether a point belongs to the body or, if the point lies on the surface
+/// of one of its faces, to that face: it does if `holds` contains the combination of signs.
 struct Rule {
   SignSets holds = 0;
-  /// For each function, the combinations in which membership depends on the sign of this function.
+  /// depends[i]: the combinations of signs in which the answer would change if function i had the opposite sign.
   std::array<SignSets, kFunctions> depends{};
 };
 /// The rule of a body, or of one of its faces.
@@ -83,15 +87,17 @@ const Rule& membership(const Body& body, const Part* face);
 /// A vector in the direction of the outward normal at a point of the face; its length is arbitrary.
 Vector3 outward(const Face& face, const Vector3& p);
 
-/// Integrals over the area of a face with the unit outward normal n.
+/// Integrals over the area of a face, or of part of it; n is the unit outward normal, p the point.
 struct Moments {
   Vector3 normal{};    ///< integral of n
   Vector3 rotation{};  ///< integral of (p - centre) x n
-  /// Integrals of the normal speed of the face as a radius grows: [0] the radius or the rod, [1] the crank.
+  /// Integrals of the speed with which the face moves along n as a radius grows with speed 1: [0] the radius or the
+  /// rod, [1] the crank.
   std::array<double, 2> radius{};
   void add(const Moments& other, double factor);
 };
-/// The integrands of the moments along an edge, to be integrated in the direction that has the face on its left.
+/// The integrands of the moments of a face along an edge that bounds it. They are to be integrated in the direction in
+/// which the face is on the left. @param dp  derivative of the point p with respect to the parameter of the edge
 Moments forms(const Face& face, const Vector3& p, const Vector3& dp);
 /// The contribution of a face to three times the volume of the solid.
 double three_volumes(const Face& face, const Moments& moments);

@@ -19,9 +19,9 @@ struct IntervalSeries {
   std::array<Interval, N + 1> c{};
 
   IntervalSeries() = default;
-  IntervalSeries(double constant) { c[0] = constant; }           // not explicit: constants mix with it in formulas
-  IntervalSeries(const Interval& constant) { c[0] = constant; }  // the same
-  /// The series of the variable x itself, at a point or in an interval.
+  IntervalSeries(double constant) { c[0] = constant; }           // not explicit: formulas mix series with constants
+  IntervalSeries(const Interval& constant) { c[0] = constant; }  // not explicit: formulas mix series with constants
+  /// The series of the variable x itself; x is a number or an interval.
   static IntervalSeries variable(const Interval& x) {
     IntervalSeries series(x);
     if constexpr (N > 0) series.c[1] = 1;
@@ -46,7 +46,8 @@ struct IntervalSeries {
     for (Interval& each : x.c) each = each * factor;
     return x;
   }
-  friend IntervalSeries operator/(const IntervalSeries& x, const IntervalSeries& y) {  // from x = q y
+  // coefficients of q = x / y, from x = q y
+  friend IntervalSeries operator/(const IntervalSeries& x, const IntervalSeries& y) {
     IntervalSeries q;
     for (std::size_t k = 0; k <= N; ++k) {
       q.c[k] = x.c[k];
@@ -66,7 +67,7 @@ IntervalSeries<N> square(const IntervalSeries<N>& x) {
 }
 
 template <std::size_t N>
-IntervalSeries<N> sqrt(const IntervalSeries<N>& x) {  // from x = s^2
+IntervalSeries<N> sqrt(const IntervalSeries<N>& x) {  // coefficients of s = sqrt(x), from x = s^2
   IntervalSeries<N> s;
   s.c[0] = sqrt(x.c[0]);
   for (std::size_t k = 1; k <= N; ++k) {
@@ -82,7 +83,8 @@ struct SineCosineSeries {
   IntervalSeries<N> sine, cosine;
 };
 template <std::size_t N>
-SineCosineSeries<N> sine_cosine(const IntervalSeries<N>& x) {  // from s' = c x' and c' = -s x'
+// coefficients of s = sin x and c = cos x, from s' = c x' and c' = -s x'
+SineCosineSeries<N> sine_cosine(const IntervalSeries<N>& x) {
   SineCosineSeries<N> of;
   of.sine.c[0] = sin(x.c[0]);
   of.cosine.c[0] = cos(x.c[0]);
@@ -96,14 +98,14 @@ SineCosineSeries<N> sine_cosine(const IntervalSeries<N>& x) {  // from s' = c x'
   return of;
 }
 
-/// The series of the derivative, whose order is lower by one.
+/// The series of the derivative x'; its order N - 1 is lower by one than that of x.
 template <std::size_t N>
 IntervalSeries<N - 1> derivative(const IntervalSeries<N>& x) {
   IntervalSeries<N - 1> d;
   for (std::size_t k = 0; k < N; ++k) d.c[k] = x.c[k + 1] * Interval(static_cast<double>(k + 1));
   return d;
 }
-/// The same series without its highest order.
+/// The series x without its coefficient of the highest order, N.
 template <std::size_t N>
 IntervalSeries<N - 1> truncated(const IntervalSeries<N>& x) {
   IntervalSeries<N - 1> all;

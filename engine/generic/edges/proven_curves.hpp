@@ -24,7 +24,7 @@ class ProvenCurves : public ProvenSolid {
     std::size_t body;
     const Rule* rule;
   };
-  using Tests = std::uint64_t;  // set of tests, one bit each, by index in tests_
+  using Tests = std::uint64_t;  // set of tests: bit i stands for tests_[i]
 
   const Rule& rule_of(std::size_t body, const Part* face) const {
     const IntervalBody& b = bodies_[body];
@@ -33,18 +33,19 @@ class ProvenCurves : public ProvenSolid {
     return membership({.kind = b.kind, .to = range.upper, .is_first_root = b.is_first_root}, face);
   }
 
-  /// Collects the tests that points of an intersection curve of two faces have to pass.
+  /// Sets tests_: the tests that points of an intersection curve of two faces have to pass.
   void set_tests(const ProvenFace& a, const ProvenFace& b) {
     tests_.clear();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (i != a.body && i != b.body)
         tests_.push_back({i, &rule_of(i, nullptr)});
       else if (a.body != b.body && has_range(bodies_[i]) && !(i == a.body && a.surface == Surface::torus))
-        tests_.push_back({i, &rule_of(i, i == a.body ? &a.part : &b.part)});  // q of the first torus needs no test
+        // q of the first torus is in its range anyway
+        tests_.push_back({i, &rule_of(i, i == a.body ? &a.part : &b.part)});
     }
   }
-  /// The combinations of signs that are possible in a set of points.
-  /// @param sign  sign(k): sign of function k in the set, 0 if unknown
+  /// The combinations of signs of a body's functions that are possible for a set of points.
+  /// @param sign  sign(k): sign of function k if it is the same at all these points, otherwise 0
   template <class Sign>
   static SignSets possible_signs(const Rule& rule, const Sign& sign) {
     SignSets possible = ~SignSets{0};
@@ -55,18 +56,19 @@ class ProvenCurves : public ProvenSolid {
     }
     return possible;
   }
-  /// The combinations of signs that are possible at the points of a box.
+  /// The combinations of signs of a body's functions that are possible for the points of a box.
   SignSets possible_signs(const ProvenTest& test, const IntervalVector& box) const {
     const SeriesVector<0> p = series<0>(box);
     return possible_signs(*test.rule, [&](std::size_t k) { return sign_of(function(test.body, k, p).c[0]); });
   }
-  /// Whether no point of a box is active on the curve for which set_tests() was called.
+  /// Whether every point of a box fails one of the tests that set_tests() has collected, so that no point of the curve
+  /// in it is active.
   bool is_inactive(const IntervalVector& box) const {
     return std::ranges::any_of(
         tests_, [&](const ProvenTest& test) { return (test.rule->holds & possible_signs(test, box)) == 0; });
   }
 
-  /// Counts an examined interval; throws Unproven if there are too many.
+  /// Counts one more examined interval; throws Unproven if there are too many.
   void count() {
     constexpr long kMaxBoxes = 300'000;
     if (++boxes_ > kMaxBoxes) throw Unproven{};
@@ -198,7 +200,8 @@ class ProvenCurves : public ProvenSolid {
   // Curves on a torus, in boxes of the angles q and b.
 
   struct AngleBox {
-    /// Lower and upper end of q and of b: a number, or the interval that encloses a limit.
+    /// Lower and upper end of the range of the angle q, and of b. An end is a number, or an interval that contains a
+    /// limit which is known only approximately.
     std::array<std::array<Interval, 2>, 2> ends;
     Interval range(std::size_t i) const { return {ends[i][0].lower, ends[i][1].upper}; }
   };
@@ -206,7 +209,7 @@ class ProvenCurves : public ProvenSolid {
   void add_curves_on_torus(const ProvenFace& a, const ProvenFace& b) {
     set_tests(a, b);
     const IntervalBody& body = bodies_[a.body];
-    constexpr double kFirst = 0.8;  // maximum width of the first boxes [rad]
+    constexpr double kFirst = 0.8;  // maximum width of the boxes with which the search begins [rad]
     const auto divisions = [](const Interval& low, const Interval& high) {
       const int count = static_cast<int>((high.upper - low.lower) / kFirst) + 1;
       std::vector<Interval> places{low};
@@ -229,13 +232,13 @@ class ProvenCurves : public ProvenSolid {
     Interval f = function_on_torus(a, b, middle(angles[0]), middle(angles[1])).c[0];
     for (std::size_t i = 0; i < 2; ++i) f += by[i] * (angles[i] - middle(angles[i]).c[0]);
     if (sign_of(f) != 0) return;
-    // The parameter is the coordinate along which the curve is flatter. The part of the torus in the box must not reach
-    // the axis of the torus.
+    // As parameter of the curve, take the angle along which the curve is flatter. The part of the torus in the box must
+    // not reach the axis of the torus.
     const IntervalBody& body = bodies_[a.body];
     const std::size_t steeper = std::fabs(by[1].middle()) >= std::fabs(by[0].middle()) ? 1 : 0;
     if (sign_of(body.crank + body.radius * cos(angles[1])) != 0)
       for (const std::size_t other : {steeper, 1 - steeper}) {
-        // A steep curve has a wide enclosure: bisect the box instead.
+        // Enclosures of a steep curve are wide: bisect the box instead.
         constexpr double kSteepest = 3, kAnySlope = 1e-3;
         const double least = std::min(std::fabs(by[other].lower), std::fabs(by[other].upper));
         const bool is_flat = magnitude(by[1 - other]).upper <= kSteepest * least;
@@ -261,14 +264,14 @@ class ProvenCurves : public ProvenSolid {
 
   // Divides a curve with the parameter t into arcs.
 
-  // start of a closed curve [rad], arbitrary, so that no special point is likely to be there
+  // angle at which the division of a closed curve starts [rad]; an arbitrary one is probably no special point
   static constexpr double kStart = 0.1234;
-  // maximum length of an arc [rad]: enclosures over more than a quarter of a circle decide nothing
+  // maximum length of an arc [rad]: over more than a quarter of a circle enclosures are too wide to decide a test
   static constexpr double kLongest = 1.6;
   static Interval end_of_turn() { return Interval(kPi, next_up(kPi)) * Interval(2) + Interval(kStart); }
 
   void add_whole_turn(const ProvenArc& arc) { add_arcs(arc, kStart, end_of_turn()); }
-  /// Adds the arcs of [from, to], an interval in which D has no root.
+  /// Adds the arcs of a curve for t in [from, to], an interval in which the polynomial D has no root.
   void add_arcs(ProvenArc arc, double from, const Interval& to) {
     const int parts = static_cast<int>((to.upper - from) / kLongest) + 1;
     const IntervalTrigonometric D = arc.D;
@@ -297,7 +300,8 @@ class ProvenCurves : public ProvenSolid {
     arcs_.push_back(arc);
   }
 
-  /// A root of D, or an interval of t in which no point of either branch is active.
+  /// A value of t at which a curve is divided: a root of the polynomial D, or an interval in which no point of the two
+  /// branches is active.
   struct Division {
     Interval t;
     bool is_root;
@@ -307,7 +311,8 @@ class ProvenCurves : public ProvenSolid {
     const double root = sqrt(D).upper;
     return is_inactive(arc.o + arc.x * cos(t) + arc.y * sin(t) + arc.w * Interval(-root, root));
   }
-  /// Appends the divisions of the interval [from, to] of t, in ascending order.
+  /// Divides the interval [from, to] of t, and appends its roots of D and the intervals without active points in
+  /// ascending order.
   void isolate(const ProvenArc& arc, const IntervalTrigonometric& D, double from, double to,
                std::vector<Division>& divisions) {
     const double middle = 0.5 * (from + to);

@@ -71,7 +71,7 @@ inline IntervalTrigonometric product(const IntervalLinear& a, const IntervalLine
   return {a[0] * b[0] + half * (cosines + sines), a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0],
           half * (cosines - sines), half * (a[1] * b[2] + a[2] * b[1])};
 }
-/// The value D(t), and (slope) its derivative.
+/// The value D(t), and slope(): the derivative D'(t).
 inline Interval value(const IntervalTrigonometric& D, const Interval& t) {
   const Interval c = cos(t), s = sin(t);
   return D[0] + D[1] * c + D[2] * s + D[3] * (square(c) - square(s)) + D[4] * Interval(2) * s * c;
@@ -86,30 +86,31 @@ struct ProvenFace {
   Surface surface = Surface::plane;
   IntervalVector centre{};
   double side = 1;
-  IntervalVector away_from_pole{};  ///< sphere only: direction from the pole of its differential form to the centre
+  /// Sphere only: unit vector from the point at which its differential form is singular, to the centre.
+  IntervalVector away_from_pole{};
 };
 
-/// A part of an intersection curve, as a function of u. A line is o + u x. On a torus, u is one of the angles q of the
-/// crank and b around the fold, of which the other one is the only solution of f = 0 in `across`, where f is the
-/// function of the other face; there may be none. Otherwise p = o + x cos t + y sin t + w sqrt(D(t)), where t = t_0 + 2
-/// asin(s), and s = u; if D(t_0) = 0, s = +-u^2.
+/// A part of the intersection curve of two faces a and b, as a function p(u). A straight line is p = o + u x. On a
+/// torus a, with the angles q of the crank and b around the fold, u is one of the angles; for each u, the other one is
+/// the only root in `across` of the function f of the second face, or there is no root and no point. Otherwise p = o +
+/// x cos t + y sin t + w sqrt(D(t)), where t = t_0 + 2 asin(s), with s = u, or s = +-u^2 if D(t_0) = 0.
 struct ProvenArc {
   const ProvenFace* a = nullptr;
   const ProvenFace* b = nullptr;
   bool is_line = false, has_root = false, is_on_torus = false;
   IntervalVector o{}, x{}, y{}, w{};
-  IntervalTrigonometric D{};         ///< trigonometric polynomial as a function of t - t_0
-  Interval cosine = 1, sine = 0;     ///< cosine and sine of t_0
-  double direction = 0;              ///< 1 or -1: sign of s in s = +-u^2; 0: D(t_0) is not 0, and s = u
-  Interval from{}, to{};             ///< lower and upper end of the range of u, each known to an interval
-  std::size_t along = 0;             ///< on a torus: the angle that u is; 0: q, 1: b
-  std::array<Interval, 2> across{};  ///< on a torus: lower and upper limit of the other angle
+  IntervalTrigonometric D{};      ///< coefficients of D as a trigonometric polynomial in t - t_0
+  Interval cosine = 1, sine = 0;  ///< cosine and sine of t_0
+  double direction = 0;           ///< 1 or -1: sign of s in s = +-u^2; 0: D(t_0) is not 0, and s = u
+  Interval from{}, to{};          ///< lower and upper end of the range of u; each is an interval that contains the end
+  std::size_t along = 0;          ///< on a torus: which angle is u; 0: q, 1: b
+  std::array<Interval, 2> across{};  ///< on a torus: lower and upper limit of the angle that is not u
 };
 
 struct ProvenRange {
   std::size_t arc;
   double from, to;
-  bool is_certain;  ///< true: all points of the range are active; false: unknown
+  bool is_certain;  ///< true: all points of the range are active; false: it is unknown which ones are
 };
 
 template <std::size_t N>
@@ -129,7 +130,7 @@ SeriesVector<N> point_of_closed_form(const ProvenArc& arc, const IntervalSeries<
   if (!arc.has_root) return p;
   const IntervalTrigonometric& D = arc.D;
   S root;
-  if (at_root) {  // D / s, whose constant term D[0] + D[1] + D[3] is 0
+  if (at_root) {  // R = D / s; the constant term D[0] + D[1] + D[3] = D(t_0) of D is 0
     const S R = s * (Interval(-2) * D[1]) + k * (Interval(2) * D[2]) + s * (S(1.0) - s_2) * (Interval(-8) * D[3]) +
                 k * c_1 * (Interval(4) * D[4]);
     root = u * sqrt(R * Interval(arc.direction));
@@ -145,7 +146,7 @@ inline bool has_range(const IntervalBody& body) {
   return body.kind == Body::Kind::slide || body.kind == Body::Kind::crank;
 }
 
-/// The path of the end E of a rod: E and the unit vector along the path, at both ends of the range.
+/// The path of a rod's end E: the point E and the unit vector along the path, at q = from and at q = to.
 struct Path {
   std::array<IntervalVector, 2> end{}, along{};
   IntervalVector beside{};  ///< crank only: the unit vector axis x zero
@@ -176,7 +177,8 @@ class ProvenSolid {
     }
   }
 
-  /// The function `function()` of faces.hpp, evaluated for the points of a series.
+  /// The function `function()` of faces.hpp in interval arithmetic: its Taylor series along a curve, from the series p
+  /// of the curve's points.
   template <std::size_t N>
   IntervalSeries<N> function(std::size_t index, std::size_t number, const SeriesVector<N>& p) const {
     const IntervalBody& body = bodies_[index];
@@ -214,7 +216,7 @@ class ProvenSolid {
     const SeriesVector<0> p = on_torus(torus, IntervalSeries<0>(q), IntervalSeries<0>(b));
     return {{p[0].c[0], p[1].c[0], p[2].c[0]}};
   }
-  /// The function of a face's surface, evaluated for points of a torus given by its two angles.
+  /// The function that is 0 on the surface of `face`, as a Taylor series for points of a torus with the angles q and b.
   template <std::size_t N>
   IntervalSeries<N> function_on_torus(const ProvenFace& torus, const ProvenFace& face, const IntervalSeries<N>& q,
                                       const IntervalSeries<N>& b) const {
@@ -222,8 +224,8 @@ class ProvenSolid {
     const std::size_t number = !has_range(body) || face.part == Part::first ? 0 : face.part == Part::second ? 1 : 4;
     return function(face.body, number, on_torus(torus, q, b));
   }
-  /// Derivative of function_on_torus() with respect to one of the angles, over a box of angles.
-  /// @param by  0: q, 1: b
+  /// Enclosure of the derivative of function_on_torus() with respect to one of the two angles, for all angles in a box.
+  /// @param by  the angle; 0: q, 1: b
   Interval slope_on_torus(const ProvenFace& torus, const ProvenFace& face, std::size_t by,
                           const std::array<Interval, 2>& angles) const {
     std::array<IntervalSeries<1>, 2> at{angles[0], angles[1]};
@@ -231,7 +233,7 @@ class ProvenSolid {
     return function_on_torus(torus, face, at[0], at[1]).c[1];
   }
 
-  /// Encloses the angle of a point of an arc on a torus that is not the parameter.
+  /// On an arc on a torus, the angle that is not the parameter, as a Taylor series of the parameter u.
   template <std::size_t N>
   IntervalSeries<N> other_angle(const ProvenArc& arc, const IntervalSeries<N>& u) const {
     const auto value = [&]<std::size_t M>(const IntervalSeries<M>& along, const IntervalSeries<M>& other) {
@@ -259,7 +261,7 @@ class ProvenSolid {
     return arc.along == 0 ? on_torus(*arc.a, u, other) : on_torus(*arc.a, other, u);
   }
 
-  /// Whether an arc on a torus has a point at every u of an interval (1) or at none (-1); 0: unknown.
+  /// Whether an arc on a torus has a point at every u in an interval. @return 1: at every u, -1: at no u, 0: unknown
   int existence(const ProvenArc& arc, const Interval& u) const {
     const auto sign_at = [&](const Interval& across) {
       const Interval middle = 0.5 * (u.lower + u.upper);
@@ -284,7 +286,8 @@ class ProvenSolid {
     return (face.surface == Surface::sphere ? P : P - axis * dot(P, axis)) * Interval(face.side);
   }
 
-  /// The integrand of the volume along an arc; its order is lower by one than that of p.
+  /// The integrand of the volume along an arc as a Taylor series. Its order N - 1 is lower by one than that of p,
+  /// because it contains the derivative of p. @param p  series of the arc's points
   template <std::size_t N>
   IntervalSeries<N - 1> integrand(const ProvenArc& arc, const SeriesVector<N>& p) const {
     SeriesVector<N - 1> at, dp;
@@ -312,7 +315,7 @@ class ProvenSolid {
     }
     return sum;
   }
-  /// The term of the integrand that is due to the radii of a torus, as in forms() of faces.hpp.
+  /// The term of three_volumes() that is due to crank and rod of a torus, as in forms() of faces.hpp.
   template <std::size_t N>
   IntervalSeries<N> three_volumes_of_torus(const ProvenFace& face, const SeriesVector<N>& P,
                                            const SeriesVector<N>& dp) const {

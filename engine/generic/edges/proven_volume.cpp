@@ -27,7 +27,7 @@ class Proof : public ProvenCurves {
     const ProvenArc& arc = arcs_[index];
     set_tests(*arc.a, *arc.b);
     const Tests all = (Tests{1} << tests_.size()) - 1;
-    // The two ends of an arc are known only to within an interval: examine these intervals separately.
+    // Each end of the arc is known only to within an interval: examine these two intervals separately.
     if (arc.from.lower < arc.from.upper) search(index, arc.from.lower, arc.from.upper, kMaxDepth, all);
     search(index, arc.from.upper, arc.to.lower, 0, all);
     if (arc.to.lower < arc.to.upper) search(index, arc.to.lower, arc.to.upper, kMaxDepth, all);
@@ -54,11 +54,11 @@ class Proof : public ProvenCurves {
       bool is_sharp = false;
       const SignSets possible = possible_signs(rule, [&](std::size_t k) {
         const IntervalSeries<1> f = function(body, k, wide);
-        // If the arc may have no point at the centre, the mean value theorem cannot be applied.
+        // If there may be no point at `middle`, the mean value theorem cannot be applied.
         if (sign_of(f.c[0]) != 0 || !exists) return sign_of(f.c[0]);
         const Interval at_centre = function(body, k, centre).c[0], change = f.c[1] * shift;
         const int sign = sign_of(at_centre + change);
-        // Bisection helps unless the value at the single point `middle` is as uncertain as its change over the
+        // Bisection is useless if the value at `middle`, a single point, is already as uncertain as its change over the
         // interval.
         is_sharp = is_sharp || (sign == 0 && !(at_centre.width() > change.width()));
         return sign;
@@ -85,8 +85,10 @@ class Proof : public ProvenCurves {
 
   // Integrals.
 
-  /// Places the pole of each whole sphere far from the edges.
-  /// @return the sum, over the spheres whose pole belongs to the boundary, of `side` times the volume of the sphere
+  /// Chooses for each whole sphere the point at which its differential form is singular (away_from_pole), far from the
+  /// edges.
+  /// @return the sum of `side` times the volume of the sphere, over the spheres whose singular point belongs to the
+  ///         boundary of the solid
   Interval choose_poles() {
     Interval sum;
     for (ProvenFace& face : faces_) {
@@ -119,7 +121,8 @@ class Proof : public ProvenCurves {
     }
     return sum;
   }
-  /// Whether a point of a face belongs to all other bodies; std::nullopt if this is unknown.
+  /// Whether a point of a face belongs to the bodies of all other faces; std::nullopt if this is unknown.
+  /// @param at  the point
   std::optional<bool> holds(const ProvenFace& face, const IntervalVector& at) const {
     bool is_known = true;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -131,10 +134,11 @@ class Proof : public ProvenCurves {
     }
     return is_known ? std::optional(true) : std::nullopt;
   }
-  /// 1 if the first face of an arc is on the left for increasing u, -1 if the second face is. The value is the same on
-  /// the whole arc, because the surfaces do not touch. [-1, 1] if it is unknown in a range that may be inactive.
+  /// 1 if, in the direction of increasing u, the first face of an arc is on the left; -1 if the second face is. The
+  /// value is the same on the whole arc, because the surfaces do not touch. [-1, 1] if it is unknown, which is possible
+  /// only in a range that is not certain to be active.
   Interval orientation(const ProvenArc& arc, const ProvenRange& range) const {
-    if (arc.is_on_torus && !range.is_certain) return {-1, 1};  // because the arc may have no point there
+    if (arc.is_on_torus && !range.is_certain) return {-1, 1};  // the arc may have no point in this range
     const auto p = point(arc, IntervalSeries<1>::variable(0.5 * (range.from + range.to)));
     IntervalVector at, dp;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -154,7 +158,8 @@ class Proof : public ProvenCurves {
            (Interval(range.to) - Interval(range.from));
   }
 
-  static constexpr std::size_t kOrder = 14;  // order of the last term of the integrals; must be even
+  // order of the last term of the Taylor series that is integrated; must be even
+  static constexpr std::size_t kOrder = 14;
 
   Interval integral(const ProvenArc& arc, double from, double to, int depth) {
     const double middle = 0.5 * (from + to);
@@ -165,7 +170,7 @@ class Proof : public ProvenCurves {
       const auto centre = integrand(arc, point(arc, IntervalSeries<kOrder + 1>::variable(middle)));
       Interval of_left = left, of_right = right;
       sum = 0;
-      double rest = 0;  // width of the term of order 0, which bisection does not reduce
+      double rest = 0;  // width of the integral of the constant term, which bisection does not reduce
       for (std::size_t k = 0; k <= kOrder; ++k) {
         if (k == 1) rest = sum->width();
         const Interval& c = k == kOrder ? wide.c[k] : centre.c[k];

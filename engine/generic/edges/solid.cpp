@@ -7,31 +7,32 @@
 namespace pkm::generic::edges {
 namespace {
 
-// relative to the size of the solid, raised to the power degree() of a function
+// bound of the rounding error of a body's function, relative to the size of the solid raised to the power degree()
 constexpr double kFunctionRounding = 4e-15;
 constexpr int kMaxBisections = 36;
 constexpr long kMaxBoxes = 400'000;
 
-/// A test of the points of a curve: they have to belong to a body, or, if they lie on the surface of one of its faces,
-/// to that face.
+/// A test that all points of an intersection curve have to pass: to belong to a body or, if the curve lies on the
+/// surface of one of the body's faces, to that face.
 struct Test {
   std::size_t body;
   const Rule* rule;
 };
 
-/// An active interval of an arc, i.e. one whose points belong to the boundary of the solid.
+/// An interval of u in which all points of an arc are active, i.e. belong to the boundary of the solid.
 struct Range {
   const Arc* arc;
   double from, to;
-  double sign;  ///< 1: for increasing u, the first face is on the left; -1: the second face is
+  double sign;  ///< 1: in the direction of increasing u, the first face is on the left; -1: the second face is
 };
 
-/// A quadrature interval of an active range.
+/// A subinterval of an active range, for quadrature.
 struct Panel {
   std::size_t range;
   Subinterval<double> interval;
   double value = 0, error = 0;
-  std::array<Moments, 2> moments{};  ///< moments of the first and of the second face
+  /// Integrals along this subinterval for the moments of the first and of the second face.
+  std::array<Moments, 2> moments{};
 };
 
 Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].value}}; }
@@ -100,7 +101,7 @@ class Evaluator {
     const PreparedBody& torus = *curve.faces[0]->body;
     set_tests(curve);
     long boxes = 0;
-    constexpr double kFirst = 0.8;  // maximum width of the first boxes [rad]
+    constexpr double kFirst = 0.8;  // maximum width of the boxes with which the search begins [rad]
     // start of the angle b [rad], arbitrary, so that a symmetric solid has no special point there
     constexpr double kStart = 2.9;
     const double width = torus.to - torus.from;
@@ -135,12 +136,14 @@ class Evaluator {
     }
   }
 
-  /// Whether every point of a box of angles fails one of the tests, so that no part of the curve in it is active.
+  /// Whether every point of a box of the torus's angles fails one of the tests, so that no part of the curve in the box
+  /// is active.
   bool is_inactive(const Curve& curve, const TorusBox& box) const {
     const PreparedBody& torus = *curve.faces[0]->body;
     CurvePoint at = point_on(*curve.faces[0], box.middle[0], box.middle[1]);
     const double distance = (torus.crank + torus.radius) * box.half[0] + torus.radius * box.half[1];
-    // the coordinates as functions of a variable in [-1, 1], with slope 0
+    // Enclose the coordinates of all points in the box: as functions, with slope 0 at the middle, of a variable in [-1,
+    // 1].
     for (Enclosure& x : at.p) x = {x.value, 0, 2 * distance, 1};
     at.square = {at.square.value, 0, 2 * distance * (2 * norm(values(at.p)) + distance), 1};
     std::array<Enclosure, kFunctions> values;
@@ -154,9 +157,9 @@ class Evaluator {
 
   // Search for the active intervals of arcs.
 
-  using Tests = std::uint64_t;  // set of tests, one bit each, by index in tests_
+  using Tests = std::uint64_t;  // set of tests: bit i stands for tests_[i]
 
-  /// Collects the tests that points of a curve have to pass.
+  /// Sets tests_: the tests that points of a curve have to pass.
   void set_tests(const Curve& curve) {
     const auto& [a, b] = curve.faces;
     tests_.clear();
@@ -207,7 +210,7 @@ class Evaluator {
         return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
       });
       if ((rule.holds & possible) == 0) {
-        // try this test first in the next interval, which it often decides, too
+        // try this test first in the next interval: often it decides that one, too
         if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);
         return;
       }
@@ -245,8 +248,9 @@ class Evaluator {
       if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), tests)) emit(ends[i], ends[i + 1]);
   }
 
-  /// The combinations of signs that are possible at a point or on an interval. Only the functions on which the rule
-  /// depends are evaluated.
+  /// The combinations of signs of a body's functions that are possible at a point or in an interval of a curve.
+  /// Evaluates only the functions that matter for the test, and stores them in `values`.
+  /// @param sign_of  sign_of(f, k): sign of the function f with index k, 0 if it is unknown
   template <class Sign>
   SignSets examine(const Test& test, const CurvePoint& at, std::array<Enclosure, kFunctions>& values,
                    const Sign& sign_of) const {
@@ -277,7 +281,7 @@ class Evaluator {
                                  : function(bodies_[tests_[test].body], number, at);
   }
 
-  /// Position of the root of a monotone function in [from, to]; std::nullopt if it has no sign change there.
+  /// The value of u in [from, to] at which a monotone function changes its sign; std::nullopt if it does not change it.
   std::optional<double> find_root(std::size_t test, std::size_t number, double from, double to) const {
     const auto at = [&](double u) { return function_at(test, number, u); };
     const double first = at(from).value, last = at(to).value;
@@ -323,7 +327,7 @@ class Evaluator {
 
   // Sums over the active intervals.
 
-  /// Checks whether the directed edges of each face form closed curves, and estimates the error if they do not.
+  /// Checks whether the directed edges of each face form closed curves, and sets `gap` and `is_closed` of the result.
   void close() {
     std::vector<Vector3>& gaps = gaps_;
     gaps.assign(faces_.size(), {});
@@ -341,7 +345,8 @@ class Evaluator {
     return static_cast<std::size_t>(range.arc->curve->faces[which] - faces_.data());
   }
 
-  /// Places the pole of the differential form of each whole sphere far from the edges on this sphere.
+  /// Chooses for each whole sphere the point at which its differential form is singular (away_from_pole), far from the
+  /// edges.
   void choose_poles() {
     for (Face& face : faces_) {
       if (face.body->kind != Body::Kind::sphere) continue;
@@ -443,7 +448,8 @@ class Evaluator {
       const PreparedBody& body = *face.body;
       const Moments& m = moments_[i];
       Body& by = gradient[face.number];
-      if (face.surface == Surface::plane) {  // the normal speed of a plane is the change of radius - axis . p
+      // the normal speed of a plane is the change of `radius` minus the change of `axis` . p
+      if (face.surface == Surface::plane) {
         const double area = dot(body.axis, m.normal);
         by.radius = area;
         by.axis = cross(m.rotation, body.axis) - body.axis * (area * body.radius);
@@ -485,7 +491,7 @@ class Evaluator {
   double undecided_ = 0;
   EdgeVolume result_;
 
-  // state of the search along one arc
+  // variables of the search along one arc, arc_
   const Arc* arc_ = nullptr;
   std::vector<Test> tests_;
   std::vector<Undecided> undecided_functions_;

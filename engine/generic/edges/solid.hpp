@@ -8,7 +8,7 @@
 
 namespace pkm::generic::edges {
 
-/// A set of points, described by the members that its kind needs; lengths in m, angles in rad.
+/// A set of points. Its kind determines which of the members describe it; lengths in m, angles in rad.
 struct Body {
   enum class Kind {
     plane,     ///< half-space axis . p <= radius
@@ -19,13 +19,15 @@ struct Body {
   };
   Kind kind = Kind::plane;
   Vector3 centre{};
-  Vector3 axis{};             ///< unit vector of the axis, or of the normal of a plane
-  Vector3 zero{};             ///< crank: unit vector normal to `axis`, the direction of the crank at q = 0
-  double radius = 0;          ///< radius; plane: signed distance from the origin; slide, crank: length of the rod
-  double crank = 0;           ///< crank only: length of the crank
-  double from = 0, to = 0;    ///< slide, crank: range of q; that of a crank is less than one revolution
-  double side = 1;            ///< sphere, cylinder: 1: the inside, -1: the outside
-  bool is_first_root = true;  ///< slide, crank: true if q is the smaller of the two values that assemble (branch "-")
+  Vector3 axis{};  ///< unit vector along the axis; plane: unit normal
+  Vector3 zero{};  ///< crank: unit vector normal to `axis`, the direction of the crank at q = 0
+  /// Radius of the surface; plane: signed distance from the origin; slide, crank: length of the rod.
+  double radius = 0;
+  double crank = 0;         ///< crank only: length of the crank
+  double from = 0, to = 0;  ///< slide, crank: range of q; that of a crank is less than one revolution
+  double side = 1;          ///< sphere, cylinder: 1: the points inside, -1: those outside
+  /// Slide, crank: true: of the two q at which the rod reaches the point, take the smaller one (branch "-").
+  bool is_first_root = true;
 };
 
 /// Bodies whose intersection is the solid, and an upper bound of the distance of its points from the origin [m].
@@ -36,16 +38,17 @@ struct Solid {
 
 struct EdgeVolume {
   double value = 0;  ///< volume [m^3]
-  /// Estimate of the absolute error [m^3]: quadrature, undecided intervals, gaps and rounding errors.
+  /// Estimate of the absolute error of the volume [m^3]: quadrature, undecided intervals, gaps and rounding errors.
   double error = 0;
-  double gap = 0;            ///< maximum distance by which the directed edges of a face fail to close [m]
-  bool is_supported = true;  ///< false: two faces are on the same surface
+  /// Largest component, over all faces, of the sum of the vectors along the edges of a face; 0 if they are closed [m].
+  double gap = 0;
+  bool is_supported = true;  ///< false: the method cannot compute the volume, because two faces are on the same surface
   /// true: the edges of each face are closed up to rounding errors, and no interval is undecided.
   bool is_closed = true;
-  long boxes = 0, nodes = 0;  ///< number of examined intervals, and number of quadrature nodes
+  long boxes = 0, nodes = 0;  ///< number of intervals that were examined, and number of quadrature nodes
 };
 
-/// Scratch memory of volume(), of one thread.
+/// Scratch memory of volume(); each thread needs its own.
 class VolumeScratch {
  public:
   VolumeScratch();
@@ -56,9 +59,11 @@ class VolumeScratch {
   std::unique_ptr<class Evaluator> evaluator_;
 };
 
-/// The volume to a relative tolerance. It is valid only if is_supported and is_closed are true.
-/// @param gradient  if not null, receives the derivative of the volume by each member of each body that is a number,
-///                  for variations that keep unit vectors at unit length and `zero` normal to `axis`
+/// The volume of a solid. It is valid only if is_supported and is_closed are true.
+/// @param tolerance  relative error of the volume that is accepted
+/// @param gradient  if not null, receives for each body, in its members that are numbers, the derivatives of the volume
+///                  with respect to these members; valid for changes that keep unit vectors at unit length and `zero`
+///                  normal to `axis`
 EdgeVolume volume(const Solid& solid, double tolerance, VolumeScratch& scratch, std::vector<Body>* gradient = nullptr);
 
 }  // namespace pkm::generic::edges

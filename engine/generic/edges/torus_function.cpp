@@ -26,7 +26,8 @@ void add_product(const Bilinear& x, const Bilinear& y, double factor, Coefficien
     }
 }
 
-/// The function P . v + k on a torus, where P is the vector from its centre to the point.
+/// The function P . v + k of a point of a torus as a bilinear polynomial of its angles, where P is the vector from the
+/// centre of the torus to the point.
 Bilinear along(const PreparedBody& torus, const Vector3& v, double k) {
   const double x = dot(torus.zero, v), y = dot(torus.beside, v);
   return {{{k, 0, torus.radius * dot(torus.axis, v)},
@@ -50,7 +51,8 @@ double sum(const Trigonometric& a, const Trigonometric& b) {
 TorusFunction::TorusFunction(const Face& torus, const Face& other) {
   const PreparedBody &own = *torus.body, &body = *other.body;
   const Vector3 d = torus.centre - other.centre;
-  // K = |P + d|^2 + k and Y = (P + d) . axis of the other body, where |P|^2 = crank^2 + rod^2 + 2 crank rod cos b
+  // K = |P + d|^2 + k and Y = (P + d) . axis are quantities of the other body, with |P|^2 = crank^2 + rod^2 + 2 crank
+  // rod cos b
   const bool is_torus = other.surface == Surface::torus;
   const double l_2 = is_torus ? body.crank * body.crank : 0;
   Bilinear K = along(own, d * 2.0,
@@ -98,7 +100,7 @@ class Examination {
   CurveInBox run() const {
     if (std::fabs(centre_.f) > reach({true, true}) + rounding_error_) return {CurveInBox::State::absent};
     const std::array<double, 2> least{least_slope(0), least_slope(1)};
-    // The parameter is the coordinate along which the curve is flatter.
+    // As parameter of the curve, take the angle along which the curve is flatter.
     const std::size_t other = std::fabs(centre_.by[1]) >= std::fabs(centre_.by[0]) ? 1 : 0;
     if (least[other] > 0 && (least[1 - other] > 0 || has_fixed_sides(other))) return found(other, least[other]);
     const std::size_t second = 1 - other;
@@ -110,7 +112,7 @@ class Examination {
   }
 
  private:
-  /// Upper bound of |f - f(m)| in the box if only the coordinates with varies[i] vary.
+  /// Upper bound of |f - f(m)| in the box, where m is its middle, if only the angles i with varies[i] differ from m.
   double reach(const std::array<bool, 2>& varies) const {
     double sum = 0;
     for (std::size_t i = 0; i < 2; ++i)
@@ -121,7 +123,8 @@ class Examination {
       if (varies[i]) sum += std::fabs(centre_.by[i]) * box_.half[i];
     return sum;
   }
-  /// Lower bound of |df/d(coordinate i)| in the box; zero or negative if the derivative may vanish.
+  /// Lower bound, in the box, of the magnitude of the derivative of f with respect to angle i; zero or negative if the
+  /// derivative may vanish.
   double least_slope(std::size_t i) const {
     return std::fabs(centre_.by[i]) - f_.bend(i, 0) * box_.half[0] - f_.bend(i, 1) * box_.half[1];
   }
@@ -134,7 +137,7 @@ class Examination {
   double low(std::size_t i) const { return box_.middle[i] - box_.half[i]; }
   double high(std::size_t i) const { return box_.middle[i] + box_.half[i]; }
 
-  /// Whether f has no zero on the two sides of the box on which coordinate `other` has its minimum and its maximum.
+  /// Whether f has no zero on the two sides of the box on which the angle `other` has its minimum and its maximum.
   bool has_fixed_sides(std::size_t other) const {
     const std::size_t i = 1 - other;
     for (const double end : {low(other), high(other)}) {
@@ -145,8 +148,9 @@ class Examination {
     return true;
   }
 
-  /// The curve inside the box. It ends where it leaves the box through a side; f is monotone along sides on which it
-  /// can vanish.
+  /// The curve f = 0 inside the box, as a function of the angle that is not `other`. It ends where it leaves the box
+  /// through one of the sides on which `other` is constant; f is monotone along those sides on which it can be 0.
+  /// @param least  lower bound of the magnitude of the derivative of f with respect to `other`
   CurveInBox found(std::size_t other, double least) const {
     const std::size_t along = 1 - other;
     const auto is_positive = [&](double at, double across) { return f_.at(place(along, at, across)).f > 0; };
@@ -203,7 +207,7 @@ Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, c
   };
   const auto [low, high] = arc.across;
   const double at_low = at(low).f, at_high = at(high).f;
-  // where the arc ends, both values can have the same sign
+  // At an end of the arc f can have the same sign at both limits of the other angle: then the root is at one of them.
   double root = std::fabs(at_low) < std::fabs(at_high) ? low : high;
   if ((at_low > 0) != (at_high > 0))
     root = refine_root_newton(
@@ -216,7 +220,7 @@ Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, c
   const TorusFunction::Value here = at(root);
   const double slope = -here.by[along] / here.by[other], h = parameter.reach();
   if (h == 0) return {root, slope * parameter.slope, 0, parameter.h};
-  // Bounds that hold near the point; those of the box hold, too.
+  // Bounds for a neighbourhood of the point. Those of the box are valid, too: use the smaller ones.
   const double reach = arc.max_slope * h;
   const double least = std::max(
       arc.least, std::fabs(here.by[other]) - function.bend(other, along) * h - function.bend(other, other) * reach);

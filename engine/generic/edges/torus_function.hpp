@@ -30,6 +30,7 @@ class TorusFunction {
   TorusFunction(const Face& torus, const Face& other);
   TorusFunction() = default;
 
+  /// Value of f and its derivatives at a point of the torus.
   /// @param q_b  angle q of the crank and angle b around its fold [rad]
   Value at(const std::array<double, 2>& q_b) const;
   /// Upper bound of the magnitude of the second derivative of f with respect to the coordinates i and j (0: q, 1: b).
@@ -38,38 +39,41 @@ class TorusFunction {
   double size() const { return size_; }
 
  private:
-  /// c_[m][n]: coefficient of the product of function m of q and function n of b, of 1, cos t, sin t, cos 2t, sin 2t.
+  /// c_[m][n]: coefficient of the product of function m of q and function n of b; the functions are 1, cos, sin, and
+  /// cos and sin of the double angle.
   std::array<Trigonometric, 5> c_{};
-  std::array<double, 3> bend_{};  ///< bounds of the second derivatives qq, qb and bb
+  /// Bounds of the magnitudes of the second derivatives of f: twice by q, by q and b, twice by b.
+  std::array<double, 3> bend_{};
   double size_ = 0;
 };
 
-/// A box of the angles q and b, by its middle and half widths [rad].
+/// A box of the angles q and b, given by its centre and half its widths [rad].
 struct TorusBox {
   std::array<double, 2> middle{}, half{};
 };
 
-/// A curve along which f = 0, with one of q and b as its parameter, and bounds that hold in its box.
+/// A curve f = 0 with one of the angles q and b as its parameter, and bounds that hold in the box in which it was
+/// found.
 struct TorusArc {
-  std::size_t along = 0;           ///< the angle that is the parameter; 0: q, 1: b
+  std::size_t along = 0;           ///< which angle is the parameter; 0: q, 1: b
   double from = 0, to = 0;         ///< range of the parameter [rad]
-  std::array<double, 2> across{};  ///< range of the other angle [rad]
-  double max_slope = 0;  ///< maximum magnitude of the derivative of the other angle with respect to the parameter
-  double least = 0;      ///< minimum magnitude of the derivative of f with respect to the other angle
+  std::array<double, 2> across{};  ///< range of the angle that is not the parameter [rad]
+  double max_slope = 0;  ///< upper bound of the magnitude of the other angle's derivative with respect to the parameter
+  double least = 0;      ///< lower bound of the magnitude of the derivative of f with respect to the other angle
 };
 
 struct CurveInBox {
   enum class State : std::uint8_t { absent, unresolved, found };
   State state;
-  std::size_t longer = 0;         ///< if unresolved: the coordinate along which the box has to be bisected
-  std::optional<TorusArc> arc{};  ///< if found: the curve, restricted to the box
+  std::size_t longer = 0;         ///< if unresolved: which angle to bisect next; 0: q, 1: b
+  std::optional<TorusArc> arc{};  ///< if found: the curve inside the box
 };
 /// Decides whether f has a zero in a box, and finds the curve f = 0 if it is a function of one angle there.
 /// @param rounding_error  bound of the rounding error of f
 CurveInBox find_curve_in(const TorusFunction& function, const TorusBox& box, double rounding_error);
 
-/// The angle of a point of an arc that is not the parameter, with its derivative with respect to the parameter and a
-/// bound of the second derivative.
+/// On an arc, the angle that is not the parameter: its value, its derivative with respect to the parameter, and a bound
+/// of its second derivative.
 Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, const Enclosure& parameter);
 
 }  // namespace pkm::generic::edges
