@@ -13,9 +13,9 @@ namespace pkm::generic {
 namespace {
 
 constexpr std::size_t kCoefficients = 5;
-using Quartic = std::array<double, kCoefficients>;  // coefficients in ascending order
+using Quartic = std::array<double, kCoefficients>;  // coefficients of a polynomial of degree four, in ascending order
 
-/// Transforms a polynomial in z in [from, to] to s in [-1, 1].
+/// Coefficients of a polynomial in z, transformed to the variable s in [-1, 1] that stands for z in [from, to].
 Quartic in_range(Quartic c, double from, double to) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   for (std::size_t i = 0; i + 1 < kCoefficients; ++i)
@@ -54,18 +54,20 @@ Column::Column(SlicePlan plan) : plan_(std::move(plan)) {
     positive_literals_ &= ~(crank.at_min | crank.at_max | crank.after_min | crank.before_max);
 }
 
-/// Finds the roots of constraints of degree at most two.
-/// @return false if no point of the column is feasible.
-/// @param signs  receives the signs of these constraints at the lower end of the range
+/// Finds the roots along z of the constraints of degree at most two.
+/// @param signs  receives the signs of these constraints at the lower end of `range`
+/// @param range  receives the range of z in which the column can have feasible points
+/// @return false if no point of the column is feasible
 bool Column::find_quadratic_roots(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
                                   ColumnScratch& scratch) const {
   const auto [from, to] = plan_.range.back();
   const double low = registers[from], high = registers[to], beyond = 1e-2 * (high - low);
   if (!(high > low)) return false;
-  // slightly enlarged, because the bounds of the box are constraints with roots at low and high
+  // enlarge the range slightly, because the bounds of the box are constraints, too, with roots at low and high
   range = {low - beyond, high + beyond};
   std::array<Roots, kMaxSurfaces> roots;
-  std::array<bool, kMaxSurfaces> is_positive;  // for each constraint, whether it is positive below all of its roots
+  // is_positive[k]: whether constraint k is positive below all of its roots
+  std::array<bool, kMaxSurfaces> is_positive;
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
     if (((high_degree_ | transcendental_) & bit(k)) != 0) continue;
     const auto& at = plan_.surfaces[k].coefficients;
@@ -73,7 +75,7 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
     roots[k] = roots_of(c);
     is_positive[k] = c[2] != 0 ? c[2] > 0 : roots[k].count > 0 ? c[1] < 0 : c[0] >= 0;
     if ((plan_.formula.all & bit(k)) == 0 || is_positive[k]) continue;
-    // the constraint is negative below its first root, so it is >= 0 between two roots or above a single root
+    // constraint k is negative below its first root, so it is >= 0 between two roots or above a single root
     const auto [r, count] = roots[k];
     if (count == 0 || !(r[0] <= range[1]) || !(count == 1 || r[1] >= range[0])) return false;
     const double rest = count == 2 ? 1e-2 * (r[1] - r[0]) : beyond;
@@ -95,7 +97,7 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
   return true;
 }
 
-/// Finds the roots of constraints of degree three and four between `from` and `to`.
+/// Finds the roots of the constraints of degree three and four for z between `from` and `to`.
 /// @param signs  receives the signs of these constraints at `from`
 void Column::find_high_degree_roots(std::span<const double> registers, double from, double to, Signs& signs,
                                     ColumnScratch& scratch) const {
@@ -105,8 +107,8 @@ void Column::find_high_degree_roots(std::span<const double> registers, double fr
     const Quartic c = in_range(coefficients_of(plan_.surfaces[k], registers), from, to);
     std::array<double, 8> places{};
     const std::size_t count = sign_changes(c, places);
-    // The sign is evaluated between the lower end and the first change: at the lower end itself rounding may give the
-    // opposite of the sign from which sign_changes() starts.
+    // The sign is evaluated between `from` and the first sign change: at `from` itself, rounding may give the opposite
+    // of the sign with which sign_changes() starts.
     const double first = 0.5 * (count > 0 ? places[0] - 1 : 0);
     bool is = c[0] + first * (c[1] + first * (c[2] + first * (c[3] + first * c[4]))) >= 0;
     if (is) signs |= bit(k);
@@ -116,7 +118,8 @@ void Column::find_high_degree_roots(std::span<const double> registers, double fr
   std::sort(scratch.high_degree.begin(), scratch.high_degree.end());
 }
 
-/// First-order bound of the rounding error of an endpoint: residual error of the polynomial divided by its slope.
+/// First-order bound of the rounding error of an endpoint's position: rounding error of the polynomial divided by its
+/// slope.
 double Column::root_error_bound(const std::pair<double, EndLabel>& end, std::span<const double> registers) const {
   const auto [z, label] = end;
   if (plan_.surfaces[label >> 1U].is_transcendental) return 0;
@@ -129,8 +132,9 @@ double Column::root_error_bound(const std::pair<double, EndLabel>& end, std::spa
   return 1e-14 * size / (std::fabs(slope_of(c, z)) + 1e-14 * size);
 }
 
-/// Drops intervals shorter than the error bounds of their endpoints, and labels coincident endpoints by the lowest
-/// constraint number. The type then does not depend on rounding.
+/// Removes feasible intervals that are shorter than the error bounds of their endpoints. Of endpoints that coincide,
+/// each receives the lowest label, so that the type of the column does not depend on rounding errors.
+/// @param tie  endpoints at a distance of at most this coincide in any case
 void Column::merge_coincident_roots(std::span<const double> registers, double tie, ColumnScratch& scratch) const {
   const auto are_one = [&](const auto& x, const auto& y) {
     const double distance = std::fabs(x.first - y.first);
@@ -146,7 +150,7 @@ void Column::merge_coincident_roots(std::span<const double> registers, double ti
     } else {
       ++i;
     }
-  const Ends& all = scratch.ends;  // the sign changes, in ascending order of z
+  const Ends& all = scratch.ends;  // all sign changes of the column, in ascending order of z
   for (ColumnScratch::Piece& piece : pieces) {
     if (is_long(scratch)) check_stop();
     for (auto* const end : {&piece.lower, &piece.upper}) {
@@ -184,7 +188,7 @@ double Column::measure(std::span<double> registers, ColumnScratch& scratch) cons
   std::pair<double, EndLabel> from{range[0], 0};
   for (std::size_t i = 0; i <= scratch.quadratic.size();) {
     const double to = i < scratch.quadratic.size() ? scratch.quadratic[i].first : range[1];
-    // Constraints of degree three and four are evaluated only if the others can be satisfied.
+    // The constraints of degree three and four are evaluated only if all others can be satisfied.
     const bool at_best = holds(signs | positive_literals_);
     if (high_degree_ == 0 || (positive_literals_ == high_degree_ && (!at_best || holds(signs)))) {
       become(at_best, from);

@@ -11,22 +11,24 @@
 
 namespace pkm::generic {
 
-/// Scratch memory of Column. The label of an endpoint is 2 k for constraint k, plus 1 if the constraint decreases along
-/// z there.
+/// Scratch memory of Column, with the result of measure(). The label of an endpoint of a feasible interval is 2 k if
+/// constraint k has its root there, plus 1 if this constraint decreases along z.
 struct ColumnScratch {
   /// A feasible interval of the column, with the positions and labels of its endpoints.
   struct Piece {
     std::pair<double, EndLabel> lower, upper;
   };
   std::vector<Piece> pieces;
-  Ends ends;         ///< sign changes of the constraints that can bound feasible intervals: position and label
-  Ends quadratic;    ///< sign changes of quadratic and transcendental constraints, in ascending order
-  Ends high_degree;  ///< sign changes of constraints of degree three and four between two neighbours in `quadratic`
-  std::vector<EndLabel> labels;  ///< labels of the endpoints of pieces
+  Ends ends;  ///< position and label of all sign changes that can bound a feasible interval, in ascending order
+  /// Sign changes of the constraints of degree at most two and of transcendental constraints, in ascending order.
+  Ends quadratic;
+  /// Sign changes of the constraints of degree three and four between two consecutive elements of `quadratic`.
+  Ends high_degree;
+  std::vector<EndLabel> labels;  ///< labels of the endpoints of all elements of `pieces`
   SliceType type = 0;
-  double error = 0;  ///< total length of intervals in which the sign of a transcendental constraint is unknown
+  double error = 0;  ///< total length of the intervals of z in which the sign of a transcendental constraint is unknown
   SignChangeScratch sign_changes;
-  long operations = 0;      ///< interval operations so far, in all columns
+  long operations = 0;      ///< number of interval operations in all columns so far
   long max_operations = 0;  ///< limit of `operations`, beyond which intervals with unknown signs count as error
 };
 
@@ -35,21 +37,24 @@ inline bool is_long(const ColumnScratch& scratch) { return scratch.ends.size() >
 
 class Column {
  public:
-  /// @param plan  a plan whose slices are lines: its CoordinateOrder has no v
+  /// @param plan  a plan whose slices are lines along z, without an inner coordinate v
   explicit Column(SlicePlan plan);
 
   const SlicePlan& plan() const { return plan_; }
-  /// Computes the length of the column, its type and its feasible intervals (pieces). @param registers  values of the
-  /// program's registers after all stages except that of z
+  /// Computes the length of the column, i.e. the total length of its feasible intervals, and sets the column's type and
+  /// feasible intervals in `scratch`.
+  /// @param registers  values of the program's registers after all stages except that of z
   double measure(std::span<double> registers, ColumnScratch& scratch) const;
-  /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
+  /// Adds the derivatives of factor * measure() to the adjoints of the program's registers; to be called after
+  /// measure().
   void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
                     const ColumnScratch& scratch) const;
-  /// An endpoint with its derivatives, after measure().
+  /// The position of an endpoint with its derivatives with respect to the design; to be called after measure().
+  /// @param end             position and label of the endpoint
   /// @param dual_registers  registers with derivatives, after all stages except that of z
   Dual4 differentiable_end(const std::pair<double, EndLabel>& end, std::span<Dual4> dual_registers) const;
-  /// Calls visit(z, weight) at quadrature nodes inside the column, after measure().
-  /// @param end_of  end_of(position and label) returns an endpoint of a feasible interval as a number of type S
+  /// Calls visit(z, weight) at quadrature nodes in the feasible intervals; to be called after measure().
+  /// @param end_of  end_of(position and label) returns the position of an endpoint as a number of type S
   template <class S, class EndOf, class Visit>
   void for_each_node(const GaussRule& along_z, const ColumnScratch& scratch, const EndOf& end_of,
                      const Visit& visit) const {
@@ -81,11 +86,12 @@ class Column {
 
   SlicePlan plan_;
   Signs high_degree_ = 0;  ///< set of the constraints of degree three and four
-  /// Set of those constraints of degree three and four that occur only positively in the feasibility formula.
+  /// Set of those constraints of degree three and four that occur in the feasibility formula only without negation.
   Signs positive_literals_ = 0;
   Signs transcendental_ = 0;
-  std::vector<WithDerivative> curves_;    ///< registers of the transcendental constraints and of their derivatives
-  std::vector<EndLabel> curve_surfaces_;  ///< index of the surface of each of them
+  /// Registers of the values of the transcendental constraints and of their derivatives by z.
+  std::vector<WithDerivative> curves_;
+  std::vector<EndLabel> curve_surfaces_;  ///< index of the surface of each element of `curves_`
 };
 
 }  // namespace pkm::generic

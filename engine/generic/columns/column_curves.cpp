@@ -7,8 +7,9 @@
 
 namespace pkm::generic {
 
-/// Appends the roots of transcendental constraints to those of quadratic ones. @param signs  receives the signs of
-/// transcendental constraints at the lower end
+/// Appends the roots of the transcendental constraints to scratch.quadratic, which has those of constraints of degree
+/// at most two.
+/// @param signs  receives the signs of the transcendental constraints at the lower end of `range`
 void Column::find_transcendental_roots(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
                                        ColumnScratch& scratch) const {
   constexpr long kMaxEvaluations = 4000;  // maximum number of interval evaluations per column

@@ -10,14 +10,14 @@
 namespace pkm::generic {
 namespace {
 
-// weight of outer coordinates in the choice of the side to bisect: contraction acts on v and z only
+// factor by which outer coordinates are preferred in the choice of the side to bisect: contraction acts on v and z only
 constexpr double kOuterBias = 16;
 
 double middle_of(const Interval& x) { return 0.5 * (x.lower + x.upper); }
 double magnitude_of(const Interval& x) { return std::max(std::fabs(x.lower), std::fabs(x.upper)); }
 
-/// Contracts [from, to], a part of [0, 1], to the part where c[0] + c[1] x + c[2] x^2 can be >= 0. @return false if it
-/// is empty
+/// Sets [from, to] to the smallest part of [0, 1] outside which c[0] + c[1] x + c[2] x^2 is negative.
+/// @return false if the quadratic is negative in all of [0, 1]
 bool cut(const std::array<double, 3>& c, double& from, double& to) {
   const Roots roots = roots_of(c);
   from = c[0] >= 0 ? 0 : 2;
@@ -31,8 +31,8 @@ bool cut(const std::array<double, 3>& c, double& from, double& to) {
   return from <= to;
 }
 
-/// Replaces an interval by the part of it in which c + slope t + curvature t^2 can be >= 0, where t runs from -1 to 1
-/// over the interval. @return false if there is no such part
+/// Reduces the interval `side` to the part of it in which c + slope t + curvature t^2 can be >= 0, where t is -1 at the
+/// lower and 1 at the upper end of the interval. @return false if there is no such part
 bool narrow(double c, const Interval& slope, double curvature, Interval& side) {
   constexpr double kBeyond = 1e-9, kWorthIt = 1.8;
   if (!std::isfinite(c + magnitude_of(slope) + curvature)) return true;
@@ -49,8 +49,8 @@ bool narrow(double c, const Interval& slope, double curvature, Interval& side) {
 
 }  // namespace
 
-/// A surface in a box, as a function of t and s in [-1, 1] for v and z: c + ct t + cs s + ctt t^2 + css s^2, with an
-/// error of at most +-rest.
+/// The polynomial of a surface in a box, as a function of t and s in [-1, 1], which stand for v and z in the box: c +
+/// ct t + cs s + ctt t^2 + css s^2, with an error between -rest and rest.
 struct ComponentSearch::BoxQuadratic {
   Interval c, ct, cs, ctt, css;
   double rest = 0;
@@ -124,7 +124,7 @@ void ComponentSearch::add_samples(std::size_t side, std::optional<double> at, in
   std::ranges::sort(scratch.uncovered);
   for (std::size_t i = 0; i < scratch.uncovered.size();) {
     auto [from, to] = scratch.uncovered[i];
-    int boxes = 1;  // number of different boxes in this chain of adjacent boxes
+    int boxes = 1;  // number of different boxes in this group of adjacent boxes
     for (++i; i < scratch.uncovered.size() && scratch.uncovered[i][0] <= to; ++i) {
       boxes += scratch.uncovered[i][0] > scratch.uncovered[i - 1][0] ? 1 : 0;
       to = std::max(to, scratch.uncovered[i][1]);
@@ -161,8 +161,8 @@ double ComponentSearch::volume(const SearchScratch::Box& box) const {
   return volume;
 }
 
-/// Evaluates the stages whose inputs differ from those of the previous box. @return false if an independent constraint
-/// is violated everywhere in the box
+/// Evaluates those stages of the program for a box whose inputs differ from the last evaluation.
+/// @return false if a constraint that is independent of the inner coordinates is violated everywhere in the box
 bool ComponentSearch::evaluate(const SearchScratch::Box& box, SearchScratch& scratch) const {
   const auto& stages = plan_.program.stages();
   bool differs = false;
@@ -213,7 +213,7 @@ ComponentSearch::BoxQuadratic ComponentSearch::in_box(const Surface& surface, co
   return P;
 }
 
-/// Contracts the box. @return false if it is proven empty
+/// Reduces the box to a part that contains all of its feasible points. @return false if it has no feasible point
 bool ComponentSearch::may_be_feasible(SearchScratch::Box& box, SearchScratch& scratch) const {
   check_stop();
   if (!evaluate(box, scratch)) return false;

@@ -11,9 +11,9 @@ namespace pkm::generic {
 /// Scratch memory of ComponentSearch.
 struct SearchScratch {
   struct Box {
-    /// Range of each outer coordinate, then of v and z, as far as the slices have them.
+    /// Range of each outer coordinate, followed by the ranges of v (if the slices are planar) and z.
     std::array<Interval, kMaxCoordinates> side;
-    Signs open = ~Signs{0};  ///< set of the constraints that can be negative in the box
+    Signs open = ~Signs{0};  ///< set of the constraints that are not known to be satisfied in the whole box
 
     const Interval& outermost() const { return side[0]; }
   };
@@ -21,10 +21,11 @@ struct SearchScratch {
   std::size_t examined = 0;
 
   Box whole;  ///< box with the whole range of each coordinate
-  /// For each stage, the interval of its coordinate for which `registers` were computed.
+  /// For each stage, the interval of the stage's coordinate for which `registers` were computed last.
   std::array<Interval, kMaxCoordinates + 1> evaluated;
   std::vector<Interval> registers;
-  std::vector<Box> non_empty;  ///< boxes that contain a non-empty slice, removed from `boxes`
+  /// Boxes in which remove_containing() has found a non-empty slice; `boxes` does not contain them.
+  std::vector<Box> non_empty;
   std::vector<Box> halves;
   std::vector<std::array<double, 2>> uncovered;
 };
@@ -33,26 +34,29 @@ class ComponentSearch {
  public:
   explicit ComponentSearch(const SlicePlan& plan) : plan_(plan) {}
 
-  /// Begins a search without boxes. @param registers  values of the registers after the stage of the design
+  /// Begins a search with an empty list of boxes.
+  /// @param registers  values of the registers after the stage of the design
   void start(std::span<const double> registers, SearchScratch& scratch) const;
-  /// Adds a box: an interval of the outermost coordinate and the whole ranges of the others.
+  /// Adds a box to be searched: the interval [from, to] of the outermost coordinate, and the whole ranges of the
+  /// others.
   void add(double from, double to, SearchScratch& scratch) const;
-  /// Discards boxes that are proven empty, and contracts the others.
+  /// Discards the boxes that are proven to have no feasible point, and reduces the others to parts with all feasible
+  /// points.
   void examine(SearchScratch& scratch) const;
   /// Whether bisect() will divide this box along the outermost coordinate.
   bool bisects_outermost(const SearchScratch::Box& box, const SearchScratch& scratch) const {
     return longest(box, scratch) == 0;
   }
   void bisect(SearchScratch& scratch) const;
-  /// Removes the boxes that contain the value `at` of the outermost coordinate, at which the slice is not empty: the
-  /// refinement around that slice covers them.
+  /// Removes the boxes that contain the value `at` of the outermost coordinate. To be called if the slice there is not
+  /// empty: the refinement of the integral around this slice covers these boxes.
   void remove_containing(double at, SearchScratch& scratch) const;
-  /// Adds samples of one coordinate, given by its index in Box::side. Each interval that adjacent boxes cover receives
-  /// as many samples as there are boxes, but at least `count`.
-  /// @param at  only boxes that contain this value of the outermost coordinate count; std::nullopt: all boxes
+  /// Adds samples of the coordinate with index `side` in Box::side to `places`. Each interval that is covered by
+  /// adjacent boxes receives as many samples as it has boxes, but at least `count`.
+  /// @param at  only boxes that contain this value of the outermost coordinate are used; std::nullopt: all boxes
   void add_samples(std::size_t side, std::optional<double> at, int count, std::vector<double>& places,
                    SearchScratch& scratch) const;
-  /// Volume of the remaining boxes, except those adjacent to non-empty slices.
+  /// Volume of the boxes that remain, without those adjacent to a non-empty slice.
   double undecided_volume(SearchScratch& scratch) const;
 
  private:

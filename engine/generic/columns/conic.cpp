@@ -8,18 +8,18 @@
 namespace pkm::generic {
 namespace {
 
-// relative to Conic::scale: a smaller coefficient of s^2 is neglected, because formulas divide by it
+// relative to Conic::scale: smaller coefficients of s^2 are treated as 0, because formulas divide by them
 constexpr double kStraight = 1e-5;
 
 bool bends(const Conic& P) { return std::fabs(P.c[5]) > kStraight * P.scale; }
 
-/// Gauss-Legendre rule with 12 nodes, which is accurate to rounding errors for small curvature.
+/// Gauss-Legendre rule with 12 nodes; its error for arcs of small curvature is below the rounding errors.
 const GaussRule& rule() {
   static const GaussRule gauss = gauss_legendre(12);
   return gauss;
 }
 
-/// Integrals of R = sqrt(q), 1/R, w/R and w^2/R over [-h/2, h/2].
+/// Integrals over w in [-h/2, h/2] of R = sqrt(q), 1/R, w/R and w^2/R, where q is a quadratic polynomial in w.
 struct Moments {
   double F, J0, J1, J2;
 };
@@ -81,7 +81,8 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     if (std::fabs(s) <= 1 + 1e-9 && count < points.size()) points[count++] = {t, s};
   };
   std::array<double, 8> at{};
-  // The conic of the pencil without s^2, d0(t) + d1(t) s = 0, is substituted into the one with the larger curvature.
+  // The linear combination of the conics without s^2, d0(t) + d1(t) s = 0, is substituted into the one with the larger
+  // curvature.
   const bool first = std::fabs(P.c[5]) * Q.scale >= std::fabs(Q.c[5]) * P.scale;
   const Conic &A = first ? P : Q, &B = first ? Q : P;
   std::array<double, 6> d = B.c;
@@ -103,7 +104,7 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     }
     return count;
   }
-  // p0 d1^2 - p1 d0 d1 + p2 d0^2
+  // coefficients R of the polynomial in t whose roots are the intersections: p0 d1^2 - p1 d0 d1 + p2 d0^2
   const std::array<double, 3> d0{d[0], d[1], d[3]}, p0{A.c[0], A.c[1], A.c[3]};
   const std::array<double, 3> d11{d[2] * d[2], 2 * d[2] * d[4], d[4] * d[4]};
   const std::array<double, 3> pd{A.c[2] * d[2], A.c[2] * d[4] + A.c[4] * d[2], A.c[4] * d[4]};
@@ -155,7 +156,7 @@ void add_gradient_of_area(const Conic& P, const Arc& arc, double factor, std::ar
     }
     return;
   }
-  // On the arc, s = a + a1 w + b R with w = t - m, and P_s = 2 c5 b R.
+  // On the arc, s = a + a1 w + b R with w = t - m; the derivative of P with respect to s is 2 c5 b R.
   const auto [F, J0, J1, J2] = moments_of(P, arc);
   const double m = 0.5 * (arc.from + arc.to), a = -0.5 * (P.c[2] + m * P.c[4]) / P.c[5], a1 = -0.5 * P.c[4] / P.c[5];
   const double b = (arc.root == 0 ? -0.5 : 0.5) / std::fabs(P.c[5]), g = -factor / (2 * P.c[5] * b);

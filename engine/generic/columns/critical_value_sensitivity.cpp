@@ -8,7 +8,7 @@
 namespace pkm::generic {
 namespace {
 
-// relative to the half widths of the slice: vertices at a smaller distance coincide at the critical value
+// relative to the half widths of the slice: vertices at a smaller distance count as the same point
 constexpr double kCoincidence = 1e-3;
 constexpr std::size_t kMaxDegenerateCurves = 3;
 
@@ -16,7 +16,7 @@ bool are_near(const ArcEnd& x, const ArcEnd& y, const PlanarSliceScratch& scratc
   return std::fabs(x.v - y.v) < kCoincidence * scratch.v[1] && std::fabs(x.z - y.z) < kCoincidence * scratch.z[1];
 }
 
-/// Removes the elements that both lists contain.
+/// Removes from both lists the endpoints that the other list contains, too.
 void remove_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const PlanarSliceScratch& scratch) {
   std::erase_if(x, [&](const ArcEnd& end) {
     const auto same = std::ranges::find_if(y, [&](const ArcEnd& other) {
@@ -28,7 +28,8 @@ void remove_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const PlanarS
   });
 }
 
-/// Factors such that the sum of factor times gradient is zero if the gradients are linearly dependent.
+/// Returns one factor for each curve. If the gradients of the curves are linearly dependent, the sum of factor times
+/// gradient is zero.
 std::array<double, kMaxDegenerateCurves> dependency_factors(std::span<const PlanarSliceSensitivity::Boundary> curves) {
   const auto cross = [&](std::size_t i, std::size_t j) {
     return curves[i].t * curves[j].s - curves[i].s * curves[j].t;
@@ -39,8 +40,8 @@ std::array<double, kMaxDegenerateCurves> dependency_factors(std::span<const Plan
   return along_t ? std::array{curves[1].t, -curves[0].t, 0.0} : std::array{curves[1].s, -curves[0].s, 0.0};
 }
 
-/// Whether the linear combination of the gradients with these factors vanishes. @param size  magnitude of the terms of
-/// a gradient
+/// Whether the sum of factor times gradient of the curves is zero.
+/// @param size  magnitude of a gradient's terms, for comparison, if there is a single curve; otherwise 0
 bool are_dependent(std::span<const PlanarSliceSensitivity::Boundary> curves,
                    const std::array<double, kMaxDegenerateCurves>& factors, double size) {
   double t = 0, s = 0;
@@ -59,7 +60,7 @@ std::vector<ArcEnd> arc_ends(const PlanarSlice& planar_slice, const PlanarSliceS
   planar_slice.for_each_arc_end(scratch, [&](EndLabel end, std::size_t first, double t) {
     const std::uint32_t surface = end >> 1U, label = vertex_of(surface, first, t, scratch);
     const Conic& P = scratch.conics[surface];
-    // at a turning point both roots are equal, up to rounding errors
+    // at a turning point both roots s are equal, up to rounding errors
     const bool turns = (label & kKind) == kTurningPoint && !P.is_straight();
     const double s = turns ? -0.5 * (P.c[2] + t * P.c[4]) / P.c[5] : end_at(end, t, scratch);
     ends.push_back({label, surface, scratch.v[0] + scratch.v[1] * t, scratch.z[0] + scratch.z[1] * s});
@@ -73,7 +74,7 @@ std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd
                                                    const PlanarSliceSensitivity& by_x) {
   remove_common(inside, outside, scratch);
   inside.insert(inside.end(), outside.begin(), outside.end());
-  // Turning points are no vertices, unless nothing else changes: then a complete conic appears or vanishes.
+  // Turning points do not count as vertices, unless nothing else changes: then a complete conic appears or vanishes.
   const auto turns = [](const ArcEnd& end) { return (end.label & kKind) == kTurningPoint; };
   if (!std::ranges::all_of(inside, turns)) std::erase_if(inside, turns);
   if (inside.empty()) return {};
@@ -104,8 +105,8 @@ std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd
   const auto factors = dependency_factors(curves);
   if (!are_dependent(curves, factors, curves.size() == 1 ? scratch.conics[bounds[0] & ~kKind].scale : 0)) return {};
   Components<4> change;
-  // slope: derivative of the linear combination with respect to the outer coordinate; size: sum of the magnitudes of
-  // its terms
+  // slope: derivative of the sum of factor times curve equation with respect to the outer coordinate; size: sum of the
+  // magnitudes of its terms
   double slope = 0, size = 0;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const double each = factors[i] * by_x.boundary(bounds[i], t, s).change[0];

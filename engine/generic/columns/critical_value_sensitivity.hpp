@@ -12,20 +12,23 @@
 
 namespace pkm::generic {
 
-/// Endpoint of an arc that bounds a slice.
+/// Endpoint (v, z) of an arc that bounds a planar slice, and the index of the surface of the arc.
 struct ArcEnd {
   std::uint32_t label;  ///< label of the vertex at which the arc ends
   std::uint32_t surface;
   double v, z;
 };
 
-/// Endpoints of the arcs of a slice, after measure().
+/// Endpoints of all arcs that bound a planar slice.
+/// @param scratch  scratch memory of planar_slice.measure() for the slice
 std::vector<ArcEnd> arc_ends(const PlanarSlice& planar_slice, const PlanarSliceScratch& scratch);
 
-/// A critical value with its derivatives; std::nullopt if the degenerating curves are not identified.
-/// @param inside, outside  endpoints of the arcs of the slices on the two sides of the critical value
-/// @param scratch          scratch memory of the slice inside
-/// @param by_design, by_x  sensitivities with respect to the design, and to the outer coordinate x
+/// A critical value with its derivatives with respect to the design; std::nullopt if the curves that degenerate there
+/// are not identified.
+/// @param at               the critical value
+/// @param inside, outside  endpoints of the arcs of two slices, one on each side of the critical value
+/// @param scratch          scratch memory of the slice with the endpoints `inside`
+/// @param by_design, by_x  sensitivities of this slice with respect to the design, and to the outer coordinate x
 std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> outside,
                                                    const PlanarSliceScratch& scratch,
                                                    const PlanarSliceSensitivity& by_design,

@@ -7,8 +7,8 @@ namespace pkm::generic {
 namespace {
 
 constexpr int kMaxExtrapolations = 18;  // after this many extrapolations, bisection only
-// maximum number of differing keys, and of features with them: beyond it the number of pairs is too large, and
-// bisection is as fast
+// maximum number of features that differ, and of their keys: with more of them there are too many pairs, and bisection
+// is as fast
 constexpr std::size_t kMaxFeatures = 100;
 
 }  // namespace
@@ -25,7 +25,7 @@ void CriticalValueSolver::reset(bool features_persist) {
   extrapolations_ = 0;
 }
 
-/// Finds the keys that occur in different numbers below and above the critical value, and the features with these keys.
+/// Finds the keys that occur in different numbers in the slices below and above the critical value (changed_).
 void CriticalValueSolver::compare() {
   for (std::size_t i = 0; i < 2; ++i) {
     keys_[i].clear();
@@ -50,8 +50,9 @@ bool CriticalValueSolver::has_changed(const BoundaryFeature& feature) const {
   return std::ranges::find(changed_, feature.key) != changed_.end();
 }
 
-/// Stores the boundary features of a slice below or above the critical value. @return true if slices on both sides are
-/// stored, so that the distances of features that meet there can be computed
+/// Stores the boundary features of a slice below or above the critical value.
+/// @return true if slices on both sides have been stored and few features differ, so that distances between them can be
+///         computed
 bool CriticalValueSolver::record(bool is_upper, SliceType type, const BoundaryFeatures& features) {
   Side& side = sides_[is_upper];
   const bool is_other = !side.is_known || side.type != type;
@@ -80,8 +81,9 @@ void CriticalValueSolver::add_size(double at, bool is_upper, double size) {
   add(sides_[0], {at, size});
 }
 
-/// Minimum distance of two features on the side of the last sample whose keys occur in different numbers on the two
-/// sides; it has a sign if exactly two keys differ and the features persist beyond the critical value.
+/// In the last sample, the minimum distance of two features among those whose keys occur in different numbers below and
+/// above the critical value; infinity if there are no such pairs. It has a sign if exactly two keys differ and the
+/// features still exist beyond the critical value.
 double CriticalValueSolver::distance_of_two() {
   const BoundaryFeatures& features = changed_features_[is_upper_];
   const bool are_two = changed_.size() == 2;
@@ -118,8 +120,8 @@ void CriticalValueSolver::add(Side& side, Point point) {
   to.count = std::min(to.count + 1, 3);
 }
 
-/// Value of the coordinate in (low, high) at which the size extrapolated from the samples of one side is zero;
-/// std::nullopt if there is none.
+/// Extrapolates the size of the degenerating feature from the samples on one side.
+/// @return value of the coordinate in (low, high) at which it is zero; std::nullopt if there is none
 std::optional<double> CriticalValueSolver::zero_between(double low, double high, bool is_upper) {
   const Side& side = sides_[is_signed_ ? 0 : is_upper];
   if (side.count < 2) return {};
@@ -129,7 +131,7 @@ std::optional<double> CriticalValueSolver::zero_between(double low, double high,
   };
   const Point* const last = &side.points[static_cast<std::size_t>(side.count - 1)];
   if (side.count == 3 && !is_signed_) {
-    // choose the model, linear or square root, that predicts the third sample better from the first two
+    // choose the model, linear or square root, that predicts the last of three samples better from the first two
     const auto off = [&](bool is_root) {
       const double at = through(last[-2], last[-1], is_root), whole = at - last[-1].at, rest = at - last->at;
       const double ratio = last->size / last[-1].size;
@@ -150,15 +152,15 @@ double CriticalValueSolver::next_sample(double low, double high, double toleranc
   if (!at) at = zero_between(low, high, is_upper = !is_upper);
   if (++extrapolations_ % 6 == 0) return middle;
   if (!at) {
-    // The extrapolation is close to one end of the bracket, but the sample next to it had another type: step away from
-    // this end.
+    // The extrapolated value was close to one end of the bracket, but the slice there had another type: go away from
+    // this end in increasing steps.
     if (!last_ || offset_ == 0) return middle;
     offset_ = std::fmax(16 * offset_, tolerance);
     const double beyond = *last_ - low < high - *last_ ? low + offset_ : high - offset_;
     return beyond > low && beyond < high ? beyond : middle;
   }
-  // Take the next sample on the side on which the feature exists, at the estimated error from the extrapolated value;
-  // once the bracket is that small, take it on the opposite side.
+  // Take the next sample on the side of the extrapolated value on which the feature exists, at a distance equal to the
+  // estimated error. Once the bracket is as small as this distance, take it on the opposite side.
   const double from = is_upper ? high : low, there = std::fabs(*at - from);
   const double off = std::fmax(last_ ? std::fmin(std::fabs(*at - *last_), 0.1 * there) : 0.1 * there, 0.5 * tolerance);
   last_ = at;

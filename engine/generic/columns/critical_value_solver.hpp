@@ -14,20 +14,23 @@ namespace pkm::generic {
 
 /// A feature of the boundary of a slice: a vertex of a planar slice or an endpoint of a column, with its position.
 struct BoundaryFeature {
-  std::uint64_t key;  ///< identifies the feature; the same in all slices of one type
-  /// Constraint surface on which it lies; the distance of two features of one surface vanishes like a square root.
+  std::uint64_t key;  ///< identifies the feature; slices of the same type have features with the same keys
+  /// Constraint surface on which the feature lies. The distance of two features of one surface shrinks to zero like a
+  /// square root.
   std::uint64_t of;
-  double t, s = 0;     ///< coordinates of the feature in the slice: t, and in planar slices s
-  bool bounds = true;  ///< false: a root of a constraint that is redundant here, so that it does not bound the slice
+  double t, s = 0;  ///< coordinates of the feature in the slice: t, and in planar slices s
+  /// false: the feature is a root of a constraint that does not bound the slice here, because others are violated.
+  bool bounds = true;
 };
 using BoundaryFeatures = std::vector<BoundaryFeature>;
 
 class CriticalValueSolver {
  public:
   /// Discards all samples.
-  /// @param features_persist  true: beyond the critical value the merging features still exist, as redundant roots
+  /// @param features_persist  true: beyond the critical value, the two features that meet there still exist, but do not
+  ///                          bound the slice
   void reset(bool features_persist);
-  /// Adds a sample below or above the critical value.
+  /// Adds a sample: the slice at a value `at` of the coordinate, below or above the critical value.
   /// @param type      type of the slice; 0: empty
   /// @param distance  distance(feature, other): distance of `feature` from the surfaces that intersect at `other`, a
   ///                  feature of the sample on the opposite side; infinity if it is zero or unknown
@@ -41,14 +44,15 @@ class CriticalValueSolver {
         if (feature.bounds) size = nearer(size, distance(feature, other));
     if (size < kUnknown) add(sides_[is_upper], {at, size});
   }
-  /// Adds a sample of a function of the coordinate that has its sign change at the critical value.
+  /// Adds a sample of a function of the coordinate that changes its sign at the critical value.
+  /// @param size  value of the function
   void add_size(double at, bool is_upper, double size);
-  /// Abscissa in (low, high) of the next sample.
-  /// @param tolerance  absolute accuracy required of the critical value
+  /// Value of the coordinate in (low, high) at which the next sample should be taken.
+  /// @param tolerance  accuracy required of the critical value, in the unit of the coordinate
   double next_sample(double low, double high, double tolerance);
 
  private:
-  /// A sample of the size of the degenerating feature, at a value of the coordinate.
+  /// A sample: the size of the degenerating feature at a value `at` of the coordinate.
   struct Point {
     double at, size;
   };
@@ -72,13 +76,15 @@ class CriticalValueSolver {
 
   std::array<Side, 2> sides_;
   std::vector<std::uint64_t> changed_;  ///< keys that occur in different numbers below and above the critical value
-  /// Features with these keys, below [0] and above [1] the critical value.
+  /// Features with the keys in changed_, in the last sample below [0] and above [1] the critical value.
   std::array<BoundaryFeatures, 2> changed_features_;
-  /// Keys of the features that bound the slice, below [0] and above [1], sorted.
+  /// Keys, in ascending order, of the features that bound the slice in the last sample below [0] and above [1] the
+  /// critical value.
   std::array<std::vector<std::uint64_t>, 2> keys_;
   bool features_persist_ = false, is_root_ = false, is_signed_ = false, is_upper_ = false;
-  std::optional<double> last_;  ///< previous extrapolated critical value; std::nullopt if there is none
-  double offset_ = 0;           ///< distance of the next sample from the extrapolated critical value
+  /// Extrapolated critical value of the previous call of next_sample(); std::nullopt if there is none.
+  std::optional<double> last_;
+  double offset_ = 0;  ///< distance of the next sample from the extrapolated critical value
   int extrapolations_ = 0;
 };
 

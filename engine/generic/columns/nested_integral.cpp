@@ -11,17 +11,20 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kMinWidth = 1e-12;  // relative to the range of the coordinate: shorter intervals are ignored
-// relative to the range of the coordinate: in shorter intervals, rounding errors can mix slices of different types
+// minimum width of an interval, relative to the range of the coordinate; narrower ones are ignored
+constexpr double kMinWidth = 1e-12;
+// width, relative to the range of the coordinate: in narrower intervals, rounding errors can mix slices of different
+// types
 constexpr double kMinResolvableWidth = 1e-6;
 constexpr double kMinResolvableWidthInLines = 1e-4;  // kMinResolvableWidth for slices that are lines
 constexpr std::size_t kMaxIntervals = 3000;
-// a change that so many consecutive bisections leave in one half is a discontinuity
+// if so many consecutive bisections leave nearly all of a change in one half, it is a discontinuity
 constexpr int kBisectionsOfJump = 5;
-// relative to the largest slice: tolerance of missed_at_ends() if derivatives will be computed
+// maximum of missed_at_ends(), relative to the largest slice, if derivatives will be computed
 constexpr double kEndTolerance = 1e-7;
 
-/// Value at t in [0, 1] of the polynomial through the nodes of kronrod_rule(), by the barycentric formula.
+/// Polynomial through the measures of the slices at the nodes of kronrod_rule(), evaluated at t in [0, 1] by the
+/// barycentric formula.
 double through_nodes(const std::array<Slice, NestedRule::kNodes>& slices, double t) {
   static const std::array<double, NestedRule::kNodes> kWeights = [] {
     std::array<double, NestedRule::kNodes> weights;
@@ -43,9 +46,9 @@ double through_nodes(const std::array<Slice, NestedRule::kNodes>& slices, double
   return above / below;
 }
 
-/// Maximum error, at the endpoints of an interval, of the polynomial through its nodes. A square-root singularity just
-/// outside the interval hardly affects the integral, but it affects the derivative: that of sqrt(t^2 + e) with respect
-/// to e is as large as 1/sqrt(e) between 0 and the first node.
+/// Maximum error, at the endpoints of an interval, of the polynomial through the measures of the slices at its nodes. A
+/// square-root singularity just outside the interval hardly affects the integral, but it affects derivatives: that of
+/// sqrt(t^2 + e) with respect to e is as large as 1/sqrt(e) between 0 and the first node.
 double missed_at_ends(const SmoothInterval& part, const std::array<Slice, NestedRule::kNodes>& slices) {
   const auto& piece = part.piece;
   const double width = piece.upper - piece.lower, both = piece.sqrt_at_lower && piece.sqrt_at_upper ? 3 : 1;
@@ -55,8 +58,9 @@ double missed_at_ends(const SmoothInterval& part, const std::array<Slice, Nested
   return std::max(std::fabs(at_lower - part.below.measure), std::fabs(at_upper - part.above.measure));
 }
 
-/// Whether one half of an interval contains nearly all of the change of the measure across it, as at a discontinuity.
-/// At a square-root singularity at one end the half next to it contains 71 % of the change.
+/// Whether one half of an interval contains nearly all of the change of the measure, as at a discontinuity. If a
+/// square-root singularity is at one end of the interval, the half next to it contains only 71 % of the change.
+/// @param below, middle, above  slices at the two ends and in the middle of the interval
 bool is_one_sided(const Slice& below, const Slice& middle, const Slice& above) {
   const double first = std::fabs(middle.measure - below.measure), second = std::fabs(above.measure - middle.measure);
   return std::max(first, second) > 0.95 * (first + second);
@@ -71,7 +75,7 @@ NestedIntegral::NestedIntegral(SlicePlan plan, double tolerance)
   const SlicePlan& own = this->plan();
   const std::vector<std::uint32_t>& outputs = own.univariate.outputs();
   for (std::size_t i = 0; i < outputs.size(); i += 2) univariate_.push_back({outputs[i], outputs[i + 1]});
-  // transcendental constraints depend on all preceding stages
+  // columns with transcendental constraints are evaluated one by one, because these depend on all preceding stages
   if (!ends_in_lines() || levels() == 0 || std::ranges::any_of(own.surfaces, &Surface::is_transcendental)) return;
   const auto stage = static_cast<int>(levels());
   const auto keep = [&](std::uint32_t at) {
@@ -142,7 +146,7 @@ double NestedIntegral::find_univariate_changes(std::span<const double> inputs, I
   if (!(high > low)) return 0;
   find_sign_changes(program, 1, univariate_, low, high, kMaxEvaluations, scratch.univariate, scratch.changes);
   double unknown = scratch.changes.undecided;
-  // the search for critical values ends at once, because the measure would remain unknown
+  // do not search for critical values: the measure would remain unknown
   if (unknown > kMaxUndecidedShare * (high - low)) scratch.max_evaluations = 0;
   for (std::size_t i = 1; i < plan().range.size() && unknown > 0; ++i) unknown *= std::fabs(range(i)[1] - range(i)[0]);
   return unknown;
@@ -153,7 +157,8 @@ Slice NestedIntegral::inside(std::size_t level, IntegralScratch& scratch) const 
   for (std::size_t i = 0; i < independent.size(); ++i)
     if (!is_satisfied(scratch.registers[independent[i]])) return {.violated = static_cast<std::uint32_t>(i + 1)};
   if (level < levels()) return integrate(level, scratch);
-  constexpr long kColumnsPerCheck = 16;  // a column takes a microsecond
+  // number of columns between two checks whether to stop; a column takes about a microsecond
+  constexpr long kColumnsPerCheck = 16;
   if (!ends_in_lines() || scratch.evaluations % kColumnsPerCheck == 0 || is_long(scratch.column)) check_stop();
   ++scratch.evaluations;
   if (const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_)) {
@@ -178,8 +183,8 @@ Slice NestedIntegral::set_slice(std::size_t level, double at, IntegralScratch& s
   return found;
 }
 
-/// Computes the slices at several values of a coordinate. If the slices are lines, the operations that differ between
-/// them are evaluated in SIMD batches.
+/// Computes the slices at the values `places` of the coordinate of `level`. If the slices are lines, those operations
+/// of the program that differ between them are evaluated in SIMD batches.
 void NestedIntegral::find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
                                  IntegralScratch& scratch) const {
   if (!lines_ || level + 1 < levels()) {
@@ -241,8 +246,8 @@ Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) con
     sum.error += part.error + part.irreducible_error;
     if (part.below.hash != last) hash.add(part.below.hash);
     last = part.below.hash;
-    // When another independent constraint begins to bound an interval, the measure can be discontinuous although the
-    // type of the interval is unchanged: add the constraint to the hash.
+    // If the independent constraint that bounds an interval is replaced by another one, the measure can be
+    // discontinuous although the type of the interval's slices is unchanged: make the hash depend on the constraint.
     for (const IntervalBound closing : {part.lower, part.upper})
       if (closing != kCriticalValue) hash.add(closing);
   }
@@ -329,8 +334,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     critical_values.push_back({part.piece.upper, part.piece.sqrt_at_upper, part.above, above, part.upper == kBox});
     return add_intervals(level, critical_values, whole, depth + 1, scratch);
   }
-  // rule_error() would add in another order, and rounding errors decide which of two symmetric intervals is bisected
-  // first.
+  // rule_error() would add the terms in another order; rounding errors then decide which of two symmetric intervals is
+  // bisected first.
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
     spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
   part.error = quadpack_error(std::fabs(part.value - embedded), spread);
@@ -346,7 +351,7 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
 /// polynomial is inaccurate at the endpoints.
 void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& scratch) const {
   IntegralScratch::Level& own = scratch.levels[level];
-  // The error of an inner integral may be as large as the error that is allowed for the largest inner integral.
+  // The error of an inner integral may be as large as the error that is accepted for the largest inner integral.
   const double share = level == 0 ? 1 : ends_in_lines() ? 0.5 : 0.1;
   const double least = level == 0 ? 0 : share * tolerance_ * scratch.levels[level - 1].largest;
   const double may_miss = std::max(kEndTolerance, 10 * tolerance_) * own.largest;

@@ -19,100 +19,108 @@
 
 namespace pkm::generic {
 
-/// The slice at the value `at` of an outer coordinate: its measure (area or length), the error of the measure, and its
-/// type.
+/// The slice at the value `at` of an outer coordinate: its measure, i.e. its area or length or the integral of these
+/// over the coordinates in between, the error of the measure, and the type of the slice.
 struct Slice {
   double at = 0, measure = 0, error = 0;
   SliceType hash = 0;  ///< type of the slice; 0 if it is empty
-  /// 1 + index of the independent constraint that is violated; 0 if the slice is not empty, or empty for another
-  /// reason.
+  /// 1 + index of a constraint that is independent of the inner coordinates and violated in the slice; 0 if there is no
+  /// such constraint.
   std::uint32_t violated = 0;
 };
 
-/// Bound of an integration interval: kCriticalValue, kBox (a bound of the search box), or 1 + the index of an
-/// independent constraint.
+/// The kind of an endpoint of an integration interval: kCriticalValue; kBox, a bound of the search box; or 1 + the
+/// index of the independent constraint that is violated beyond the endpoint.
 using IntervalBound = std::uint32_t;
 inline constexpr IntervalBound kCriticalValue = 0, kBox = ~IntervalBound{0};
 
-/// A critical value `at` of an outer coordinate, with the slices just below and just above it.
+/// A value `at` of an outer coordinate at which the type of the slices changes, with the slices just below and just
+/// above it.
 struct CriticalValue {
   double at;
-  bool root;  ///< true: the measure or its derivative can have a square-root singularity there
+  bool root;  ///< true: the measure or its derivative can have a square-root singularity at this value
   Slice below, above;
   bool is_box = false;
-  /// Estimated error of the integral if the measure is discontinuous, because a component may have been missed;
-  /// otherwise 0.
+  /// Estimated error of the integral because a component may have been missed on one side, if the measure is
+  /// discontinuous here; otherwise 0.
   double missed_error = 0;
 };
 
-/// An interval of an outer coordinate in which the type is constant.
+/// An interval of an outer coordinate in which the type of the slices is constant, with its quadrature nodes and
+/// integral.
 struct SmoothInterval {
   Subinterval<double> piece;
-  Slice below, above;  ///< slices just inside the lower and the upper endpoint
+  Slice below, above;  ///< slices just inside the lower and the upper endpoint of the interval
   IntervalBound lower = kCriticalValue, upper = kCriticalValue;
   double beyond_lower = 0, beyond_upper = 0;  ///< measures of the slices just outside the lower and the upper endpoint
+                                              ///< of the interval
   std::array<double, NestedRule::kNodes> at{}, weight{};
   double value = 0, error = 0;
-  double irreducible_error = 0;  ///< error that subdivision cannot reduce
-  /// Error at the endpoints of the polynomial through the nodes; computed only if derivatives will be computed.
+  double irreducible_error = 0;  ///< part of the error of the integral that subdivision of the interval cannot reduce
+  /// Error, at the endpoints of the interval, of the polynomial through the measures at the nodes; computed only if
+  /// derivatives will be computed.
   double missed_at_ends = 0;
-  /// Number of consecutive bisections that left nearly all of a change of the measure in this half.
+  /// Number of consecutive bisections of which this interval was the half with nearly all of the change of the measure.
   int one_sided_bisections = 0;
-  std::size_t kept = 0;  ///< index in IntegralScratch::kept of the entry that belongs to the first node
+  /// Index in IntegralScratch::kept of the list for the first node; those of the other nodes follow.
+  std::size_t kept = 0;
 };
 
 inline constexpr int kMaxDepth = 10;        ///< maximum depth of the recursive subdivision at critical values
-inline constexpr int kSamplesOfLines = 64;  ///< number of samples of the outermost coordinate if slices are lines
-/// Relative to the range of the coordinate: distance from a critical value at which the type is reliable.
+inline constexpr int kSamplesOfLines = 64;  ///< number of samples of the outermost coordinate if the slices are lines
+/// Distance from a critical value at which rounding errors do not affect the type, relative to the range of the
+/// coordinate.
 inline constexpr double kClearDistance = 1e-11;
-/// Relative to the largest slice: larger differences of two measures are not rounding errors.
+/// A larger difference of two measures, relative to the largest slice, is not due to rounding errors.
 inline constexpr double kDiscontinuity = 1e-7;
 
 /// Scratch memory of NestedIntegral.
 struct IntegralScratch {
   struct Level {
     std::vector<SmoothInterval> parts;
-    /// Critical values of the whole range [0], and of intervals at each depth of the subdivision.
+    /// Critical values: [0] those in the whole range of the coordinate; [d] those in an interval at depth d of the
+    /// subdivision.
     std::array<std::vector<CriticalValue>, kMaxDepth + 1> critical_values;
     double at = 0;  ///< current value of the coordinate of this level
-    /// Intervals that were found in this coordinate at one value `outside` of the next outer coordinate, in ascending
-    /// order.
+    /// Intervals of this coordinate with non-empty slices, in ascending order, that were found at a value `outside` of
+    /// the next outer coordinate.
     struct ExpectedIntervals {
       double outside;
       std::vector<std::array<double, 2>> parts;
     };
     std::vector<ExpectedIntervals> seen;
     std::size_t seen_count = 0;    ///< number of elements of `seen` that are in use
-    std::vector<double> hints;     ///< values of the coordinate at which components are expected
-    std::vector<double> places;    ///< values of the coordinate for the first samples
-    std::vector<Slice> scanned;    ///< slices at the first samples
-    double largest = 0;            ///< largest measure of a slice of this level so far
-    double irreducible_error = 0;  ///< sum of the errors of intervals that are not subdivided further
-    CriticalValueSolver solver;    ///< extrapolates the critical value that is being bracketed
-    BoundaryFeatures features;     ///< boundary features of the last slice
+    std::vector<double> hints;     ///< values of this coordinate at which the component search expects feasible points
+    std::vector<double> places;    ///< values of this coordinate at which the first slices are evaluated
+    std::vector<Slice> scanned;    ///< slices at these first values of the coordinate
+    double largest = 0;            ///< largest measure of the slices of this level so far
+    double irreducible_error = 0;  ///< sum of those errors of intervals that further subdivision cannot reduce
+    CriticalValueSolver solver;    ///< extrapolates the critical value that is being located
+    BoundaryFeatures features;     ///< boundary features of the slice of this level that was evaluated last
   };
   PlanarSliceScratch planar_slice;
   ColumnScratch column;
   SearchScratch search;
   std::vector<double> registers, adjoints;
-  std::vector<double> own;         ///< derivatives of one constraint with respect to the registers
-  std::vector<double> univariate;  ///< registers of SlicePlan::univariate
-  SignChangeScratch changes;  ///< sign changes of the constraints in SlicePlan::univariate, along the first coordinate
-  std::vector<double> ends;   ///< coordinates of these sign changes and of the ends of the range, in ascending order
-  expression::Rows rows;      ///< rows of `lines_`, which evaluates several lines in one SIMD batch
-  /// Registers with derivatives: with respect to the design, and with respect to an outer coordinate.
+  std::vector<double> own;         ///< derivatives of a single constraint with respect to the registers
+  std::vector<double> univariate;  ///< values of the registers of the program SlicePlan::univariate
+  SignChangeScratch changes;       ///< sign changes found by find_univariate_changes()
+  /// Values of the coordinate at these sign changes and at the ends of its range, in ascending order.
+  std::vector<double> ends;
+  expression::Rows rows;  ///< values of the registers of NestedIntegral::lines_, for several lines at once
+  /// Values of the registers with their derivatives with respect to the design, and (`along`) to an outer coordinate.
   std::vector<Dual4> dual_registers, along;
   std::vector<Level> levels;
   bool has_hints = false;     ///< true: boxes of the component search provide samples of the inner coordinates
-  bool is_scanning = false;   ///< true: the outermost coordinate is being sampled, not yet integrated over
-  bool measured = false;      ///< true: the measure is complete, and further slices do not change it
+  bool is_scanning = false;   ///< true: the outermost coordinate is still being sampled to find critical values
+  bool measured = false;      ///< true: the measure has been computed, and later slices do not change it
   bool for_gradient = false;  ///< true: derivatives will be computed after this measure
-  /// If derivatives will be computed and there are two outer coordinates: intervals of the inner one at the nodes of
-  /// the outermost one.
+  /// If derivatives will be computed and there are two outer coordinates: for nodes of the outermost coordinate, the
+  /// intervals of the other one.
   std::vector<std::vector<SmoothInterval>> kept;
   std::unique_ptr<IntegralScratch> other;  ///< scratch memory for slices on the opposite side of a critical value
   long evaluations = 0;
-  /// Limit of `evaluations`, beyond which the search for critical values ends and undecided parts count as error.
+  /// When `evaluations` reaches this limit, the search for critical values ends, and undecided parts count as error.
   long max_evaluations = 0;
 };
 
@@ -129,18 +137,21 @@ class NestedIntegral {
     long evaluations = 0;             ///< maximum number of evaluated slices; 0: a default limit that is rarely reached
     long operations = 1'000'000'000;  ///< interval operations for transcendental constraints: about ten seconds
   };
+  /// Volume of the workspace with an estimate of its error.
   /// @param inputs  values of the graph's inputs, including the fixed coordinates
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch) const {
     return measure(inputs, scratch, Budget{});
   }
-  /// measure() with critical values that are accurate enough for derivatives, and with intermediate results for
-  /// add_gradient().
+  /// Like measure(), but locates critical values accurately enough for derivatives, and keeps the intermediate results
+  /// that add_gradient() needs.
   Integral<double> measure_for_gradient(std::span<const double> inputs, IntegralScratch& scratch) const;
-  /// Adds the derivatives of the measure with respect to the inputs of the graph, after measure_for_gradient().
+  /// Adds the derivatives of the measure with respect to the graph's inputs to by_input; to be called after
+  /// measure_for_gradient().
   void add_gradient(std::span<double> by_input, IntegralScratch& scratch) const;
-  /// Calls visit(outer coordinates, v, z, weight) at quadrature nodes inside the columns, after measure(). S is double
-  /// or Dual4: nodes are functions of the design, so that sums over them have derivatives.
+  /// Calls visit(outer coordinates, v, z, weight) at quadrature nodes in the workspace; to be called after measure(). S
+  /// is double, or Dual4: then the nodes and weights have derivatives with respect to the design, so that sums over the
+  /// nodes have derivatives.
   template <class S, class Visit>
   void for_each_node(std::span<const S> inputs, const GaussRule& outer, const GaussRule& inner,
                      IntegralScratch& scratch, const Visit& visit) const {
@@ -158,16 +169,18 @@ class NestedIntegral {
   void set(std::size_t level, double at, IntegralScratch& scratch) const;
   /// Whether the budget is used up. Parts of the workspace that are undecided by then count as error.
   bool is_exhausted(const IntegralScratch& scratch) const;
-  /// Finds all sign changes of the constraints in SlicePlan::univariate along the first coordinate.
-  /// @return upper bound of the measure that sign changes which were not found can affect
+  /// Finds all sign changes of the constraints in SlicePlan::univariate along the first coordinate: the outermost one,
+  /// or v if there is none.
+  /// @return upper bound of the volume that is uncertain because sign changes may not have been found
   double find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const;
-  /// The integral over the coordinates from `level` on, for the current values of the coordinates before `level`.
+  /// The slice that is the integral over the coordinates from `level` on, for the current values of the coordinates
+  /// before.
   Slice inside(std::size_t level, IntegralScratch& scratch) const;
-  /// Sets the coordinate of `level` to `at`. @return the slice at this value
+  /// Sets the coordinate of `level` to `at`. @return the slice at this value of the coordinate
   Slice slice(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// The slice at the value `at` of the coordinate of `level`, which has been set to it already.
+  /// Returns the slice at the value `at` of the coordinate of `level`, which set() has set to this value already.
   Slice set_slice(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// Computes the slices at several values of the coordinate of `level`.
+  /// Computes the slices at the values `places` of the coordinate of `level`.
   void find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
                    IntegralScratch& scratch) const;
   void choose_samples(std::size_t level, double low, double high, IntegralScratch& scratch) const;
@@ -185,8 +198,9 @@ class NestedIntegral {
                             IntegralScratch& scratch) const;
   /// Finds the boundary features of the slice of `level` that was computed last.
   void find_features(std::size_t level, BoundaryFeatures& features, const IntegralScratch& scratch) const;
-  /// Brackets a critical value between two slices of different type.
-  /// @param extrapolates  true: extrapolate from boundary features; false: bisect only
+  /// Narrows the interval between two slices, `low` and `high`, of different type around a critical value.
+  /// @param whole         length of the range of the coordinate
+  /// @param extrapolates  true: extrapolate the critical value from boundary features; false: bisect only
   void bracket(std::size_t level, Slice& low, Slice& high, double whole, bool extrapolates,
                IntegralScratch& scratch) const;
   void add_intervals(std::size_t level, const CriticalValues& critical_values, double whole, int depth,
@@ -200,18 +214,19 @@ class NestedIntegral {
   double slope_of_independent(std::size_t level, IntervalBound closing, double at, IntegralScratch& scratch) const;
 
   struct OneSided;
-  /// visit(weight, slope), called for a point that violates a constraint beyond the critical value: weight of the
-  /// point, and derivative of this constraint with respect to the coordinate. scratch.own has its derivatives with
-  /// respect to the registers.
+  /// Function visit(weight, slope), which is called for quadrature points that are feasible on one side of a critical
+  /// value and violate a constraint on the other side. weight: weight of the point; slope: derivative of this
+  /// constraint with respect to the coordinate. scratch.own has the derivatives of the constraint with respect to the
+  /// registers.
   using OneSidedVisitor = std::function<void(double, double)>;
   static bool may_jump(std::size_t level, const SmoothInterval& part, bool upper, const IntegralScratch& scratch);
-  /// If the measure is discontinuous at an endpoint of an interval, visits quadrature nodes in the set of points that
-  /// are feasible on one side of this endpoint only.
-  /// @param side  1: feasible above the endpoint; -1: feasible below it
+  /// If the measure is discontinuous at the lower or upper endpoint of an interval, visits quadrature nodes in the set
+  /// of points that are feasible on one side of this endpoint only.
+  /// @param side  1: points that are feasible above the endpoint; -1: below it
   void visit_one_sided(std::size_t level, const SmoothInterval& part, bool upper, double side, IntegralScratch& scratch,
                        const OneSidedVisitor& visit) const;
-  /// The part of a discontinuity of the measure that points cause for which no constraint is violated on the opposite
-  /// side.
+  /// The part of a discontinuity of the measure at a critical value that no violated constraint explains: it is due to
+  /// points that are feasible on one side and violate no constraint on the other side.
   double unexplained_jump(std::size_t level, const CriticalValue& at, IntegralScratch& scratch) const;
   void visit_one_sided(std::size_t level, double weight, bool in_is_empty, bool out_is_empty,
                        const OneSided& one_sided_points) const;
@@ -221,9 +236,10 @@ class NestedIntegral {
 
   void start_dual(std::span<const Dual4> inputs, IntegralScratch& scratch) const;
   void set_dual(std::size_t level, const Dual4& at, IntegralScratch& scratch) const;
-  /// The intervals before they were bisected; their endpoints, and thus sums over nodes, are continuous functions of
-  /// the design.
+  /// The intervals of a level, where those that originate from bisection of one interval are merged again. Their
+  /// endpoints, and thus sums over their nodes, are continuous functions of the design.
   static std::vector<SmoothInterval> merged_intervals(std::size_t level, const IntegralScratch& scratch);
+  /// An interval whose endpoints have derivatives with respect to the design.
   /// @param below  upper endpoint of the previous interval; null for the first interval
   Subinterval<Dual4> differentiable_piece(std::size_t level, const SmoothInterval& part, const Dual4* below,
                                           IntegralScratch& scratch) const;
@@ -277,10 +293,11 @@ class NestedIntegral {
   }
 
   std::variant<PlanarSlice, Column> innermost_;
-  /// The operations that differ from one line to the next, for batches of lines; absent if slices are planar.
+  /// Those operations of the program that differ from one line to the next, for batches of lines; std::nullopt if the
+  /// slices are planar.
   std::optional<expression::BatchStage> lines_;
-  std::vector<std::uint32_t> line_registers_;  ///< registers of this batch stage that Column reads
-  /// Registers of the constraints in SlicePlan::univariate and of their derivatives.
+  std::vector<std::uint32_t> line_registers_;  ///< registers of `lines_` that Column reads
+  /// Registers of the values and derivatives of the constraints in SlicePlan::univariate.
   std::vector<WithDerivative> univariate_;
   double tolerance_;
 };

@@ -8,21 +8,22 @@
 namespace pkm::generic {
 namespace {
 
-// Final width of brackets, relative to the range. At a square-root singularity, derivatives have a relative error of
-// the order of the square root of the width (3e-8 for 1e-15), volumes of its power 3/2, so that 1e-11 is sufficient for
-// volumes if slices are lines.
+// Width to which the interval around a critical value is reduced, relative to the range of the coordinate. At a
+// square-root singularity, it causes a relative error of derivatives of the order of its square root (3e-8 for 1e-15),
+// and of volumes of the order of its power 3/2; so 1e-11 is sufficient for volumes if the slices are lines.
 constexpr double kBracketWidth = 1e-15, kBracketWidthOfLines = 1e-11;
-// relative to the range: two slices at a larger distance can differ because of small components, so that the slices
-// between them are sampled as densely as in the first scan
+// relative to the range of the coordinate: if two slices are farther apart, a small component can be the reason of
+// their difference, so that inner coordinates are sampled as densely as in the first scan
 constexpr double kSmallDistance = 1e-3;
-constexpr double kMergeDistanceOfValues = 1e-8;  // relative to the range: closer critical values are merged
-// a change of type within this many steps of the previous one is due to rounding errors: the next step is 8 times
-// longer
+// relative to the range of the coordinate: closer critical values are merged
+constexpr double kMergeDistanceOfValues = 1e-8;
+// If the type changes again within this many steps, rounding errors are the reason: the next step is 8 times longer.
 constexpr double kStepFactor = 64;
 
-/// Merges two adjacent critical values. Near a tangency of conics, labels change a second time slightly later, when
-/// rounding errors no longer hide the intersections. The merged value is the one at which the square-root singularity
-/// begins, which has to be accurate because derivatives are infinite there.
+/// Merges two adjacent critical values into `first`, if they are close. Near a tangency of conics, the type changes a
+/// second time slightly later, when rounding errors no longer hide the intersections. The merged value is the one at
+/// which the square-root singularity begins, which has to be accurate because derivatives are infinite there.
+/// @return false if they are not merged
 bool join(CriticalValue& first, const CriticalValue& second, double whole) {
   const double apart = second.at - first.at;
   if (first.is_box || apart > kMergeDistanceOfValues * whole) return false;
@@ -37,28 +38,29 @@ bool join(CriticalValue& first, const CriticalValue& second, double whole) {
 
 }  // namespace
 
-/// Whether the measure is discontinuous at a critical value. It is continuous, possibly with a square-root singularity,
-/// unless a constraint is satisfied on one side only, or a component was missed.
+/// Whether the measure is discontinuous at a critical value between two slices. It is continuous, possibly with a
+/// square-root singularity, unless a constraint is satisfied on one side only, or a component was missed on one side.
 bool NestedIntegral::is_discontinuous(const Slice& low, const Slice& high, std::size_t level,
                                       const IntegralScratch& scratch) const {
   return ends_in_lines() && low.violated == 0 && high.violated == 0 &&
          std::fabs(low.measure - high.measure) > kDiscontinuity * scratch.levels[level].largest;
 }
 
-/// Appends the critical values between two slices in ascending order.
+/// Appends the critical values between the slices `from` and `to` to critical_values, in ascending order.
+/// @param whole  length of the range of the coordinate
 void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& to, double whole,
                                           CriticalValues& critical_values, IntegralScratch& scratch) const {
   const double least = kClearDistance * whole;
   double step = least;
   for (int more = 0; more < 24 && from.hash != to.hash && !is_exhausted(scratch); ++more) {
     Slice low = from, high = to;
-    // Rounding can produce a cluster of spurious changes. Bisection terminates at one of them; extrapolation would
-    // visit all of them in turn.
+    // Rounding errors can cause many changes of type close to each other. Bisection ends at one of them; extrapolation
+    // would visit all of them in turn.
     const bool extrapolates = more < 2;
     bracket(level, low, high, whole, extrapolates, scratch);
     for (int again = 0; again < 4 && level + 1 < levels() && is_discontinuous(low, high, level, scratch); ++again) {
-      // If a component was missed on one side, the search on that side finds it now, because the slice on the opposite
-      // side has it.
+      // If a component was missed on one side, evaluating the slice on that side again finds it now, because the slice
+      // on the opposite side has located it.
       const bool is_low = low.measure < high.measure;
       const Slice found = slice(level, is_low ? low.at : high.at, scratch);
       if (found.hash == (is_low ? low : high).hash) break;
@@ -73,8 +75,8 @@ void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& 
       to = again;
       if (is_other) continue;
     }
-    // If the type depends on rounding errors, it changes repeatedly within a small distance; increasing steps leave
-    // this region.
+    // If rounding errors decide the type, it changes repeatedly within a small distance; steps of increasing length
+    // leave this region.
     step = more > 0 && high.at - from.at < kStepFactor * step ? 8 * step : least;
     const double beyond = high.at + step;
     const Slice after = beyond < to.at ? slice(level, beyond, scratch) : to;
@@ -113,7 +115,7 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
   IntegralScratch::Level& own = scratch.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
              are_sections = is_innermost && !ends_in_lines();
-  // 1 + index of the independent constraint that is satisfied on one side only; 0 if there is none
+  // 1 + index of the independent constraint that is violated on one side of the critical value only; 0 if there is none
   std::uint32_t closing = 0;
   own.solver.reset(are_columns);
   const auto look = [&](double at) {
@@ -138,8 +140,8 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
     look(low.at);
     look(high.at);
   }
-  // If one end of the bracket has not moved for several iterations, evaluate it again: its inner integral may have
-  // missed a component that later samples have located.
+  // If one end of the interval has not moved for several iterations, evaluate its slice again: the inner integral may
+  // have missed a component there that later samples have located.
   const std::array<Slice, 2> outer{low, high};
   std::array<int, 2> stays{};
   const auto resample_other_side = [&](bool has_upper_moved) {
@@ -165,7 +167,7 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
     if (at <= low.at || at >= high.at) break;
     if (level == 0) scratch.is_scanning = high.at - low.at > kSmallDistance * whole;
     const Slice next = look(at);
-    // the type of the sample is that of neither side: it can depend on rounding errors here
+    // the sample has neither the type of `low` nor that of `high`: rounding errors may decide its type
     if (extrapolates && next.hash != low.hash && next.hash != high.hash) {
       extrapolates = false;
       if (are_sections) {

@@ -11,8 +11,8 @@ void NestedIntegral::add_gradient(std::span<double> by_input, IntegralScratch& s
   for (const auto& input : plan().program.stages()[0].inputs) by_input[input.position] += scratch.adjoints[input.to];
 }
 
-/// Adds `factor` times the gradient of the integral over the coordinates from `level` on. To be called after
-/// inside(level). Moves the intervals out of scratch.kept.
+/// Adds `factor` times the gradient of the integral over the coordinates from `level` on to the adjoints of the
+/// registers. To be called after inside(level). Moves the intervals out of scratch.kept.
 void NestedIntegral::add_gradient(std::size_t level, double factor, IntegralScratch& scratch) const {
   if (level == levels()) {
     if (const auto* const planar_slice = std::get_if<PlanarSlice>(&innermost_))
@@ -39,8 +39,8 @@ void NestedIntegral::add_gradient(std::size_t level, double factor, IntegralScra
   }
 }
 
-/// Adds the contribution of an endpoint of an interval: the derivative of the endpoint times the measure of the slice
-/// there.
+/// Adds `factor` times the contribution of an endpoint of an interval to the gradient: derivative of the endpoint times
+/// the measure of the slice there.
 void NestedIntegral::add_side(std::size_t level, const SmoothInterval& part, bool upper, double factor,
                               IntegralScratch& scratch) const {
   const IntervalBound closing = upper ? part.upper : part.lower;
@@ -64,7 +64,7 @@ void NestedIntegral::add_side(std::size_t level, const SmoothInterval& part, boo
 }
 
 /// Derivative, with respect to the coordinate of `level`, of the independent constraint that bounds an interval.
-/// scratch.own receives its derivatives with respect to the registers.
+/// scratch.own receives the derivatives of this constraint with respect to the registers.
 double NestedIntegral::slope_of_independent(std::size_t level, IntervalBound closing, double at,
                                             IntegralScratch& scratch) const {
   set(level, at, scratch);

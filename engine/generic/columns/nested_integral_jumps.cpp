@@ -16,16 +16,18 @@
 namespace pkm::generic {
 namespace {
 
-// relative to the range: distance of the two compared slices from the critical value
+// distance from the critical value of the two slices that are compared, relative to the range of the coordinate
 constexpr double kOffset = 1e-9;
-// factor of kOffset for a second pair of slices, from which a square-root singularity is recognised
+// for a second pair of slices, which shows whether there is a square-root singularity, the distance is larger by this
+// factor
 constexpr double kSecondOffset = 10;
-// relative to the largest slice: a smaller discontinuity cannot be distinguished from a continuous change
+// change of the measure, relative to the largest slice, below which a discontinuity cannot be distinguished from a
+// continuous change
 constexpr double kNegligible = 1e-6;
 
 using Intervals = std::vector<std::array<double, 2>>;
 
-/// Difference x \ y of two sorted lists of disjoint intervals.
+/// The parts of the intervals x that no interval of y covers. Each list contains disjoint intervals in ascending order.
 Intervals difference(const Intervals& x, const Intervals& y) {
   Intervals rest;
   for (auto [from, to] : x) {
@@ -39,9 +41,9 @@ Intervals difference(const Intervals& x, const Intervals& y) {
   return rest;
 }
 
-/// Divides pieces at given points inside them, at which integrands can have square-root singularities.
+/// Divides intervals at the given points, at which the integrand can have square-root singularities.
 std::vector<Subinterval<double>> divided(const std::vector<Subinterval<double>>& pieces, std::vector<double> places) {
-  // distance from the ends of a piece, relative to its length, within which no division is made
+  // points within this distance from the ends of an interval, relative to its length, do not divide it
   constexpr double kInset = 1e-6;
   std::ranges::sort(places);
   std::vector<Subinterval<double>> all;
@@ -58,14 +60,16 @@ std::vector<Subinterval<double>> divided(const std::vector<Subinterval<double>>&
   return all;
 }
 
-/// The measure just above an endpoint of an interval minus the measure just below it.
+/// Discontinuity at the lower or upper endpoint of an interval: the measure just above the endpoint minus that just
+/// below.
 double step_at(const SmoothInterval& part, bool upper) {
   return upper ? part.beyond_upper - part.above.measure : part.below.measure - part.beyond_lower;
 }
 
 }  // namespace
 
-/// The set of points that are feasible on the side `in` of a critical value and infeasible on the side `out`.
+/// The set of points of a slice that are feasible on one side of a critical value and infeasible on the other side.
+/// `in` and `out` are the scratch memories of the slices on these two sides.
 struct NestedIntegral::OneSided {
   std::size_t level;  ///< level of the coordinate that has the critical value
   IntegralScratch &in, &out;
@@ -89,8 +93,8 @@ void NestedIntegral::visit_one_sided(std::size_t level, const SmoothInterval& pa
   for (std::size_t i = 0; i < out.levels.size(); ++i) {
     const IntegralScratch::Level& own = scratch.levels[i];
     out.levels[i].largest = own.largest;
-    if (i <= level) continue;                   // integrals over outer coordinates are not repeated
-    out.levels[i].seen_count = own.seen_count;  // the intervals that are expected at the inner levels
+    if (i <= level) continue;                   // the outer coordinates are fixed
+    out.levels[i].seen_count = own.seen_count;  // the slice `out` expects intervals where `in` has found them
     out.levels[i].seen.assign(own.seen.begin(), own.seen.begin() + static_cast<std::ptrdiff_t>(own.seen_count));
   }
   out.measured = true;
@@ -113,13 +117,13 @@ void NestedIntegral::visit_one_sided(std::size_t level, const SmoothInterval& pa
   };
   measure(1);
   measure(0);
-  // A square-root singularity at the critical value is no discontinuity: measure = jump + c sqrt(distance).
+  // A square-root singularity at the critical value is no discontinuity: assume measure = jump + c sqrt(distance).
   const double root = std::sqrt(kSecondOffset);
   const bool like_root = std::fabs(one_sided_points[1] - one_sided_points[0]) > kDiscontinuity * largest;
   const double jump = like_root ? (root * one_sided_points[0] - one_sided_points[1]) / (root - 1) : one_sided_points[0];
   if (std::fabs(jump) <= kNegligible * largest) return;
-  // If another critical value is near, the square-root singularity can begin there. A discontinuity, in contrast, also
-  // exists directly next to the critical value.
+  // If another critical value is near, the square-root singularity can begin there. A discontinuity, in contrast,
+  // exists directly at the endpoint, too.
   if (!(side * step_at(part, upper) / jump > 0.5)) return;
   const OneSided set{level, scratch, out, visit};
   visit_one_sided(level + 1, like_root ? root / (root - 1) : 1, inside[0].hash == 0, outside[0].hash == 0, set);
@@ -136,8 +140,8 @@ double NestedIntegral::unexplained_jump(std::size_t level, const CriticalValue& 
   return std::max(0.0, std::fabs(jump) - explained);
 }
 
-/// Visits the points that are feasible on the side `in` and infeasible on the side `out`. To be called after
-/// inside(level) on both sides.
+/// Calls one_sided_points.visit for the quadrature points from `level` on that are feasible in the slice `in` and
+/// infeasible in the slice `out`. To be called after inside(level) for both slices.
 void NestedIntegral::visit_one_sided(std::size_t level, double weight, bool in_is_empty, bool out_is_empty,
                                      const OneSided& one_sided_points) const {
   if (in_is_empty) return;
@@ -201,8 +205,8 @@ void NestedIntegral::visit_columns(const std::vector<std::array<double, 2>>& col
     });
 }
 
-/// Derivative, with respect to the coordinate of the critical value, of the constraint that a point violates on the
-/// side `out`; 0 if it violates none. in.own receives the derivatives of this constraint with respect to the registers
+/// Derivative, with respect to the coordinate of the critical value, of the constraint that a point violates in the
+/// slice `out`; 0 if it violates none. in.own receives the derivatives of this constraint with respect to the registers
 /// of the previous stages.
 double NestedIntegral::slope_of_violated(double v, double z, const OneSided& one_sided_points) const {
   const SlicePlan& plan = this->plan();

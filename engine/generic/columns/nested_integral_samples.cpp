@@ -8,15 +8,16 @@
 namespace pkm::generic {
 namespace {
 
-constexpr std::size_t kSparseRatio = 8;  // a workspace is sparse if at most one of kSparseRatio samples is non-empty
-// Numbers of samples. kSamples: for planar slices, of a single outer coordinate, and of each of several.
-// kSamplesInLines: for lines, of the outermost coordinate, of the next one during the first scan, and of the next one
-// later, when intervals are expected. kSamplesInside: of a single outer coordinate within the workspace, to find narrow
-// gaps.
+constexpr std::size_t kSparseRatio = 8;  // a workspace is sparse if at most one of this many samples is non-empty
+// Numbers of samples of a coordinate.
+// kSamples, for planar slices: [0] if there is one outer coordinate, [1] for each of several.
+// kSamplesInLines, for slices that are lines: [0] of the outermost coordinate; of the next one [1] during the first
+// scan of the outermost one, [2] later, when intervals are expected.
+// kSamplesInside: of a single outer coordinate between the first and the last non-empty slice, to find narrow gaps.
 constexpr int kSamples[] = {40, 24}, kSamplesInLines[] = {kSamplesOfLines, 192, 12}, kSamplesInside = 240;
 
-/// Value number i of several samples in (low, high). They are not equidistant, because symmetric mechanisms can have
-/// their critical values at equal distances.
+/// Position of sample i of `places` samples in (low, high). They are not equidistant, because the critical values of a
+/// symmetric mechanism can have equal distances.
 double sample_position(double low, double high, int i, int places) {
   const double step = 0.618 * i;
   return low + (high - low) * (i + 0.4 + 0.2 * (step - std::floor(step))) / places;
@@ -24,8 +25,8 @@ double sample_position(double low, double high, int i, int places) {
 
 }  // namespace
 
-/// Evaluates samples next to a change of type again. Where intervals of the inner coordinate are narrow, only
-/// neighbouring samples may have found them; they are now expected here, so that they are found.
+/// Evaluates the slices on both sides of each change of type again. If the intervals of an inner coordinate are narrow,
+/// only some of the neighbouring samples may have found them; now all of them expect these intervals.
 void NestedIntegral::resample_changes(std::size_t level, IntegralScratch& scratch) const {
   std::vector<Slice>& scanned = scratch.levels[level].scanned;
   bool is_new = true;
@@ -42,15 +43,15 @@ void NestedIntegral::resample_changes(std::size_t level, IntegralScratch& scratc
   }
 }
 
-/// Samples the gaps between empty slices of the outermost coordinate, at the centres of boxes that are not proven
-/// empty. Boxes are bisected until all are proven empty, or there are too many of them.
+/// Samples the outermost coordinate between empty slices, at the centres of boxes that are not proven to be empty.
+/// Boxes are bisected until all are proven to be empty, or there are too many of them.
 void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   constexpr std::size_t kMany = 2000;
   std::vector<Slice>& scanned = scratch.levels[0].scanned;
   const auto is_found = [](const Slice& slice) { return slice.hash != 0; };
   const auto found = static_cast<std::size_t>(std::ranges::count_if(scanned, is_found));
   const bool has_found = found > 0;
-  if (levels() > 1 && has_found) {  // each slice is an integral over the inner coordinates, which is expensive
+  if (levels() > 1 && has_found) {  // a further slice is an integral over the inner coordinates and takes long
     if (kSparseRatio * found <= scanned.size()) search_sparse_components(scratch);
     return;
   }
@@ -86,14 +87,15 @@ void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   if (!has_found) scratch.levels[0].irreducible_error += search.undecided_volume(scratch.search);
   if (std::any_of(scanned.begin() + static_cast<std::ptrdiff_t>(known), scanned.end(), is_found)) {
     std::ranges::sort(scanned, {}, &Slice::at);
-  } else {  // if no slice was found, the integral is unchanged
+  } else {  // the new slices are all empty: leave the integral unchanged
     scanned.resize(known);
     scratch.evaluations = evaluations;
   }
 }
 
-/// If few samples are non-empty, the workspace is small and may have further components: the boxes that can contain
-/// components are then sampled in every slice.
+/// To be called if few samples are non-empty, i.e. the workspace is small and may have further components. Adds samples
+/// of the outermost coordinate in the boxes that can contain components; from now on, every slice samples its inner
+/// coordinates there, too (has_hints).
 void NestedIntegral::search_sparse_components(IntegralScratch& scratch) const {
   constexpr std::size_t kMost = 6000, kManyBoxes = 1500;
   constexpr int kPlaces = 9;
@@ -129,8 +131,8 @@ void NestedIntegral::refine_support(IntegralScratch& scratch) const {
   std::ranges::sort(scanned, {}, &Slice::at);
 }
 
-/// Replaces the hints of the inner coordinates by samples in the boxes that contain the value `at` of the outermost
-/// one.
+/// Sets the hints of each inner coordinate to samples in those boxes that contain the value `at` of the outermost
+/// coordinate.
 void NestedIntegral::add_hints(double at, IntegralScratch& scratch) const {
   constexpr int kPlaces = 3;
   const ComponentSearch search(plan());
@@ -140,7 +142,8 @@ void NestedIntegral::add_hints(double at, IntegralScratch& scratch) const {
   }
 }
 
-/// Chooses the samples: over the whole range, and at the centres of expected intervals of any width.
+/// Sets `places` of a level to the values of its coordinate at which slices will be evaluated: over the whole range,
+/// and at the centres of expected intervals of any width.
 void NestedIntegral::choose_samples(std::size_t level, double low, double high, IntegralScratch& scratch) const {
   IntegralScratch::Level& own = scratch.levels[level];
   const double whole = high - low;
@@ -155,7 +158,7 @@ void NestedIntegral::choose_samples(std::size_t level, double low, double high, 
   std::ranges::sort(own.places);
 }
 
-/// Adds a sample of the outermost coordinate between any two neighbouring sign changes of constraints that have none.
+/// If there is no sample of the outermost coordinate between two consecutive sign changes of constraints, adds one.
 void NestedIntegral::add_samples_between_changes(double low, double high, IntegralScratch& scratch) {
   scratch.ends.assign({low, high});
   for (const SignChange& change : scratch.changes.found) scratch.ends.push_back(change.at);
@@ -170,8 +173,9 @@ void NestedIntegral::add_samples_between_changes(double low, double high, Integr
   std::ranges::sort(places);
 }
 
-/// Adds samples of this coordinate in the intervals that are expected. These are the intervals that were found at the
-/// two nearest values of the next outer coordinate on either side, and their linear extrapolations.
+/// Adds samples of the coordinate of `own` in the intervals in which feasible points are expected: intervals that were
+/// found at the two nearest values of the next outer coordinate on either side of `outside`, and their linear
+/// extrapolations.
 void NestedIntegral::add_expected_samples(double outside, IntegralScratch::Level& own) {
   using ExpectedIntervals = IntegralScratch::Level::ExpectedIntervals;
   const std::size_t known = own.places.size();

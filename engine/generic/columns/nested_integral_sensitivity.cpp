@@ -39,9 +39,10 @@ Subinterval<Dual4> NestedIntegral::differentiable_piece(std::size_t level, const
           differentiable_end(level, part, true, scratch), part.piece.sqrt_at_lower, part.piece.sqrt_at_upper};
 }
 
-/// An endpoint of an interval with its derivatives. Critical values of outer levels and those between lines are treated
-/// as constant: the measure is continuous there, so that the derivative of the sum is that of the integral up to the
-/// error of the rule. At a discontinuity, the critical value moves with the constraint that is violated beyond it.
+/// An endpoint of an interval with its derivatives with respect to the design. Critical values of outer levels, and
+/// those of slices that are lines, count as constant: the measure is continuous there, so that the derivative of the
+/// sum is that of the integral up to the error of the rule. At a discontinuity, the critical value moves with the
+/// constraint that is violated beyond it.
 Dual4 NestedIntegral::differentiable_end(std::size_t level, const SmoothInterval& part, bool upper,
                                          IntegralScratch& scratch) const {
   const expression::Program& program = plan().program;
@@ -53,7 +54,7 @@ Dual4 NestedIntegral::differentiable_end(std::size_t level, const SmoothInterval
     const double slope = slope_of_independent(level, closing, at, scratch);
     return differentiable_root(at, tangent(scratch.own, scratch.dual_registers), slope);
   }
-  if (may_jump(level, part, upper, scratch)) {  // use the mean over the points that become feasible or infeasible
+  if (may_jump(level, part, upper, scratch)) {  // mean over the points that become feasible or infeasible here
     Components<4> motion;
     double all = 0;
     for (const double side : {-1.0, 1.0})

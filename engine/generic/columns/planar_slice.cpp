@@ -12,7 +12,8 @@
 namespace pkm::generic {
 namespace {
 
-/// Whether a quadratic polynomial is positive below all of its roots. @param roots  number of its roots
+/// Whether a quadratic polynomial is positive below all of its roots.
+/// @param c, roots  its coefficients, and the number of its roots
 bool positive_below(const std::array<double, 3>& c, int roots) {
   if (c[2] != 0) return c[2] > 0;
   return roots > 0 ? c[1] < 0 : c[0] >= 0;
@@ -44,7 +45,8 @@ void PlanarSlice::find_column(double t, const double* registers, PlanarSliceScra
     }
     if (plan_.formula.holds(signs, registers) != is_in) {
       is_in = !is_in;
-      // Coincident endpoints are represented by the first surface whose sign changes in the required direction.
+      // If several surfaces have their endpoint here, the first one whose sign changes in the required direction
+      // represents them.
       EndLabel label = ~EndLabel{0}, any = ~EndLabel{0};
       for (std::size_t j = i; j < end; ++j) {
         const EndLabel each = scratch.ends[j].second;
@@ -80,7 +82,7 @@ bool PlanarSlice::independent_constraints_hold(double t, std::span<double> regis
   return std::ranges::all_of(plan_.independent.back(), [&](std::uint32_t at) { return is_satisfied(registers[at]); });
 }
 
-/// Finds the pieces between consecutive vertices.
+/// Finds the pieces, i.e. the intervals of t between consecutive vertices in which all columns have the same endpoints.
 /// @param independent  true: also evaluate the constraints that are independent of z
 void PlanarSlice::find_pieces(bool independent, std::span<double> registers, PlanarSliceScratch& scratch) const {
   scratch.pieces.clear();
@@ -116,7 +118,8 @@ void PlanarSlice::find_pieces(bool independent, std::span<double> registers, Pla
 
 void PlanarSlice::find_combinatorial_type(PlanarSliceScratch& scratch) const {
   SliceType& type = scratch.type;
-  // sets of the surfaces that have an arc which ends at a turning point, and at another vertex
+  // round: set of the surfaces with an arc that ends at a turning point; cut: of those with an arc that ends at another
+  // vertex
   Signs round = 0, cut = 0;
   const auto add = [&](std::size_t surface, std::size_t first, double t) {
     const std::uint32_t label = vertex_of(surface, first, t, scratch);
@@ -240,8 +243,8 @@ std::vector<std::array<double, 2>> PlanarSlice::columns(double v, std::span<doub
 }
 
 bool PlanarSlice::has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch) {
-  // difference in t up to which a vertex counts as a turning point: near a tangency, intersections can lie on either
-  // side of it
+  // A vertex within this distance in t of a turning point counts as one: near a tangency, intersections can lie on
+  // either side of it.
   constexpr double kBracketWidth = 1e-7;
   return vertex < scratch.vertices.size() &&
          std::ranges::any_of(scratch.vertices, [&](const PlanarSliceScratch::Vertex& other) {

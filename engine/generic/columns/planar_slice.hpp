@@ -13,29 +13,31 @@
 
 namespace pkm::generic {
 
-/// Scratch memory of PlanarSlice. The coordinates t and s in [-1, 1] stand for v and z.
+/// Scratch memory of PlanarSlice, with the results of measure(). The coordinates t and s in [-1, 1] stand for v and z.
 struct PlanarSliceScratch {
-  /// A vertex of the slice: a point at which arcs can end.
+  /// A vertex of the slice: a point at which arcs of its boundary can end. It has the coordinate t and a label
+  /// (vertices.hpp).
   struct Vertex {
     double t;
     std::uint32_t label;
-    bool touches = false;  ///< true: an intersection of two conics that are tangent there
-    double s = 0;          ///< ordinate s of intersections and turning points; 0 for other vertices
+    bool touches = false;  ///< true: the vertex is an intersection of two conics that are tangent to each other there
+    double s = 0;          ///< coordinate s of an intersection or turning point; 0 for other vertices
   };
-  /// A feasible interval of z in all columns of a piece, by the labels of its lower and upper endpoint.
+  /// A feasible interval of z, which exists in all columns of a piece, by the labels of its lower and upper endpoint.
   struct Span {
     EndLabel lower, upper;
 
     bool operator==(const Span&) const = default;
   };
-  /// An interval of t in which all columns have the same endpoints.
+  /// An interval [from, to] of t in which all columns have the same endpoints.
   struct Piece {
     double from, to;
-    /// Index of the first vertex at `from` and at `to`; the number of vertices stands for a side of the slice.
+    /// Index of the first vertex with t = from, and with t = to; vertices.size() stands for a vertical side of the
+    /// slice.
     std::size_t from_vertex, to_vertex;
-    std::size_t first, count;  ///< index of the first element in `spans`, and number of elements
+    std::size_t first, count;  ///< index of the piece's first element in `spans`, and number of its elements
   };
-  /// Sets of the constraints that a conic represents: constraints with the same polynomial, and with the opposite sign.
+  /// The constraints that a conic represents, as sets: those with the polynomial P of the conic, and those with -P.
   struct Meaning {
     Signs same, opposite;
   };
@@ -53,13 +55,13 @@ struct PlanarSliceScratch {
   SliceType type = 0;
 };
 
-/// The coordinate s of an endpoint of the column at t.
+/// The coordinate s of the endpoint with the label `end` in the column at t.
 inline double end_at(EndLabel end, double t, const PlanarSliceScratch& scratch) {
   return place_on(scratch.conics[end >> 1U], static_cast<int>(end & 1U), t);
 }
 
-/// Endpoints of pieces and columns as numbers, for PlanarSlice::for_each_node(); PlanarSliceSensitivity has them with
-/// derivatives.
+/// Provides endpoints of pieces and columns as numbers for PlanarSlice::for_each_node(); PlanarSliceSensitivity
+/// provides them with derivatives.
 struct PlanarSliceValues {
   using Scalar = double;
   const PlanarSliceScratch& scratch;
@@ -73,16 +75,16 @@ class PlanarSlice {
   explicit PlanarSlice(SlicePlan plan) : plan_(std::move(plan)) {}
 
   const SlicePlan& plan() const { return plan_; }
-  /// Computes the area of the slice, its type and its pieces.
+  /// Returns the area of the slice, and sets its type and its pieces in `scratch`.
   /// @param registers  values of the program's registers after all stages except that of v
-  /// @param changes  sign changes along v of the constraints that are independent of z; null: they are searched for by
-  ///                 sampling
+  /// @param changes    sign changes along v of the constraints that are independent of z; null: sampling finds them
   double measure(std::span<double> registers, PlanarSliceScratch& scratch,
                  const std::vector<SignChange>* changes = nullptr) const;
-  /// Adds the derivatives of factor times the area, after measure(), to the adjoints of the program's registers.
+  /// Adds the derivatives of factor times the area to the adjoints of the program's registers; to be called after
+  /// measure().
   void add_gradient(double factor, std::span<double> registers, std::span<double> adjoints,
                     PlanarSliceScratch& scratch) const;
-  /// Calls visit(v, z, weight) at quadrature nodes inside the columns, after measure().
+  /// Calls visit(v, z, weight) at quadrature nodes in the slice; to be called after measure().
   /// @param ends  PlanarSliceValues, or PlanarSliceSensitivity for nodes with derivatives
   template <class Ends, class Visit>
   void for_each_node(const GaussRule& along_v, const GaussRule& along_z, const PlanarSliceScratch& scratch,
@@ -104,8 +106,8 @@ class PlanarSlice {
     }
   }
 
-  /// Calls visit(end, first, t) for each endpoint of an arc, after measure(): label of the arc, index of the first
-  /// vertex at t.
+  /// Calls visit(end, first, t) for each endpoint of the arcs that bound the slice; to be called after measure(). end:
+  /// label of the arc; t: coordinate of its endpoint; first: index of the first vertex at t.
   template <class Visit>
   void for_each_arc_end(const PlanarSliceScratch& scratch, const Visit& visit) const {
     const auto continues = [&](const PlanarSliceScratch::Piece& piece, EndLabel end, bool above) {
@@ -127,18 +129,19 @@ class PlanarSlice {
         }
     }
   }
-  /// Appends the intervals of v in which columns have the same endpoints and are smooth, after measure().
+  /// Appends to `pieces` the intervals of v in which all columns have the same endpoints; to be called after measure().
   void append_smooth_intervals(const PlanarSliceScratch& scratch, std::vector<Subinterval<double>>& pieces) const;
-  /// The feasible intervals of z at v in ascending order, after measure().
+  /// The feasible intervals of z at a value of v, in ascending order; to be called after measure().
   std::vector<std::array<double, 2>> columns(double v, std::span<double> registers, PlanarSliceScratch& scratch) const;
-  /// Finds the vertices that define the type, after measure().
+  /// Appends to `features` the vertices that determine the type of the slice; to be called after measure().
   void find_features(const PlanarSliceScratch& scratch, BoundaryFeatures& features) const;
-  /// Relative residual of a vertex in the equations of the surfaces that intersect at a vertex of a neighbouring slice;
-  /// infinity if it lies on these surfaces, or if one of the two vertices is no intersection.
+  /// Distance of a vertex from the surfaces that intersect at a vertex `other` of a neighbouring slice: residual of
+  /// their equations, relative to the size of their terms. Infinity if the vertex lies on these surfaces, or if one of
+  /// the two vertices is no intersection.
   static double distance(const BoundaryFeature& vertex, const BoundaryFeature& other,
                          const PlanarSliceScratch& scratch);
-  /// Derivative with respect to v, at t, of the independent constraint with index k.
-  /// @param by  see expression::stage_derivative()
+  /// Derivative with respect to v, at t, of the constraint with index k among those that are independent of z.
+  /// @param by  receives the derivatives by registers, see expression::stage_derivative()
   double slope_of_independent(std::size_t k, double t, std::span<double> registers, const PlanarSliceScratch& scratch,
                               std::vector<double>& by) const;
 
@@ -149,17 +152,17 @@ class PlanarSlice {
   void find_independent_vertices(std::span<double> registers, PlanarSliceScratch& scratch) const;
   void find_pieces(bool independent, std::span<double> registers, PlanarSliceScratch& scratch) const;
   void find_column(double t, const double* registers, PlanarSliceScratch& scratch) const;
-  /// Computes the registers that depend on v, but not on z, for the value of v given by t in [-1, 1].
+  /// Computes those registers that depend on v, but not on z. @param t  in [-1, 1], stands for v
   void evaluate_stage_of_v(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
-  /// Evaluates, at t, the constraints that are independent of z.
+  /// Evaluates, at t, the constraints that are independent of z. @param values  receives their values
   void evaluate_independent(double t, std::span<double> registers, const PlanarSliceScratch& scratch,
                             std::vector<double>& values) const;
   bool independent_constraints_hold(double t, std::span<double> registers, const PlanarSliceScratch& scratch) const;
-  /// Integrals of 1, s and s^2 over all columns of a piece at t.
+  /// Integrals of 1, s and s^2 over the feasible intervals of s at t, in a piece that contains t.
   std::array<double, 3> moments(const PlanarSliceScratch::Piece& piece, double t,
                                 const PlanarSliceScratch& scratch) const;
   void find_combinatorial_type(PlanarSliceScratch& scratch) const;
-  /// Whether the length of columns has a square-root singularity in t at a vertex.
+  /// Whether the length of the columns, as a function of t, has a square-root singularity at a vertex.
   static bool has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch);
   std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
 

@@ -18,7 +18,8 @@ void PlanarSlice::add_gradient(double factor, std::span<double> registers, std::
     add_gradient_of_area(scratch.conics[k], {static_cast<int>(end & 1U), piece.from, piece.to}, sign * measure,
                          gradient[k]);
   };
-  // adds the contribution of a vertical side per unit of its displacement in t: the length of its columns
+  // Adds the contribution of a vertical side of a piece: it has the length of its columns per unit of displacement in
+  // t.
   const auto add_side = [&](const PlanarSliceScratch::Piece& piece, bool upper) {
     const double t = upper ? piece.to : piece.from, sign = upper ? 1 : -1;
     const std::uint32_t label = vertex_of(kMaxSurfaces, upper ? piece.to_vertex : piece.from_vertex, t, scratch);
@@ -33,14 +34,14 @@ void PlanarSlice::add_gradient(double factor, std::span<double> registers, std::
       gradient[k][0] += g * columns;
       gradient[k][1] += g * columns * t;
       gradient[k][3] += g * columns * t * t;
-      // The coefficients of s are 0 at this design, but they can depend on the design.
+      // The coefficients of the terms with s are 0 for this design, but may not be 0 for neighbouring designs.
       gradient[k][2] += g * first;
       gradient[k][4] += g * first * t;
       gradient[k][5] += g * second;
     } else if ((label & kKind) == kIndependent) {
       std::vector<double>& own = scratch.other_adjoints;
       const double g = -sign * factor * scratch.z[1] * columns / slope_of_independent(k, t, registers, scratch, own);
-      // beyond the side the constraint is undefined or infinite: the side is no root of it
+      // the constraint has no root here, but is undefined or infinite beyond the side: the side counts as fixed
       if (!std::isfinite(g)) return;
       for (std::size_t i = 0; i < own.size(); ++i) adjoints[i] += g * own[i];
     }

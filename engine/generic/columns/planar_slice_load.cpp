@@ -6,7 +6,8 @@
 namespace pkm::generic {
 namespace {
 
-/// Expresses a conic in v and z as a conic in the coordinates t and s of the box. @param v, z  centre and half width
+/// Expresses a conic in v and z as a conic in t and s in [-1, 1].
+/// @param v, z  centre and half width of the box in v, and in z
 Conic in_box(const std::array<double, 6>& C, const std::array<double, 2>& v, const std::array<double, 2>& z) {
   const auto [vm, vh] = v;
   const auto [zm, zh] = z;
@@ -24,7 +25,7 @@ Conic in_box(const std::array<double, 6>& C, const std::array<double, 2>& v, con
   return P;
 }
 
-/// Intersects a range with [low, high], enlarged by 1 % so that endpoints at low and high lie inside.
+/// Reduces a range to its intersection with [low, high], enlarged by 1 % so that `low` and `high` lie inside.
 /// @return false if the intersection is empty
 bool cut(std::array<double, 2>& range, double low, double high) {
   if (!(low <= range[1] && high >= range[0])) return false;
@@ -34,9 +35,11 @@ bool cut(std::array<double, 2>& range, double low, double high) {
   return true;
 }
 
-/// Contracts the ranges of v and z to the bounding box of P >= 0 if this is an ellipse or a strip along v or z;
-/// otherwise leaves them unchanged.
-/// @return false if no point of the ranges can satisfy P >= 0
+/// Reduces the ranges of v and z to the bounding box of the points with P >= 0 if these form an ellipse or a strip
+/// along v or z; otherwise leaves the ranges unchanged.
+/// @param C     coefficients of P
+/// @param v, z  range of v, and of z
+/// @return false if no point in the ranges can satisfy P >= 0
 bool narrow_to(const std::array<double, 6>& C, std::array<double, 2>& v, std::array<double, 2>& z) {
   const auto [c, cv, cz, cvv, cvz, czz] = C;
   const bool has_sqrt_singularity = czz < 0 && cvv < 0 && cvz * cvz < 4 * cvv * czz;

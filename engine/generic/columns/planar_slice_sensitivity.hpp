@@ -8,13 +8,17 @@
 
 namespace pkm::generic {
 
-/// A root at the value `at` with the derivatives -sum / by; the derivatives are 0 if this is infinite.
+/// A root with the value `at` of an equation, and with the derivatives -sum / by. Derivatives that would be infinite
+/// are 0.
+/// @param sum, by  derivatives of the equation with respect to the design, and to the root
 Dual4 differentiable_root(double at, const Components<4>& sum, double by);
 
-/// Derivatives of a quantity whose gradient with respect to the registers is `by`, by the chain rule.
+/// Derivatives of a quantity with respect to the design, by the chain rule.
+/// @param by  derivatives of the quantity with respect to the registers
 Components<4> tangent(std::span<const double> by, std::span<const Dual4> registers);
 
-/// Endpoints of pieces and columns with derivatives with respect to the design, for PlanarSlice::for_each_node().
+/// Provides endpoints of pieces and columns with their derivatives with respect to the design for
+/// PlanarSlice::for_each_node().
 class PlanarSliceSensitivity {
  public:
   using Scalar = Dual4;
@@ -30,8 +34,8 @@ class PlanarSliceSensitivity {
   Dual4 vertex(std::size_t first, double t) const;
   Dual4 end(EndLabel end, const Dual4& t) const;
 
-  /// Derivatives of the equation of a boundary curve: with respect to t and s, and (`change`) to the design at constant
-  /// t and s.
+  /// Derivatives of the polynomial of a boundary curve: with respect to t, to s, and (`change`) to the design at
+  /// constant t and s.
   struct Boundary {
     double t, s;
     Components<4> change;

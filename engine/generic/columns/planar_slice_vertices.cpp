@@ -13,15 +13,15 @@ namespace {
 
 std::uint32_t crossing(std::size_t k, std::size_t l) { return kCrossing | static_cast<std::uint32_t>(k << 8U | l); }
 
-/// Whether two conics are tangent at an intersection, up to rounding.
+/// Whether two conics are tangent to each other at an intersection (t, s), up to rounding errors.
 bool touch(const Conic& P, const Conic& Q, double t, double s) {
   const auto [pt, ps] = gradient(P, t, s);
   const auto [qt, qs] = gradient(Q, t, s);
   return std::fabs(pt * qs - ps * qt) <= 1e-5 * std::hypot(pt, ps) * std::hypot(qt, qs);
 }
 
-/// Removes the intersections of tangent conics that lie on a vertical line of another vertex: rounding errors decide
-/// whether tangent conics intersect, whereas the vertex of the vertical line represents the point reliably.
+/// Removes the intersections of tangent conics that lie on another conic which is a vertical line: rounding errors
+/// decide whether tangent conics intersect, whereas the vertex of the vertical line represents the point reliably.
 void drop_touching(std::vector<PlanarSliceScratch::Vertex>& vertices) {
   std::erase_if(vertices, [&](const PlanarSliceScratch::Vertex& vertex) {
     return vertex.touches && std::ranges::any_of(vertices, [&](const PlanarSliceScratch::Vertex& other) {
@@ -32,7 +32,8 @@ void drop_touching(std::vector<PlanarSliceScratch::Vertex>& vertices) {
 
 }  // namespace
 
-/// Adds a vertex at (t, s), unless the point is infeasible whatever signs the surfaces in the set `of` have there.
+/// Adds a vertex at (t, s), unless the point is infeasible for all combinations of signs of the surfaces in the set
+/// `of`.
 void PlanarSlice::add_vertex(double t, double s, Signs of, std::uint32_t label, PlanarSliceScratch& scratch) const {
   if (!(std::fabs(s) <= 1 + 1e-9)) return;
   Signs maybe = scratch.always;
@@ -82,7 +83,8 @@ void PlanarSlice::find_vertices(PlanarSliceScratch& scratch) const {
   drop_touching(scratch.vertices);
 }
 
-/// Finds the vertices at which a constraint that is independent of z changes its sign, in the pieces found so far.
+/// Adds a vertex wherever a constraint that is independent of z changes its sign in the pieces that have been found so
+/// far.
 void PlanarSlice::find_independent_vertices(std::span<double> registers, PlanarSliceScratch& scratch) const {
   constexpr int kSteps = 24;
   const double low = scratch.pieces.front().from, high = scratch.pieces.back().to;

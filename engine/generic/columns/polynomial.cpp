@@ -36,12 +36,12 @@ bool has_one_sign(std::span<const double> c) {
   static constexpr int kBinomial[5][5] = {
       {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
   static const auto table = [] {
-    // by degree n and indices k, j: contribution of x^j to the Bernstein coefficient with index k
+    // b[n][k][j]: for degree n, contribution of x^j to the Bernstein coefficient with index k
     std::array<std::array<std::array<double, 5>, 5>, 5> b{};
     for (int n = 0; n < 5; ++n)
       for (int k = 0; k <= n; ++k)
         for (int j = 0; j <= n; ++j) {
-          double sum = 0;  // polar form of x^j at k ones and n - k minus ones
+          double sum = 0;  // polar form of x^j for k arguments 1 and n - k arguments -1, multiplied by C(n, j)
           for (int i = 0; i <= j; ++i)
             if (i <= k && j - i <= n - k) sum += kBinomial[k][i] * kBinomial[n - k][j - i] * ((j - i) % 2 ? -1 : 1);
           b[static_cast<std::size_t>(n)][static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
@@ -60,7 +60,7 @@ bool has_one_sign(std::span<const double> c) {
   return positive || negative;
 }
 
-/// Removes negligible leading coefficients.
+/// Returns the coefficients without leading ones that are negligible.
 std::span<const double> trimmed(std::span<const double> c) {
   double scale = 0;
   for (const double each : c) scale = std::fabs(each) > scale ? std::fabs(each) : scale;

@@ -7,7 +7,7 @@
 
 namespace pkm::generic {
 
-/// Relative to the largest coefficient: smaller leading coefficients are neglected.
+/// Leading coefficients whose ratio to the largest coefficient is smaller are neglected.
 inline constexpr double kNegligibleCoefficient = 1e-14;
 
 struct Roots {
@@ -15,14 +15,15 @@ struct Roots {
   int count = 0;
 };
 
-/// Roots of c[0] + c[1] s + c[2] s^2. A linear polynomial has one root, with index 0; the zero polynomial has none.
+/// Real roots of c[0] + c[1] s + c[2] s^2. A linear polynomial has one root, with index 0; a constant one has none.
 Roots roots_of(const std::array<double, 3>& c);
 
-/// Finds the roots in [-1, 1] in ascending order, and points where the polynomial nearly has a double root. @return
-/// their number
+/// Finds the roots in [-1, 1], and points where the polynomial nearly has a double root, in ascending order.
+/// @return number of values stored in `roots`
 std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots);
 
-/// Finds the sign changes in (-1, 1) in ascending order. @return their number
+/// Finds the points in (-1, 1) at which the polynomial changes its sign, in ascending order.
+/// @return number of values stored in `places`
 std::size_t sign_changes(std::span<const double> coefficients, std::array<double, 8>& places);
 
 }  // namespace pkm::generic

@@ -10,7 +10,7 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kNarrow = 1e-9;  // relative to the range: intervals of at most this width are not bisected
+constexpr double kNarrow = 1e-9;  // relative to the whole range: intervals of at most this width are not bisected
 
 class Search {
  public:
@@ -54,8 +54,9 @@ class Search {
     program_.run<S>(stage_, registers);
   }
 
-  /// Adds the sign changes of the constraints that are monotonic on an interval.
-  /// @return the set of undecided constraints
+  /// Evaluates the undecided constraints on an interval, and adds a sign change for each one that is monotonic there
+  /// and changes its sign.
+  /// @return the set of constraints that remain undecided: without a certified sign, and not monotonic
   Signs examine(const SignChangeScratch::Part& part) {
     ++s_.evaluations;
     evaluate<Interval>({part.from, part.to}, s_.registers);
@@ -72,9 +73,9 @@ class Search {
     return undecided;
   }
 
-  /// Adds a sign change for each constraint of the set `of` that has different signs at the two ends of an interval.
-  /// @param refines  true: locate the change by root refinement; false: place it in the middle of the interval
-  /// @return number of the added sign changes
+  /// For each constraint of the set `of` that has different signs at the two ends of an interval, adds a sign change.
+  /// @param refines  true: locate the sign change by root refinement; false: place it in the middle of the interval
+  /// @return number of sign changes that were added
   int add_changes(const SignChangeScratch::Part& part, Signs of, bool refines) {
     int count = 0;
     for (; of != 0; of &= of - 1) {

@@ -12,34 +12,35 @@
 
 namespace pkm::generic {
 
-/// Registers of a constraint and of its derivative with respect to the coordinate.
+/// Indices of the registers of a constraint's value and of its derivative with respect to the coordinate.
 struct WithDerivative {
   std::uint32_t value, derivative;
 };
 
 struct SignChange {
   double at;
-  std::size_t constraint;  ///< index of the constraint in the given list
+  std::size_t constraint;  ///< index in the list of constraints given to find_sign_changes()
   bool falls;              ///< true: the constraint is satisfied below `at` and violated above it
 };
 
 /// Result and scratch memory of find_sign_changes().
 struct SignChangeScratch {
-  std::vector<SignChange> found;  ///< the sign changes, in no particular order
-  double undecided = 0;           ///< total length of intervals in which signs are unknown
-  long evaluations = 0;           ///< number of intervals that the last search has evaluated
+  std::vector<SignChange> found;  ///< all sign changes, in no particular order
+  double undecided = 0;           ///< total length of the intervals in which the sign of a constraint is unknown
+  long evaluations = 0;           ///< number of intervals that the last search evaluated
 
   struct Part {
     double from, to;
-    Signs undecided;  ///< set of the constraints whose sign is still unknown in the interval
+    Signs undecided;  ///< set of the constraints whose sign in the interval is unknown
   };
   std::vector<Part> parts, halves;
   std::vector<Interval> registers;
 };
 
-/// Finds the sign changes in [from, to] of constraints that a stage computes from a single coordinate.
-/// @param constraints      at most kMaxSurfaces
-/// @param max_evaluations  limit on evaluations of intervals; it may be exceeded by a few
+/// Finds the sign changes in [from, to] of constraints that a stage of a program computes from a single coordinate.
+/// @param stage            index of the stage
+/// @param constraints      registers of at most kMaxSurfaces constraints
+/// @param max_evaluations  limit on the number of evaluated intervals; it may be exceeded by a few
 /// @param registers        values after all earlier stages; those of this stage are overwritten
 void find_sign_changes(const expression::Program& program, std::size_t stage,
                        std::span<const WithDerivative> constraints, double from, double to, long max_evaluations,
