@@ -18,8 +18,9 @@ class Minors {
     known_.emplace(0U, Term(A.graph(), 1.0));
   }
 
-  /// Determinant of the first k rows (without the excluded one) and the k columns of a set. @param columns  the set:
-  /// bit j represents column j of A
+  /// Determinant of the submatrix of the k columns in a set and the first k rows, not counting the constructor's
+  /// excluded_row.
+  /// @param columns  the set: bit j represents column j of A
   Term of(unsigned columns) {
     if (const auto found = known_.find(columns); found != known_.end()) return found->second;
     const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];

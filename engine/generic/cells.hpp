@@ -58,8 +58,8 @@ class CellTest {
   /// Finds the feasible cells of columns [first, first + count) of a slice.
   CellTally test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count, bool want_bits,
                          CellScratch& scratch) const;
-  /// Finds, for each of `count` columns, the range of cells that satisfy plan_.columns. @return true if some ranges
-  /// have holes, whose cells are set in scratch.hole
+  /// Finds, for each of `count` columns, the range of cells that satisfy plan_.columns.
+  /// @return true if some ranges have holes, whose cells are set in scratch.hole
   bool find_ranges(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
                    CellScratch& scratch) const;
   CellTally tally_of_ranges(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,

@@ -28,8 +28,8 @@ class Outputs {
   ValueOf value_;
 };
 
-/// Fills `d` with the equations of motion from the outputs of the program. @return false if the pose does not assemble;
-/// `d` is then incomplete
+/// Fills `d` with the equations of motion from the outputs of the program.
+/// @return false if the pose does not assemble; `d` is then incomplete
 template <class S, class ValueOf>
 bool read(const Inputs& at, std::size_t domains, Outputs<ValueOf> next, PoseDynamics<S>& d) {
   const std::size_t n = at.coordinates, m = at.joints;

@@ -74,8 +74,8 @@ struct LuDecomposition {
   }
 };
 
-/// Evaluates poses k, ..., k + kLanes - 1 of the batch. @return false if at least one of them must be evaluated alone
-/// in scalar arithmetic
+/// Evaluates poses k, ..., k + kLanes - 1 of the batch.
+/// @return false if at least one of them must be evaluated alone in scalar arithmetic
 template <class L, int n>
 [[gnu::always_inline]] inline bool find_lanes(const InertiaKernelData& data, std::size_t k) {
   LuDecomposition<L, decltype(L() < L()), n> lu;

@@ -41,8 +41,8 @@ AxisVector<double> axis_vector(std::span<const double> values) {
   return axes;
 }
 
-/// Computes PoseReport::T, which maps the rates of the coordinates to the twist of the platform. @param inputs  values
-/// of the graph's inputs, including the pose
+/// Computes PoseReport::T, which maps the rates of the coordinates to the twist of the platform.
+/// @param inputs  values of the graph's inputs, including the pose
 AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inputs) {
   // index of the first element of rotation_directions among the outputs of Evaluation::frame
   constexpr std::size_t kDirections = 12;

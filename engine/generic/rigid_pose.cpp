@@ -38,8 +38,8 @@ Plane plane_of(const std::vector<Vector3d>& points, const std::array<bool, 3>& i
 }
 
 /// For a planar mechanism, the coordinate axis that is normal to its plane: its platform does not translate along this
-/// axis and rotates about no other one. @return true for such an axis; false for the other axes and for other
-/// mechanisms
+/// axis and rotates about no other one.
+/// @return true for such an axis; false for the other axes and for other mechanisms
 std::array<bool, 3> normal_to_motion(const Model& model) {
   std::array<bool, 3> normals{};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -177,8 +177,8 @@ class Planner {
     for (std::size_t i = 0; i < known_.all.size(); ++i)
       covered_[i] = covered_[i] || std::ranges::find(conditions, known_.all[i]) != conditions.end();
   }
-  /// Converts each of the given nodes to a surface. @return for each node, the set of its surface; std::nullopt if one
-  /// of them cannot be converted
+  /// Converts each of the given nodes to a surface.
+  /// @return for each node, the set of its surface; std::nullopt if one of them cannot be converted
   std::optional<std::vector<Signs>> bits_of(std::initializer_list<Node> surfaces) {
     std::vector<NodeSurface> found;
     for (const Node surface : surfaces) {

@@ -137,8 +137,8 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     return pose;
   }
 
-  /// Finds the cells of a slice that satisfy all limits. @param want_bits  true: also fill the bit set
-  /// scratch.cells.bits
+  /// Finds the cells of a slice that satisfy all limits.
+  /// @param want_bits  true: also fill the bit set scratch.cells.bits
   CellTally find_cells(const GriddedSlices& slices, std::size_t slice, bool want_bits, WorkerScratch& scratch) const {
     const VoxelGrid& grid = slices.grid;
     if (!clearance_ && limited_.empty()) return test_.test(grid, slice, want_bits, scratch.cells);

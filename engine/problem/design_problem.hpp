@@ -159,8 +159,8 @@ class DesignProblem final : public Problem {
   /// derivatives to `derivatives`, and the values of the workspace analyses to the buffers in `scratch`.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> derivatives,
                      Scratch& scratch) const;
-  /// Runs the workspace analyses that quantities use. @param all  true: also that of the workspace if no quantity uses
-  /// it
+  /// Runs the workspace analyses that quantities use.
+  /// @param all  true: also that of the workspace if no quantity uses it
   template <class S>
   void analyse(std::span<const S> parameters, bool all, Scratch& scratch, WorkspaceResults<S>& results) const;
 

@@ -9,8 +9,8 @@ namespace pkm {
 
 std::vector<OptionSpec> largest_solid_options(SolidKind kind);
 
-/// True if the quantity is the solid's first dimension; false if it is the volume. @param options  values of
-/// largest_solid_options()
+/// True if the quantity is the solid's first dimension; false if it is the volume.
+/// @param options  values of largest_solid_options()
 bool measures_size(const Options& options);
 
 /// Requirements on a solid in a workspace of this plan. Throws std::invalid_argument with one sentence if the options

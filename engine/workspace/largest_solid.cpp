@@ -155,8 +155,8 @@ class SolidRefinement {
     }
   }
 
-  /// Shrinks the solid of the last iterate until no constraint is violated at `dense`, a set of more samples. @return
-  /// the solid; all its dimensions are 0 if this fails
+  /// Shrinks the solid of the last iterate until no constraint is violated at `dense`, a set of more samples.
+  /// @return the solid; all its dimensions are 0 if this fails
   Solid finish(Iterate& last, const SolidSamples& dense) {
     Solid found = solid(last.x);
     constexpr int kMaxRounds = 60;

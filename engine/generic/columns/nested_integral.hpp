@@ -52,8 +52,8 @@ struct SmoothInterval {
   Subinterval<double> piece;
   Slice below, above;  ///< slices just inside the lower and the upper endpoint of the interval
   IntervalBound lower = kCriticalValue, upper = kCriticalValue;
-  double beyond_lower = 0, beyond_upper = 0;  ///< measures of the slices just outside the lower and the upper endpoint
-                                              ///< of the interval
+  /// Measures of the slices just outside the lower and the upper endpoint of the interval.
+  double beyond_lower = 0, beyond_upper = 0;
   std::array<double, NestedRule::kNodes> at{}, weight{};
   double value = 0, error = 0;
   double irreducible_error = 0;  ///< part of the error of the integral that subdivision of the interval cannot reduce
@@ -105,7 +105,7 @@ struct IntegralScratch {
   std::vector<double> own;         ///< derivatives of a single constraint with respect to the registers
   std::vector<double> univariate;  ///< values of the registers of the program SlicePlan::univariate
   SignChangeScratch changes;       ///< sign changes found by find_univariate_changes()
-  /// Values of the coordinate at these sign changes and at the ends of its range, in ascending order.
+  /// Values of the first coordinate at the sign changes in `changes` and at the ends of its range, in ascending order.
   std::vector<double> ends;
   expression::Rows rows;  ///< values of the registers of NestedIntegral::lines_, for several lines at once
   /// Values of the registers with their derivatives with respect to the design, and (`along`) to an outer coordinate.

@@ -23,8 +23,8 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
 /// Reason why singularities cannot be examined; empty if they can.
 Unsupported refuse_jacobians(const Inputs& at);
 
-/// Replaces the coordinates in the formulas `roots` by formulas of a motion, i.e. functions of the time. @return index
-/// of the time among the inputs of the graph
+/// Replaces the coordinates in the formulas `roots` by formulas of a motion, i.e. functions of the time.
+/// @return index of the time among the inputs of the graph
 std::size_t substitute_motion(const Motion& motion, const Inputs& at, Graph& graph, std::vector<Interval>& inputs,
                               std::vector<Node>& roots);
 

@@ -441,8 +441,8 @@ class PoseBranchAndBound {
     return best;
   }
 
-  /// Bisects a box along box.axis and appends both halves. @return false if its side has no midpoint in double
-  /// precision
+  /// Bisects a box along box.axis and appends both halves.
+  /// @return false if its side has no midpoint in double precision
   static bool bisect(const Box& box, std::vector<Box>& to) {
     const Interval& side = box.sides[box.axis];
     const double middle = side.middle();

@@ -170,8 +170,8 @@ class BranchAndPrune {
     return true;
   }
 
-  /// Unites, in the disjoint sets, leaves below part a with leaves below part b that touch them. @param shift  is added
-  /// to the coordinates of part b, for ends of periodic axes
+  /// Unites, in the disjoint sets, leaves below part a with leaves below part b that touch them.
+  /// @param shift  is added to the coordinates of part b, for ends of periodic axes
   void join(std::size_t a, std::size_t b, const std::array<double, kMaxAxes>& shift) {
     if (parts_[a].is_removed || parts_[b].is_removed) return;
     // The two ends of a periodic axis coincide only up to rounding errors.
