@@ -7,7 +7,8 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-/// Upper bounds of the magnitudes of the coefficients b and c in the equation of a curve.
+/// size_of_b(), size_of_c(): upper bounds of the magnitudes of the coefficients b and c in a curve's equation a |p|^2 +
+/// b . p + c = 0.
 double size_of_b(const BoundaryCurve& curve) {
   return (curve.is_circle() ? 2 : 1) * std::fmax(curve.size[0], curve.size[1]);
 }
@@ -16,7 +17,7 @@ double size_of_c(const BoundaryCurve& curve) {
   return curve.size[0] * curve.size[0] + curve.size[1] * curve.size[1] + curve.size[2];
 }
 
-/// The line b . (p - m) + e = 0 through the crossings of a circle with centre m and another curve.
+/// The line b . (p - m) + e = 0 through the two points in which a circle with centre m crosses another curve.
 struct Chord {
   double bx, by, e;
 };
@@ -40,7 +41,7 @@ bool BoundaryCurve::interpolate(double tolerance) {
     const double scale = is_circle() ? 1 + size[f] : 1;
     const double own_tail = interpolation_error(series[f], 0);
     has_converged = has_converged && own_tail <= tolerance * scale;
-    // Trailing coefficients that are within the rounding errors of the values are not used.
+    // Trailing coefficients of the series that are smaller than the rounding errors of the values are not used.
     const double rounding = 8 * kUnitRoundoff * scale;
     tail = std::fmax(tail, own_tail);
     error = std::fmax(error, own_tail + rounding);

@@ -7,7 +7,7 @@ namespace {
 
 using Matrix = std::array<Samples, kNodes>;
 
-/// Value of T_k at the Chebyshev node with index n of `nodes` nodes.
+/// Value of the Chebyshev polynomial T_k at the node with index n, if there are `nodes` nodes.
 double polynomial_at_node(std::size_t k, std::size_t n, std::size_t nodes) {
   static const std::array<double, 4 * kNodes> cosines = [] {
     std::array<double, 4 * kNodes> all;
@@ -17,8 +17,8 @@ double polynomial_at_node(std::size_t k, std::size_t n, std::size_t nodes) {
   return cosines[k * (2 * n + 1) * (kNodes / nodes) % cosines.size()];
 }
 
-/// Coefficients of T_k on [0, 1] are row k: T_(k+1)(y) = 2 y T_k(y) - T_(k-1)(y) with y = (x + 1)/2, and
-/// x T_j = (T_(j+1) + T_|j-1|)/2.
+/// Row k contains the Chebyshev coefficients of T_k on [0, 1] as a function of x in [-1, 1]: T_(k+1)(y) = 2 y T_k(y) -
+/// T_(k-1)(y) with y = (x + 1)/2, and x T_j = (T_(j+1) + T_|j-1|)/2.
 Matrix polynomials_on_upper_half() {
   Matrix rows{};
   rows[0][0] = 1;
@@ -50,7 +50,7 @@ const Samples& chebyshev_nodes() {
 }
 
 void to_coefficients(const Samples& values, Samples& coefficients) {
-  // T_k is even or odd, so that opposite nodes share the products.
+  // T_k is even or odd, so that two opposite nodes share the products with its values.
   static const Matrix table = [] {
     Matrix rows{};
     for (std::size_t n = 0; n < kNodes / 2; ++n)
@@ -64,7 +64,7 @@ void to_coefficients(const Samples& values, Samples& coefficients) {
 
 void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samples& by_values) {
   static const auto table_of = [](std::size_t count) {
-    Matrix table{};  // table of T_k at the nodes by coefficient k, multiplied by the factor of the interpolation
+    Matrix table{};  // values of T_k at the nodes, times the factor of the interpolation formula
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < count; ++n)
         table[k][n] = polynomial_at_node(k, n, count) * (k == 0 ? 1.0 : 2.0) / static_cast<double>(count);
@@ -98,7 +98,7 @@ void evaluate_at_points(const std::array<Samples, 3>& series, std::size_t terms,
 }
 
 void differentiate_series(const double* coefficients, std::size_t terms, double* derivative) {
-  // d[k - 1] = d[k + 1] + 2 k c[k], and d[0] is half of that
+  // coefficients d of the derivative: d[k - 1] = d[k + 1] + 2 k c[k], but d[0] is half of that
   double next = 0, after = 0;
   for (std::size_t k = terms - 1; k > 0; --k) {
     const double here = after + 2 * static_cast<double>(k) * coefficients[k];

@@ -16,27 +16,28 @@ namespace pkm::generic::corner_curves {
 
 inline constexpr double kUnitRoundoff = 0x1p-53;
 
-/// Values of a function at the kNodes Chebyshev nodes, or the coefficients of its Chebyshev series.
+/// Values of a function at the kNodes Chebyshev nodes in [-1, 1], or the kNodes coefficients of its Chebyshev series.
 struct alignas(64) Samples : std::array<double, kNodes> {};
 
-/// The nodes, in descending order.
+/// The kNodes Chebyshev nodes in descending order.
 const Samples& chebyshev_nodes();
 
-/// Coefficients of the interpolant through values at the nodes.
+/// Computes the coefficients of the Chebyshev series that has the given values at the nodes.
 void to_coefficients(const Samples& values, Samples& coefficients);
 
-/// Coordinate of the node with index n if there are `nodes` nodes (8, 16 or kNodes).
+/// Coordinate in [-1, 1] of the Chebyshev node with index n, if there are `nodes` nodes (8, 16 or kNodes).
 double chebyshev_node(std::size_t n, std::size_t nodes);
 
-/// Converts derivatives with respect to the coefficients to derivatives with respect to the values at `nodes` nodes (8,
-/// 16 or kNodes), by the transpose of the interpolation; for functions for which `nodes` coefficients are sufficient.
+/// Converts derivatives of a quantity with respect to Chebyshev coefficients to its derivatives with respect to values
+/// at `nodes` nodes (8, 16 or kNodes), by the transpose of the interpolation. Valid for functions for which `nodes`
+/// coefficients are sufficient.
 void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samples& by_values);
 
-/// The number of leading coefficients that are significant, at least 1. The sum of the magnitudes of the coefficients
-/// after them, up to coefficient `terms`, is at most `size`.
+/// The number of leading coefficients that are significant, at least 1: the magnitudes of the others, up to coefficient
+/// `terms`, have a sum of at most `size`.
 std::size_t significant_terms(const Samples& coefficients, std::size_t terms, double size);
 
-/// c[0] T_0(x) + ... + c[terms - 1] T_(terms - 1)(x), by Clenshaw's recurrence.
+/// Value of c[0] T_0(x) + ... + c[terms - 1] T_(terms - 1)(x), by Clenshaw's recurrence.
 inline double evaluate_series(const double* c, std::size_t terms, double x) {
   double next = 0, after = 0;
   for (std::size_t k = terms; k-- > 1;) {
@@ -47,16 +48,16 @@ inline double evaluate_series(const double* c, std::size_t terms, double x) {
   return c[0] + x * next - after;
 }
 
-/// Restricts a series to [-1, 0] and to [0, 1]: coefficients of both halves, each in its own variable in [-1, 1].
-/// @param terms  number of coefficients; those after them are not read, and those of the halves after them are
-///               undefined
+/// Restricts a Chebyshev series to [-1, 0] (`lower`) and to [0, 1] (`upper`): computes the coefficients of two series,
+/// each in a variable of its own in [-1, 1].
+/// @param terms  number of coefficients of each series; further elements are not read and remain undefined
 void restrict_to_halves(const Samples& coefficients, std::size_t terms, Samples& lower, Samples& upper);
 
-/// Values of three series at the same kPoints points.
-/// @param values  receives kPoints values of the first series, then of the second and of the third
+/// Computes the values of three Chebyshev series at kPoints points.
+/// @param values  receives the kPoints values of the first series, then those of the second and of the third
 void evaluate_at_points(const std::array<Samples, 3>& series, std::size_t terms, const double* points, double* values);
 
-/// Computes the terms - 1 coefficients of the derivative of a series.
+/// Computes the coefficients of the derivative of a Chebyshev series; they are terms - 1.
 void differentiate_series(const double* coefficients, std::size_t terms, double* derivative);
 
 }  // namespace pkm::generic::corner_curves

@@ -7,8 +7,8 @@ namespace {
 
 using CurvePair = DecompositionScratch::Pair;
 
-/// Whether a curve that touches `other` without crossing it lies outside it. The point of the curve that is farthest
-/// from `other` decides.
+/// Whether a curve that touches `other` without crossing it lies outside it. This is decided at the one of several
+/// points of the curve that is farthest from `other`.
 bool is_outside(const CurveAt& curve, const CurveAt& other) {
   double largest = 0;
   const double radius = std::sqrt(std::fmax(0, curve.c));
@@ -23,11 +23,12 @@ bool is_outside(const CurveAt& curve, const CurveAt& other) {
   return largest > 0;
 }
 
-/// Resolves a triple in which two curves touch each other for all tau.
-/// @param touching  index (0 to 2) of the pair of curves that touch, whose crossings are not followed
+/// Determines the constant signs of a triple of curves of which two touch each other for all tau.
+/// @param pairs     pairs (0, 1), (0, 2) and (1, 2) of the triple
+/// @param touching  index (0 to 2) in `pairs` of the two curves that touch
 void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                      const std::array<CurvePair*, 3>& pairs, std::size_t touching) {
-  // indices in the triple of the two curves of each pair
+  // for each pair, the indices in the triple of its two curves
   constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   const auto [a, b] = kMembers[touching];
   const std::size_t first = triple[a], second = triple[b], middle = kNodes / 2;
@@ -40,11 +41,16 @@ void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<
   }
 }
 
-/// Finds the sign of h of the third curve at the crossings of one pair, if all three curves cross each other.
-/// @param moved  index of the curve that the perturbation moves outward
+/// For a triple in which every two curves cross, and a pair of them: appends, for each branch of the pair's crossings,
+/// the constant sign of h of the third curve or, if the third curve does not pass through this branch for all tau,
+/// events.
+/// @param third  index of the third curve
+/// @param moved  index of that curve of the three which the perturbation moves outward
+/// @param roots  scratch memory
+/// @return false if the degeneracy is not supported
 bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std::size_t third, std::size_t moved,
                   std::vector<Root>& roots) {
-  // samples with a smaller discriminant, relative to the maximum, do not count
+  // samples at which the discriminant, relative to its maximum, is smaller are not used
   constexpr double kWellConditioned = 0.01;
   constexpr double kCoincide = 1e-11;
   const Samples& d = pair.discriminant.values;
@@ -63,7 +69,8 @@ bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std
       if (pair.has_branches && d[n] < smallest) continue;
       largest = std::fmax(largest, std::fabs(h.values[n]));
       ++samples;
-      // The crossing moves along the curve that is not moved, to its crossing with h + epsilon = 0 of the moved one.
+      // The perturbation moves the crossing along the other curve of the pair, to the point where h + epsilon = 0 for
+      // the moved one.
       const Vector along = curves[fixed].at_node(n).gradient(p);
       outside += third == moved || determinant(along, curves[third].at_node(n).gradient(p)) *
                                            determinant(along, curves[moved].at_node(n).gradient(p)) <

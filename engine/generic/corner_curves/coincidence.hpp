@@ -13,9 +13,12 @@ namespace pkm::generic::corner_curves {
 /// A function counts as zero if its magnitude is at most this many times its rounding error.
 inline constexpr double kZero = 64;
 
-/// Adds the constant signs to the pairs, and the events on branches on which the three curves do not coincide.
+/// Resolves a triple of curves that pass through one point for all tau. Appends the constant signs of the third curve
+/// to each pair (`constants`) and, for a branch of a pair's crossings that the third curve does not contain, the values
+/// of tau at which it passes through (`events`).
 /// @param triple  indices of the three curves, in ascending order
 /// @param pairs   the pairs (0, 1), (0, 2) and (1, 2) of the triple; null: the two curves touch for all tau
+/// @param roots   scratch memory
 /// @return false if the degeneracy is not supported
 bool resolve_coincidence(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                          const std::array<DecompositionScratch::Pair*, 3>& pairs, std::vector<Root>& roots);

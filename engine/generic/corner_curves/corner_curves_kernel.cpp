@@ -77,7 +77,8 @@ double concurrence_at_nodes(const ConcurrenceArguments& curves, double* values) 
             fc = second * oc - L::load(curves.second[2] + n);
     const L gx = third * ox - L::load(curves.third[0] + n), gy = third * oy - L::load(curves.third[1] + n),
             gc = third * oc - L::load(curves.third[2] + n);
-    // The radical centre of the three curves is (x, y)/d.
+    // (x, y)/d is the radical centre of the three curves: the intersection of the lines through the crossings of the
+    // first curve with each of the others.
     const L x = fy * gc - gy * fc, y = fc * gx - gc * fx, d = fx * gy - gx * fy;
     (x * x + y * y + d * (ox * x + oy * y + d * oc)).store(values + n);
     for (const L& each : {x, y, d}) largest = greater(largest, greater(each, -each));

@@ -10,13 +10,15 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-constexpr double kTiny = 1e-13;  // intervals of tau that are not longer are not sampled
-constexpr double kShort = 1e-7;  // in shorter intervals of tau, signs are not reliable
-// curves are parallel if the relative distance of their centres, or the sine of their angle, is at most this
+constexpr double kTiny = 1e-13;  // length of an interval of tau; in shorter ones no sample is taken
+// length of an interval of tau; in shorter ones the signs of functions are not reliable
+constexpr double kShort = 1e-7;
+// two curves count as parallel if the relative distance of their centres, or the sine of their angle, is at most this
 constexpr double kParallel = 1e-13;
 constexpr double kUnresolved = 1e-9;  // maximum relative interpolation error of a discriminant or concurrence function
 
-/// Constraints that have to be satisfied, as sets of curves: feasible points lie inside (h < 0), or outside (h > 0).
+/// Curves on one side of which no point is feasible: all feasible points lie inside the curves of the set `inside` (h <
+/// 0), and outside those of the set `outside` (h > 0).
 struct NecessaryConstraints {
   Signs inside = 0, outside = 0;
 
@@ -35,13 +37,14 @@ struct NecessaryConstraints {
     for (const auto& bound : formula.bounds) (bound.outside ? outside : inside) |= bit(bound.curve);
   }
   bool has(std::size_t i) const { return ((inside | outside) & bit(i)) != 0; }
-  /// Whether one of these constraints is violated.
-  /// @param signs  bit of a curve set: h > 0
-  /// @param known  curves whose sign is known
+  /// Whether a point violates one of these constraints.
+  /// @param signs  set of the curves with h > 0 at the point
+  /// @param known  set of the curves whose sign is known
   bool is_violated(Signs signs, Signs known) const {
     return ((signs & inside & known) | (~signs & outside & known)) != 0;
   }
-  /// By how much h violates the constraint of curve i; <= 0 if the constraint is satisfied or there is none.
+  /// Amount by which a point at which the function of curve i has the value h violates the constraint of this curve; <=
+  /// 0 if it satisfies the constraint, or there is none.
   double violation(std::size_t i, double h) const {
     if ((inside & bit(i)) != 0) return h;
     return (outside & bit(i)) != 0 ? -h : 0;
@@ -79,14 +82,15 @@ class Builder {
   using Pair = DecompositionScratch::Pair;
   struct Place {
     double tau;
-    std::size_t node;  ///< index of the Chebyshev node at `tau`; kNodes: `tau` is no node
+    std::size_t node;  ///< index of the Chebyshev node that has the coordinate `tau`; kNodes: there is none
   };
   static constexpr int kNone = -1, kTangent = -2, kInfeasible = -3;
 
   int& pair_of(std::size_t i, std::size_t j) { return s_.pair_of[i * curves_.size() + j]; }
 
-  /// Appends a cut for each circle. Its direction, in which angle 0 is, is chosen such that the circle bounds the
-  /// feasible part there at as few samples as possible.
+  /// Appends to curves_ a cut for each circle: the line from its centre to the point at which its angle is 0. The
+  /// direction of this line is chosen such that at as few sample values of tau as possible the circle bounds the
+  /// feasible part there.
   void add_cuts() {
     constexpr std::size_t kDirections = 7, kSampleNodes = 5;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -124,7 +128,8 @@ class Builder {
   CurveAt curve_at(std::size_t k, const Place& place) const {
     return place.node < kNodes ? curves_[k].at_node(place.node) : curves_[k].at(place.tau);
   }
-  /// A value of tau inside a range: if possible, a node near its middle, at which the values of the curves are known.
+  /// A value of tau near the middle of a range: if possible a Chebyshev node, because the values of the curves are
+  /// known there.
   static Place sample_place(double low, double high) {
     const Samples& nodes = chebyshev_nodes();
     const double middle = 0.5 * (low + high);
@@ -145,7 +150,7 @@ class Builder {
     return signs;
   }
 
-  /// Interpolates a function of tau and isolates its roots. @return false if the interpolation error is too large
+  /// Interpolates a function of tau and finds its roots. @return false if the interpolation error is too large
   bool find_roots(const Sampled& function, std::vector<Root>& roots) {
     roots.clear();
     ++out_.functions;
@@ -188,7 +193,7 @@ class Builder {
     return true;
   }
 
-  /// Whether two curves are concentric circles, or parallel lines, for all tau.
+  /// Whether two curves are concentric circles for all tau, or parallel lines for all tau.
   bool is_parallel(std::size_t i, std::size_t j) const {
     if (curves_[i].is_circle() != curves_[j].is_circle()) return false;
     const auto& [u, w, c] = curves_[i].values;
@@ -200,7 +205,8 @@ class Builder {
     }
     return true;
   }
-  /// Finds the values of tau at which two parallel curves coincide. @return false if the function cannot be resolved
+  /// Finds the values of tau at which two parallel curves coincide, and appends them to s_.meetings.
+  /// @return false if the interpolation error is too large
   bool add_parallel(std::size_t i, std::size_t j) {
     const auto& first = curves_[i].values;
     const auto& second = curves_[j].values;
@@ -212,7 +218,8 @@ class Builder {
       s_.meetings.push_back({root.at, root.width, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)});
     return true;
   }
-  /// Adds events: where two parallel curves coincide, each of them passes through the crossings of the other one.
+  /// For each value of tau at which two parallel curves coincide, adds events: each of the two curves passes through
+  /// the crossings of the other one there.
   void add_meetings() {
     for (const auto& [at, width, i, j] : s_.meetings)
       for (std::size_t k = 0; k < curves_.size(); ++k)
@@ -221,8 +228,8 @@ class Builder {
             s_.pairs[static_cast<std::size_t>(pair_of(own, k))].events.push_back({at, width, other, 0});
   }
 
-  /// Moves each root with an undecided interval to the nearest root within this interval, so that an event has the same
-  /// tau on all curves.
+  /// If a root lies in an undecided interval, moves it to the nearest other root in this interval, so that an event has
+  /// the same tau for all curves.
   void align_undecided_roots() {
     if (out_.undecided == 0) return;
     const std::span<Pair> pairs = std::span(s_.pairs).first(s_.pair_count);
@@ -251,9 +258,9 @@ class Builder {
     }
   }
 
-  /// Whether a necessary constraint is violated wherever two curves cross, so that their crossings need not be
-  /// followed. If the curve of this constraint never passes through a crossing, one sample in each range in which the
-  /// two curves cross is sufficient.
+  /// Whether a necessary constraint is violated wherever the two curves of a pair cross, so that these crossings are
+  /// never vertices. If the curve of this constraint never passes through a crossing, one sample in each range of tau
+  /// in which the two curves cross is sufficient to decide this.
   bool is_infeasible(Pair& pair) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
@@ -307,8 +314,9 @@ class Builder {
       }
     return true;
   }
-  /// Adds to a pair the event that a third curve passes through its crossing.
-  /// @param pair  index of the pair in `pairs`
+  /// Adds an event to a pair: a third curve passes through the pair's crossing at a root of the concurrence function.
+  /// @param pair   index in s_.pairs
+  /// @param third  index of the third curve
   void add_event(int pair, const Root& root, std::size_t third) {
     s_.pairs[static_cast<std::size_t>(pair)].events.push_back(
         {root.at, root.width, static_cast<std::uint8_t>(third), 0});
@@ -323,8 +331,8 @@ class Builder {
       ++out_.functions;
       return resolve_coincidence(curves_, {i, j, k}, {pair(pairs[0]), pair(pairs[1]), pair(pairs[2])}, s_.roots);
     }
-    // If two curves touch for all tau without crossing, both meet the third curve at the same tau, and no crossing
-    // changes.
+    // If two curves touch for all tau without crossing each other, they meet the third curve at the same tau, and no
+    // crossing becomes a vertex or ceases to be one.
     if (pairs[0] < 0 || pairs[1] < 0 || pairs[2] < 0) return true;
     if (!find_roots(function_, s_.roots)) return false;
     for (const Root& root : s_.roots) {
@@ -361,8 +369,8 @@ class Builder {
     }
   }
 
-  /// Set of the curves whose sign at the crossings of a pair can change without an event, because their crossings with
-  /// one curve of the pair are infeasible and were not followed.
+  /// Set of the curves whose sign at the crossings of curves i and j can change without an event: their crossings with
+  /// i or with j are infeasible, so that no events were determined for them.
   Signs unknown_signs(std::size_t i, std::size_t j) {
     Signs unknown = 0;
     for (std::size_t k = 0; k < count_; ++k)
@@ -370,8 +378,9 @@ class Builder {
     return unknown;
   }
 
-  /// Adds the active ranges of the crossings of a pair between two consecutive roots of its discriminant.
-  /// @param low, high  the two roots; between them the curves cross for all tau or for none
+  /// Appends the ranges of tau in which the crossings of a pair are vertices of constant weight, between two
+  /// consecutive roots of the pair's discriminant.
+  /// @param low, high  the two roots; between them, the curves cross for all tau or for none
   void add_ranges_between(const Pair& pair, double low, double high, bool root_at_low, bool root_at_high) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
@@ -383,7 +392,7 @@ class Builder {
     root_at_high = root_at_high && pair.has_branches;
     for (const double branch : {1.0, -1.0}) {
       if (branch < 0 && (is_cut || !pair.has_branches)) break;
-      // stale: curves whose sign has to be evaluated again; constant: curves whose sign does not change
+      // sets of curves. stale: the sign at the crossing has to be evaluated again; constant: the sign never changes
       Signs signs = 0, stale = ~Signs{0}, constant = bit(i) | bit(j);
       for (const auto& each : pair.constants)
         if (each.branch == 0 || each.branch == static_cast<int>(branch)) {
@@ -406,7 +415,7 @@ class Builder {
         const CurveAt first = curve_at(i, place), second = curve_at(j, place);
         const Vector p = crossing(first, second, branch);
         stale = (stale | unknown) & ~constant;
-        // In a short interval a sign may be a rounding error: evaluate it again in the next interval.
+        // In a short interval of tau, a rounding error may decide a sign: evaluate it again in the next interval.
         const Signs evaluated_again = to - from < kShort ? stale : 0;
         // Evaluate the signs of necessary constraints first, because most crossings violate one of them.
         const Signs known = ~(stale | bit(i) | bit(j));
@@ -453,9 +462,10 @@ class Builder {
     }
   }
 
-  /// Whether the signs that were updated at all events agree with the signs at a given place; if not, an event was
-  /// missed.
+  /// Whether the signs of curves at a crossing, which were updated at each event, agree with signs evaluated at one
+  /// value of tau. If not, an event was missed.
   /// @param which  set of the curves whose signs are compared
+  /// @param signs  set of the curves with h > 0 at the crossing according to the events
   bool are_signs(std::size_t i, std::size_t j, double branch, const Place& place, Signs which, Signs signs) const {
     constexpr double kUncertain = 1e-9;
     const Vector p = crossing(curve_at(i, place), curve_at(j, place), branch);
@@ -501,12 +511,12 @@ class Builder {
   }
 
   std::vector<BoundaryCurve>& curves_;
-  std::size_t count_;  ///< number of curves, not counting cuts
+  std::size_t count_;  ///< number of curves without the cuts
   const SliceFormula& formula_;
   NecessaryConstraints necessary_;
   Decomposition& out_;
   DecompositionScratch& s_;
-  /// Index of the cut of each circle in `curves_`, by curve; 0 for a line.
+  /// For each curve that is a circle, the index in curves_ of its cut; 0 for a line.
   std::array<std::size_t, kMaxCurves> cut_of_{};
   Sampled function_;
 };

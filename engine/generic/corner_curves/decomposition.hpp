@@ -19,61 +19,68 @@
 
 namespace pkm::generic::corner_curves {
 
-/// A maximal range of tau in which a crossing is a vertex of constant weight.
+/// A maximal range of tau (the variable in [-1, 1] that stands for the outer coordinate) in which a crossing of two
+/// boundary curves is a vertex of the slice and has a constant weight.
 struct ActiveRange {
-  std::uint8_t first, second;  ///< indices of the two curves that cross; the second one may be a cut
-  /// Branch of the crossing (1 or -1), and its weight kappa; for the point of a circle on its cut the weight is 1 or
-  /// -1, positive if the disc is feasible.
+  /// Indices of the two curves that cross; the second one may be the cut of the first, a circle.
+  std::uint8_t first, second;
+  /// Which of the two crossings (1 or -1), and its weight kappa. If the second curve is a cut, the weight is 1 if the
+  /// disc is feasible near this point of the circle, and -1 if the outside is.
   std::int8_t branch, weight;
-  double low, high;                ///< limits of the range of tau
-  bool root_at_low, root_at_high;  ///< true: the discriminant vanishes at this end
+  double low, high;                ///< lower and upper end of the range of tau
+  bool root_at_low, root_at_high;  ///< true: the discriminant of the two curves is 0 at the lower, or upper, end
 };
 
 struct Decomposition {
   std::vector<ActiveRange> ranges;
-  double undecided = 0;  ///< total length in tau of intervals in which roots are undecided
-  /// Total length in tau on which decisions contradict each other; 0 unless one of them is wrong.
+  double undecided = 0;  ///< total length in tau of the intervals in which the number of roots is unknown
+  /// Total length in tau of the intervals in which decisions on vertices contradict each other; 0 unless one of them is
+  /// wrong.
   double unbalanced = 0;
-  long functions = 0;  ///< number of discriminants and concurrence functions that were examined
+  long functions = 0;  ///< number of discriminants and concurrence functions that were computed
 };
 
 /// Scratch memory of decompose().
 struct DecompositionScratch {
-  /// A root of the concurrence function of a pair and a third curve.
+  /// A value of tau at which a third curve passes through a crossing of a pair of curves: a root of a concurrence
+  /// function.
   struct Event {
-    double at, width;      ///< value of tau and width of the undecided interval around it, see Root
-    std::uint8_t third;    ///< index of the curve whose sign at the crossing may change
-    std::int8_t branches;  ///< branch of the crossing that it concerns, 1 or -1; 0: both
+    double at, width;      ///< value of tau, and length of the undecided interval around it (see Root)
+    std::uint8_t third;    ///< index of the third curve, whose sign at the crossing may change here
+    std::int8_t branches;  ///< which of the pair's two crossings, 1 or -1; 0: both
   };
-  /// A third curve that passes through a crossing for all tau, and the side of it on which the perturbed crossing lies.
+  /// A third curve that passes through a crossing of a pair of curves for all tau. After the perturbation
+  /// (coincidence.hpp), the crossing lies on one side of this curve (`outside`: h > 0) for all tau.
   struct Constant {
     std::uint8_t third;
-    std::int8_t branch;  ///< branch of the crossing, 1 or -1; 0: both branches
+    std::int8_t branch;  ///< which of the pair's two crossings, 1 or -1; 0: both
     bool outside;
   };
-  /// Two curves that cross for some tau.
+  /// Two curves, by their indices, that cross each other for at least some tau, and what happens at their crossings.
   struct Pair {
     std::uint8_t first, second;
     bool has_branches;
     Sampled discriminant;
-    std::vector<Root> ends;  ///< roots of the discriminant, between which the curves cross for all tau or for none
+    /// Roots in tau of the discriminant; between two consecutive ones the curves cross for all tau or for none.
+    std::vector<Root> ends;
     std::vector<Event> events;
     std::vector<Constant> constants;
   };
-  /// A value of tau at which two parallel curves coincide.
+  /// A value of tau at which two parallel curves coincide, and the length of the undecided interval around it.
   struct Meeting {
     double at, width;
     std::uint8_t first, second;
   };
   std::vector<Pair> pairs;
   std::size_t pair_count = 0;
-  /// Index in `pairs` of the pair of curves i and j, by i * (number of curves) + j; negative: their crossings are not
-  /// followed.
+  /// Index in `pairs` of the pair of curves i and j, stored at i * (number of curves) + j; negative: the curves do not
+  /// cross, or their crossings are never vertices.
   std::vector<int> pair_of;
   std::vector<Meeting> meetings;
   std::vector<Root> roots;
   std::vector<double> places;
-  /// Change, at one value of tau, of the number of vertices on a curve, counted with their signs.
+  /// Change, at a value of tau, of the sum of the signed weights of the vertices on a curve; the sum must be 0
+  /// everywhere.
   struct Step {
     double at;
     std::uint8_t curve;
@@ -82,9 +89,9 @@ struct DecompositionScratch {
   std::vector<Step> balance;
 };
 
-/// Finds the ranges in which the crossings are vertices.
-/// @param curves  at most kMaxCurves, without cuts; one cut for each circle is appended
-/// @return false if the slices have a degeneracy that is not supported, or the functions are not resolved
+/// Finds the ranges of tau in which the crossings of boundary curves are vertices of the feasible part of the slice.
+/// @param curves  at most kMaxCurves curves without cuts; a cut is appended for each circle
+/// @return false if the slices have a degeneracy that is not supported, or an interpolation error is too large
 bool decompose(std::vector<BoundaryCurve>& curves, const SliceFormula& formula, Decomposition& result,
                DecompositionScratch& scratch);
 

@@ -12,7 +12,7 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-/// Propagates the adjoints backwards through the stage of the outer coordinate. @return the adjoint of this coordinate
+/// Propagates adjoints backwards through the stage of the outer coordinate t. @return the adjoint of t
 double sweep_outer_stage(const expression::Program& program, std::span<const double> registers,
                          std::span<double> adjoints) {
   expression::backward_sweep(program, 1, registers, adjoints);
@@ -43,8 +43,7 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   by_curve.resize(segment.integral.curves.size());
   for (auto& curve : by_curve)
     for (Samples& each : curve) each.fill(0);
-  // Number of nodes: the number of coefficients that the series of the curves need, and some more for their
-  // derivatives.
+  // As many nodes as the series of the curves need coefficients, and some more, because derivatives need more.
   std::size_t terms = 1;
   for (const BoundaryCurve& curve : segment.slices.curves) terms = std::max(terms, curve.terms);
   const std::size_t nodes = terms <= 4 ? 8 : terms <= 14 ? 16 : kNodes;
@@ -74,7 +73,9 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   add_end_gradient(segment.upper, true, by_upper, scratch);
 }
 
-/// Adds the adjoints of the surfaces' coefficients at a node, computed from the adjoints of u, w and c of the curves.
+/// Adds the adjoints of the surfaces' coefficients at a Chebyshev node, which follow from the adjoints of the functions
+/// u, w and c of the boundary curves (see CurveAt).
+/// @param tau  coordinate of the node
 void Volume::add_node_gradient(const Segment& segment, std::size_t node, double tau, Scratch& scratch) const {
   using Kind = CurveSource::Kind;
   const auto& registers = scratch.segments.registers;
@@ -83,7 +84,7 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
     const CurveAt curve = segment.slices.curves[i].at(tau);
     const CurveSource& source = segment.slices.sources[i];
     const auto& by = scratch.by_curve[i];
-    // The curve is given in the coordinates of its frame, in which areas are those in (v, z) divided by scale^2.
+    // The curve is given in the coordinates of the frame, in which an area is that in (v, z) divided by scale^2.
     const double u = frame.scale * by[0][node], w = frame.scale * by[1][node], c = by[2][node];
     if (source.kind == Kind::limit) {
       add_limit_gradient(source.surface, frame.v - frame.scale * curve.c, -frame.scale * c, scratch);
@@ -97,7 +98,7 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
     const auto add = [&](std::size_t coefficient, double adjoint) { scratch.adjoints[at[coefficient]] += adjoint; };
     switch (source.kind) {
       case Kind::circle: {
-        // centre -c1/(2 c3), -c2/(2 c3); squared radius |centre|^2 - c0/c3
+        // with the coefficients c0 .. c3: centre (-c1/(2 c3), -c2/(2 c3)); squared radius |centre|^2 - c0/c3
         const double c3 = registers[at[3]];
         const double v = frame.v + frame.scale * curve.u, z = frame.z + frame.scale * curve.w;
         const double square = v * v + z * z - registers[at[0]] / c3;
@@ -133,8 +134,9 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
   }
 }
 
-/// Propagates the adjoint of v, a root of the margin of a limit, to the parameters by the implicit function theorem. To
-/// be called after evaluate_limits_at_t().
+/// Adds to s.adjoints what follows from the adjoint of v, a root of the function of a limit, by the implicit function
+/// theorem. To be called after evaluate_limits_at_t().
+/// @param limit  index of the limit
 void Volume::add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const {
   LimitScratch& s = scratch.segments.limits;
   evaluate_limits_at_v(plan_, v, s);
@@ -144,7 +146,9 @@ void Volume::add_limit_gradient(std::size_t limit, double v, double adjoint, Scr
   for (const auto& input : plan_.limits.stages()[2].inputs) s.adjoints[input.to] = 0;
 }
 
-/// Adds the contribution of an endpoint of a segment, by the implicit function theorem.
+/// Adds the contribution to the gradient of an endpoint of a segment, which moves with the design, by the implicit
+/// function theorem.
+/// @param derivative  derivative of the volume with respect to the endpoint
 void Volume::add_end_gradient(const SegmentEnd& end, bool upper, double derivative, Scratch& scratch) const {
   auto& own = scratch.own;
   if (end.kind == SegmentEnd::Kind::division || derivative == 0) return;

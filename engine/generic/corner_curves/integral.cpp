@@ -9,27 +9,30 @@ namespace {
 
 constexpr std::size_t kRule = NestedRule::kNodes;
 
-/// Angle of a point of a circle, counted from the direction of the circle's cut, in [0, 2 pi).
+/// Angle in [0, 2 pi) of a point p of a circle, counted from the direction of the circle's cut.
 double angle_of(const CurveAt& circle, const std::array<double, 2>& cut, const Vector& p) {
   const double x = p.x - circle.u, y = p.y - circle.w;
   const double angle = portable::atan2(cut[0] * y - cut[1] * x, cut[0] * x + cut[1] * y);
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
-/// Integral of (x dy - y dx)/2 along a curve up to the point p. @param angle  angle_of() the point on a circle
+/// Integral of (x dy - y dx)/2 along a curve up to its point p.
+/// @param angle  result of angle_of() for p if the curve is a circle
 double potential(const CurveAt& curve, const Vector& p, double angle) {
   if (curve.is_circle) return 0.5 * (curve.u * p.y - curve.w * p.x + curve.c * angle);
   return -0.5 * curve.c * (curve.u * p.y - curve.w * p.x);
 }
 
-/// Derivatives of the area with respect to u, w and c of a curve, as integrals along the curve up to p.
+/// Contributions of a curve up to its point p to the derivatives of the area with respect to the curve's u, w and c
+/// (see CurveAt): integrals along the curve, as potential() is for the area.
 std::array<double, 3> potential_derivatives(const CurveAt& curve, const Vector& p, double angle) {
   if (curve.is_circle) return {p.y - curve.w, curve.u - p.x, 0.5 * angle};
   const double l = curve.w * p.x - curve.u * p.y;  // coordinate of p along the line, in the direction (w, -u)
   return {l * (-curve.c * curve.u + 0.5 * l * curve.w), l * (-curve.c * curve.w - 0.5 * l * curve.u), l};
 }
 
-/// Direction of the cut of the circle with index i; cuts follow all other curves, in the order of the circles.
+/// Direction of the cut of curve i, which is a circle. The cuts are behind all other curves, in the order of the
+/// circles.
 std::array<double, 2> cut_of(const std::vector<BoundaryCurve>& curves, std::size_t i) {
   if (!curves[i].is_circle()) return {1, 0};
   std::size_t at = 0;
@@ -38,7 +41,8 @@ std::array<double, 2> cut_of(const std::vector<BoundaryCurve>& curves, std::size
   return {-curves[at].values[1][0], curves[at].values[0][0]};
 }
 
-/// The two curves of an active range, evaluated at the quadrature nodes of a subinterval.
+/// The two curves of an active range, and their crossing, at the nodes of the Kronrod rule in a subinterval of the
+/// range.
 class CellCurves {
  public:
   CellCurves(const SegmentIntegral& segment, const ActiveRange& range, const RangeCell& cell)
@@ -83,7 +87,7 @@ class CellCurves {
   std::array<std::array<double, 3 * kPoints>, 2> values_;
 };
 
-/// Calls visit(index, tau, weight) for the nodes of the Kronrod rule.
+/// Calls visit(index, tau, weight) for the nodes of the Kronrod rule in a subinterval of an active range.
 template <class Visit>
 void visit_cell(const SegmentIntegral& segment, const RangeCell& cell, const Visit& visit) {
   const NestedRule& rule = kronrod_rule();

@@ -8,15 +8,16 @@ namespace {
 using expression::Code;
 using expression::Program;
 
-/// Whether a function of formulas is analytic wherever it is defined; for operations without a Code of their own.
+/// Whether the function with this name is analytic wherever it is defined; used for operations that have no Code of
+/// their own.
 bool is_analytic(const std::string& name) {
   static const std::vector<std::string> names = {"sin", "cos", "exp", "sinh", "cosh", "tanh", "atan"};
   return std::ranges::find(names, name) != names.end();
 }
 
-/// The function at whose roots a step of the program is not analytic; std::nullopt if there is none.
-/// @param is_supported  set to false if the step may be non-analytic at points that are not the roots of such a
-///                      function
+/// If the result of a step of the program is not analytic at the roots of a certain function, returns this function,
+/// otherwise std::nullopt.
+/// @param is_supported  set to false if the result may not be analytic at other points, either
 std::optional<OuterFunction> function_at_singularities(const Program::Step& step, bool& is_supported) {
   using Kind = OuterFunction::Kind;
   switch (step.code) {

@@ -11,28 +11,31 @@
 
 namespace pkm::generic::corner_curves {
 
-/// A function of t whose roots divide the range of t; its arguments are registers of the program.
+/// A function of the outer coordinate t whose roots divide the range of t. Its arguments are registers of the program.
 struct OuterFunction {
   enum class Kind : std::uint8_t { value, difference, one_minus_square, discriminant };
   Kind kind = Kind::value;
   std::array<std::uint32_t, 3> registers{};
-  bool has_root = false;     ///< true: curves behave like square roots of the distance from a root of this function
-  bool is_required = false;  ///< true: the function is a constraint, which is >= 0 wherever a slice has feasible points
+  /// true: boundary curves behave like square roots of the distance from a root of this function.
+  bool has_root = false;
+  /// true: the function is a constraint, so that slices in which it is negative have no feasible point.
+  bool is_required = false;
 
   double value(std::span<const double> all) const;
-  /// Derivatives of the function with respect to its argument registers.
+  /// Derivatives of the function with respect to its arguments. @param all  values of all registers of the program
   std::array<double, 3> derivatives(std::span<const double> all) const;
   std::size_t arguments() const {
     return kind == Kind::value || kind == Kind::one_minus_square ? 1 : kind == Kind::difference ? 2 : 3;
   }
 };
 
-/// Shape of a constraint surface in a slice.
+/// The shape of the zero set of a constraint surface in a slice; constant: the surface has one sign; strip: two
+/// parallel lines.
 enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_along_z };
 
 /// The shapes of the surfaces of a plan, and the functions that divide the range of its outer coordinate.
 struct OuterPlan {
-  std::vector<Shape> shapes;  ///< shape of each surface, by surface
+  std::vector<Shape> shapes;  ///< one element for each surface
   std::vector<OuterFunction> functions;
   std::string why_not;  ///< reason why corner curves cannot integrate the slices; "" if they can
 

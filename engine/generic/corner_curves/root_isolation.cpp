@@ -11,23 +11,26 @@ constexpr int kMaxDepth = 44;
 
 struct SeriesInterval {
   double low, high;
-  double error, derivative_error;  ///< bounds for the series and its derivative, in the subinterval's own variable
+  /// Bounds of the errors of the series and of its derivative with respect to the variable in [-1, 1] of the
+  /// subinterval.
+  double error, derivative_error;
   std::size_t terms;
   int depth;
   Samples c;
 };
 
-/// Markov's bound of the derivative of a polynomial with `terms` coefficients on [-1, 1], relative to its maximum.
+/// Markov's bound of the derivative on [-1, 1] of a polynomial with `terms` coefficients, relative to the maximum of
+/// the polynomial.
 double markov(std::size_t terms) { return static_cast<double>((terms - 1) * (terms - 1)); }
 
-/// Upper bound of the sum of |c[k]|, including its rounding error.
+/// Upper bound of the sum of |c[k]| for k from `from` to terms - 1, including its rounding error.
 double sum_of_magnitudes(const double* c, std::size_t from, std::size_t terms) {
   double sum = 0;
   for (std::size_t k = from; k < terms; ++k) sum += std::fabs(c[k]);
   return sum * (1 + 2 * kUnitRoundoff * static_cast<double>(kNodes));
 }
 
-/// The value of a series at the lower end -1 or at the upper end 1 of its interval.
+/// Value of the series at the lower or upper end of its interval.
 double end_value(const SeriesInterval& interval, bool upper) {
   double sum = 0;
   for (std::size_t k = interval.terms; k-- > 0;) sum += upper || k % 2 == 0 ? interval.c[k] : -interval.c[k];
@@ -42,7 +45,7 @@ void isolate_roots(const Samples& coefficients, double error, std::vector<Root>&
   Samples halved;
   std::size_t size = 1;
   stack[0] = {-1, 1, error, markov(kNodes) * error, kNodes, 0, coefficients};
-  // If an undecided interval touches the previous root, both become one undecided interval.
+  // If an undecided interval touches the previous root, both are replaced by one undecided interval.
   const auto add_root = [&](double low, double high) {
     if (!roots.empty() && (roots.back().width > 0 || high > low) && roots.back().at + 0.5 * roots.back().width >= low) {
       low = roots.back().at - 0.5 * roots.back().width;

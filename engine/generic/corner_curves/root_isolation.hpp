@@ -13,25 +13,27 @@
 
 namespace pkm::generic::corner_curves {
 
-/// A root that is closer to an endpoint of [-1, 1] than this counts as the endpoint.
+/// If a root is closer to -1 or 1 than this, it counts as lying at this end of the interval.
 inline constexpr double kAtEnd = 1e-11;
 
 struct Root {
   double at;
-  /// Length of the undecided interval around `at`, in which there may be several roots; 0: a simple root.
+  /// 0: there is a simple root at `at`; otherwise the length of an interval with the centre `at` whose number of roots
+  /// is unknown.
   double width = 0;
 };
 
-/// Error bound of an interpolant, from its last coefficients and the rounding errors.
-/// @param rounding  bound of the rounding errors of the values
+/// Error bound of the interpolant of a function: interpolation error, estimated from the last coefficients, and
+/// rounding errors.
+/// @param rounding  bound of the rounding errors of the interpolated values
 inline double interpolation_error(const Samples& coefficients, double rounding) {
   double tail = 0;
   for (std::size_t k = kNodes - 4; k < kNodes; ++k) tail = std::fmax(tail, std::fabs(coefficients[k]));
   return 4 * tail + rounding;
 }
 
-/// Finds the roots in [-1, 1], in ascending order. A root at the common end of two subintervals may be reported
-/// twice.
+/// Finds the roots in [-1, 1] of a Chebyshev series, in ascending order. A root at the common end of two subintervals
+/// may be reported twice.
 /// @param error  upper bound of the error of the series
 /// @param roots  receives the roots; must be empty
 void isolate_roots(const Samples& coefficients, double error, std::vector<Root>& roots);

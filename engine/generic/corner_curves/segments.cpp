@@ -9,7 +9,7 @@ namespace pkm::generic::corner_curves {
 namespace {
 
 constexpr int kMaxDivisions = 12;
-constexpr double kFunctionConverged = 1e-11;  // relative interpolation error up to which a function counts as resolved
+constexpr double kFunctionConverged = 1e-11;  // accepted interpolation error, relative to the maximum of the function
 constexpr std::size_t kMaxRecursion = 100;
 constexpr std::size_t kMaxSegments = 200;
 
@@ -36,7 +36,8 @@ class Divider {
     return s_.levels[depth];
   }
 
-  /// @param depth  recursion depth; levels[depth].known must be set
+  /// Divides the interval between two values of the outer coordinate recursively, and appends the segments.
+  /// @param depth  recursion depth; level(depth).known must be set
   bool divide(SegmentEnd lower, SegmentEnd upper, std::size_t depth, int divisions) {
     check_stop();
     if (depth == kMaxRecursion) return false;
@@ -151,7 +152,7 @@ class Divider {
     return status;
   }
 
-  /// The box of v and z for the value of t at which the program was evaluated last.
+  /// The square frame around the box of v and z for the value of t at which the program was evaluated last.
   Frame frame() const {
     const auto& r = s_.registers;
     const double v = r[plan_.range[1][1]] - r[plan_.range[1][0]], z = r[plan_.range[2][1]] - r[plan_.range[2][0]];

@@ -14,15 +14,16 @@
 
 namespace pkm::generic::corner_curves {
 
-/// Endpoint of a segment of the outer coordinate t, with the reason why the segment ends there.
+/// Endpoint of a segment of the outer coordinate t: its value `at`, and the reason (kind) why the segment ends there.
 struct SegmentEnd {
-  /// Bound of the search box, root of an OuterFunction, fold of a limit, or division only for the sake of convergence.
+  /// box: bound of the search box; function: root of an OuterFunction; fold: two roots of a limit merge there;
+  /// division: only for the convergence of interpolation.
   enum class Kind : std::uint8_t { box, function, fold, division };
   double at;
   Kind kind;
   std::size_t function = 0;  ///< index in OuterPlan::functions; for a fold, the index of the limit
-  bool has_root = false;     ///< true: curves behave like square roots of the distance from this endpoint
-  double v = 0;              ///< value of v at a fold
+  bool has_root = false;     ///< true: boundary curves behave like square roots of the distance from this endpoint
+  double v = 0;              ///< kind fold only: value of v at which the two roots merge
 };
 
 struct Segment {
@@ -33,32 +34,35 @@ struct Segment {
   double volume() const { return slices.frame.scale * slices.frame.scale * integral.area.value; }
 };
 
-/// Scratch memory of divide().
+/// Scratch memory of divide(), with its result: `segments`, `count`.
 struct SegmentScratch {
-  /// An interval of the recursive division.
+  /// An interval that the recursive division examines.
   struct Level {
-    std::vector<SegmentEnd> ends;  ///< roots of functions in the interval, followed by its upper endpoint
-    std::vector<char> known;  ///< for each function, whether it is known to have no root in the interval; by function
+    /// Roots of the functions in the interval, followed by the upper endpoint of the interval.
+    std::vector<SegmentEnd> ends;
+    /// One element for each function; nonzero: the function is known to have no root in the interval.
+    std::vector<char> known;
   };
   std::vector<double> registers;
   NodeValues nodes;
   std::vector<Sampled> functions;
   std::vector<Root> roots;
   std::deque<Level> levels;       ///< one element for each recursion depth
-  std::vector<Segment> segments;  ///< the segments; the first `count` of them belong to the last design
+  std::vector<Segment> segments;  ///< the first `count` elements are the segments of the design that was divided last
   std::size_t count = 0;
   DecompositionScratch decomposition;
   LimitScratch limits;
-  long runs = 0;  ///< number of evaluations of the stage of the outer coordinate
+  /// Number of values of the outer coordinate at which the program's stage of this coordinate was evaluated.
+  long runs = 0;
 };
 
-/// Evaluates the stage of the outer coordinate at the value t.
+/// Evaluates that stage of the program which depends on the outer coordinate, at the value t of this coordinate.
 void run_outer_stage(const SlicePlan& plan, double t, std::span<double> registers);
 
-/// Divides the range of the outer coordinate for a design, and decomposes the slices of the segments that are not
-/// empty.
+/// Divides the range of the outer coordinate into segments for a design, and decomposes the slices of those segments
+/// that have feasible points.
 /// @param scratch  scratch memory whose registers have the values after the stage of the design
-/// @return false if corner curves do not support the design
+/// @return false if corner curves cannot integrate this design
 bool divide(const SlicePlan& plan, const OuterPlan& outer, SegmentScratch& scratch);
 
 }  // namespace pkm::generic::corner_curves

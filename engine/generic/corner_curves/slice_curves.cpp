@@ -8,13 +8,13 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-// maximum difference of u, w and c of two equal curves, relative to 1 + their magnitude
+// maximum difference of the functions u, w and c of two curves that count as equal, relative to 1 + their magnitude
 constexpr double kSame = 1e-12;
-// minimum of |h| in the rectangle for a curve that misses it, and margin by which the rectangle is enlarged
+// a curve does not pass through a rectangle if |h| is larger than this in it; the rectangle is enlarged by as much
 constexpr double kMargin = 1e-9;
 constexpr std::size_t kMiddle = kNodes / 2;
 
-/// Interval that contains all values of a series.
+/// An interval that contains all values of a Chebyshev series.
 struct Range {
   double low, high;
 };
@@ -28,7 +28,7 @@ Range product(const Range& a, const Range& b) {
   return {low, high};
 }
 
-/// Interval that contains all values of h of a curve in a rectangle.
+/// An interval that contains all values of the function h of a curve in the rectangle with the ranges x and y.
 Range values_in(const BoundaryCurve& curve, const Range& x, const Range& y) {
   const Range u = range_of(curve, 0), w = range_of(curve, 1), c = range_of(curve, 2);
   if (!curve.is_circle()) {
@@ -71,8 +71,9 @@ std::size_t SliceCurves::add_curve(const BoundaryCurve& curve, const CurveSource
   return curves.size() - 1;
 }
 
-/// Adds a line. The direction of its normal is normalised independently of the sign of its equation, so that opposite
-/// constraints share one curve.
+/// Adds a line. Its normal is reversed if necessary, so that two constraints with opposite signs share one curve.
+/// @param positive  set of the surfaces that are >= 0 where the given line has h > 0
+/// @param number    receives the index of the curve
 void SliceCurves::add_line(BoundaryCurve& line, CurveSource source, Signs positive, std::size_t* number) {
   const double u = line.values[0][kMiddle], w = line.values[1][kMiddle];
   const bool flips = std::fabs(u) >= std::fabs(w) ? u < 0 : w < 0;
@@ -86,7 +87,8 @@ void SliceCurves::add_line(BoundaryCurve& line, CurveSource source, Signs positi
   if (number) *number = at;
 }
 
-/// Adds the two parallel lines that are the roots of a quadratic in one coordinate.
+/// Adds the boundary of a surface that is a quadratic polynomial in v only (along_v) or in z only: two parallel lines,
+/// at its roots. @return false if this is not possible in the whole segment
 bool SliceCurves::add_strip(std::size_t surface, bool along_v, const std::array<Samples, 6>& c) {
   const Samples &c0 = c[0], &b = along_v ? c[1] : c[2], &a = along_v ? c[3] : c[5];
   const bool is_inside = a[kMiddle] < 0;
@@ -161,16 +163,17 @@ bool SliceCurves::add_surface(std::size_t surface, Shape shape, const std::array
   return true;
 }
 
-/// Adds the lower or the upper bound of v as a line.
+/// Adds the lower or upper bound of v as a line, beyond which no point is feasible.
 void SliceCurves::add_bound(BoundaryCurve& line, bool upper) {
   std::size_t at = 0;
   add_line(line, {CurveSource::Kind::v_bound, upper ? std::size_t{1} : 0, 1}, 0, &at);
   formula.bounds.push_back({at, !upper});
 }
 
-/// Adds the roots of limits as lines. No point is feasible in the intervals of v in which a limit is violated.
+/// Adds the roots of limits as lines, and the condition that no point is feasible where a limit is violated between
+/// them.
 bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
-  std::size_t before = 0;  // index of the line that belongs to the previous root
+  std::size_t before = 0;  // index of the line at the previous root
   for (std::size_t i = 0; i < roots.size(); ++i) {
     const bool is_first = i == 0 || roots[i - 1].limit != roots[i].limit,
                is_last = i + 1 == roots.size() || roots[i + 1].limit != roots[i].limit;
@@ -190,8 +193,10 @@ bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
   return true;
 }
 
-/// Replaces the sign of a curve in the formula by a constant. The curve remains in the list, but no literal refers to
-/// it.
+/// Simplifies the formula of feasibility for a curve whose function h has the same sign in all relevant points. The
+/// curve remains in `curves`, but the formula does not use its sign any more.
+/// @param i        index of the curve
+/// @param outside  the sign of h; true: h > 0
 void SliceCurves::remove_constant(std::size_t i, bool outside) {
   auto& literal = formula.literals[i];
   formula.constant |= outside ? literal.outside : literal.inside;
@@ -204,7 +209,8 @@ void SliceCurves::remove_constant(std::size_t i, bool outside) {
     }
     const bool is_first = strip->first == i;
     auto& other = formula.literals[is_first ? strip->second : strip->first];
-    if (is_first == outside) {  // all points are on the strip's side of this line: only the other line decides
+    // all points are on that side of this line on which the strip is: the other line decides alone
+    if (is_first == outside) {
       const bool is_other_inside = is_first == strip->is_inside;
       (is_other_inside ? other.inside : other.outside) |= strip->surface;
       if (strip->surface == 0) formula.bounds.push_back({is_first ? strip->second : strip->first, !is_other_inside});
@@ -217,7 +223,7 @@ void SliceCurves::remove_constant(std::size_t i, bool outside) {
 
 SliceCurves::Status SliceCurves::simplify() {
   Formula& f = formula.formula;
-  // Find a rectangle that contains all points which satisfy the necessary constraints.
+  // Find a rectangle that contains all points which satisfy the constraints that no feasible point can violate.
   constexpr double kFar = 1e6;
   Range x{-kFar, kFar}, y{-kFar, kFar};
   const auto bound = [&](std::size_t i, bool outside) {
@@ -335,7 +341,8 @@ SliceCurves::Status SliceCurves::build(const SlicePlan& plan, const OuterPlan& o
     add_bound(line, upper);
   }
   if (!add_limits(limits) || curves.size() > kMaxCurves) return Status::unresolved;
-  constexpr double kConverged = 1e-12, kLimitConverged = 1e-10;  // rounding errors of limits are larger at folds
+  // maximum interpolation errors; limits have larger rounding errors near folds
+  constexpr double kConverged = 1e-12, kLimitConverged = 1e-10;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const bool is_limit = sources[i].kind == CurveSource::Kind::limit;
     if (!curves[i].interpolate(is_limit ? kLimitConverged : kConverged)) return Status::unresolved;

@@ -13,36 +13,38 @@
 
 namespace pkm::generic::corner_curves {
 
-/// Coordinates (x, y) in which the curves are given: (v, z) = centre + scale (x, y).
+/// Coordinates (x, y) in which the boundary curves are given: a point has v = Frame::v + scale x and z = Frame::z +
+/// scale y.
 struct Frame {
   double v = 0, z = 0, scale = 1;
 };
 
-/// The constraint from which a curve originates, for derivatives.
+/// The constraint from which a boundary curve originates; derivatives need it.
 struct CurveSource {
   enum class Kind : std::uint8_t { circle, line, lower_root, upper_root, v_bound, limit };
   Kind kind;
   /// Index of the surface; v_bound: 0 for the lower and 1 for the upper bound; limit: index of the limit.
   std::size_t surface;
-  double sign;  ///< 1 or -1: direction of a line's normal relative to the gradient of the surface
+  double sign;  ///< 1 or -1: whether a line's normal has the direction of the surface's gradient or the opposite one
 };
 
-/// Values at the Chebyshev nodes of all registers from which the curves are computed.
+/// Values at the Chebyshev nodes of a segment of all registers from which the boundary curves are computed.
 struct NodeValues {
-  std::vector<std::array<Samples, 6>> surfaces;  ///< by surface, coefficients of 1, v, z, v^2, v z, z^2
+  std::vector<std::array<Samples, 6>> surfaces;  ///< for each surface, its coefficients of 1, v, z, v^2, v z, z^2
   std::array<Samples, 2> v;                      ///< lower and upper bound of v
 };
 
-/// The boundary curves of a segment's slices, and the formula of feasibility.
+/// The boundary curves of the slices of a segment, and the formula that decides which points are feasible.
 struct SliceCurves {
   Frame frame;
   std::vector<BoundaryCurve> curves;
-  std::vector<CurveSource> sources;  ///< origin of each curve, by curve
+  std::vector<CurveSource> sources;  ///< for each curve, the constraint from which it originates
   SliceFormula formula;
 
   enum class Status { empty, filled, unresolved };
+  /// Computes all members for a segment.
   /// @return empty: no point of the segment is feasible; unresolved: a coefficient is not analytic, or its
-  /// interpolation has not converged
+  ///         interpolation error is too large
   Status build(const SlicePlan& plan, const OuterPlan& outer, const NodeValues& nodes,
                const std::vector<LimitRoot>& limits, const Frame& where, const double* registers);
 

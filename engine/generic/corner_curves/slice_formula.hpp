@@ -11,29 +11,30 @@ inline constexpr std::size_t kMaxCurves = 64;
 inline Signs bit(std::size_t i) { return Signs{1} << i; }
 
 struct SliceFormula {
-  /// Sets of the surfaces that are >= 0 on one side of a curve h = 0.
+  /// For one boundary curve with the equation h = 0: the surfaces that are >= 0 on one side of it, as sets.
   struct Literals {
-    Signs outside = 0, inside = 0;  ///< surfaces that are >= 0 where h > 0, and where h < 0
+    Signs outside = 0, inside = 0;  ///< sets of the surfaces that are >= 0 where h > 0, and where h < 0
   };
-  /// A surface that is >= 0 between two parallel lines (is_inside), i.e. where h > 0 on the first and h < 0 on the
-  /// second one, or that is >= 0 everywhere else.
+  /// A surface whose sign depends on two parallel lines. Between them, h > 0 for the first line and h < 0 for the
+  /// second one. is_inside: the surface is >= 0 between the lines; otherwise it is >= 0 everywhere else.
   struct Strip {
-    std::size_t first, second;  ///< indices of the curves
-    /// Set with the bit of the surface; 0: no point is feasible where the strip's condition is violated.
+    std::size_t first, second;  ///< indices of the two lines
+    /// Set that contains only the surface. 0: a condition without a surface; where it is violated, no point is
+    /// feasible.
     Signs surface;
     bool is_inside;
   };
 
-  /// A curve on one side of which no point is feasible, in addition to the formula.
+  /// A curve on one side of which no point is feasible, independently of the formula.
   struct Bound {
     std::size_t curve;
     bool outside;  ///< true: feasible points have h > 0; false: they have h < 0
   };
 
   Formula formula;
-  const double* registers = nullptr;  ///< registers of the program
+  const double* registers = nullptr;  ///< values of the program's registers
   Signs constant = 0;                 ///< set of the surfaces that are >= 0 in the whole slice
-  std::vector<Literals> literals;     ///< one element per curve
+  std::vector<Literals> literals;     ///< one element for each boundary curve
   std::vector<Strip> strips;
   std::vector<Bound> bounds;
 

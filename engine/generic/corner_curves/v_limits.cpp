@@ -11,7 +11,7 @@ using Cell = LimitScratch::Cell;
 using Search = LimitScratch::Search;
 
 constexpr int kMaxBisections = 8;  // maximum number of successive bisections of the range of v
-// until then the curvature does not count, because a shorter subinterval is often monotone
+// the sign of the curvature is not used before this many bisections, because a shorter subinterval is often monotone
 constexpr int kBisectionsBeforeCurvature = 3;
 
 int sign_of(const Interval& x) { return x.lower > 0 ? 1 : x.upper < 0 ? -1 : 0; }
@@ -55,8 +55,10 @@ class LimitRootFinder {
   std::uint32_t at(std::size_t limit, std::size_t derivative) const {
     return program_.outputs()[3 * limit + derivative];
   }
-  /// The value of v, slightly beyond an end of the range of v, at which the search for roots ends: within a segment a
-  /// root may leave the range, but it must not pass this value. If possible, the limit has a certified sign there.
+  /// The value of v at which the search for roots ends, slightly beyond the end `end` of the range of v, because in a
+  /// segment of t a root may leave the range. If possible, the sign of the limit is certified there, so that no root
+  /// passes this value.
+  /// @param outwards  vector from the opposite end of the range to `end`
   double end_of_search(std::size_t limit, double end, double outwards) {
     for (const double margin : {0.03, 0.05, 0.08})
       if (sign_beside(cell_of(limit, end + margin * outwards, end + margin * outwards)) != 0)
@@ -75,8 +77,8 @@ class LimitRootFinder {
     }
     return cell;
   }
-  /// Bisects an interval of v recursively and appends its subintervals to the cells.
-  /// @return false if a subinterval in the range of v remains undecided
+  /// Bisects an interval of v recursively, and appends the subintervals to s_.cells.
+  /// @return false if a subinterval that overlaps the range of v remains undecided
   bool bisect(std::size_t limit, double lower, double upper, int bisections) {
     const Cell cell = cell_of(limit, lower, upper);
     const bool is_decided =
@@ -89,11 +91,13 @@ class LimitRootFinder {
     return bisect(limit, lower, middle, bisections + 1) && bisect(limit, middle, upper, bisections + 1);
   }
 
-  /// Finds the groups of adjacent cells that contain roots, and appends a search for each.
+  /// Finds the groups of adjacent cells that contain roots of a limit, and appends an element to s_.searches for each
+  /// group.
   /// @return false if the number of roots is unknown
   bool add_searches(std::size_t limit) {
     const std::vector<Cell>& cells = s_.cells;
-    // sign: of the limit above the previous cells; first_sign: first known sign in the range of v; 0: unknown
+    // sign: sign of the limit above the cells considered so far; first_sign: first known sign in the range of v; 0:
+    // unknown
     int sign = 0, first_sign = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (cells[i].is_undefined) continue;
@@ -126,7 +130,8 @@ class LimitRootFinder {
   }
   static int sign_beside(const Cell& cell) { return cell.is_undefined ? 0 : cell.sign; }
 
-  /// Finds the roots of a search at the Chebyshev node n. evaluate_limits_at_t() must have been called for this node.
+  /// Computes the roots, and the extremum, of a limit in the interval of a search, at the Chebyshev node n.
+  /// evaluate_limits_at_t() must have been called for this node.
   void solve(Search& search, std::size_t n) {
     const auto guess = [&](const Samples& v) { return n > 0 ? v[n - 1] : 0.5 * (search.lower + search.upper); };
     if (search.curvature == 0) {
@@ -151,7 +156,9 @@ class LimitRootFinder {
     search.root[1][n] = root_of(search.limit, 0, extremum, search.upper, -search.sign_at_lower, search.upper);
   }
 
-  /// Root of a limit, or of one of its derivatives with respect to v, by Newton's method with a bracket.
+  /// A root along v of a limit (`derivative` = 0) or of its first derivative (1), by Newton's method with a bracket.
+  /// @param sign_at_lower  sign of the function at `lower`
+  /// @param v              first guess
   double root_of(std::size_t limit, std::size_t derivative, double lower, double upper, int sign_at_lower, double v) {
     const auto limit_at = [&](double x) {
       evaluate_limits_at_v(plan_, x, s_);
@@ -163,8 +170,8 @@ class LimitRootFinder {
     return refine_root_newton(limit_at, lower, upper, sign_at_lower > 0, v, converged);
   }
 
-  /// Refines the position of a fold by Newton's method. Roots near a fold vary like the square root of the distance
-  /// from it, so that an error of the fold would be magnified.
+  /// Refines the position of a fold near t by Newton's method. This is necessary because roots near a fold vary like
+  /// the square root of the distance from it, so that they magnify an error of its position.
   LimitFold fold_near(const Search& search, double t) {
     double v = 0.5 * (search.lower + search.upper);
     const auto extremum = [&](double place) {
@@ -184,7 +191,8 @@ class LimitRootFinder {
     return {search.limit, t, v};
   }
 
-  /// Appends the roots of a search, or the folds at which they merge. @return false if the extremum is not resolved
+  /// Appends the roots of a search and, if its two roots merge, their folds.
+  /// @return false if the interpolation error of the extremum is too large
   bool add_roots(const Search& search) {
     constexpr double kConverged = 1e-11;
     if (search.curvature == 0) {
@@ -215,7 +223,7 @@ class LimitRootFinder {
   const expression::Program& program_;
   const Subinterval<double>& outer_;
   LimitScratch& s_;
-  double low_, high_;  ///< smallest and largest value of v in the segment
+  double low_, high_;  ///< minimum of the lower, and maximum of the upper bound of v in the segment
 };
 
 }  // namespace
@@ -233,7 +241,7 @@ void start_limits(const SlicePlan& plan, std::span<const double> inputs, const s
     for (const auto& input : program.stages()[stage].inputs) scratch.intervals[input.to] = box[stage - 1];
     program.run<Interval>(stage, std::span(scratch.intervals));
   }
-  // Where a limit is undefined, another constraint is violated.
+  // a limit may be undefined in part of the box, but there another constraint is violated
   for (std::size_t limit = 0; 3 * limit < program.outputs().size(); ++limit)
     if (!(scratch.intervals[program.outputs()[3 * limit]].lower >= 0)) scratch.active.push_back(limit);
   if (scratch.active.empty()) return;

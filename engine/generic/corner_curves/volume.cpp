@@ -7,7 +7,7 @@
 namespace pkm::generic::corner_curves {
 
 double Volume::Scratch::work() const {
-  // costs of a function and of an evaluation of the outer stage, relative to a node of the quadrature
+  // cost of the roots of a function, and of an evaluation of the outer stage, relative to that of a quadrature node
   constexpr double kFunction = 5, kRun = 1;
   double sum = kRun * static_cast<double>(segments.runs);
   for (std::size_t i = 0; i < segments.count; ++i) {
@@ -19,9 +19,11 @@ double Volume::Scratch::work() const {
 }
 
 std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, Scratch& scratch) const {
-  constexpr double kBalanced = 1e-10;  // maximum length in tau on which decisions may contradict each other
+  // maximum length in tau of intervals in which decisions on vertices contradict each other
+  constexpr double kBalanced = 1e-10;
   constexpr std::size_t kMaxCells = 4000;
-  constexpr double kBetter = 0.1;  // the relative error aimed at is this fraction of the tolerance
+  // the integration aims at an error of the tolerance times this factor, if this is cheap
+  constexpr double kBetter = 0.1;
   SegmentScratch& s = scratch.segments;
   const expression::Program& program = plan_.program;
   s.registers.resize(program.registers());
@@ -59,22 +61,23 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
       largest = error;
       worst = &segment;
     }
-    // An error that is ten times smaller costs little where the integrands are smooth, and derivatives need it.
+    // An error that is smaller by the factor kBetter costs little if the integrands are smooth, and derivatives need
+    // it.
     const double share = total.error / (tolerance_ * std::fabs(total.value));
     if (!worst || share <= kBetter || (share <= 1 && cells > 2 * start) || cells > kMaxCells) break;
     if (!worst->integral.refine()) break;
   }
   for (const Segment& segment : segments) {
     const auto& [ranges, undecided, unbalanced, functions] = segment.integral.decomposition;
-    // In an undecided interval, three curves miss a common point by about the square root of the rounding error, 1e-7;
-    // the area that they enclose is of the order of its square. All three curves are affected by the same decision.
+    // In an undecided interval, three curves miss a common point by about the square root of the rounding error, 1e-7.
+    // The area between them is of the order of its square, and one decision applies to all three curves.
     double per_slice = unbalanced + undecided * 1e-12;
-    // An arc in the frame is shorter than the perimeter of the frame, 8; its centre is displaced by at most sqrt(2)
-    // tails.
+    // The error of a curve changes the area by at most the length of its arc in the frame, which is less than the
+    // frame's perimeter 8, times its displacement, which is at most sqrt(2) tails.
     for (const BoundaryCurve& curve : segment.slices.curves) per_slice += 12 * curve.tail;
     total.error += scale(segment) * per_slice * 0.5 * (segment.upper.at - segment.lower.at);
   }
-  // if the volume is 0, let the slices decide whether the workspace is empty or was missed
+  // if no feasible point was found, let planar slices decide whether the workspace is empty or was missed
   if (!(total.value > 0)) return {};
   return total;
 }

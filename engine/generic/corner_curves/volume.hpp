@@ -5,7 +5,7 @@
 
 namespace pkm::generic::corner_curves {
 
-/// Volume of a workspace by corner curves. Immutable; scratch memory belongs to the caller.
+/// Computes the volume of a workspace by corner curves. Immutable; the caller provides scratch memory for each thread.
 class Volume {
  public:
   struct Scratch {
@@ -13,21 +13,22 @@ class Volume {
     std::vector<CurveAdjoints> by_curve;
     std::vector<double> adjoints, own;
 
-    /// Work of the last measure() in an arbitrary unit that does not depend on the machine.
+    /// Amount of work of the last measure(), in an arbitrary unit that does not depend on the computer.
     double work() const;
   };
 
   /// @param tolerance  relative error of the volume that is accepted
   Volume(SlicePlan plan, double tolerance) : plan_(std::move(plan)), outer_(plan_), tolerance_(tolerance) {}
 
-  /// Reason why corner curves cannot integrate the plan; empty if they can.
+  /// Reason why corner curves cannot integrate the slices of the plan; empty if they can.
   const std::string& why_not() const { return outer_.why_not; }
   const SlicePlan& plan() const { return plan_; }
 
+  /// The volume for a design, with an estimate of its error.
   /// @param inputs  values of the graph's inputs, including the fixed coordinates
-  /// @return std::nullopt if the design is not supported, because it is degenerate or functions do not converge
+  /// @return std::nullopt if the design is not supported, because it is degenerate or interpolation does not converge
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch) const;
-  /// Adds the derivatives of the volume with respect to the graph's inputs, after measure().
+  /// Adds the derivatives of the volume with respect to the graph's inputs to by_input; to be called after measure().
   void add_gradient(std::span<double> by_input, Scratch& scratch) const;
 
  private:
