@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "engine/dynamics/newton_euler.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm::test {
 

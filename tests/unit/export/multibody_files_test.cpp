@@ -3,10 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "engine/export/multibody_xml.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm {
 namespace {
@@ -51,7 +51,8 @@ TEST(MultibodyFiles, InertiaIsPhysicalAndChangesAreNoted) {
   given.bodies.push_back({"slide", 0, {0, 0, 0}, Matrix3d(Vector3d(0.1, 0.1, 0.1).asDiagonal())});
   const MultibodyModel model = for_simulators(given);
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
-    const Vector3d moments = Eigen::SelfAdjointEigenSolver<Matrix3d>(model.bodies[i].inertia).eigenvalues();
+    const Vector3d moments =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(model.bodies[i].inertia)).eigenvalues();
     EXPECT_GT(moments[0], 0) << model.bodies[i].name;
     EXPECT_LE(moments[2], moments[0] + moments[1]) << model.bodies[i].name;
   }

@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "engine/config/study_additions.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 
 namespace pkm::test {

@@ -150,7 +150,8 @@ TEST(Performance, ComplianceOfADeltaWithElasticLinks) {
     ASSERT_TRUE(found.is_complete());
     const Eigen::MatrixXd C = eigen_of(found.compliance);
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C).eigenvalues()[0], 0);
-    const double whole = 1 / Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C.topLeftCorner<3, 3>()).eigenvalues()[2];
+    const double whole =
+        1 / Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(C.topLeftCorner<3, 3>())).eigenvalues()[2];
     const double quantity = value_at(*mechanism, design, {x, 0, -.5}, "stiffness");
     EXPECT_LE(whole, quantity * (1 + 1e-9));
     EXPECT_GT(whole, quantity * .8);

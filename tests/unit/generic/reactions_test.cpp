@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <cmath>
 #include <map>
 #include <regex>
 
 #include "engine/core/error.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "engine/math/random.hpp"
 #include "tests/unit/accelerators/crr_cru/golden.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
@@ -178,7 +178,7 @@ TEST(DescribedReactions, RodsOfAPairHoldThePlatformsTurn) {
       b[k] = 0.25 * state.acceleration[i] - state.wrench[i] + (k == 2 ? 0.25 * kGravity : 0);
       b[3 + k] = -state.wrench[3 + i];
     }
-    const Eigen::Matrix<double, 6, 1> along = A.lu().solve(b);
+    const Eigen::Matrix<double, 6, 1> along = Eigen::MatrixXd(A).lu().solve(b);
     for (int k = 0; k < 6; ++k) {
       const Vec on_rod = force(found, names[static_cast<std::size_t>(k)]);
       for (int axis = 0; axis < 3; ++axis)

@@ -4,10 +4,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "engine/accelerators/crr_cru/forward.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "tests/unit/accelerators/crr_cru/states.hpp"
 
 namespace pkm::testing::crr {
@@ -119,7 +118,7 @@ TEST(CrrCruKinematics, TheYawDeterminesTheJacobianAndItsConditioning) {
     EXPECT_NEAR(J.determinant(), y.R * parallel_index(y, s, c), 1e-14);
     EXPECT_NEAR(conditioning(arms(g, s, c), characteristic_length(g)), r.conditioning.value(), 1e-12);
     J.col(3) /= 0.5;
-    const Eigen::Vector4d singular = J.jacobiSvd().singularValues();
+    const Eigen::Vector4d singular = Eigen::MatrixXd(J).jacobiSvd().singularValues();
     EXPECT_NEAR(conditioning(arms(g, s, c), 0.5), singular[3] / singular[0], 1e-12);
   });
   EXPECT_GT(compared, 200);

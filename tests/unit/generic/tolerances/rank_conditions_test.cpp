@@ -1,12 +1,11 @@
 // Determinants as formulas.
 #include "engine/generic/tolerances/rank_conditions.hpp"
 
-#include <Eigen/LU>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/expression/program.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -34,7 +33,7 @@ TEST(RankConditions, AreDeterminants) {
       Eigen::MatrixXd A(rows, n);
       for (Eigen::Index i = 0; i < rows; ++i)
         for (Eigen::Index j = 0; j < n; ++j) A(i, j) = std::sin(static_cast<double>(7 * i * i + 3 * j + i * j + n));
-      const double expected = rows == n ? A.determinant() : (A.transpose() * A).determinant();
+      const double expected = rows == n ? A.determinant() : Eigen::MatrixXd(A.transpose() * A).determinant();
       EXPECT_THAT(conditions_of(A), ::testing::ElementsAre(::testing::DoubleNear(expected, 1e-12))) << rows << n;
     }
 }
