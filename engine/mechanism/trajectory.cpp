@@ -54,7 +54,7 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::siz
   return s;
 }
 
-/// Stores joint speeds and accelerations that are finite.
+/// Stores the joint speeds if all of them are finite, and the accelerations if all of them are finite.
 void set_rates(TrajectoryPoint& point, const AxisVector<double>& speeds, const AxisVector<double>& accelerations) {
   if (is_finite(speeds)) point.speeds = speeds;
   if (is_finite(accelerations)) point.accelerations = accelerations;

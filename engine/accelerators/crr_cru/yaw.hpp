@@ -11,7 +11,7 @@ namespace pkm::crr_cru {
 template <class S>
 struct Yaw {
   S a_s, a_c, a_0;  ///< coefficients of the equation [m]
-  S R;              ///< amplitude of its terms in phi: hypot(a_s, a_c) [m]
+  S R;              ///< amplitude of a_s sin(phi) + a_c cos(phi): hypot(a_s, a_c) [m]
 };
 
 template <class S>

@@ -41,7 +41,7 @@ struct Curve {
   std::optional<Affine> square{};  ///< |p|^2 as an affine function of p, if one of the surfaces is a sphere
   Quadric with{};  ///< on_torus only: function of the second surface, for the vector from the centre of the torus
   std::optional<Quadric> cut{};  ///< function that vanishes where the two surfaces touch each other, if there is one
-  TorusFunction function{};      ///< implicit only: the function of the second surface on the first one, a torus
+  TorusFunction function{};      ///< of implicit curves: its zeros on a torus form the curve
 };
 
 /// An interval u in [0, length] of one branch of a curve.
