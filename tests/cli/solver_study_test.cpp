@@ -47,12 +47,12 @@ coefficients = { a = 1, b = -1 }
 
 TEST_F(SolverProgram, KilledInsideNloptAndResumedEndsTheSame) {
   write_toml(kSlsqp);
-  kill_at_random(4, 30);
+  kill_at_random(2, 30);
 }
 
 TEST_F(SolverProgram, KilledInsideIpoptAndResumedEndsTheSame) {
   write_toml(kIpopt);
-  kill_at_random(4, 31);
+  kill_at_random(2, 31);
 }
 
 TEST_F(SolverProgram, TheEstimateCountsDerivatives) {

@@ -65,7 +65,7 @@ TEST_P(DescribedDynamics, PowerOfTheDrivesIsTheRateOfTheEnergy) {
   const std::vector<double> design = test::nominal(info());
   const std::vector<Dual4> moving_design(design.begin(), design.end());
   const char* const asked = std::getenv("PKM_POWER_STATES");
-  const std::size_t states = asked ? static_cast<std::size_t>(std::atoi(asked)) : 1000;
+  const std::size_t states = asked ? static_cast<std::size_t>(std::atoi(asked)) : 300;
   const std::vector<Pose<double>> found = poses(states);
   ASSERT_GE(found.size(), states / 5);
   double worst = 0;
