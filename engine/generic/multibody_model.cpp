@@ -296,7 +296,7 @@ class MultibodyBuilder {
       throw std::invalid_argument("the two axes of the joint " + joint.name +
                                   " are not normal to each other, as those of a universal joint are");
     constexpr std::array kTypes = {Type::fixed, Type::revolute, Type::universal, Type::ball};
-    joint.type = kTypes[joint.axes.size()];
+    joint.type = kTypes[std::min(joint.axes.size(), kTypes.size() - 1)];
     if (joint.type == Type::ball) joint.axes.clear();
     connections_.push_back(std::move(joint));
   }
