@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/config/mechanism_file.hpp"
+#include "engine/config/mechanism_frames.hpp"
 #include "engine/config/mechanism_mobility.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
@@ -152,6 +153,7 @@ std::string describe_mechanism(const Mechanism& mechanism) {
         {limit.name, "inactive " + with_degrees(limit.inactive, limit.unit), limit.derivation, limit.meaning});
   out << format_titled_table("parameters", parameters);
   out << format_titled_table("coordinates", coordinates);
+  out << frames_text(mechanism);
   out << format_titled_table("joints", joints);
   out << format_titled_table("limits", limits);
   out << "\nworking modes: " << names_text(info.modes) << '\n';

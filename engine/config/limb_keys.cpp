@@ -18,7 +18,15 @@ OptionSpec frame_key(const std::string& name, const std::string& of) {
           .kind = OptionKind::word,
           .initial = "base",
           .choices = {"base", "platform"},
-          .meaning = "frame in which `" + of + "` is given"};
+          .meaning = "frame in which `" + of + "` is given: that of the limb's base or of its platform end"};
+}
+
+/// A key that names a frame, or one frame for each copy of the limb.
+OptionSpec frames_key(const std::string& name, const std::string& meaning) {
+  return {.name = name,
+          .kind = OptionKind::any_of,
+          .meaning = meaning,
+          .parts = {{.kind = OptionKind::word}, texts_key("", "")}};
 }
 
 OptionSpec passive_joint_key(const std::string& name, const std::string& end) {
@@ -67,7 +75,12 @@ Keys geometry_keys() {
   return {
       table_key("copies", copies, "the limb is copied, rotated about an axis: arm1, arm2, .."),
       required(point_key("base", "base point A [x, y, z]")),
-      point_key("platform", "platform's point B [x, y, z] in the platform's frame"),
+      point_key("platform", "platform's point B [x, y, z] in the platform's frame, or that of `platform_in`"),
+      frames_key("base_in",
+                 "frame of the base point and of all directions of the drive, or a list of frames, one for each copy; "
+                 "default: the base"),
+      frames_key("platform_in",
+                 "frame of the platform's point, or a list of frames, one for each copy; default: the platform"),
       point_key("end", "end point B in the base's frame, instead of `platform`; formulas of the pose are possible"),
       direction_key(
           "across",
@@ -77,7 +90,7 @@ Keys geometry_keys() {
       passive_joint_key("joint_base", "base"),
       passive_joint_key("joint_platform", "platform"),
       text_key("joint_name", "name of the joint; default: name of the limb"),
-      text_key("end_on", "body that carries the limb's `end`: \"platform\" or the name of a [[body]]"),
+      text_key("end_on", "body that carries the limb's `end`: \"platform\", a frame, or the name of a [[body]]"),
       direction_key("universal",
                     "axis of universal joints at both ends of rod or leg, on the base's and the platform's side; "
                     "default: ball joints"),

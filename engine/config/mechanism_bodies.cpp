@@ -75,29 +75,27 @@ std::optional<Mass> mass_of_part(const ConfigValue& table, const LimbPart& part,
   return Mass{draft.scope.positive(*given, "kg", what, part.name == "slider"), {}};
 }
 
-Vector3 axis_of(const limbs::Rotation& R, std::size_t k) { return {R[0][k], R[1][k], R[2][k]}; }
-
 void add_square(const std::array<expression::Node, 3>& f, const Term& weight, BodyNodes& body) {
   body.products.push_back({f, f, weight.node()});
 }
 
-/// Adds the rotational inertia of a body that rotates with the platform. It is given by its principal moments about the
-/// platform's axes. If the platform rotates about a single axis, the moment of inertia about this axis is sufficient;
+/// Adds the rotational inertia of a body that rotates with a frame. It is given by its principal moments about the
+/// frame's axes. If the platform rotates about a single axis, the moment of inertia about this axis is sufficient;
 /// otherwise the second moments of mass along all three axes are used.
-void add_platform_rotation(const std::array<Term, 3>& inertia, BodyNodes& body, MechanismDraft& draft) {
-  const auto turns = [](const auto& axis) { return axis.has_value(); };
-  const auto& about = draft.model.rotation_axes;
-  const auto count = std::ranges::count_if(about, turns);
-  const expression::Node zero = draft.zero().node();
-  if (count == 1) {
-    const auto which = static_cast<std::size_t>(std::ranges::find_if(about, turns) - about.begin());
-    const expression::Node angle = draft.model.graph.input(draft.model.inputs.coordinate(which));
-    add_square({angle, zero, zero}, inertia[*about[which]], body);
+void add_rotation_with(const NamedFrame& frame, const std::array<Term, 3>& inertia, BodyNodes& body,
+                       MechanismDraft& draft) {
+  body.part_of = frame.body;
+  body.inertia = {inertia[0].node(), inertia[1].node(), inertia[2].node()};
+  const limbs::Rotation& R = frame.at.rotation;
+  body.axes = {nodes(R[0]), nodes(R[1]), nodes(R[2])};
+  if (frame.name == kPlatformFrame && draft.turns.size() <= 1) {
+    const expression::Node zero = draft.zero().node();
+    for (const PlatformTurn& turn : draft.turns) add_square({turn.angle.node(), zero, zero}, inertia[turn.index], body);
+    return;
   }
-  if (count <= 1) return;
   for (std::size_t k = 0; k < 3; ++k) {
     const Term moment = (inertia[(k + 1) % 3] + inertia[(k + 2) % 3] - inertia[k]) * 0.5;
-    add_square(nodes(axis_of(draft.turn, k)), moment, body);
+    add_square(nodes(column(R, k)), moment, body);
   }
 }
 
@@ -153,9 +151,11 @@ BodyNodes telescopic_body(const LimbPart& part, const Term& mass, const Term& al
   BodyNodes body{name, mass.node(), nodes(at_base ? part.from + *part.line * along : part.to - *part.line * along),
                  {},   {},          {}};
   add_square(direction, mass * along * along + inertia, body);
-  if (at_base) return body;
-  add_square(nodes(part.to), mass, body);
-  body.products.push_back({nodes(part.to), direction, (mass * along * -2.0).node()});
+  const auto moves = [](const Term& term) { return depends_on_pose(term.graph(), term.node()); };
+  const Vector3& end = at_base ? part.from : part.to;
+  if (std::ranges::none_of(end, moves)) return body;
+  add_square(nodes(end), mass, body);
+  body.products.push_back({nodes(end), direction, (mass * along * (at_base ? 2.0 : -2.0)).node()});
   return body;
 }
 
@@ -215,11 +215,29 @@ void read_platform_body(const ConfigValue& platform, MechanismDraft& draft) {
   const Term m = checked(draft, draft.scope.positive(*mass, "kg", "mass"), "the mass of the platform", "kg", false);
   BodyNodes body = body_at(at, m, "platform");
   if (inertia) {
-    const std::array<Term, 3> values = read_inertia(*inertia, "the platform", draft);
-    add_platform_rotation(values, body, draft);
-    body.inertia = {values[0].node(), values[1].node(), values[2].node()};
+    add_rotation_with(draft.frames.at(kPlatformFrame), read_inertia(*inertia, "the platform", draft), body, draft);
+    body.part_of.clear();
   }
   draft.model.bodies.push_back(std::move(body));
+}
+
+void read_frame_bodies(const ConfigValue& root, MechanismDraft& draft) {
+  for (const ConfigValue& table : root.tables("frame")) {
+    const std::string& name = table.find("name")->text("the frame's name");
+    const auto mass = table.find("mass"), centre = table.find("centre"), inertia = table.find("inertia");
+    if (const auto alone = inertia ? inertia : centre; alone && !mass)
+      throw alone->refusal("the frame has no mass: mass is missing");
+    if (!mass) continue;
+    const NamedFrame& frame = draft.frames.at(name);
+    if (frame.body == kBaseFrame) throw mass->refusal("the frame is fixed to the base, so its mass has no effect");
+    const Vector3 at =
+        centre ? frame.at.origin + frame.at.rotation * draft.scope.point_of_design(*centre, name) : frame.at.origin;
+    const Term m = checked(draft, draft.scope.positive(*mass, "kg", name, true), "the mass of " + name, "kg", true);
+    BodyNodes body = body_at(at, m, name);
+    body.part_of = frame.body;
+    if (inertia) add_rotation_with(frame, read_inertia(*inertia, name, draft), body, draft);
+    draft.model.bodies.push_back(std::move(body));
+  }
 }
 
 void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft) {
@@ -229,7 +247,7 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
       part.name = limb.name + "." + part.name;
       turning.push_back(part);
     }
-  std::vector<std::string> names = {"platform"};
+  std::vector<std::string> names = draft.frame_names;
   for (const LimbPart& part : turning) names.push_back(part.name);
   for (const ConfigValue& table : root.tables("body")) {
     const std::string name = new_name(table, "body", draft.model.bodies, "the body's name");
@@ -239,11 +257,13 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
     BodyNodes body = body_at(centre, mass, name);
     const auto rotation = table.find("rotation");
     if (rotation) body.part_of = rotation->word(names);
+    const auto frame = draft.frames.find(body.part_of);
+    if (frame != draft.frames.end()) body.part_of = frame->second.body;
     if (const auto value = table.find("inertia")) {
       const std::array<Term, 3> inertia = read_inertia(*value, name, draft);
       body.inertia = {inertia[0].node(), inertia[1].node(), inertia[2].node()};
-      if (rotation && rotation->text("a name") == "platform") {
-        add_platform_rotation(inertia, body, draft);
+      if (frame != draft.frames.end()) {
+        add_rotation_with(frame->second, inertia, body, draft);
       } else if (rotation) {
         if (inertia[1].node() != inertia[2].node())
           throw value->refusal(

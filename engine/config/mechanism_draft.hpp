@@ -21,6 +21,40 @@ inline std::array<expression::Node, 3> nodes(const limbs::Vector3& v) {
   return {v[0].node(), v[1].node(), v[2].node()};
 }
 
+/// Axis k of a rotated frame, 0 to 2.
+inline limbs::Vector3 column(const limbs::Rotation& R, std::size_t k) { return {R[0][k], R[1][k], R[2][k]}; }
+
+/// Names of the frames that every mechanism has.
+inline constexpr const char *kBaseFrame = "base", *kPlatformFrame = "platform";
+
+/// A motion of the platform along or about an axis of its moving frame.
+struct PlatformMotion {
+  std::string name;
+  std::size_t axis;  ///< 0 to 2
+  bool rotates;
+  /// Index among the coordinates of the pose; std::nullopt: it follows from them.
+  std::optional<std::size_t> coordinate;
+  const char* unit() const { return rotates ? "rad" : "m"; }
+};
+
+/// One of the successive rotations of the platform.
+struct PlatformTurn {
+  limbs::Vector3 axis;  ///< unit vector in the base frame
+  limbs::Term angle;
+  std::size_t index;  ///< 0 to 2: axis in the platform's frame before this rotation
+};
+
+/// The base, the platform or a [[frame]].
+struct NamedFrame {
+  std::string name;
+  expression::Frame at;  ///< position and rotation in the base frame
+  /// Body to which the frame is fixed: "base", "platform", or the name of a [[frame]] that moves relative to the frame
+  /// on which it is defined.
+  std::string body;
+  /// Axes, in the base frame, of all rotations of the body relative to the base; std::nullopt: unknown.
+  std::optional<std::vector<limbs::Vector3>> turns;
+};
+
 /// A part of a limb, or a [[link]]. It can have a mass, and [[body]] refers to it by a name such as "arm1.crank".
 struct LimbPart {
   std::string name;                        ///< name of the part within its limb, for example "crank", "rod" or "slider"
@@ -58,7 +92,8 @@ struct NamedLimb {
   bool has_links = false;  ///< true: two links connect the slider to the platform, instead of a rod
   /// Vector from the middle of a pair of rods to one of them; std::nullopt: a single rod.
   std::optional<limbs::Vector3> beside = {};
-  std::string end_on = "";  ///< name of the body to which the end B is attached; "": unspecified
+  std::string begin_on = kBaseFrame;  ///< name of the body to which A or the rail is attached
+  std::string end_on = "";            ///< name of the body to which the end B is attached; "": unspecified
 
   std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]; std::nullopt: not given
   /// Stiffnesses of a round tube: axial E A [N], bending E I and torsional G J [N m^2]; and the area A of its
@@ -71,8 +106,8 @@ struct NamedLimb {
   /// Signed distance [m], in the slider's direction, from the guide in which the slider is clamped to the slider's end
   /// at the rod; std::nullopt: the slider is rigid.
   std::optional<limbs::Term> slider_length = {};
-  /// Axis of the universal joints at both ends of the rod or leg, fixed to the part on the drive's side of each joint.
-  std::optional<limbs::Vector3> universal = {};
+  /// Axes of the universal joints at the base's and the platform's end of the rod or leg, fixed to the bodies there.
+  std::optional<std::array<limbs::Vector3, 2>> universal = {};
 };
 
 /// A limb whose table has the key `across`, a vector `normal` to the plane in which the limb moves: the component of B
@@ -100,9 +135,14 @@ struct MechanismDraft {
   generic::Model model;
   MechanismScope scope{model};
   limbs::Vector3 origin{zero(), zero(), zero()};  ///< origin of the platform's frame
-  bool has_origin = false;                        ///< whether `origin` has been read
   /// Rotation of the platform's frame.
   limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
+  std::vector<PlatformMotion> motions;  ///< the motions of the platform, in the order of the file
+  /// The rotations that `turn` does not contain yet, because they follow a dependent angle that has not been read.
+  std::vector<PlatformMotion> waiting_rotations;
+  std::vector<PlatformTurn> turns;           ///< the rotations that `turn` contains
+  std::map<std::string, NamedFrame> frames;  ///< all frames, by name
+  std::vector<std::string> frame_names;      ///< "base", "platform", and those of the [[frame]] tables
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
   /// For each limb, the ranges of the platform's x, y and z within its reach; std::nullopt: unknown.
@@ -143,6 +183,16 @@ std::vector<LimbParameter> effective_parameters(const MechanismDraft& draft);
 /// Refuses a parameter of a single limb if the limb does not exist, or if no formula of the limb uses the parameter.
 void refuse_idle_parameters(const MechanismDraft& draft);
 
+/// Rotation about a coordinate axis. The elements for numbers such as 90 deg are exactly 0 and 1.
+limbs::Rotation rotation_by(std::size_t axis, const limbs::Term& angle);
+/// Whether a node depends on the coordinates.
+bool depends_on_pose(const expression::Graph& graph, expression::Node node);
+/// Reads the coordinates of the platform. Those of the key `follows` are read when a formula uses them.
+void read_coordinates(const ConfigValue& platform, MechanismDraft& draft);
+/// Adds the names of all frames to those of formulas. The frames are read when a formula uses them.
+void read_frames(const ConfigValue& root, const ConfigValue& platform, MechanismDraft& draft);
+/// Reads the dependent coordinates and frames that no formula has used so far, and the origin of the platform.
+void resolve_frames(const ConfigValue& root, const ConfigValue& platform, MechanismDraft& draft);
 /// Reads the tables [[limit]].
 void read_limits(const ConfigValue& root, MechanismDraft& draft);
 /// Reads [inputs]: variables other than the pose. Quantities, and the formulas of [let] that they use, may depend on
@@ -209,6 +259,8 @@ void add_part_body(const ConfigValue& table, const std::string& limb, const Limb
 /// Adds the body of a thin link between two points, if its table has a `mass`.
 void add_link_body(const ConfigValue& table, const std::string& name, const limbs::Vector3& from,
                    const limbs::Vector3& to, MechanismDraft& draft);
+/// Adds the bodies of those [[frame]] tables that have a mass.
+void read_frame_bodies(const ConfigValue& root, MechanismDraft& draft);
 /// Adds the body of the platform: mass, centre and inertia.
 void read_platform_body(const ConfigValue& platform, MechanismDraft& draft);
 /// Reads the tables [[body]]. @param links  result of read_links()

@@ -109,63 +109,15 @@ void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& 
   model.inputs.parameters = model.info.parameters.size();
 }
 
-void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
-  generic::Model& model = draft.model;
-  const std::string expected = "a table { x = \"along x\", phi = \"about z\", .. }";
-  const ConfigValue all = platform.at("coordinates", expected).expect_table(expected).table();
-  const std::size_t count = all.keys().size();
-  if (count < 1 || count > kMaxCoordinates) throw all.error("1 to 6 coordinates");
-  for (const std::string& name : all.keys()) {
-    const ConfigValue value = *all.find(name);
-    const std::string& kind = value.word();
-    const auto axis = static_cast<std::size_t>(kind.back() - 'x');
-    const bool turns = kind.starts_with("about");
-    const std::size_t i = model.inputs.coordinates++;
-    const Term coordinate = model.term(model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i)));
-    draft.scope.add(value, name, coordinate.node());
-    model.info.coordinates.push_back({name, turns ? "rad" : "m"});
-    model.rotation_axes.push_back(turns ? std::optional(axis) : std::nullopt);
-    model.translation_axes.push_back(turns ? std::nullopt : std::optional(axis));
-    const expression::Node none = model.graph.number(0);
-    model.rotation_directions.push_back({none, none, none});
-    if (turns) {
-      for (std::size_t row = 0; row < 3; ++row) model.rotation_directions.back()[row] = draft.turn[row][axis].node();
-      if (std::ranges::count_if(model.rotation_axes, [](const auto& each) { return each.has_value(); }) > 3)
-        throw value.refusal("a platform has at most three rotations");
-      draft.turn = draft.turn * limbs::rotation_about(axis, sin(coordinate), cos(coordinate));
-    } else {
-      if (!draft.origin[axis].is(0)) throw value.refusal("there is already a coordinate " + kind);
-      draft.origin[axis] = coordinate;
-    }
-  }
-}
-
-/// Reads the origin of the platform's frame, which may depend on formulas of [let], and makes the frame available to
-/// later formulas. A second call has no effect.
-void read_origin(const ConfigValue& platform, MechanismDraft& draft) {
-  if (draft.has_origin) return;
-  draft.has_origin = true;
-  if (const auto origin = platform.find("origin")) draft.origin = draft.scope.point(*origin, "origin");
-  draft.scope.add_predefined("platform", expression::Frame{draft.origin, draft.turn});
-}
-
-/// Whether a formula contains the word "platform".
-bool mentions_platform(const ConfigValue& value) {
-  return value.is_text() && value.text("a formula").find("platform") != std::string::npos;
-}
-
-void read_let(const ConfigValue& root, const ConfigValue& platform, MechanismDraft& draft) {
-  draft.scope.add_predefined("R", draft.turn);
+void read_let(const ConfigValue& root, MechanismDraft& draft) {
   for (const auto& all : {root.find_table("let"), draft.masses ? draft.masses->find_table("let") : std::nullopt}) {
     if (!all) continue;
     draft.let.push_back(*all);
     for (const std::string& name : all->keys()) {
       const ConfigValue value = *all->find(name);
-      if (mentions_platform(value)) read_origin(platform, draft);
       draft.scope.add(value, name, draft.scope.formula_of_any_kind(value, "1", name));
     }
   }
-  read_origin(platform, draft);
 }
 
 /// Selects one of the mass models in [masses]. A mass model can have its own parameters and formulas.
@@ -272,11 +224,14 @@ void read_draft(const std::string& text, const std::string& file_name, const std
   read_coordinates(platform, draft);
   read_modes(root, draft);
   read_inputs(root, draft);
+  read_frames(root, platform, draft);
   draft.scope.allow_motion(true);
-  read_let(root, platform, draft);
+  read_let(root, draft);
   draft.scope.allow_motion(false);
+  resolve_frames(root, platform, draft);
   read_platform(platform, draft);
   read_limbs(root, draft);
+  read_frame_bodies(root, draft);
   read_bodies(root, read_links(root, draft), draft);
   if (!draft.model.bodies.empty()) draft.model.equations = generic::equations_of(draft.model);
   add_transmission(root, study.get(), draft);

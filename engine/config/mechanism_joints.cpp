@@ -40,7 +40,10 @@ class JointReader {
 
   /// Reads the bodies and joints that the mechanism file describes, without masses.
   generic::JointedBodies read(const std::vector<ConfigValue>& tables) {
-    add_solid("platform", {.name = "platform", .point = nodes(draft_.origin), .with_platform = true});
+    add_solid("platform", {.name = "platform",
+                           .point = nodes(draft_.origin),
+                           .with_platform = true,
+                           .rotation = rotation_nodes(draft_.frames.at(kPlatformFrame))});
     for (const BodyNodes& body : model_.bodies) {
       if (!body.part_of.empty() || is_of_limb(body.name) || body.name == "platform") continue;
       add_solid(body.name, {.name = body.name, .point = body.centre});
@@ -68,6 +71,30 @@ class JointReader {
     made_of_[body].push_back(solids_.size());
     solids_.push_back(std::move(solid));
     return solids_.size() - 1;
+  }
+  static std::array<Nodes, 3> rotation_nodes(const NamedFrame& frame) {
+    const limbs::Rotation& R = frame.at.rotation;
+    return {nodes(R[0]), nodes(R[1]), nodes(R[2])};
+  }
+  /// Index of the solid with a name; std::nullopt if there is none. Adds the solid of a [[frame]].
+  std::optional<std::size_t> find_solid(const std::string& name) {
+    const auto frame = draft_.frames.find(name);
+    const std::string& body = frame == draft_.frames.end() ? name : frame->second.body;
+    const auto found = std::ranges::find(solids_, body, &SolidNodes::name);
+    if (found != solids_.end()) return static_cast<std::size_t>(found - solids_.begin());
+    if (frame == draft_.frames.end() || body == kBaseFrame) return {};
+    const NamedFrame& own = draft_.frames.at(body);
+    return add_solid(body, {.name = body, .point = nodes(own.at.origin), .rotation = rotation_nodes(own)});
+  }
+  /// Axes about which the joint of a limb with parallel revolute joints can rotate in addition, because the body at its
+  /// end does.
+  std::vector<Vector3> turns_of(const NamedLimb& limb) const {
+    const auto frame = draft_.frames.find(limb.end_on);
+    if (frame == draft_.frames.end()) return {};
+    if (!frame->second.turns && limb.revolute)
+      throw IncompleteDescription{"limb " + limb.name + " ends on the frame " + limb.end_on +
+                                  ", whose axes of rotation are unknown; give its `rotation` as three angles"};
+    return frame->second.turns.value_or(std::vector<Vector3>());
   }
   bool is_of_limb(const std::string& body) const {
     for (const NamedLimb& limb : draft_.limbs)
@@ -113,7 +140,7 @@ class JointReader {
   /// @param solid  index of the rod among the solids
   void make_universal(const NamedLimb& limb, const Vector3& rod, std::size_t solid, bool on_platform) {
     if (!limb.universal) return;
-    const Vector3 a = on_platform && limb.end_on == "platform" ? draft_.turn * *limb.universal : *limb.universal;
+    const Vector3& a = (*limb.universal)[on_platform ? 1 : 0];
     joints_.back().couples = JointNodes::Couples::along;
     joints_.back().axes = {nodes(cross(a, cross(a, rod)))};
     joints_.back().universal = JointNodes::Universal{nodes(a), solid};
@@ -131,8 +158,7 @@ class JointReader {
   /// just the pin that connects the rods. It is then treated as part of the first rod.
   void hold_pin() {
     constexpr std::size_t kPlatform = 0;
-    const auto rotates = [](const auto& axis) { return axis.has_value(); };
-    if (std::ranges::any_of(model_.rotation_axes, rotates)) return;
+    if (!draft_.turns.empty()) return;
     for (const BodyNodes& body : model_.bodies)
       if (body.part_of == "platform" || (body.name == "platform" && body.inertia)) return;
     JointNodes* first = nullptr;
@@ -154,19 +180,19 @@ class JointReader {
       throw IncompleteDescription{
           "limb " + limb.name +
           " ends at `end`, but the body there is unknown; give end_on = \"platform\" or the name of a [[body]]"};
-    const auto found = std::ranges::find(solids_, limb.end_on, &SolidNodes::name);
-    if (found == solids_.end())
+    if (limb.begin_on != kBaseFrame && limb.drive == "slider")
+      throw IncompleteDescription{"the rail of limb " + limb.name + " moves with " + limb.begin_on +
+                                  ", but joint forces are computed only for rails that are fixed to the base"};
+    const std::optional<std::size_t> carrier = find_solid(limb.end_on),
+                                     base = limb.begin_on == kBaseFrame ? std::nullopt : find_solid(limb.begin_on);
+    if (!carrier)
       throw IncompleteDescription{"limb " + limb.name + " ends on '" + limb.end_on +
                                   "', which is neither the platform nor a body" +
                                   did_you_mean(limb.end_on, names_of(solids_))};
-    const auto carrier = static_cast<std::size_t>(found - solids_.begin());
     const auto& points = limb.points;
     const Vector3 &A = points.at("A"), &B = points.at("B"), &C = points.at("C"), &S = points.at("S");
     const LimbPart &first = limb.parts[limb.parts.size() - 2], &last = limb.parts.back();
-    std::vector<Vector3> turns;
-    if (found->with_platform)
-      for (std::size_t i = 0; i < model_.rotation_axes.size(); ++i)
-        if (model_.rotation_axes[i]) turns.push_back(vector(model_.rotation_directions[i]));
+    const std::vector<Vector3> turns = turns_of(limb);
 
     const bool telescope = limb.drive == "telescope", slides = limb.drive == "slider",
                has_links = first.name != "slider" && slides;
@@ -182,7 +208,7 @@ class JointReader {
     std::optional<std::size_t> inner;
     if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
     if (telescope) {
-      joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, {}, first.line));
+      joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, base, first.line));
       make_universal(limb, B - A, *inner, false);
       const std::size_t piston = add_part(limb, last);
       joints_.push_back(rigid_joint(limb.name + ".slide", (A + B) * Term(model_.graph, 0.5), piston, inner));
@@ -192,7 +218,7 @@ class JointReader {
       return;
     }
     if (limb.drive == "crank") {
-      joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, {}));
+      joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, base));
       if (const auto& section = limb.crank_section) solids_[*inner].beam = held_beam(*section, A, C, false);
     }
     if (has_links) joints_.push_back(limb_joint(limb, limb.name + ".S", S, *inner, {}, {}));
@@ -224,15 +250,12 @@ class JointReader {
     }
   }
 
-  static constexpr const char* kBase = "base";
-
   /// Index of the solid that has the name given by `value`; std::nullopt: the base.
-  std::optional<std::size_t> solid_called(const ConfigValue& value) const {
+  std::optional<std::size_t> solid_called(const ConfigValue& value) {
     std::vector<std::string> names = names_of(solids_);
-    names.emplace_back(kBase);
-    const std::string& name = value.word(names);
-    if (name == kBase) return {};
-    return static_cast<std::size_t>(std::ranges::find(solids_, name, &SolidNodes::name) - solids_.begin());
+    for (const std::string& frame : draft_.frame_names)
+      if (!contains(names, frame)) names.push_back(frame);
+    return find_solid(value.word(names));
   }
 
   void add_joint(const ConfigValue& table) {
@@ -247,7 +270,10 @@ class JointReader {
     if (about && along) throw along->refusal("give either `about` or `along`, not both");
     if (along && !drive) throw along->refusal("a joint with `along`, a slide, needs `drive`");
     const ConfigValue given = along ? *along : table.at("about", "the axis [x, y, z] in the base's frame");
-    const Vector3 axis = draft_.scope.direction(given, name), at = draft_.scope.point(table.at("at", "a point"), name);
+    const NamedFrame& frame =
+        draft_.frames.at(table.find("in") ? table.find("in")->word(draft_.frame_names) : kBaseFrame);
+    const Vector3 axis = frame.at.rotation * draft_.scope.direction(given, name),
+                  at = draft_.scope.point(table.at("at", "a point"), name);
     if (!drive) {
       joints_.push_back(joint(name, at, *first, second, JointNodes::Couples::all_but_about, {axis}));
       return;
@@ -300,6 +326,7 @@ class JointReader {
       for (const NamedLimb& limb : draft_.limbs)
         for (const LimbPart& part : limb.parts)
           if (owner == limb.name + "." + part.name) owner = part.name + " of " + limb.name;
+      find_solid(owner);
       const auto owners = made_of_.find(owner);
       if (owners == made_of_.end())
         throw IncompleteDescription{"body " + body.name + " rotates with " + body.part_of +

@@ -77,6 +77,11 @@ const TableSpec& platform_table() {
                  .choices = {"along x", "along y", "along z", "about x", "about y", "about z"},
                  .meaning = "direction of the translation or axis of the rotation, in the moving frame"}},
       .noun = "coordinate"};
+  static const TableSpec follows = {
+      .meaning = "coordinates that depend on the others",
+      .keys = {},
+      .named = {formula_key("", kUnitOfEntry, "formula of the other coordinates and of parameters")},
+      .noun = "coordinate"};
   static const TableSpec size = {.meaning = "size of the mechanism",
                                  .keys = {required(formula_key("formula", kUnitOfEntry, "formula of parameters")),
                                           required(unit_key("unit of the size: \"m^3\"")), meaning_key()}};
@@ -86,6 +91,7 @@ const TableSpec& platform_table() {
       .keys = {
           required(table_key("coordinates", coordinates,
                              "1 to 6 coordinates; rotations about the axes of the moving frame, in their order")),
+          table_key("follows", follows, "those of the coordinates that depend on the others: parasitic motions"),
           formula_key("characteristic_length", "m",
                       "length that makes rotations comparable with translations in the conditioning"),
           formula_key("characteristic_radius", "m", "radius that makes revolute drives comparable with prismatic ones"),
@@ -96,6 +102,28 @@ const TableSpec& platform_table() {
           point_key("centre", "centre of mass of the platform, where wrenches act; default: the origin"),
           formulas_key("inertia", "kg m^2", 3,
                        "principal moments of inertia about the centre of mass, along the platform's axes")}};
+  return spec;
+}
+
+const TableSpec& frame_table() {
+  static const TableSpec spec = {
+      .header = "[[frame]]",
+      .meaning = "coordinate system in which limbs begin or end; it may move",
+      .keys = {required(text_key("name", "name of the frame")),
+               text_key("on",
+                        "frame in which `origin` and `rotation` are given: \"base\", \"platform\" or another one; "
+                        "default: the base"),
+               point_key("origin", "position of the frame; default: that of `on`"),
+               {.name = "rotation",
+                .kind = OptionKind::any_of,
+                .unit = "rad",
+                .meaning = "angles of successive rotations about x, y and z of the moving frame, or a formula whose "
+                           "value is a rotation; default: none",
+                .parts = {formulas_key("", "rad", 3, ""), {.kind = OptionKind::formula, .unit = "rad", .count = 3}}},
+               formula_key("mass", "kg", "mass of a body that is fixed to the frame"),
+               point_key("centre", "its centre of mass, in the frame; default: the origin"),
+               formulas_key("inertia", "kg m^2", 3,
+                            "its principal moments of inertia about the centre of mass, along the frame's axes")}};
   return spec;
 }
 
@@ -236,11 +264,11 @@ const TableSpec& body_table() {
   static const TableSpec spec = {
       .header = "[[body]]",
       .meaning = "body with a mass, besides limbs, links and platform",
-      .keys = {
-          required(text_key("name", "name of the body")), place_key("centre", "centre of mass"),
-          required(formula_key("mass", "kg", "mass of the body")),
-          formulas_key("inertia", "kg m^2", 3, "principal moments of inertia about the centre of mass"),
-          text_key("rotation", "body with which it rotates: \"platform\", a link, or a limb's part (\"arm1.rod\")")}};
+      .keys = {required(text_key("name", "name of the body")), place_key("centre", "centre of mass"),
+               required(formula_key("mass", "kg", "mass of the body")),
+               formulas_key("inertia", "kg m^2", 3, "principal moments of inertia about the centre of mass"),
+               text_key("rotation",
+                        "what it rotates with: \"platform\", another frame, a link, or a limb's part (\"arm1.rod\")")}};
   return spec;
 }
 
@@ -256,8 +284,9 @@ const TableSpec& joint_table() {
                 .count = 2,
                 .parts = {{.kind = OptionKind::word}}},
                place_key("at", "a point of its axis"),
-               direction_key("about", "axis [x, y, z] of a revolute joint, in the base's frame"),
+               direction_key("about", "axis [x, y, z] of a revolute joint"),
                direction_key("along", "direction of a slide, which needs `drive`"),
+               text_key("in", "frame in which `about` or `along` is given; default: the base"),
                text_key("drive",
                         "joint of a limb with drive = \"formula\" that it is: motion "
                         "of the first body relative to the second")}};
@@ -329,12 +358,12 @@ const TableSpec& mechanism_keys() {
       .meaning = "mechanism file of pkmopt",
       .keys = {required(table_key("mechanism", name_table())), required(table_key("parameters", parameters)),
                table_key("masses", masses_table()), required(table_key("platform", platform_table())),
-               table_key("survey", survey_table()), table_key("modes", modes_table()), table_key("let", let),
-               required(tables_key("limb", limb_keys())), table_key("inputs", inputs_table()),
-               table_key("accuracy", accuracy_keys()), tables_key("quantity", quantity_keys()),
-               tables_key("limit", limit_table()), tables_key("margin", margin_table()),
-               tables_key("design", design_table()), tables_key("link", link_table()), tables_key("body", body_table()),
-               tables_key("joint", joint_table())},
+               tables_key("frame", frame_table()), table_key("survey", survey_table()),
+               table_key("modes", modes_table()), table_key("let", let), required(tables_key("limb", limb_keys())),
+               table_key("inputs", inputs_table()), table_key("accuracy", accuracy_keys()),
+               tables_key("quantity", quantity_keys()), tables_key("limit", limit_table()),
+               tables_key("margin", margin_table()), tables_key("design", design_table()),
+               tables_key("link", link_table()), tables_key("body", body_table()), tables_key("joint", joint_table())},
       .noun = "table"};
   return spec;
 }

@@ -13,7 +13,7 @@ Term LimbCopy::length(const char* key, const char* expected) const {
 
 Vector3 LimbCopy::direction(const ConfigValue& value, bool on_platform) const {
   const Vector3 turned = turn * draft.scope.direction(value, group);
-  return on_platform ? draft.turn * turned : turned;
+  return (on_platform ? platform : base).at.rotation * turned;
 }
 
 std::array<Term, 2> LimbCopy::range(const std::string& unit) const {

@@ -16,14 +16,17 @@ struct LimbCopy {
   const ConfigValue& table;
   MechanismDraft& draft;
   std::string drive;
-  std::string group;     ///< name in the file: "arm"
-  std::string name;      ///< name of this copy: "arm2"
-  limbs::Rotation turn;  ///< rotation that maps the geometry in the file to this copy
+  std::string group;                  ///< name in the file: "arm"
+  std::string name;                   ///< name of this copy: "arm2"
+  limbs::Rotation turn;               ///< rotation that maps the geometry in the file to this copy
+  const NamedFrame &base, &platform;  ///< the frames of the limb's ends
 
   limbs::Term length(const char* key, const char* expected) const;
   /// Reads a direction and rotates it with the copy.
-  /// @param on_platform  true: it is given in the platform's frame; false: in the base frame
+  /// @param on_platform  true: it is given in the frame `platform`; false: in the frame `base`
   limbs::Vector3 direction(const ConfigValue& value, bool on_platform = false) const;
+  /// Whether the base of the limb moves.
+  bool moves() const { return base.body != kBaseFrame; }
   /// Reads the minimum and the maximum of the key `range`, which must be present.
   std::array<limbs::Term, 2> range(const std::string& unit) const;
   /// Reads the lengths l_1 and l_2 of the key `links`, which must be present.

@@ -28,13 +28,14 @@ std::vector<LimbPart> read_parts(const LimbCopy& copy, const Ends& at, const Dri
         is_crank ? std::array{copy.length("crank", "a length"), copy.length("rod", "a length")} : copy.links();
     const std::vector<std::string> names = parts_of_limb(copy.table, copy.drive);
     const Vector3 C = limb.S + limb.arm->arm;
+    list.push_back({names[names.size() - 2], limb.S, C, of_arm, limb.arm->arm});
+    list.push_back({names.back(), C, at.B, of_rod, limb.arm->rod});
+    if (copy.moves()) return list;  // the rates of arms assume an axis that does not move
     std::vector<generic::ArmNodes>& arms = copy.draft.model.arms;
-    LimbPart::OnArm on_arm{arms.size(), limb.S, of_arm, true};
+    list[list.size() - 2].on_arm = LimbPart::OnArm{arms.size(), limb.S, of_arm, true};
+    list.back().on_arm = LimbPart::OnArm{arms.size(), limb.S, of_arm, false};
     arms.push_back({nodes(limb.arm->arm), nodes(limb.arm->axis), nodes(limb.arm->rod), nodes(at.B),
                     is_crank ? std::optional(limb.joint.node()) : std::nullopt});
-    list.push_back({names[names.size() - 2], limb.S, C, of_arm, limb.arm->arm, on_arm});
-    on_arm.is_arm = false;
-    list.push_back({names.back(), C, at.B, of_rod, limb.arm->rod, on_arm});
   } else if (copy.table.has("rod")) {
     list.push_back({"rod", limb.S, at.B, copy.length("rod", "a length"), at.B - limb.S});
   }
@@ -47,7 +48,7 @@ void add_limb_links(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb
   const bool has_links = copy.table.has("links");
   const Term r = copy.draft.scope.positive(*radius, "m", copy.name, true);
   const auto link = [&](const std::string& what, const std::string& part, const Vector3& from, const Vector3& to) {
-    const std::string& group = part == kPlatformPart ? part : copy.name;
+    const std::string& group = what.ends_with("arm") ? part : copy.name;
     copy.draft.model.links.push_back({what + " of " + copy.name, part, nodes(from), nodes(to), r.node(), {group}});
   };
   if (copy.drive == "crank") link("crank", copy.name, at.A, limb.C);
@@ -56,9 +57,11 @@ void add_limb_links(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb
     link(copy.drive == "telescope" ? "leg" : has_links ? "second link" : "rod", copy.name, limb.C, at.B);
   if (copy.drive == "slider" && copy.table.has("range")) {
     const auto [from, to] = copy.range("m");
-    link("rail", kFramePart, at.A + *limb.e * from, at.A + *limb.e * to);
+    link("rail", copy.moves() ? copy.base.body : kFramePart, at.A + *limb.e * from, at.A + *limb.e * to);
   }
-  if (!copy.table.has("end")) link("platform's arm", kPlatformPart, copy.draft.origin, at.B);
+  if (copy.table.has("end")) return;
+  const std::string& body = copy.platform.body;
+  link(body + "'s arm", body, copy.draft.frames.at(body).at.origin, at.B);
 }
 
 void add_reach(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
@@ -69,6 +72,7 @@ void add_reach(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
   std::optional<Term> far = limb.max_distance;
   if (copy.drive == "telescope" && has_range) far = copy.range("m")[1];
   if (!far || at.across || table.has("end") || (on_rail && (!has_range || table.has("links")))) return;
+  if (copy.moves() || nodes(copy.platform.at.origin) != nodes(copy.draft.origin)) return;
   const Vector3 arm = copy.draft.scope.point(table.at("platform", "a point"), copy.group);
   const Term round = *far + limbs::length(arm);
   for (std::size_t i = 0; i < 3; ++i) {

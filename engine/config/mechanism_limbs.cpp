@@ -65,15 +65,27 @@ std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) 
     for (std::int64_t i = 0; i < count; ++i)
       angles.push_back(2 * kPi * static_cast<double>(i) / static_cast<double>(count));
   }
-  const auto exact = [](double x) {
-    return std::fabs(x) < 1e-15 ? 0 : std::fabs(std::fabs(x) - 1) < 1e-15 ? std::round(x) : x;
-  };
   std::vector<Rotation> turns;
-  for (const double angle : angles) {
-    const auto [sine, cosine] = sincos(angle);
-    turns.push_back(limbs::rotation_about(about, number(exact(sine)), number(exact(cosine))));
-  }
+  turns.reserve(angles.size());
+  for (const double angle : angles) turns.push_back(rotation_by(about, number(angle)));
   return turns;
+}
+
+/// The frames in which the copies of a limb have one of their ends.
+/// @param key    "base_in" or "platform_in": the name of a frame, or a list of names, one for each copy
+/// @param usual  the frame if the key is absent
+std::vector<const NamedFrame*> frames_of(const ConfigValue& table, const char* key, const char* usual,
+                                         std::size_t copies, const MechanismDraft& draft) {
+  const auto given = table.find(key);
+  if (!given) return std::vector(copies, &draft.frames.at(usual));
+  const auto frame = [&](const ConfigValue& value) { return &draft.frames.at(value.word(draft.frame_names)); };
+  if (!given->is_list()) return std::vector(copies, frame(*given));
+  const std::string expected = "a frame, or a list of frames, one for each of the " + std::to_string(copies) + " limbs";
+  const std::vector<ConfigValue> elements = given->elements(expected);
+  if (elements.size() != copies) throw given->error(expected);
+  std::vector<const NamedFrame*> found;
+  for (const ConfigValue& element : elements) found.push_back(frame(element));
+  return found;
 }
 
 bool on_platform(const ConfigValue& table, const std::string& key) { return table.word_at(key) == "platform"; }
@@ -82,11 +94,15 @@ limbs::Ends read_ends(const LimbCopy& copy) {
   const ConfigValue& table = copy.table;
   MechanismDraft& draft = copy.draft;
   const auto end = table.find("end");
-  if (const auto both = table.find("platform"); both && end)
-    throw both->refusal(
-        "give the end point either by `platform` (in the platform's frame) or by `end` (in the base's), not both");
+  for (const char* const key : {"platform", "platform_in"})
+    if (const auto both = table.find(key); both && end)
+      throw both->refusal(
+          "give the end point either by `platform` (in the platform's or another frame) or by `end` (in the base's), "
+          "not both");
   const Vector3 base =
-      copy.turn * draft.scope.point_of_design(table.at("base", "the base point [x, y, z]"), copy.group);
+      copy.base.at.origin +
+      copy.base.at.rotation *
+          (copy.turn * draft.scope.point_of_design(table.at("base", "the base point [x, y, z]"), copy.group));
   const auto reached = [&] {
     if (end) {
       if (table.has("copies"))
@@ -95,7 +111,8 @@ limbs::Ends read_ends(const LimbCopy& copy) {
       return draft.scope.point(*end, copy.group);
     }
     const ConfigValue platform = table.at("platform", "the platform's point [x, y, z]");
-    return draft.origin + draft.turn * (copy.turn * draft.scope.point_of_design(platform, copy.group));
+    return copy.platform.at.origin +
+           copy.platform.at.rotation * (copy.turn * draft.scope.point_of_design(platform, copy.group));
   };
   limbs::Ends ends{.A = base, .B = reached(), .across = {}};
   if (const auto across = table.find("across")) {
@@ -126,6 +143,15 @@ void add_passive_joint(const LimbCopy& copy, const char* key, const char* called
   draft.scope.mark_as_defined(angle.node());
 }
 
+/// Whether a frame rotates relative to another one.
+bool rotates(const NamedFrame& frame, const NamedFrame& other) {
+  const Rotation &A = other.at.rotation, &B = frame.at.rotation;
+  const auto is_same_row = [](const Vector3& a, const Vector3& b) { return nodes(a) == nodes(b); };
+  if (std::ranges::equal(A, B, is_same_row)) return false;
+  return std::ranges::any_of(expression::elements(expression::transpose(A) * B),
+                             [](const Term& term) { return depends_on_pose(term.graph(), term.node()); });
+}
+
 /// Reads the vector from the middle of a pair of rods to one of them; std::nullopt for a single rod.
 std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   const auto pair = copy.table.find_table("pair");
@@ -136,10 +162,10 @@ std::optional<Vector3> read_pair(const LimbCopy& copy, const NamedLimb& limb) {
   const auto along = pair->find("along");
   if (is_crank && along)
     throw along->refusal("the rods of a crank's pair are always spaced along the crank's axis; remove `along`");
-  const auto& about = copy.draft.model.rotation_axes;
-  if (limb.end_on == "platform" && std::ranges::any_of(about, [](const auto& axis) { return axis.has_value(); }))
-    throw pair->refusal(
-        "the rods of a pair stay parallel only if the platform does not rotate, but this platform rotates");
+  if (limb.end_on == copy.platform.body && rotates(copy.platform, copy.base))
+    throw pair->refusal("the rods of a pair stay parallel only if the " +
+                        (copy.platform.name == kPlatformFrame ? "platform" : "frame " + copy.platform.name) +
+                        " does not rotate, but it rotates");
   const Vector3 side =
       is_crank ? *limb.axis : copy.direction(pair->at("along", "the direction from one rod to the other"));
   return side * (copy.draft.scope.positive(pair->at("spacing", "the rods' distance"), "m", copy.name) * 0.5);
@@ -161,12 +187,15 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
   const auto end_on = table.find("end_on");
   if (end_on && !table.has("end"))
     throw end_on->refusal("`end_on` requires `end`; a limb that ends at `platform` is attached to the platform");
-  limb.end_on = end_on ? end_on->text("\"platform\" or the name of a body") : table.has("end") ? "" : "platform";
+  limb.begin_on = copy.base.body;
+  limb.end_on = end_on             ? end_on->text("\"platform\" or the name of a body")
+                : table.has("end") ? ""
+                                   : copy.platform.body;
   limb.beside = read_pair(copy, limb);
   if (const auto universal = table.find("universal")) {
     if (!limb.has_rod || limb.revolute || limb.beside)
       throw universal->refusal("`universal` requires a single rod or leg, without `across`, `pair` or `links`");
-    limb.universal = copy.direction(*universal);
+    limb.universal = {copy.direction(*universal), copy.direction(*universal, limb.end_on == copy.platform.body)};
   }
   return limb;
 }
@@ -214,7 +243,8 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   model.info.closed_forms.push_back(copy.drive + ": " + limb.form);
   add_range(copy.table, copy.group, joint, model.info.joints.back().unit, limb.joint, draft);
   add_equivalent_constraints(limb, copy.table.has("range"), model);
-  if (copy.drive != "slider" || copy.table.has("rod")) model.rods.push_back({nodes(limb.C), nodes(at.B)});
+  if ((copy.drive != "slider" || copy.table.has("rod")) && !copy.moves())
+    model.rods.push_back({nodes(limb.C), nodes(at.B)});
   add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);
   draft.limbs.push_back(named(copy, at, limb));
@@ -229,6 +259,9 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
 /// @param number  suffix of the copy's name; "": there are no copies
 void read_copy(const LimbCopy& copy, const std::string& number) {
   refuse_known(copy.table, copy.name, copy.draft);
+  if (!copy.table.has("end") && copy.base.body == copy.platform.body)
+    throw copy.table.refusal("both ends of the limb are in frames of one body, " + copy.base.body + ": " +
+                             copy.base.name + " and " + copy.platform.name);
   const auto given = copy.table.find("joint_name");
   const std::string joint = given ? given->text("the joint's name") + number : copy.name;
   const limbs::Ends at = read_ends(copy);
@@ -244,10 +277,12 @@ void read_limb(const ConfigValue& value, MechanismDraft& draft) {
   if (drive == "formula")
     return read_as_limb(
         name, [&] { read_formula_limb(table, name, draft); }, draft);
-  int copies = 0;
-  for (const Rotation& turn : turns_of(table, draft)) {
-    const std::string number = table.has("copies") ? std::to_string(++copies) : "";
-    const LimbCopy copy{table, draft, drive, name, name + number, turn};
+  const std::vector<Rotation> turns = turns_of(table, draft);
+  const auto base = frames_of(table, "base_in", kBaseFrame, turns.size(), draft),
+             platform = frames_of(table, "platform_in", kPlatformFrame, turns.size(), draft);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const std::string number = table.has("copies") ? std::to_string(i + 1) : "";
+    const LimbCopy copy{table, draft, drive, name, name + number, turns[i], *base[i], *platform[i]};
     read_as_limb(
         copy.name, [&] { read_copy(copy, number); }, draft);
   }

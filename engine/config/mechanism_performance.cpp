@@ -241,6 +241,9 @@ class Performance {
         lack(name, "no limb has `drive_stiffness` or a section with `young`, and no [[drive_train]] has `stiffness`");
       return;
     }
+    for (const NamedLimb& limb : draft_.limbs)
+      if (limb.begin_on != kBaseFrame)
+        return lack("stiffness", "limb " + limb.name + " begins on the frame " + limb.begin_on + ", which moves");
     if (joints_ < model_.inputs.coordinates)
       return lack("stiffness", "the drives do not determine all coordinates: " + why_no_inverse());
     const auto rigid = [](const generic::LimbSpring& spring) { return spring.compliance.is(0); };

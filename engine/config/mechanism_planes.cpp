@@ -106,9 +106,9 @@ void refuse_changing_planes(MechanismDraft& draft) {
         throw draft.in_planes[i].across.refusal(
             "the component of B - A along `across` changes with the pose (" + length_text(offsets[i].least) + " to " +
             length_text(offsets[i].greatest) + (design == 0 ? "" : " for a design other than the default") +
-            "), so the limb cannot stay in the plane normal to `across`; give formulas in `origin` or `end` that keep "
-            "it in this plane, omit `across` if the rod ends in ball joints, or put `end` into the plane if a joint "
-            "slides along `across`");
+            "), so the limb cannot stay in the plane normal to `across`; give formulas in `follows`, `origin` or `end` "
+            "that keep it in this plane, omit `across` if the rod ends in ball joints, or put `end` into the plane if "
+            "a joint slides along `across`");
   }
 }
 

@@ -110,8 +110,14 @@ void read_inputs(const ConfigValue& root, MechanismDraft& draft) {
 void read_quantities(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft) {
   auto tables = root.tables("quantity");
   if (study) std::ranges::copy(study->tables("quantity"), std::back_inserter(tables));
-  if (tables.empty()) return;
   generic::Model& model = draft.model;
+  for (const generic::DependentCoordinate& each : model.dependent) {
+    const std::string meaning = "dependent coordinate, " + each.kind;
+    const auto of_pose = formula_quantity(each.name, each.unit, meaning, model.quantities.size());
+    model.quantities.push_back(each.node);
+    model.info.quantities.push_back({.name = each.name, .unit = each.unit, .meaning = meaning, .of_pose = of_pose});
+  }
+  if (tables.empty()) return;
   const std::vector<Moving> moving = moving_inputs(model);
   expression::Rates rates(model.graph);
   for (const Moving& each : moving) {
@@ -122,6 +128,7 @@ void read_quantities(const ConfigValue& root, const ConfigValue* study, Mechanis
     if (!draft.scope.knows(name + "_rate")) draft.scope.add(at, name + "_rate", rates.of(node).node());
   };
   for (const Moving& each : moving) add_rate(tables.front(), each.name, each.value);
+  for (const generic::DependentCoordinate& each : model.dependent) add_rate(tables.front(), each.name, each.node);
   draft.scope.allow_motion(true);
   for (const ConfigValue& table : tables) {
     const std::string name = new_name(table, "quantity", model.info.quantities, "the quantity's name");

@@ -1,6 +1,7 @@
 #include "engine/config/mechanism_scope.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
@@ -29,11 +30,34 @@ void MechanismScope::add(const ConfigValue& at, const std::string& name, const V
   values_.push_back(value);
 }
 
-void MechanismScope::add_predefined(const std::string& name, const Value& value) {
+void MechanismScope::add_deferred(const ConfigValue& at, const std::string& name, std::function<Value()> value) {
+  add(at, name, Value(model_.term(model_.graph.number(0))));
+  deferred_[*names_.find(name)] = {name, std::move(value)};
+}
+
+void MechanismScope::add_predefined(const std::string& name, std::function<Value()> value) {
   if (names_.find(name)) return;
   names_.add(name, expression::Names::Listing::never);
   origins_.emplace_back();
-  values_.push_back(value);
+  values_.push_back(model_.term(model_.graph.number(0)));
+  deferred_[values_.size() - 1] = {name, std::move(value)};
+}
+
+const MechanismScope::Value& MechanismScope::value_of(std::size_t index, const ConfigValue& user) {
+  if (const auto found = deferred_.find(index); found != deferred_.end()) {
+    Deferred& deferred = found->second;
+    if (!deferred.compute) throw user.refusal("'" + deferred.name + "' depends on itself");
+    const auto compute = std::exchange(deferred.compute, nullptr);
+    const bool motion_was_allowed = std::exchange(motion_allowed_, false);
+    values_[index] = compute();
+    motion_allowed_ = motion_was_allowed;
+    deferred_.erase(index);
+  }
+  return values_[index];
+}
+
+void MechanismScope::resolve(const ConfigValue& root) {
+  while (!deferred_.empty()) value_of(deferred_.begin()->first, root);
 }
 
 void MechanismScope::add_point(const std::string& name, const Vector3& point) {
@@ -44,6 +68,7 @@ void MechanismScope::add_point(const std::string& name, const Vector3& point) {
 
 void MechanismScope::replace(const std::string& name, const Value& value) {
   values_[names_.find(name).value()] = value;
+  deferred_.erase(names_.find(name).value());
 }
 
 bool MechanismScope::knows(const std::string& name) const {
@@ -60,7 +85,7 @@ MechanismScope::Value MechanismScope::formula_of_any_kind(const ConfigValue& val
   if (const std::string kind = kind_of_quantity(text); !kind.empty())
     throw value.error_of('"' + text + "\", " + kind, kind_of_unit(unit) + ", or a formula: " + quantity_hint(unit));
   const auto [parsed, norms] = value.explained([&] {
-    return expression::parse_formula(model_.graph, text, names_, [this](std::size_t i) { return values_[i]; });
+    return expression::parse_formula(model_.graph, text, names_, [&](std::size_t i) { return value_of(i, value); });
   });
   for (const Node norm : norms) {
     const expression::Entry root = model_.graph[norm];

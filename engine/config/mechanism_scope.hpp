@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <unordered_set>
@@ -23,9 +25,15 @@ class MechanismScope {
   /// Refuses a name that is invalid in formulas or in use.
   void add(const ConfigValue& at, const std::string& name, const Value& value);
   void add(const ConfigValue& at, const std::string& name, expression::Node node) { add(at, name, model_.term(node)); }
-  /// Adds a name that the program defines in every file. A file may define the same name itself, which replaces its
-  /// value.
-  void add_predefined(const std::string& name, const Value& value);
+  /// Adds a name whose value is computed when a formula uses it first, so that the formulas that define it may use
+  /// names that are added later. resolve() computes the values that are still missing.
+  void add_deferred(const ConfigValue& at, const std::string& name, std::function<Value()> value);
+  /// Adds a deferred name that every file may use, and may also give to something of its own: then it has this other
+  /// meaning.
+  void add_predefined(const std::string& name, std::function<Value()> value);
+  /// The value of a name. @param user  the value that refers to it; refused if the name depends on itself
+  const Value& value(const std::string& name, const ConfigValue& user) { return value_of(*names_.find(name), user); }
+  void resolve(const ConfigValue& root);
   /// Adds the name of a point of a limb, "arm1.C".
   void add_point(const std::string& name, const limbs::Vector3& point);
   /// Assigns another value to a name, for example a threshold in place of a parameter.
@@ -70,6 +78,7 @@ class MechanismScope {
   void add_domains();
 
  private:
+  const Value& value_of(std::size_t index, const ConfigValue& user);
   limbs::Vector3 vector(const ConfigValue& value, const std::string& unit, const std::string& what,
                         const char* expected, bool depends_on_pose);
   /// Refuses a value that depends on the pose.
@@ -90,8 +99,13 @@ class MechanismScope {
   generic::Model& model_;
   expression::Names names_;
   std::vector<Value> values_;
-  /// For each name, where it is defined, such as "parameters.a (line 7)"; "": by the program.
-  std::vector<std::string> origins_;
+  /// A name whose value has not been computed yet.
+  struct Deferred {
+    std::string name;
+    std::function<Value()> compute;  ///< empty while the value is being computed
+  };
+  std::map<std::size_t, Deferred> deferred_;  ///< by the index of the name
+  std::vector<std::string> origins_;          ///< "parameters.a (line 7)"; "": predefined
   std::vector<PartialOperation> partial_operations_;
   std::unordered_set<expression::Node> visited_;
   bool motion_allowed_ = false;

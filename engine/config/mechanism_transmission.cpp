@@ -64,6 +64,9 @@ std::string why_no_transmission(const ConfigValue& root, const ConfigValue* stud
   for (const NamedLimb& limb : draft.limbs)
     if (limb.drive == "formula" || limb.has_links)
       return "limb " + limb.name + " does not act on the platform by a single force along a rod, telescope or slide";
+  for (const NamedLimb& limb : draft.limbs)
+    if (limb.begin_on != kBaseFrame)
+      return "limb " + limb.name + " begins on the frame " + limb.begin_on + ", which moves";
   if (draft.limbs.size() != coordinates)
     return "there are " + std::to_string(draft.limbs.size()) + " limbs for " + std::to_string(coordinates) +
            " coordinates";

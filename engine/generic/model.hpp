@@ -125,8 +125,21 @@ struct ArmNodes {
   std::optional<Node> joint;  ///< joint coordinate, if the arm is driven; otherwise std::nullopt
 };
 
-/// A rigid body. Its mass properties are given by its kinetic energy T: 2 T is the sum of the terms below, in which '
-/// denotes the time derivative.
+/// A coordinate of the platform that follows from the coordinates of the pose.
+struct DependentCoordinate {
+  std::string name, unit;
+  std::string kind;  ///< "along x", "about z"
+  Node node{};
+};
+
+/// A frame of the mechanism file.
+struct FrameInfo {
+  std::string name;
+  std::string on;   ///< the frame in which it is defined
+  bool is_movable;  ///< whether it moves relative to that frame
+};
+
+/// A rigid body. Twice its kinetic energy is the sum of the terms below; ' is the time derivative.
 struct BodyNodes {
   /// The term weight f' . g' of 2 T, for the vectors f and g.
   struct Product {
@@ -152,6 +165,8 @@ struct BodyNodes {
   /// Principal moments of inertia about the centre of mass: for a slender body along and across its axis, otherwise
   /// about the axes of the platform frame.
   std::optional<std::array<Node, 3>> inertia{};
+  /// Rotation of the axes of `inertia`, by rows; std::nullopt: those of a slender body.
+  std::optional<std::array<std::array<Node, 3>, 3>> axes{};
   std::string part_of{};  ///< name of the body to which this one is rigidly attached; "" if there is none
 };
 
@@ -174,7 +189,9 @@ struct SolidNodes {
   std::optional<std::array<Node, 3>> line{};
   /// Offset of the solid's centre of mass from that of `bodies`; std::nullopt: there is none.
   std::optional<std::array<Node, 3>> centre_offset{};
-  bool with_platform = false;  ///< true: the body rotates with the platform
+  bool with_platform = false;  ///< true: the body is the platform
+  /// Rotation of the platform or of a [[frame]], by rows; std::nullopt: the body rotates with `line`, if at all.
+  std::optional<std::array<std::array<Node, 3>, 3>> rotation{};
 
   /// The elasticity of a solid as a beam: one of its joints clamps it, all other joints load it.
   struct Beam : BeamNodes {
@@ -265,9 +282,11 @@ struct Model {
   // platform frame
   std::array<Node, 3> origin;
   std::array<std::array<Node, 3>, 3> rotation;  ///< rotation matrix, by rows
+  std::vector<DependentCoordinate> dependent;   ///< coordinates that follow from the others
+  std::vector<FrameInfo> frames;                ///< frames of the file
   /// Axis of the rotation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if it describes none.
   std::vector<std::optional<std::size_t>> rotation_axes;
-  /// Unit vector along the rotation axis of each coordinate; 0 if the coordinate describes no rotation.
+  /// Angular velocity of the platform for a unit rate of a coordinate, by coordinate.
   std::vector<std::array<Node, 3>> rotation_directions;
   /// Axis of the translation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if none.
   std::vector<std::optional<std::size_t>> translation_axes;

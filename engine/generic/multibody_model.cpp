@@ -121,6 +121,8 @@ class MultibodyBuilder {
     for (const SolidNodes& solid : of_.solids) {
       add(solid.point);
       if (solid.line) add(*solid.line);
+      if (solid.rotation)
+        for (const VectorNodes& row : *solid.rotation) add(row);
       if (solid.centre_offset) add(*solid.centre_offset);
     }
     for (const JointNodes& joint : of_.joints) {
@@ -163,10 +165,13 @@ class MultibodyBuilder {
     for (std::size_t j = 0; j < rates_.size(); ++j) {
       motion.v[j] = rate(solid.point, j);
       if (solid.centre_offset) motion.v[j] += rate(*solid.centre_offset, j);
-      if (solid.with_platform) {
-        Matrix3d first;
-        for (std::size_t i = 0; i < 3; ++i) first.row(static_cast<Index>(i)) = rate(model_.rotation[i], j);
-        const Matrix3d spin = first * rotation().transpose();
+      if (solid.rotation) {
+        Matrix3d R, first;
+        for (std::size_t i = 0; i < 3; ++i) {
+          R.row(static_cast<Index>(i)) = at_pose((*solid.rotation)[i]);
+          first.row(static_cast<Index>(i)) = rate((*solid.rotation)[i], j);
+        }
+        const Matrix3d spin = first * R.transpose();
         motion.omega[j] = {spin(2, 1), spin(0, 2), spin(1, 0)};
       } else if (solid.line) {
         const Vector3d d = at_pose(*solid.line);
@@ -186,7 +191,7 @@ class MultibodyBuilder {
       for (std::size_t k = 0; k < 3; ++k)
         added.inertia(static_cast<Index>(row), static_cast<Index>(k)) = body.inertia(row, k);
     // the body does not rotate, so that the equations of motion do not contain its inertia
-    if (!solid.with_platform && !solid.line)
+    if (!solid.rotation && !solid.line)
       for (const std::size_t part : solid.bodies)
         if (const auto& own = model_.bodies[part].inertia) added.inertia.diagonal() += at_pose(*own) * solid.share;
     motions_.push_back(motion_of(solid));

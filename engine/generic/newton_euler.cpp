@@ -36,7 +36,6 @@ class System {
     const std::vector<Node> nodes = needed();
     const std::vector<Taylor> values = outputs_of(expression::Program(model_.graph, nodes), inputs);
     for (std::size_t i = 0; i < nodes.size(); ++i) value_.emplace(nodes[i], values[i]);
-    find_rotation_of_platform();
   }
 
   NewtonEuler newton_euler(const Wrench<double>& wrench) const {
@@ -60,14 +59,17 @@ class System {
     std::vector<Node> nodes;
     const auto add = [&nodes](const VectorNodes& point) { nodes.insert(nodes.end(), point.begin(), point.end()); };
     add(*model_.wrench_point);
-    for (const VectorNodes& row : model_.rotation) add(row);
     for (const BodyNodes& body : model_.bodies) {
       add(body.centre);
       nodes.push_back(body.mass);
       if (body.inertia) add(*body.inertia);
+      if (body.axes)
+        for (const VectorNodes& row : *body.axes) add(row);
     }
     for (const SolidNodes& solid : model_.jointed->solids) {
       add(solid.point);
+      if (solid.rotation)
+        for (const VectorNodes& row : *solid.rotation) add(row);
       if (solid.line) add(*solid.line);
       if (solid.centre_offset) add(*solid.centre_offset);
     }
@@ -91,20 +93,21 @@ class System {
     return moving;
   }
 
-  /// Computes the rotation matrix R of the platform, its angular velocity omega, [omega]x = R' R^T, and its angular
-  /// acceleration epsilon, [epsilon]x = R'' R^T + R' R'^T.
-  void find_rotation_of_platform() {
-    Mat first, second;  // first and second derivative of R with respect to time
+  /// A rotation matrix R and its first and second derivatives with respect to time.
+  struct MovingRotation {
+    Mat R, first, second;
+  };
+  MovingRotation at(const std::array<VectorNodes, 3>& rows) const {
+    MovingRotation moving;
     for (std::size_t i = 0; i < 3; ++i) {
-      const MovingVector row = at(model_.rotation[i]);
+      const MovingVector row = at(rows[i]);
       for (std::size_t k = 0; k < 3; ++k) {
-        R_(i, k) = row.x[k];
-        first(i, k) = row.v[k];
-        second(i, k) = row.a[k];
+        moving.R(i, k) = row.x[k];
+        moving.first(i, k) = row.v[k];
+        moving.second(i, k) = row.a[k];
       }
     }
-    omega_ = axial(first * transpose(R_));
-    epsilon_ = axial(second * transpose(R_) + first * transpose(first));
+    return moving;
   }
 
   /// The rigid body of a solid with its position and motion, but without mass.
@@ -112,9 +115,10 @@ class System {
     RigidBody body;
     body.name = solid.name;
     body.centre = at(solid.point).x;
-    if (solid.with_platform) {
-      body.omega = omega_;
-      body.epsilon = epsilon_;
+    if (solid.rotation) {  // omega x = R' R^T, epsilon x = R'' R^T + R' R'^T
+      const auto [R, first, second] = at(*solid.rotation);
+      body.omega = axial(first * transpose(R));
+      body.epsilon = axial(second * transpose(R) + first * transpose(first));
     } else if (solid.line) {
       // omega = d x d' / |d|^2, which has no component along the body's direction d; and its time derivative
       const MovingVector d = at(*solid.line);
@@ -129,9 +133,10 @@ class System {
   Mat inertia_of(const SolidNodes& solid, const BodyNodes& body) const {
     Mat inertia;
     if (!body.inertia) return inertia;
-    if (solid.with_platform) {
+    if (body.axes) {
       for (std::size_t k = 0; k < 3; ++k) inertia(k, k) = number((*body.inertia)[k]);
-      return R_ * inertia * transpose(R_);
+      const Mat R = at(*body.axes).R;
+      return R * inertia * transpose(R);
     }
     if (!solid.line) return inertia;  // the body does not rotate, so that its inertia has no effect
     const Vec u = unit(at(*solid.line).x);
@@ -204,8 +209,6 @@ class System {
 
   const Model& model_;
   std::map<Node, Taylor> value_;
-  Mat R_;
-  Vec omega_, epsilon_;
 };
 
 }  // namespace

@@ -48,8 +48,8 @@ namespace {
 /// motions, obstacles, discontinuities of columns, which limits of quantities can cause, the search for the component
 /// of a home pose, and statistics over built machines.
 std::vector<std::string> experiments() {
-  const std::set<std::string> excluded = {"motions",    "mechanisms",   "motors", "obstacles",
-                                          "quantities", "connectivity", "tasks",  "tolerances"};  // folders
+  const std::set<std::string> excluded = {"motions", "mechanisms", "motors", "obstacles", "quantities", "connectivity",
+                                          "tasks",   "tolerances", "cables", "frames"};  // folders
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
     if (entry.path().extension() != ".toml" || excluded.contains(entry.path().parent_path().filename().string()))

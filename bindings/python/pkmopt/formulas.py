@@ -191,9 +191,9 @@ class Description:
         self._tables["survey"] = {"sweep": list(ranges), "box": ranges, **({"fixed": fixed} if fixed else {})}
 
     def table(self, name: str, **keys: Any) -> None:
-        """Further keys of a table, [masses], [platform], .., or a further [[link]], [[body]], .. if ``name`` is one of
+        """Further keys of a table, [masses], [platform], .., or a further [[frame]], [[link]], .. if ``name`` is one of
         those."""
-        if name in ("link", "body", "joint", "design", "limit"):
+        if name in ("frame", "link", "body", "joint", "design", "limit"):
             self._lists.setdefault(name, []).append(keys)
         else:
             self._tables.setdefault(name, {}).update(keys)

@@ -1,4 +1,6 @@
 // Transmission of velocities and forces, and accuracy.
+#include <algorithm>
+
 #include "engine/expression/derivative.hpp"
 #include "engine/generic/equations.hpp"
 #include "engine/generic/performance/performance.hpp"
@@ -24,6 +26,16 @@ TermMatrix without_zero_rows(const TermMatrix& A) {
   for (std::size_t i = 0; i < kept.size(); ++i)
     for (std::size_t j = 0; j < A.columns(); ++j) result(i, j) = A(kept[i], j);
   return result;
+}
+
+std::size_t nonzero_columns(const TermMatrix& A) {
+  std::size_t count = 0;
+  for (std::size_t j = 0; j < A.columns(); ++j) {
+    bool is_zero = true;
+    for (std::size_t i = 0; i < A.rows(); ++i) is_zero = is_zero && A(i, j).is(0);
+    count += is_zero ? 0 : 1;
+  }
+  return count;
 }
 
 Term max(const Term& x, const Term& y) { return call(expression::operation("max"), x, y); }
@@ -61,7 +73,10 @@ FirstOrderKinematics first_order_kinematics(Model& model) {
       rotation(i, j) = model.term(model.rotation_directions[j][i]);
     }
   }
-  if (rotations.size() < 3) {
+  const auto turns = [](const DependentCoordinate& each) { return each.kind.starts_with("about"); };
+  if (std::ranges::any_of(model.dependent, turns)) {
+    rotation = without_zero_rows(rotation);
+  } else if (rotations.size() < 3) {
     rotation = TermMatrix(model.graph, rotations.size(), n);
     for (std::size_t i = 0; i < rotations.size(); ++i) rotation(i, rotations[i]) = Term(model.graph, 1.0);
   }
@@ -75,6 +90,7 @@ std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderK
   const auto add = [&](const TermMatrix& T, const std::string& velocity, const std::string& force,
                        const std::string& velocity_text, const std::string& force_text, bool is_rotation) {
     if (T.rows() == 0 || T.rows() > T.columns()) return;
+    if (is_rotation && T.rows() > nonzero_columns(T)) return;  // no motion for some angular velocities
     const TermMatrix V = T * kinematics.inverse->adjugate;
     const auto [least, greatest] = eigenvalue_range(V * V.transposed());
     const std::string unit = is_rotation == turns ? "1" : is_rotation ? "rad/m" : "m/rad";

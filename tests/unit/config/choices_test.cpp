@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
@@ -24,11 +23,6 @@ std::string replaced(std::string text, const std::string& before, const std::str
   EXPECT_NE(at, std::string::npos) << before;
   return at == std::string::npos ? text : text.replace(at, before.size(), after);
 }
-std::string text_of_file(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 SourceText delta_description() { return {test::text_of_mechanism("rotary-delta"), "rotary-delta.toml"}; }
 
 TEST(ChoiceFromACatalogue, IsTheStudyWithTheValuesOfTheRow) {
@@ -45,14 +39,14 @@ TEST(ChoiceFromACatalogue, IsTheStudyWithTheValuesOfTheRow) {
   EXPECT_EQ(chosen.drive_trains()->at(2).ratio, 7);
   EXPECT_EQ(chosen.drive_trains()->at(2).shaft, 1.4e-5);
   EXPECT_EQ(&problem.of(parameters), &problem.of(parameters));
-  std::string text = replaced(text_of_file(kChosenDrive), "motor = { from = \"motors.toml\" }", "");
+  std::string text = replaced(test::text_of_file(kChosenDrive), "motor = { from = \"motors.toml\" }", "");
   text = replaced(text, "gear  = { from = \"gears.toml\" }", "");
   text = replaced(text, "= \"motor.name\"", "= \"200 W\"");
   text = replaced(text, "\"gear.ratio\"", "7");
   text = replaced(text, "\"gear.inertia\"", "1.4e-5");
   text = replaced(text, "\"gear.efficiency\"", "0.97");
-  const Study fixed = read_study_toml(text + text_of_file(test::kMechanismFolder + "motors/motors.toml"), "s.toml",
-                                      all_catalogues(), delta_description());
+  const Study fixed = read_study_toml(text + test::text_of_file(test::kMechanismFolder + "motors/motors.toml"),
+                                      "s.toml", all_catalogues(), delta_description());
   const DesignReport a = problem.report(parameters), b = fixed.problem->report(fixed.problem->parts().parameters);
   ASSERT_TRUE(std::isfinite(a.objectives.at(0)));
   EXPECT_EQ(a.objectives, b.objectives);

@@ -71,7 +71,7 @@ TEST(Across, ARodThatLeavesItsPlaneIsRefused) {
   EXPECT_THAT(
       message,
       HasSubstr("robot.toml:21: limb[1].across: the component of B - A along `across` changes with the pose ("));
-  EXPECT_THAT(message, HasSubstr("give formulas in `origin` or `end` that keep it in this plane"));
+  EXPECT_THAT(message, HasSubstr("give formulas in `follows`, `origin` or `end` that keep it in this plane"));
   EXPECT_EQ(refusal_of(rewritten(robot("3-prs-across"), "across = [^\n]*\n", "")), "it is accepted");
 }
 

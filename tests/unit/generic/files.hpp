@@ -32,13 +32,17 @@ inline const std::vector<std::string>& mechanism_files() {
   return names;
 }
 
+inline std::string text_of_file(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
 /// Of a file of experiments/mechanisms, or of the catalogue.
 inline std::string text_of_mechanism(const std::string& name) {
   if (std::ranges::any_of(all_mechanisms(), [&](const MechanismEntry& entry) { return entry.name() == name; }))
     return mechanism_file_text(name);
-  std::ostringstream text;
-  text << std::ifstream(kMechanismFolder + name + ".toml").rdbuf();
-  return text.str();
+  return text_of_file(kMechanismFolder + name + ".toml");
 }
 
 /// Read once.
