@@ -48,8 +48,8 @@ std::optional<Coefficients> product(const Coefficients& p, const Coefficients& q
 
 class NormalForm {
  public:
-  NormalForm(Graph& graph, Groups z, std::size_t degree, bool squares)
-      : graph_(graph), z_(z), degree_(degree), squares_(squares) {}
+  NormalForm(Graph& graph, Groups z, std::size_t degree, bool squares, const std::vector<bool>& nonnegative)
+      : graph_(graph), z_(z), degree_(degree), squares_(squares), nonnegative_(nonnegative) {}
 
   /// The radical form of a node; std::nullopt if it has none. The graph is traversed depth-first with an explicit stack
   /// and a cache, because a node may depend on 10^5 others, and on each of them in several ways.
@@ -95,6 +95,7 @@ class NormalForm {
         [[fallthrough]];
       case Code::negate:
       case Code::sqrt:
+      case Code::abs:
         return {entry.arguments[0]};
       default:
         return {};
@@ -136,6 +137,11 @@ class NormalForm {
         if (!x || !x->B.empty()) return {};
         return RadicalForm{.A = {}, .B = {Term(graph_, 1.0)}, .radicand = entry.arguments[0], .Q = x->A};
       }
+      case Code::abs: {  // |b sqrt(Q)| = |b| sqrt(Q)
+        const auto& x = forms_.at(entry.arguments[0]);
+        if (!squares_ || !x || !x->A.empty() || x->B.size() != 1) return {};
+        return RadicalForm{.A = {}, .B = {abs(x->B[0])}, .radicand = x->radicand, .Q = x->Q};
+      }
       default:
         return {};
     }
@@ -149,15 +155,30 @@ class NormalForm {
       if (code == Code::max) return disjunction(clauses(entry.arguments[0]), clauses(entry.arguments[1]));
       if (code == Code::subtract) {
         const Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+        if (auto found = squares_ ? clauses_of_form(node) : std::nullopt) return found;
         if (const auto inner = inside_of_abs(y))  // x - |u| >= 0
           return conjunction(clauses((x - *inner).node()), clauses((x + *inner).node()));
         if (const auto inner = inside_of_abs(x))  // |u| - y >= 0
           return disjunction(clauses((*inner - y).node()), clauses((-*inner - y).node()));
+        if (auto found = squares_ ? clauses_of_moved(x, y) : std::nullopt) return found;
       }
     }
     if (auto found = clauses_of_form(node)) return found;
     if (auto found = squares_ ? clauses_of_squares(node) : std::nullopt) return found;
     return clauses_of_multiple(node);
+  }
+
+  /// Converts x - y >= 0, where one of x and y is a minimum or a maximum, and the other one does not depend on z.
+  Clauses clauses_of_moved(const Term& x, const Term& y) {
+    const bool is_first = is_independent(y);
+    if (!is_first && !is_independent(x)) return {};
+    const Entry entry = graph_[(is_first ? x : y).node()];
+    const Code code = entry.operation ? entry.operation->code : Code::other;
+    if (code != Code::min && code != Code::max) return {};
+    const Term a(graph_, entry.arguments[0]), b(graph_, entry.arguments[1]);
+    const Clauses first = clauses((is_first ? a - y : x - a).node()),
+                  second = clauses((is_first ? b - y : x - b).node());
+    return (code == Code::min) == is_first ? conjunction(first, second) : disjunction(first, second);
   }
 
   /// Converts c f >= 0 and f / c >= 0, where c does not depend on z but f contains minima, maxima or absolute values,
@@ -208,11 +229,28 @@ class NormalForm {
       stack.pop_back();
       const Code code = entry.operation ? entry.operation->code : Code::other;
       if (entry.is_number() ? entry.number >= 0 : code == Code::sqrt || code == Code::abs) continue;
+      if (entry.input >= 0 && static_cast<std::size_t>(entry.input) < nonnegative_.size() &&
+          nonnegative_[static_cast<std::size_t>(entry.input)])
+        continue;
       if (code == Code::multiply && entry.arguments[0] == entry.arguments[1]) continue;
       if (code != Code::multiply && code != Code::add && code != Code::divide) return false;
       stack.insert(stack.end(), entry.operands().begin(), entry.operands().end());
     }
     return true;
+  }
+
+  /// -f; if f is a negation, or a product or quotient with a negative number, without that sign.
+  Node negated_factor(Node f) const {
+    const Entry entry = graph_[f];
+    const Code code = entry.operation ? entry.operation->code : Code::other;
+    if (code == Code::negate) return entry.arguments[0];
+    if (code == Code::multiply || code == Code::divide)
+      for (const std::size_t i : {0, 1})
+        if (const Entry& factor = graph_[entry.arguments[i]]; factor.is_number() && factor.number < 0) {
+          const Term positive(graph_, -factor.number), other(graph_, entry.arguments[1 - i]);
+          return (code == Code::multiply ? positive * other : i == 0 ? positive / other : other / positive).node();
+        }
+    return (-Term(graph_, f)).node();
   }
 
   /// Converts A + B sqrt(Q) >= 0, where B does not depend on z.
@@ -226,9 +264,7 @@ class NormalForm {
     if (!BBQ) return {};
     if (f->B.size() != 1) return {};
     const Term b = f->B[0];
-    if (is_nonnegative((-b).node()) ||
-        (graph_[b.node()].operation == &negation() && is_nonnegative(graph_[b.node()].arguments[0])))
-      return conjunction(clause({f->A}), clause({sum(*AA, negated(*BBQ))}));
+    if (is_nonnegative(negated_factor(b.node()))) return conjunction(clause({f->A}), clause({sum(*AA, negated(*BBQ))}));
     if (is_nonnegative(b.node())) return clause({f->A, sum(*BBQ, negated(*AA))});
     if (!squares_) return {};
     // If the sign of b is unknown, combine the two cases b >= 0 and b <= 0 in conjunctive normal form.
@@ -387,6 +423,7 @@ class NormalForm {
   Groups z_;
   std::size_t degree_;
   bool squares_;
+  const std::vector<bool>& nonnegative_;
   /// Radical forms computed so far, by node; std::nullopt: the node has none.
   std::unordered_map<Node, std::optional<RadicalForm>> forms_;
   int depth_ = 0, steps_ = 0;  ///< recursion depth and number of steps of clauses()
@@ -394,13 +431,13 @@ class NormalForm {
 
 }  // namespace
 
-std::optional<std::vector<Clause>> polynomial_clauses(Graph& graph, Node f, Groups z, std::size_t degree,
-                                                      bool squares) {
-  return NormalForm(graph, z, degree, squares).clauses(f);
+std::optional<std::vector<Clause>> polynomial_clauses(Graph& graph, Node f, Groups z, std::size_t degree, bool squares,
+                                                      const std::vector<bool>& nonnegative) {
+  return NormalForm(graph, z, degree, squares, nonnegative).clauses(f);
 }
 
 std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z) {
-  const auto form = NormalForm(graph, z, kMaxCoefficients - 1, false).form(f);
+  const auto form = NormalForm(graph, z, kMaxCoefficients - 1, false, {}).form(f);
   if (!form || !form->B.empty()) return {};
   std::vector<Node> coefficients;
   for (const Term& c : form->A) coefficients.push_back(c.node());

@@ -37,11 +37,12 @@ using Clause = std::vector<Polynomial>;
 /// @param z        group of the coordinate
 /// @param degree   maximum degree of the polynomials, 2 or 4
 /// @param squares  also factor Y - u^2 = (sqrt(Y) - u) (sqrt(Y) + u), where u may contain a root, and constraints that
-///                 contain the root of such a difference; this converts more constraints, to more clauses
-/// @return the clauses: f >= 0 if and only if all of them are satisfied, wherever f is defined; std::nullopt if f has
-///         no such form
+///                 contain the root of such a difference, and move constants into minima and maxima; this converts
+///                 more constraints, to more clauses
+/// @param nonnegative  by input of the graph, true: the input is >= 0; inputs that are missing may have any sign
+/// @return clauses, all of which hold if and only if f >= 0, wherever f is defined; std::nullopt if f has no such form
 std::optional<std::vector<Clause>> polynomial_clauses(Graph& graph, Node f, Groups z, std::size_t degree = 2,
-                                                      bool squares = false);
+                                                      bool squares = false, const std::vector<bool>& nonnegative = {});
 
 /// The coefficients of f as a polynomial in z of degree at most four, constant term first; std::nullopt if f has no
 /// such form.

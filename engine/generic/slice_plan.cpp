@@ -20,7 +20,9 @@ constexpr std::size_t kPlace[3][3] = {{0, 1, 3}, {2, 4, 6}, {5, 6, 6}};
 /// functions of z.
 class SurfaceConverter {
  public:
-  SurfaceConverter(Graph& graph, Groups v, Groups z) : graph_(graph), v_(v), z_(z) {}
+  /// @param nonnegative  by input of the graph, true: the input is >= 0
+  SurfaceConverter(Graph& graph, Groups v, Groups z, std::vector<bool> nonnegative)
+      : graph_(graph), v_(v), z_(z), nonnegative_(std::move(nonnegative)) {}
 
   std::optional<std::vector<NodeClause>> conditions(Node node) {
     if (v_ == 0) return polynomials(node);
@@ -37,7 +39,7 @@ class SurfaceConverter {
 
  private:
   std::optional<std::vector<NodeClause>> polynomials(Node node) {
-    const auto lower = polynomial_clauses(graph_, node, z_, 4, true);
+    const auto lower = polynomial_clauses(graph_, node, z_, 4, true, nonnegative_);
     if (!lower) return {};
     std::vector<NodeClause> clauses;
     for (const expression::Clause& clause : *lower) {
@@ -50,7 +52,7 @@ class SurfaceConverter {
     return clauses;
   }
   std::optional<std::vector<NodeClause>> lowered_by(Node node, bool z_first) {
-    const auto lower = polynomial_clauses(graph_, node, z_first ? z_ : v_, 2, true);
+    const auto lower = polynomial_clauses(graph_, node, z_first ? z_ : v_, 2, true, nonnegative_);
     if (!lower) return {};
     std::vector<NodeClause> clauses;
     for (const expression::Clause& clause : *lower) {
@@ -70,7 +72,15 @@ class SurfaceConverter {
 
   Graph& graph_;
   Groups v_, z_;
+  std::vector<bool> nonnegative_;
 };
+
+/// By parameter: whether no permitted value is negative.
+std::vector<bool> nonnegative_parameters(const Model& model) {
+  std::vector<bool> all;
+  for (const Parameter& each : model.info.parameters) all.push_back(each.lower >= 0);
+  return all;
+}
 
 /// Whether all operations that a node depends on are defined at every point that satisfies the constraints on their
 /// domains.
@@ -92,7 +102,7 @@ class Planner {
         graph_(known_.graph),
         v_(order.v ? Inputs::coordinate_group(*order.v) : 0),
         z_(Inputs::coordinate_group(order.z)),
-        converter_(graph_, v_, z_),
+        converter_(graph_, v_, z_, nonnegative_parameters(model_)),
         transcendental_(curves) {
     plan_.order = order;
     convert_cranks();

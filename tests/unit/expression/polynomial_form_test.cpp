@@ -20,17 +20,19 @@ struct Converted {
   std::optional<std::vector<Clause>> clauses;
 };
 
-/// @param text  constraint in the parameters a, b and the coordinate z
-Converted converted(const std::string& text, bool squares = false) {
+/// @param text         constraint in the parameters a, b and the coordinate z
+/// @param nonnegative  of a, b and z: whether they are >= 0
+Converted converted(const std::string& text, bool squares = false, const std::vector<bool>& nonnegative = {}) {
   Converted made;
   const std::vector<Node> inputs = {made.graph.input(0, kDesign), made.graph.input(1, kDesign),
                                     made.graph.input(2, kZ)};
   made.constraint = read_formula(made.graph, text, std::vector<std::string>{"a", "b", "z"}, inputs);
-  made.clauses = polynomial_clauses(made.graph, made.constraint, kZ, 2, squares);
+  made.clauses = polynomial_clauses(made.graph, made.constraint, kZ, 2, squares, nonnegative);
   return made;
 }
 
-void expect_equivalent(const Converted& of) {
+/// @param smallest_b  lower bound of the values of b
+void expect_equivalent(const Converted& of, double smallest_b = -2) {
   ASSERT_TRUE(of.clauses);
   std::vector<Node> nodes = {of.constraint};
   for (const Clause& clause : *of.clauses)
@@ -42,7 +44,7 @@ void expect_equivalent(const Converted& of) {
   int feasible = 0;
   constexpr int kPoints = 2000;
   for (int k = 0; k < kPoints; ++k) {
-    const std::array<double, 3> at = {uniform(random), uniform(random), uniform(random)};
+    const std::array<double, 3> at = {uniform(random), std::max(smallest_b, uniform(random)), uniform(random)};
     program.run_all<double>(at, registers);
     auto output = program.outputs().begin();
     const double value = registers[*output++];
@@ -78,6 +80,23 @@ TEST(PolynomialForm, TakesFactorsOutOfAbsoluteValues) {
                            "a*b*max(z - 1, b - abs(z))"}) {
     SCOPED_TRACE(text);
     expect_equivalent(converted(text));
+  }
+}
+
+/// A root of unknown sign in an absolute value has one form, |a sqrt(Q)| = |a| sqrt(Q), and if b > 0 so has its
+/// quotient.
+TEST(PolynomialForm, MovesConstantsIntoMinimaAndAbsoluteValuesOfRoots) {
+  for (const char* text : {"min(a + z, b - z^2) - a*b", "a - max(b*z, z - 1)", "max(a + z, b - z^2) - b",
+                           "a - min(b*z, z - 1)", "abs(a*sqrt(4 - z^2)) - b", "1 - abs(a*sqrt(4 - z^2))"}) {
+    SCOPED_TRACE(text);
+    expect_equivalent(converted(text, true));
+  }
+  for (const char* text : {"abs(a*sqrt(4 - z^2))/b - 1", "1 - abs(-sqrt(4 - z^2))/b"}) {
+    SCOPED_TRACE(text);
+    const Converted made = converted(text, true, {false, true, false}), of_any_sign = converted(text, true);
+    expect_equivalent(of_any_sign);
+    expect_equivalent(made, 0.1);
+    EXPECT_LT(made.clauses->size(), of_any_sign.clauses->size());
   }
 }
 
