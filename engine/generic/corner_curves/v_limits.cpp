@@ -60,7 +60,7 @@ class LimitRootFinder {
   /// passes this value.
   /// @param outwards  vector from the opposite end of the range to `end`
   double end_of_search(std::size_t limit, double end, double outwards) {
-    for (const double margin : {0.03, 0.05, 0.08})
+    for (const double margin : {0.03, 0.05, 0.08, 0.3, 0.6})
       if (sign_beside(cell_of(limit, end + margin * outwards, end + margin * outwards)) != 0)
         return end + margin * outwards;
     return end;
@@ -117,8 +117,11 @@ class LimitRootFinder {
       const double lower = cells[first].lower, upper = cells[i].upper;
       sign = 0;
       if (upper < low_ || lower > high_) continue;
-      const int below = first > 0 ? sign_beside(cells[first - 1]) : cell_of(limit, lower, lower).sign,
-                above = i + 1 < cells.size() ? sign_beside(cells[i + 1]) : cell_of(limit, upper, upper).sign;
+      int below = first > 0 ? sign_beside(cells[first - 1]) : cell_of(limit, lower, lower).sign,
+          above = i + 1 < cells.size() ? sign_beside(cells[i + 1]) : cell_of(limit, upper, upper).sign;
+      // A monotone limit whose root is an end of the range of v, apart from rounding errors, has one sign in the range.
+      if (slope != 0 && above == 0 && below == -slope && is_root(limit, upper, lower)) above = below;
+      if (slope != 0 && below == 0 && above == slope && is_root(limit, lower, upper)) below = above;
       if (below == 0 || above == 0 || (slope == 0 && curvature == 0)) return false;
       sign = above;
       if (first_sign == 0) first_sign = below;
@@ -127,6 +130,15 @@ class LimitRootFinder {
     }
     s_.signs.push_back(first_sign);
     return true;
+  }
+  /// Whether a limit is 0 at v apart from rounding errors, compared with its values at another v.
+  bool is_root(std::size_t limit, double v, double other) {
+    const auto value_at = [&](double place) {
+      cell_of(limit, place, place);
+      return s_.intervals[at(limit, 0)];
+    };
+    const Interval there = value_at(other), here = value_at(v);
+    return std::fmax(-here.lower, here.upper) <= 1e-13 * std::fmax(-there.lower, there.upper);
   }
   static int sign_beside(const Cell& cell) { return cell.is_undefined ? 0 : cell.sign; }
 
