@@ -6,7 +6,7 @@
 
 #include "engine/core/stop.hpp"
 #include "engine/generic/columns/planar_slice_sensitivity.hpp"
-#include "engine/generic/columns/polynomial.hpp"
+#include "engine/generic/polynomial.hpp"
 #include "engine/math/hash.hpp"
 
 namespace pkm::generic {

@@ -5,7 +5,7 @@
 
 #include "engine/core/stop.hpp"
 #include "engine/generic/columns/endpoints.hpp"
-#include "engine/generic/columns/polynomial.hpp"
+#include "engine/generic/polynomial.hpp"
 
 namespace pkm::generic {
 namespace {

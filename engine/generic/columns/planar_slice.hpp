@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "engine/generic/columns/conic.hpp"
 #include "engine/generic/columns/critical_value_solver.hpp"
 #include "engine/generic/columns/endpoints.hpp"
 #include "engine/generic/columns/sign_changes.hpp"
+#include "engine/generic/conic.hpp"
 #include "engine/generic/slice_plan.hpp"
 #include "engine/math/quadrature.hpp"
 

@@ -1,5 +1,5 @@
 // Conics in the square [-1, 1]^2: intersection points and areas against closed forms.
-#include "engine/generic/columns/conic.hpp"
+#include "engine/generic/conic.hpp"
 
 #include <algorithm>
 #include <cmath>

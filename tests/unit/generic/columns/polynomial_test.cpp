@@ -1,5 +1,5 @@
 // Roots of polynomials up to degree four: against roots that are known, close together, multiple or at the endpoints.
-#include "engine/generic/columns/polynomial.hpp"
+#include "engine/generic/polynomial.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "engine/generic/columns/conic.hpp"
+#include "engine/generic/conic.hpp"
 
 #include <cmath>
 

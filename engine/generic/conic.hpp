@@ -1,7 +1,7 @@
 // Conics P(t, s) = 0 in the square [-1, 1]^2: their intersections, and integrals along their arcs.
 #pragma once
 
-#include "engine/generic/columns/polynomial.hpp"
+#include "engine/generic/polynomial.hpp"
 
 namespace pkm::generic {
 

@@ -1,4 +1,4 @@
-#include "engine/generic/columns/polynomial.hpp"
+#include "engine/generic/polynomial.hpp"
 
 #include <algorithm>
 #include <cmath>
