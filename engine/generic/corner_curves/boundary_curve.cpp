@@ -33,19 +33,26 @@ bool BoundaryCurve::interpolate(double tolerance) {
   terms = 1;
   tail = error = 0;
   bool has_converged = true;
-  for (std::size_t f = 0; f < 3; ++f) {
-    size[f] = 0;
-    for (const double value : values[f]) size[f] = std::fmax(size[f], std::fabs(value));
-    if (!std::isfinite(size[f])) return false;
-    to_coefficients(values[f], series[f]);
-    const double scale = is_circle() ? 1 + size[f] : 1;
-    const double own_tail = interpolation_error(series[f], 0);
+  /// @return maximum magnitude of the values
+  const auto interpolate_function = [&](const Samples& of, Samples& coefficients) {
+    double largest = 0;
+    for (const double value : of) largest = std::fmax(largest, std::fabs(value));
+    if (!std::isfinite(largest)) return largest;
+    to_coefficients(of, coefficients);
+    const double scale = is_circle() ? 1 + largest : 1;
+    const double own_tail = interpolation_error(coefficients, 0);
     has_converged = has_converged && own_tail <= tolerance * scale;
     // Trailing coefficients of the series that are smaller than the rounding errors of the values are not used.
     const double rounding = 8 * kUnitRoundoff * scale;
     tail = std::fmax(tail, own_tail);
     error = std::fmax(error, own_tail + rounding);
-    terms = std::max(terms, significant_terms(series[f], kNodes, rounding));
+    terms = std::max(terms, significant_terms(coefficients, kNodes, rounding));
+    return largest;
+  };
+  for (std::size_t f = 0; f < 3; ++f) {
+    size[f] = interpolate_function(values[f], series[f]);
+    if (!std::isfinite(size[f])) return false;
+    if (quadratic && !std::isfinite(interpolate_function(quadratic->values[f], quadratic->series[f]))) return false;
   }
   equation = values;
   if (is_circle())
@@ -56,6 +63,49 @@ bool BoundaryCurve::interpolate(double tolerance) {
       equation[2][n] = u * u + w * w - values[2][n];
     }
   return has_converged;
+}
+
+bool BoundaryCurve::find_graphs(const std::array<double, 2>& half_widths) {
+  const auto& [xx, xy, yy] = quadratic->values;
+  const auto bounds_of = [](const Samples& function) {
+    Samples coefficients;
+    to_coefficients(function, coefficients);
+    double rest = interpolation_error(coefficients, 64 * kUnitRoundoff);
+    for (std::size_t k = 1; k < kNodes; ++k) rest += std::fabs(coefficients[k]);
+    return std::array{coefficients[0] - rest, coefficients[0] + rest};
+  };
+  for (const bool swapped : {false, true}) {
+    swaps = swapped;
+    // With (t, s) = (x, y) or (y, x), the discriminant of h as a polynomial in s is q0 + q1 t + q2 t^2.
+    const Samples &tt = swapped ? yy : xx, &ss = swapped ? xx : yy, &linear_t = values[swapped ? 1 : 0],
+                  &linear_s = values[swapped ? 0 : 1];
+    Samples q0, q1, q2, of_t;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      q0[n] = linear_s[n] * linear_s[n] - 4 * ss[n] * values[2][n];
+      q1[n] = 2 * linear_s[n] * xy[n] - 4 * ss[n] * linear_t[n];
+      q2[n] = xy[n] * xy[n] - 4 * ss[n] * tt[n];
+      of_t[n] = q1[n] * q1[n] - 4 * q0[n] * q2[n];
+    }
+    const auto [low, high] = bounds_of(q1);
+    const double smallest_q2 = bounds_of(q2)[0];
+    const double t = half_widths[swapped ? 1 : 0];
+    if (bounds_of(q0)[0] - t * std::fmax(-low, high) + t * t * std::fmin(0, smallest_q2) > 0) return true;
+    // It is also positive if q2 > 0 and its own discriminant is negative. This may be 0 at single values of tau, at
+    // which the conic consists of two lines.
+    if (!(smallest_q2 > 0) || !(of_t[kNodes / 2] < 0)) continue;
+    Samples coefficients;
+    to_coefficients(of_t, coefficients);
+    std::vector<Root> roots;
+    isolate_roots(coefficients, interpolation_error(coefficients, 64 * kUnitRoundoff), roots);
+    const auto touches = [&](const Root& root) {
+      const auto is_negative = [&](double tau) {
+        return std::fabs(tau) >= 1 || evaluate_series(coefficients.data(), kNodes, tau) < 0;
+      };
+      return root.width > 0 && is_negative(root.at - root.width) && is_negative(root.at + root.width);
+    };
+    if (std::ranges::all_of(roots, touches)) return true;
+  }
+  return false;
 }
 
 void discriminant(const BoundaryCurve& i, const BoundaryCurve& j, Sampled& result) {

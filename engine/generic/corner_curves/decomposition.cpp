@@ -59,10 +59,13 @@ class Builder {
 
   bool run() {
     out_.ranges.clear();
+    out_.paths.clear();
     out_.undecided = out_.unbalanced = 0;
     out_.functions = 0;
     s_.pair_count = 0;
     s_.meetings.clear();
+    for (std::size_t i = 0; i < count_; ++i)
+      if (curves_[i].is_conic()) conics_ |= bit(i);
     add_cuts();
     s_.pair_of.assign(curves_.size() * curves_.size(), kNone);
     for (std::size_t i = 0; i < count_; ++i) {
@@ -70,7 +73,7 @@ class Builder {
         if (!add_pair(i, j)) return false;
       if (cut_of_[i] != 0 && !add_pair(i, cut_of_[i])) return false;
     }
-    if (!add_triples()) return false;
+    if (!add_triples() || (conics_ != 0 && !add_conic_events())) return false;
     add_meetings();
     align_undecided_roots();
     for (std::size_t p = 0; p < s_.pair_count; ++p) add_ranges(s_.pairs[p]);
@@ -86,6 +89,7 @@ class Builder {
   };
   static constexpr int kNone = -1, kTangent = -2, kInfeasible = -3;
 
+  bool is_conic(std::size_t i) const { return (conics_ & bit(i)) != 0; }
   int& pair_of(std::size_t i, std::size_t j) { return s_.pair_of[i * curves_.size() + j]; }
 
   /// Appends to curves_ a cut for each circle: the line from its centre to the point at which its angle is 0. The
@@ -159,8 +163,8 @@ class Builder {
     Samples series;
     to_coefficients(function.values, series);
     const double error = interpolation_error(series, function.rounding);
-    if (error - function.rounding > kUnresolved * largest) return false;
     isolate_roots(series, error, roots);
+    if (!roots.empty() && error - function.rounding > kUnresolved * largest) return false;
     for (const Root& root : roots) out_.undecided += root.width;
     return true;
   }
@@ -175,8 +179,10 @@ class Builder {
     pair.first = static_cast<std::uint8_t>(i);
     pair.second = static_cast<std::uint8_t>(j);
     pair.has_branches = curves_[i].is_circle() || curves_[j].is_circle();
+    pair.has_conic = is_conic(i) || (j < count_ && is_conic(j));
     pair.events.clear();
     pair.constants.clear();
+    if (pair.has_conic) return add_pair_with_conic(pair);
     if (is_parallel(i, j)) return add_parallel(i, j);
     discriminant(curves_[i], curves_[j], pair.discriminant);
     if (is_zero(pair.discriminant)) {
@@ -193,7 +199,176 @@ class Builder {
     return true;
   }
 
-  /// Whether two curves are concentric circles for all tau, or parallel lines for all tau.
+  /// Follows the crossings of a conic with another curve, and adds the events on them.
+  bool add_pair_with_conic(Pair& pair) {
+    const std::size_t i = pair.first, j = pair.second;
+    const bool is_first = is_conic(i);
+    const BoundaryCurve &conic = curves_[is_first ? i : j], &other = curves_[is_first ? j : i];
+    conic_discriminant(conic, other, pair.discriminant);
+    if (is_zero(pair.discriminant) || !find_roots(pair.discriminant, pair.ends)) return false;
+    for (Root& end : pair.ends)
+      if (end.width == 0) end.at = refine_contact(conic, other, end.at);
+    std::ranges::sort(pair.ends, {}, &Root::at);
+    pair.first_path = out_.paths.size();
+    const bool is_followed = visit_ranges(
+        pair, [&](const Subinterval<double>& range) { return follow_crossings(conic, other, range, out_.paths); });
+    if (!is_followed) return false;
+    std::size_t kept = pair.first_path;
+    for (std::size_t p = pair.first_path; p < out_.paths.size(); ++p) {
+      const std::size_t events = pair.events.size();
+      const std::size_t number = kept - pair.first_path + 1;
+      bool is_feasible = true;
+      if (number > 100 || !add_path_events(pair, out_.paths[p], static_cast<std::int8_t>(number), is_feasible))
+        return false;
+      if (is_feasible)
+        out_.paths[kept++] = out_.paths[p];
+      else
+        pair.events.resize(events);
+    }
+    out_.paths.resize(kept);
+    pair.path_count = kept - pair.first_path;
+    if (pair.path_count > 0) pair_of(i, j) = pair_of(j, i) = static_cast<int>(s_.pair_count++);
+    return true;
+  }
+
+  /// Calls visit(range) for the ranges between consecutive roots of the discriminant of a pair, each with a square root
+  /// at one end at most. @return false if visit() returns false
+  template <class Visit>
+  static bool visit_ranges(const Pair& pair, const Visit& visit) {
+    for (std::size_t e = 0; e <= pair.ends.size(); ++e) {
+      const bool is_first = e == 0, is_last = e == pair.ends.size();
+      const double low = is_first ? -1 : pair.ends[e - 1].at, high = is_last ? 1 : pair.ends[e].at;
+      if (high - low <= std::max({kTiny, is_first ? 0 : pair.ends[e - 1].width, is_last ? 0 : pair.ends[e].width}))
+        continue;
+      const Subinterval<double> range{low, high, !is_first, !is_last};
+      if (is_first || is_last) {
+        if (!visit(range)) return false;
+        continue;
+      }
+      for (const Subinterval<double>& half : halves(range))
+        if (!visit(half)) return false;
+    }
+    return true;
+  }
+
+  /// Isolates the roots of h of a curve along a crossing, and adds them as events.
+  /// @param values    W^2 h at the nodes of the range, with their error
+  /// @param branches  branch or path of the crossing
+  /// @return false if the function is not resolved, or 0 everywhere
+  bool add_events_on(Pair& pair, const Subinterval<double>& range, Sampled& values, std::uint8_t third,
+                     std::int8_t branches) {
+    const double undecided = out_.undecided;
+    if (is_zero(values) || !find_roots(values, s_.roots)) return false;
+    out_.undecided = undecided;
+    const auto place = [&](double s) { return map_node(range, 0.5 * (1 + std::fmin(1, std::fmax(-1, s)))).point; };
+    for (const Root& root : s_.roots) {
+      const double width = root.width == 0 ? 0 : place(root.at + 0.5 * root.width) - place(root.at - 0.5 * root.width);
+      out_.undecided += width;
+      pair.events.push_back({place(root.at), width, third, branches});
+    }
+    return true;
+  }
+
+  /// Adds the events on a path.
+  /// @param is_feasible  set to false if a necessary constraint is violated on the whole path
+  /// @return false if they are not resolved
+  bool add_path_events(Pair& pair, const CrossingPath& path, std::int8_t number, bool& is_feasible) {
+    Samples tau;
+    for (std::size_t n = 0; n < kNodes; ++n) tau[n] = map_node(path.range, 0.5 * (1 + chebyshev_nodes()[n])).point;
+    const auto point = [&](std::size_t n) {
+      return Homogeneous{path.values[0][n], path.values[1][n], path.values[2][n]};
+    };
+    const std::size_t i = pair.first, j = pair.second;
+    const auto sample = [&](std::size_t k) {  // W^2 h of a curve
+      std::array<CurveAt, kNodes> at;
+      sample_curve(curves_[k], path.range, tau, at);
+      for (std::size_t n = 0; n < kNodes; ++n) function_.values[n] = homogeneous_value(at[n], point(n));
+      const double size = 1 + curves_[k].size[0] + curves_[k].size[1] + curves_[k].size[2];
+      function_.rounding = (8 * kUnitRoundoff + path.error) * size;
+    };
+    // Most paths violate a necessary constraint everywhere: try the one that is violated most at one point.
+    std::size_t worst = count_;
+    double largest = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (k == i || k == j || !necessary_.has(k)) continue;
+      const double value = homogeneous_value(curves_[k].at(tau[kNodes / 2]), point(kNodes / 2));
+      if (necessary_.violation(k, value) <= largest) continue;
+      largest = necessary_.violation(k, value);
+      worst = k;
+    }
+    if (worst < count_) {
+      sample(worst);
+      ++out_.functions;
+      is_feasible = !has_no_root(function_);
+      if (!is_feasible) return true;
+    }
+    for (std::size_t k = 0; k < curves_.size(); ++k) {
+      if (k == i || k == j || (k >= count_ && cut_of_[i] != k && cut_of_[j] != k)) continue;
+      sample(k);
+      if (!add_events_on(pair, path.range, function_, static_cast<std::uint8_t>(k), number)) return false;
+    }
+    return true;
+  }
+  /// Whether bounds of a function exclude a root.
+  static bool has_no_root(const Sampled& function) {
+    Samples series;
+    to_coefficients(function.values, series);
+    double rest = interpolation_error(series, function.rounding);
+    for (std::size_t k = 1; k < kNodes; ++k) rest += std::fabs(series[k]);
+    return std::fabs(series[0]) > rest;
+  }
+
+  /// Adds the events that conics pass through the crossings of two circles or lines. @return false if they are not
+  /// resolved
+  bool add_conic_events() {
+    for (std::size_t p = 0; p < s_.pair_count; ++p) {
+      Pair& pair = s_.pairs[p];
+      if (pair.has_conic) continue;
+      const bool is_single = !pair.has_branches || curves_[pair.second].kind == BoundaryCurve::Kind::cut;
+      for (std::size_t k = 0; k < count_; ++k) {
+        if (!is_conic(k)) continue;
+        const auto add = [&](const Subinterval<double>& range) {
+          return add_conic_events(pair, k, 1, range, 0) && (is_single || add_conic_events(pair, k, -1, range, 0));
+        };
+        if (pair.has_branches ? !visit_ranges(pair, add) : !add({-1, 1, false, false})) return false;
+      }
+    }
+    return true;
+  }
+  /// Adds the events that a conic passes through one crossing in a range. @return false if they are not resolved
+  bool add_conic_events(Pair& pair, std::size_t conic, std::int8_t branch, const Subinterval<double>& range,
+                        int halvings) {
+    constexpr int kMaxHalvings = 6;
+    Samples tau;
+    for (std::size_t n = 0; n < kNodes; ++n) tau[n] = map_node(range, 0.5 * (1 + chebyshev_nodes()[n])).point;
+    std::array<CurveAt, kNodes> f, g, h;
+    sample_curve(curves_[pair.first], range, tau, f);
+    sample_curve(curves_[pair.second], range, tau, g);
+    if (pair.has_branches && !has_crossing(f[kNodes / 2], g[kNodes / 2])) return true;
+    sample_curve(curves_[conic], range, tau, h);
+    double largest = 1;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      Homogeneous point;
+      if (pair.has_branches) {
+        const Vector at = crossing(f[n], g[n], branch);
+        point = {at.x, at.y, 1};
+      } else {
+        point = {f[n].w * g[n].c - g[n].w * f[n].c, f[n].c * g[n].u - g[n].c * f[n].u,
+                 f[n].u * g[n].w - f[n].w * g[n].u};
+      }
+      function_.values[n] = homogeneous_value(h[n], point);
+      largest = std::fmax(largest, point[0] * point[0] + point[1] * point[1]);
+    }
+    function_.rounding = (32 * kUnitRoundoff + 4 * curves_[conic].tail) * largest;
+    if (add_events_on(pair, range, function_, static_cast<std::uint8_t>(conic),
+                      pair.has_branches ? branch : std::int8_t{0}))
+      return true;
+    return halvings < kMaxHalvings && std::ranges::all_of(halves(range), [&](const Subinterval<double>& half) {
+             return add_conic_events(pair, conic, branch, half, halvings + 1);
+           });
+  }
+
+  /// Whether two curves are concentric circles, or parallel lines, for all tau.
   bool is_parallel(std::size_t i, std::size_t j) const {
     if (curves_[i].is_circle() != curves_[j].is_circle()) return false;
     const auto& [u, w, c] = curves_[i].values;
@@ -280,33 +455,29 @@ class Builder {
         if (branch < 0 && (is_cut || !pair.has_branches)) break;
         const Vector p = crossing(first, second, branch);
         for (std::size_t k = 0; k < count_; ++k)
-          if (necessary_.has(k) && smallest[k] > 0)
+          if (necessary_.has(k) && !is_conic(k) && smallest[k] > 0)
             smallest[k] = std::fmin(smallest[k], necessary_.violation(k, curve_at(k, place).h(p)));
       }
     }
     std::size_t worst = count_;
     double largest = 0;
     for (std::size_t k = 0; k < count_; ++k) {
-      if (!necessary_.has(k) || k == i || k == j || smallest[k] <= largest) continue;
+      if (!necessary_.has(k) || is_conic(k) || k == i || k == j || smallest[k] <= largest) continue;
       largest = smallest[k];
       worst = k;
     }
     if (worst == count_) return false;
     concurrence(curves_[i], curves_[j], curves_[worst], function_);
     ++out_.functions;
-    Samples series;
-    to_coefficients(function_.values, series);
-    double rest = interpolation_error(series, function_.rounding);
-    for (std::size_t k = 1; k < kNodes; ++k) rest += std::fabs(series[k]);
-    return std::fabs(series[0]) > rest;
+    return has_no_root(function_);
   }
 
   bool add_triples() {
     for (std::size_t i = 0; i < count_; ++i)
       for (std::size_t j = i + 1; j < count_; ++j) {
-        if (!may_meet(i, j)) continue;
+        if (is_conic(i) || is_conic(j) || !may_meet(i, j)) continue;
         for (std::size_t k = j + 1; k < count_; ++k)
-          if (may_meet(i, k) && may_meet(j, k) && !add_triple(i, j, k)) return false;
+          if (!is_conic(k) && may_meet(i, k) && may_meet(j, k) && !add_triple(i, j, k)) return false;
         if (pair_of(i, j) < 0) continue;
         for (const auto& [circle, other] : {std::pair{i, j}, {j, i}})
           if (cut_of_[circle] != 0 && pair_of(circle, cut_of_[circle]) >= 0 && !add_cut_triple(circle, other))
@@ -356,6 +527,13 @@ class Builder {
 
   void add_ranges(Pair& pair) {
     std::ranges::sort(pair.events, {}, &DecompositionScratch::Event::at);
+    if (pair.has_conic) {
+      for (std::size_t k = 0; k < pair.path_count; ++k) {
+        const Subinterval<double>& range = out_.paths[pair.first_path + k].range;
+        add_ranges_of(pair, static_cast<std::int8_t>(k + 1), static_cast<int>(pair.first_path + k), range);
+      }
+      return;
+    }
     std::ranges::sort(pair.ends, {}, &Root::at);
     double low = -1;
     bool root_at_low = false;
@@ -363,7 +541,7 @@ class Builder {
       const bool is_last = e == pair.ends.size();
       const double high = is_last ? 1 : pair.ends[e].at;
       const double width = std::max({kTiny, e > 0 ? pair.ends[e - 1].width : 0, is_last ? 0 : pair.ends[e].width});
-      if (high - low > width) add_ranges_between(pair, low, high, root_at_low, !is_last);
+      if (high - low > width) add_ranges_between(pair, {low, high, root_at_low, !is_last});
       low = high;
       root_at_low = true;
     }
@@ -378,97 +556,109 @@ class Builder {
     return unknown;
   }
 
-  /// Appends the ranges of tau in which the crossings of a pair are vertices of constant weight, between two
-  /// consecutive roots of the pair's discriminant.
-  /// @param low, high  the two roots; between them, the curves cross for all tau or for none
-  void add_ranges_between(const Pair& pair, double low, double high, bool root_at_low, bool root_at_high) {
+  /// Adds the active ranges of the crossings of two circles or lines between two consecutive roots of their
+  /// discriminant.
+  /// @param between  the two roots; between them the curves cross for all tau or for none
+  void add_ranges_between(const Pair& pair, Subinterval<double> between) {
     const std::size_t i = pair.first, j = pair.second;
-    const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
     if (pair.has_branches) {
-      const Place place = sample_place(low, high);
+      const Place place = sample_place(between.lower, between.upper);
       if (!has_crossing(curve_at(i, place), curve_at(j, place))) return;
     }
-    root_at_low = root_at_low && pair.has_branches;
-    root_at_high = root_at_high && pair.has_branches;
-    for (const double branch : {1.0, -1.0}) {
-      if (branch < 0 && (is_cut || !pair.has_branches)) break;
-      // sets of curves. stale: the sign at the crossing has to be evaluated again; constant: the sign never changes
-      Signs signs = 0, stale = ~Signs{0}, constant = bit(i) | bit(j);
-      for (const auto& each : pair.constants)
-        if (each.branch == 0 || each.branch == static_cast<int>(branch)) {
-          constant |= bit(each.third);
-          signs = each.outside ? signs | bit(each.third) : signs & ~bit(each.third);
-        }
-      const Signs unknown = unknown_signs(i, j);
-      ActiveRange range{pair.first, pair.second, static_cast<std::int8_t>(branch), 0, low, low, root_at_low, false};
-      const auto finish = [&](double at, bool root) {
-        range.high = at;
-        range.root_at_high = root;
-        if (range.weight != 0 && range.high > range.low) out_.ranges.push_back(range);
-        range.low = at;
-        range.root_at_low = false;
-      };
-      double from = low, width = 0;
-      bool is_divided = false;
-      const auto sample = [&](double to) {
-        const Place place = sample_place(from, to);
-        const CurveAt first = curve_at(i, place), second = curve_at(j, place);
-        const Vector p = crossing(first, second, branch);
-        stale = (stale | unknown) & ~constant;
-        // In a short interval of tau, a rounding error may decide a sign: evaluate it again in the next interval.
-        const Signs evaluated_again = to - from < kShort ? stale : 0;
-        // Evaluate the signs of necessary constraints first, because most crossings violate one of them.
-        const Signs known = ~(stale | bit(i) | bit(j));
-        bool is_violated = necessary_.is_violated(signs, known);
-        for (const Signs which : {necessary_.inside | necessary_.outside, ~Signs{0}})
-          for (std::size_t k = 0; k < count_ && !is_violated; ++k) {
-            if ((which & stale & bit(k)) == 0) continue;
-            stale &= ~bit(k);
-            const double h = curve_at(k, place).h(p);
-            signs = h > 0 ? signs | bit(k) : signs & ~bit(k);
-            is_violated = necessary_.violation(k, h) > 0;
-          }
-        stale |= evaluated_again;
-        const int weight = is_violated ? 0
-                           : is_cut    ? weight_of_cut(i, signs)
-                                       : weight_of(i, j, signs, determinant(first.gradient(p), second.gradient(p)));
-        if (weight != range.weight || is_divided) {
-          finish(from, false);
-          range.weight = static_cast<std::int8_t>(weight);
-        }
-        is_divided = false;
-      };
-      for (const auto& event : pair.events) {
-        if (event.at <= low || event.at >= high || (event.branches != 0 && event.branches != static_cast<int>(branch)))
-          continue;
-        // Take no sample close to an undecided interval.
-        if (event.at - from > std::max({kTiny, width, event.width})) {
-          sample(event.at);
-          from = event.at;
-          width = 0;
-        }
-        width = std::fmax(width, event.width);
-        if (event.third < count_)
-          stale |= bit(event.third);
-        else
-          is_divided = true;
-      }
-      if (high - from > std::fmax(kTiny, width)) sample(high);
-      if (high - from > kShort) {
-        const Signs followed = ~(stale | unknown | constant) & (bit(count_) - 1);
-        if (!are_signs(i, j, branch, sample_place(from, high), followed, signs)) out_.unbalanced += high - low;
-      }
-      finish(high, root_at_high);
-    }
+    between.sqrt_at_lower = between.sqrt_at_lower && pair.has_branches;
+    between.sqrt_at_upper = between.sqrt_at_upper && pair.has_branches;
+    const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
+    for (const std::int8_t branch : {std::int8_t{1}, std::int8_t{-1}})
+      if (branch > 0 || (!is_cut && pair.has_branches)) add_ranges_of(pair, branch, -1, between);
   }
 
-  /// Whether the signs of curves at a crossing, which were updated at each event, agree with signs evaluated at one
-  /// value of tau. If not, an event was missed.
+  Vector crossing_of(const CurveAt& first, const CurveAt& second, std::int8_t branch, int path, double tau) const {
+    return path < 0 ? crossing(first, second, branch)
+                    : out_.paths[static_cast<std::size_t>(path)].at(tau, first, second);
+  }
+
+  /// Adds the active ranges of one crossing.
+  /// @param branch   branch of the crossing, or number of the path of a pair with a conic
+  /// @param path     index of this path; -1: the pair has no conic
+  void add_ranges_of(const Pair& pair, std::int8_t branch, int path, const Subinterval<double>& between) {
+    const std::size_t i = pair.first, j = pair.second;
+    const bool is_cut = curves_[j].kind == BoundaryCurve::Kind::cut;
+    const auto [low, high, root_at_low, root_at_high] = between;
+    // stale: curves whose sign has to be evaluated again; constant: curves whose sign does not change
+    Signs signs = 0, stale = ~Signs{0}, constant = bit(i) | bit(j);
+    for (const auto& each : pair.constants)
+      if (each.branch == 0 || each.branch == branch) {
+        constant |= bit(each.third);
+        signs = each.outside ? signs | bit(each.third) : signs & ~bit(each.third);
+      }
+    const Signs unknown = unknown_signs(i, j);
+    ActiveRange range{pair.first, pair.second, branch, 0, path, low, low, root_at_low, false};
+    const auto finish = [&](double at, bool root) {
+      range.high = at;
+      range.root_at_high = root;
+      if (range.weight != 0 && range.high > range.low) out_.ranges.push_back(range);
+      range.low = at;
+      range.root_at_low = false;
+    };
+    double from = low, width = 0;
+    bool is_divided = false;
+    const auto sample = [&](double to) {
+      const Place place = sample_place(from, to);
+      const CurveAt first = curve_at(i, place), second = curve_at(j, place);
+      const Vector p = crossing_of(first, second, branch, path, place.tau);
+      stale = (stale | unknown) & ~constant;
+      // In a short interval a sign may be a rounding error: evaluate it again in the next interval.
+      const Signs evaluated_again = to - from < kShort ? stale : 0;
+      // Evaluate the signs of necessary constraints first, because most crossings violate one of them.
+      const Signs known = ~(stale | bit(i) | bit(j));
+      bool is_violated = necessary_.is_violated(signs, known);
+      for (const Signs which : {necessary_.inside | necessary_.outside, ~Signs{0}})
+        for (std::size_t k = 0; k < count_ && !is_violated; ++k) {
+          if ((which & stale & bit(k)) == 0) continue;
+          stale &= ~bit(k);
+          const double h = curve_at(k, place).h(p);
+          signs = h > 0 ? signs | bit(k) : signs & ~bit(k);
+          is_violated = necessary_.violation(k, h) > 0;
+        }
+      stale |= evaluated_again;
+      const int weight = is_violated ? 0
+                         : is_cut    ? weight_of_cut(i, signs)
+                                     : weight_of(i, j, signs, determinant(first.gradient(p), second.gradient(p)));
+      if (weight != range.weight || is_divided) {
+        finish(from, false);
+        range.weight = static_cast<std::int8_t>(weight);
+      }
+      is_divided = false;
+    };
+    for (const auto& event : pair.events) {
+      if (event.at <= low || event.at >= high || (event.branches != 0 && event.branches != branch)) continue;
+      // Take no sample close to an undecided interval.
+      if (event.at - from > std::max({kTiny, width, event.width})) {
+        sample(event.at);
+        from = event.at;
+        width = 0;
+      }
+      width = std::fmax(width, event.width);
+      if (event.third < count_)
+        stale |= bit(event.third);
+      else
+        is_divided = true;
+    }
+    if (high - from > std::fmax(kTiny, width)) sample(high);
+    if (high - from > kShort) {
+      const Signs followed = ~(stale | unknown | constant) & (bit(count_) - 1);
+      const Place place = sample_place(from, high);
+      const Vector p = crossing_of(curve_at(i, place), curve_at(j, place), branch, path, place.tau);
+      if (!are_signs(p, place, followed, signs)) out_.unbalanced += high - low;
+    }
+    finish(high, root_at_high);
+  }
+
+  /// Whether the signs that were updated at all events agree with the signs at a crossing p at a given place; if not,
+  /// an event was missed.
   /// @param which  set of the curves whose signs are compared
-  /// @param signs  set of the curves with h > 0 at the crossing according to the events
-  bool are_signs(std::size_t i, std::size_t j, double branch, const Place& place, Signs which, Signs signs) const {
+  bool are_signs(const Vector& p, const Place& place, Signs which, Signs signs) const {
     constexpr double kUncertain = 1e-9;
-    const Vector p = crossing(curve_at(i, place), curve_at(j, place), branch);
     for (std::size_t k = 0; k < count_; ++k) {
       if ((which & bit(k)) == 0) continue;
       const double h = curve_at(k, place).h(p);
@@ -511,7 +701,8 @@ class Builder {
   }
 
   std::vector<BoundaryCurve>& curves_;
-  std::size_t count_;  ///< number of curves without the cuts
+  std::size_t count_;  ///< number of curves, not counting cuts
+  Signs conics_ = 0;   ///< set of the curves that are general conics
   const SliceFormula& formula_;
   NecessaryConstraints necessary_;
   Decomposition& out_;

@@ -10,10 +10,12 @@
 // feasible part, the area of the whole circle (README.md). The weight kappa changes only where the discriminant of the
 // pair vanishes, or the concurrence function of the pair and a third curve. The roots of these functions are isolated
 // once for each pair and each triple, so that all three pairs of a triple see the same critical value. Between
-// consecutive roots one sample decides.
+// consecutive roots one sample decides. If a general conic is among the three curves, there is no such function:
+// instead, the roots of h of the third curve along each crossing of the other two are isolated.
 #pragma once
 
 #include "engine/generic/corner_curves/boundary_curve.hpp"
+#include "engine/generic/corner_curves/crossing_path.hpp"
 #include "engine/generic/corner_curves/root_isolation.hpp"
 #include "engine/generic/corner_curves/slice_formula.hpp"
 
@@ -27,15 +29,16 @@ struct ActiveRange {
   /// Which of the two crossings (1 or -1), and its weight kappa. If the second curve is a cut, the weight is 1 if the
   /// disc is feasible near this point of the circle, and -1 if the outside is.
   std::int8_t branch, weight;
-  double low, high;                ///< lower and upper end of the range of tau
-  bool root_at_low, root_at_high;  ///< true: the discriminant of the two curves is 0 at the lower, or upper, end
+  int path;                        ///< index in Decomposition::paths, if one of the two curves is a conic; otherwise -1
+  double low, high;                ///< limits of the range of tau
+  bool root_at_low, root_at_high;  ///< true: the discriminant vanishes at this end
 };
 
 struct Decomposition {
   std::vector<ActiveRange> ranges;
-  double undecided = 0;  ///< total length in tau of the intervals in which the number of roots is unknown
-  /// Total length in tau of the intervals in which decisions on vertices contradict each other; 0 unless one of them is
-  /// wrong.
+  std::vector<CrossingPath> paths;  ///< crossings of conics with other curves
+  double undecided = 0;             ///< total length in tau of intervals in which roots are undecided
+  /// Total length in tau on which decisions contradict each other; 0 unless one of them is wrong.
   double unbalanced = 0;
   long functions = 0;  ///< number of discriminants and concurrence functions that were computed
 };
@@ -45,9 +48,10 @@ struct DecompositionScratch {
   /// A value of tau at which a third curve passes through a crossing of a pair of curves: a root of a concurrence
   /// function.
   struct Event {
-    double at, width;      ///< value of tau, and length of the undecided interval around it (see Root)
-    std::uint8_t third;    ///< index of the third curve, whose sign at the crossing may change here
-    std::int8_t branches;  ///< which of the pair's two crossings, 1 or -1; 0: both
+    double at, width;    ///< value of tau and width of the undecided interval around it, see Root
+    std::uint8_t third;  ///< index of the curve whose sign at the crossing may change
+    /// Branch of the crossing that it concerns, 1 or -1; 0: both. Of a pair with a conic: number of the path, from 1.
+    std::int8_t branches;
   };
   /// A third curve that passes through a crossing of a pair of curves for all tau. After the perturbation
   /// (coincidence.hpp), the crossing lies on one side of this curve (`outside`: h > 0) for all tau.
@@ -60,6 +64,8 @@ struct DecompositionScratch {
   struct Pair {
     std::uint8_t first, second;
     bool has_branches;
+    bool has_conic;
+    std::size_t first_path, path_count;  ///< of a pair with a conic: its crossings in Decomposition::paths
     Sampled discriminant;
     /// Roots in tau of the discriminant; between two consecutive ones the curves cross for all tau or for none.
     std::vector<Root> ends;

@@ -50,7 +50,7 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   add_adjoints(segment.integral, nodes, by_curve);
   Samples by_values;
   for (std::size_t i = 0; i < segment.slices.curves.size(); ++i)
-    for (Samples& each : by_curve[i]) {
+    for (Samples& each : std::span(by_curve[i]).first(segment.slices.curves[i].is_conic() ? 6 : 3)) {
       transpose_to_values(each, nodes, by_values);
       each = by_values;
     }
@@ -113,6 +113,18 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
         add(0, by_c);
         add(1, by_c * frame.v + frame.scale * u / size);
         add(2, by_c * frame.z + frame.scale * w / size);
+        break;
+      }
+      case Kind::conic: {
+        // coefficients of the surface in the frame, in which (v, z) = (frame.v, frame.z) + scale (x, y)
+        const double factor = source.sign * frame.scale * frame.scale, s = frame.scale, v = frame.v, z = frame.z;
+        const double of_1 = factor * by[2][node], of_x = factor * s * by[0][node], of_y = factor * s * by[1][node];
+        add(0, of_1);
+        add(1, of_1 * v + of_x);
+        add(2, of_1 * z + of_y);
+        add(3, of_1 * v * v + 2 * of_x * v + factor * s * s * by[3][node]);
+        add(4, of_1 * v * z + of_x * z + of_y * v + factor * s * s * by[4][node]);
+        add(5, of_1 * z * z + 2 * of_y * z + factor * s * s * by[5][node]);
         break;
       }
       case Kind::lower_root:

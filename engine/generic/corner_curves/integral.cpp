@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/generic/conic.hpp"
 #include "engine/math/portable.hpp"
 
 namespace pkm::generic::corner_curves {
@@ -16,17 +17,43 @@ double angle_of(const CurveAt& circle, const std::array<double, 2>& cut, const V
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
-/// Integral of (x dy - y dx)/2 along a curve up to its point p.
-/// @param angle  result of angle_of() for p if the curve is a circle
+/// The arc of a conic from the coordinate axis to the point p, as a graph of the root s of P(t, s) over t, where (t, s)
+/// is (x, y), or (y, x) if the conic swaps them.
+struct ConicArc {
+  Conic P;
+  Arc arc;
+
+  ConicArc(const CurveAt& curve, const Vector& p) {
+    const double t = curve.swaps ? p.y : p.x, s = curve.swaps ? p.x : p.y;
+    P.c = curve.swaps ? std::array{curve.c, curve.w, curve.u, curve.yy, curve.xy, curve.xx}
+                      : std::array{curve.c, curve.u, curve.w, curve.xx, curve.xy, curve.yy};
+    for (const double each : P.c) P.scale += std::fabs(each);
+    const double middle = -(P.c[2] + t * P.c[4]);  // the sum of both roots times c[5]
+    arc = {(P.c[5] > 0) == (2 * P.c[5] * s > middle) ? 1 : 0, 0, t};
+  }
+};
+
+/// Integral of (x dy - y dx)/2 along a curve up to the point p. @param angle  angle_of() the point on a circle
 double potential(const CurveAt& curve, const Vector& p, double angle) {
+  if (curve.is_conic) {
+    const ConicArc conic(curve, p);
+    const double below = area_below(conic.P, conic.arc) - 0.5 * p.x * p.y;
+    return curve.swaps ? below : -below;
+  }
   if (curve.is_circle) return 0.5 * (curve.u * p.y - curve.w * p.x + curve.c * angle);
   return -0.5 * curve.c * (curve.u * p.y - curve.w * p.x);
 }
 
-/// Contributions of a curve up to its point p to the derivatives of the area with respect to the curve's u, w and c
-/// (see CurveAt): integrals along the curve, as potential() is for the area.
-std::array<double, 3> potential_derivatives(const CurveAt& curve, const Vector& p, double angle) {
+/// Derivatives of the area with respect to the functions of a curve, as integrals along the curve up to p.
+std::array<double, 6> potential_derivatives(const CurveAt& curve, const Vector& p, double angle) {
   if (curve.is_circle) return {p.y - curve.w, curve.u - p.x, 0.5 * angle};
+  if (curve.is_conic) {
+    const ConicArc conic(curve, p);
+    std::array<double, 6> by{};
+    add_gradient_of_area(conic.P, conic.arc, curve.swaps ? 1 : -1, by);
+    return curve.swaps ? std::array{by[2], by[1], by[0], by[5], by[4], by[3]}
+                       : std::array{by[1], by[2], by[0], by[3], by[4], by[5]};
+  }
   const double l = curve.w * p.x - curve.u * p.y;  // coordinate of p along the line, in the direction (w, -u)
   return {l * (-curve.c * curve.u + 0.5 * l * curve.w), l * (-curve.c * curve.w - 0.5 * l * curve.u), l};
 }
@@ -50,11 +77,15 @@ class CellCurves {
         second_(segment.curves[range.second]),
         cuts_{cut_of(segment.curves, range.first),
               is_cut() ? std::array<double, 2>{} : cut_of(segment.curves, range.second)},
-        branch_(range.branch) {
-    std::array<double, kPoints> tau{};
-    for (std::size_t q = 0; q < kRule; ++q) tau[q] = map_node(cell.interval, kronrod_rule().node[q]).point;
-    evaluate_at_points(first_.series, first_.terms, tau.data(), values_[0].data());
-    if (!is_cut()) evaluate_at_points(second_.series, second_.terms, tau.data(), values_[1].data());
+        branch_(range.branch),
+        path_(range.path < 0 ? nullptr : &segment.decomposition.paths[static_cast<std::size_t>(range.path)]) {
+    for (std::size_t q = 0; q < kRule; ++q) tau_[q] = map_node(cell.interval, kronrod_rule().node[q]).point;
+    for (const std::size_t k : {0, 1}) {
+      if (k == 1 && is_cut()) break;
+      const BoundaryCurve& curve = k == 0 ? first_ : second_;
+      evaluate_at_points(curve.series, curve.terms, tau_.data(), values_[k].data());
+      if (curve.is_conic()) evaluate_at_points(curve.quadratic->series, curve.terms, tau_.data(), quadratic_[k].data());
+    }
   }
 
   struct Point {
@@ -63,12 +94,23 @@ class CellCurves {
     double angle_of_first = 0, angle_of_second = 0;
   };
   Point at(std::size_t q) const {
-    const auto curve = [&](const BoundaryCurve& which, const std::array<double, 3 * kPoints>& values) {
-      return CurveAt{which.is_circle(), values[q], values[kPoints + q], values[2 * kPoints + q]};
+    const auto curve = [&](const BoundaryCurve& which, std::size_t k) {
+      const auto value = [&, q](const std::array<double, 3 * kPoints>& values, std::size_t f) {
+        return values[f * kPoints + q];
+      };
+      CurveAt at{which.is_circle(), value(values_[k], 0), value(values_[k], 1), value(values_[k], 2)};
+      if (which.is_conic()) {
+        at.is_conic = true;
+        at.swaps = which.swaps;
+        at.xx = value(quadratic_[k], 0);
+        at.xy = value(quadratic_[k], 1);
+        at.yy = value(quadratic_[k], 2);
+      }
+      return at;
     };
-    Point point{curve(first_, values_[0]), curve(second_, values_[1]), {}};
+    Point point{curve(first_, 0), curve(second_, 1), {}};
     if (is_cut()) return point;
-    point.p = crossing(point.first, point.second, branch_);
+    point.p = path_ ? path_->at(tau_[q], point.first, point.second) : crossing(point.first, point.second, branch_);
     if (point.first.is_circle) point.angle_of_first = angle_of(point.first, cuts_[0], point.p);
     if (point.second.is_circle) point.angle_of_second = angle_of(point.second, cuts_[1], point.p);
     return point;
@@ -84,7 +126,9 @@ class CellCurves {
   const BoundaryCurve &first_, &second_;
   std::array<std::array<double, 2>, 2> cuts_;
   double branch_;
-  std::array<std::array<double, 3 * kPoints>, 2> values_;
+  const CrossingPath* path_;  ///< null: neither of the curves is a conic
+  std::array<double, kPoints> tau_{};
+  std::array<std::array<double, 3 * kPoints>, 2> values_, quadratic_;
 };
 
 /// Calls visit(index, tau, weight) for the nodes of the Kronrod rule in a subinterval of an active range.
@@ -157,28 +201,24 @@ void add_adjoints(const SegmentIntegral& segment, std::size_t terms, std::vector
     const CellCurves curves(segment, range, cell);
     visit_cell(segment, cell, [&](std::size_t q, double tau, double weight) {
       const auto point = curves.at(q);
-      std::array<double, 6> by{};
+      std::array<double, 6> f{}, g{};
       if (curves.is_cut()) {
-        by[2] = kPi;
+        f[2] = kPi;
       } else {
-        const auto f = potential_derivatives(point.first, point.p, point.angle_of_first),
-                   g = potential_derivatives(point.second, point.p, point.angle_of_second);
-        for (std::size_t i = 0; i < 3; ++i) {
-          by[i] = f[i];
-          by[3 + i] = -g[i];
-        }
+        f = potential_derivatives(point.first, point.p, point.angle_of_first);
+        g = potential_derivatives(point.second, point.p, point.angle_of_second);
       }
-      for (double& each : by) each *= weight * level.weight[q];
       std::array<double, kNodes> polynomials;
       polynomials[0] = 1;
       polynomials[1] = tau;
       for (std::size_t k = 2; k < terms; ++k) polynomials[k] = 2 * tau * polynomials[k - 1] - polynomials[k - 2];
-      for (std::size_t i = 0; i < 3; ++i) {
-        Samples &first = adjoints[range.first][i], &second = adjoints[range.second][i];
-        for (std::size_t k = 0; k < terms; ++k) first[k] += by[i] * polynomials[k];
-        if (curves.is_cut()) continue;
-        for (std::size_t k = 0; k < terms; ++k) second[k] += by[3 + i] * polynomials[k];
-      }
+      const auto add = [&](std::size_t curve, const std::array<double, 6>& by, double factor) {
+        const std::size_t functions = segment.curves[curve].is_conic() ? 6 : 3;
+        for (std::size_t i = 0; i < functions; ++i)
+          for (std::size_t k = 0; k < terms; ++k) adjoints[curve][i][k] += factor * by[i] * polynomials[k];
+      };
+      add(range.first, f, weight * level.weight[q]);
+      if (!curves.is_cut()) add(range.second, g, -weight * level.weight[q]);
     });
   }
 }

@@ -45,8 +45,9 @@ struct SegmentIntegral {
   void sum();
 };
 
-/// Derivatives of the volume with respect to the Chebyshev coefficients of the functions u, w and c of a curve.
-using CurveAdjoints = std::array<Samples, 3>;
+/// Derivatives of the volume with respect to the series coefficients of the functions u, w and c of a curve, and for a
+/// conic xx, xy and yy.
+using CurveAdjoints = std::array<Samples, 6>;
 
 /// Adds the derivatives of a segment's integral with respect to the first `terms` Chebyshev coefficients of all curves.
 /// @param terms     at least 2

@@ -117,8 +117,7 @@ OuterPlan::OuterPlan(const SlicePlan& plan) {
       shapes.push_back(Shape::strip_along_z);
       discriminant(c[2], c[5]);
     } else {
-      why_not = "a surface is neither a circle nor a line";
-      return;
+      shapes.push_back(Shape::conic);
     }
   }
 }

@@ -29,9 +29,8 @@ struct OuterFunction {
   }
 };
 
-/// The shape of the zero set of a constraint surface in a slice; constant: the surface has one sign; strip: two
-/// parallel lines.
-enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_along_z };
+/// Shape of a constraint surface in a slice.
+enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_along_z, conic };
 
 /// The shapes of the surfaces of a plan, and the functions that divide the range of its outer coordinate.
 struct OuterPlan {

@@ -14,14 +14,14 @@ constexpr double kSame = 1e-12;
 constexpr double kMargin = 1e-9;
 constexpr std::size_t kMiddle = kNodes / 2;
 
-/// An interval that contains all values of a Chebyshev series.
+/// Interval that contains all values of a series of a curve.
 struct Range {
   double low, high;
 };
-Range range_of(const BoundaryCurve& curve, std::size_t f) {
+Range range_of(const Samples& series, const BoundaryCurve& curve) {
   double rest = curve.error;
-  for (std::size_t k = 1; k < curve.terms; ++k) rest += std::fabs(curve.series[f][k]);
-  return {curve.series[f][0] - rest, curve.series[f][0] + rest};
+  for (std::size_t k = 1; k < curve.terms; ++k) rest += std::fabs(series[k]);
+  return {series[0] - rest, series[0] + rest};
 }
 Range product(const Range& a, const Range& b) {
   const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
@@ -30,10 +30,22 @@ Range product(const Range& a, const Range& b) {
 
 /// An interval that contains all values of the function h of a curve in the rectangle with the ranges x and y.
 Range values_in(const BoundaryCurve& curve, const Range& x, const Range& y) {
-  const Range u = range_of(curve, 0), w = range_of(curve, 1), c = range_of(curve, 2);
+  const Range u = range_of(curve.series[0], curve), w = range_of(curve.series[1], curve),
+              c = range_of(curve.series[2], curve);
   if (!curve.is_circle()) {
     const Range a = product(u, x), b = product(w, y);
-    return {a.low + b.low + c.low, a.high + b.high + c.high};
+    Range sum{a.low + b.low + c.low, a.high + b.high + c.high};
+    if (!curve.is_conic()) return sum;
+    const auto square = [](const Range& p) {
+      const double near = p.low > 0 ? p.low : p.high < 0 ? p.high : 0;
+      return Range{near * near, std::fmax(p.low * p.low, p.high * p.high)};
+    };
+    const Range powers[3] = {square(x), product(x, y), square(y)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Range term = product(range_of(curve.quadratic->series[i], curve), powers[i]);
+      sum = {sum.low + term.low, sum.high + term.high};
+    }
+    return sum;
   }
   const auto squares = [](const Range& p, const Range& q) {
     const double low = p.low - q.high, high = p.high - q.low;
@@ -46,10 +58,13 @@ Range values_in(const BoundaryCurve& curve, const Range& x, const Range& y) {
 
 bool is_same(const BoundaryCurve& a, const BoundaryCurve& b) {
   if (a.kind != b.kind) return false;
-  for (std::size_t f = 0; f < 3; ++f)
-    for (std::size_t n = 0; n < kNodes; ++n)
-      if (std::fabs(a.values[f][n] - b.values[f][n]) > kSame * (1 + std::fabs(a.values[f][n]))) return false;
-  return true;
+  const auto are_same = [](const std::array<Samples, 3>& x, const std::array<Samples, 3>& y) {
+    for (std::size_t f = 0; f < 3; ++f)
+      for (std::size_t n = 0; n < kNodes; ++n)
+        if (std::fabs(x[f][n] - y[f][n]) > kSame * (1 + std::fabs(x[f][n]))) return false;
+    return true;
+  };
+  return are_same(a.values, b.values) && (!a.is_conic() || are_same(a.quadratic->values, b.quadratic->values));
 }
 
 bool is_defined(const std::array<Samples, 6>& c, bool& nowhere) {
@@ -87,8 +102,35 @@ void SliceCurves::add_line(BoundaryCurve& line, CurveSource source, Signs positi
   if (number) *number = at;
 }
 
-/// Adds the boundary of a surface that is a quadratic polynomial in v only (along_v) or in z only: two parallel lines,
-/// at its roots. @return false if this is not possible in the whole segment
+/// Adds a conic in the coordinates of the frame, scaled such that its coefficients have magnitudes up to 1. The sign of
+/// its largest quadratic coefficient is normalised, so that opposite constraints share one curve.
+void SliceCurves::add_conic(std::size_t surface, const std::array<Samples, 6>& c) {
+  BoundaryCurve conic;
+  conic.kind = BoundaryCurve::Kind::conic;
+  auto& [u, w, constant] = conic.values;
+  auto& [xx, xy, yy] = conic.quadratic.emplace().values;
+  const double v = frame.v, z = frame.z, scale = frame.scale;
+  double largest = 0;
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    constant[n] = c[0][n] + v * (c[1][n] + v * c[3][n] + z * c[4][n]) + z * (c[2][n] + z * c[5][n]);
+    u[n] = scale * (c[1][n] + 2 * v * c[3][n] + z * c[4][n]);
+    w[n] = scale * (c[2][n] + v * c[4][n] + 2 * z * c[5][n]);
+    xx[n] = scale * scale * c[3][n];
+    xy[n] = scale * scale * c[4][n];
+    yy[n] = scale * scale * c[5][n];
+    for (const Samples* each : {&constant, &u, &w, &xx, &xy, &yy}) largest = std::fmax(largest, std::fabs((*each)[n]));
+  }
+  double sign = 0;
+  for (const Samples* each : {&xx, &xy, &yy})
+    if (std::fabs((*each)[kMiddle]) > std::fabs(sign)) sign = (*each)[kMiddle];
+  const double factor = (sign < 0 ? -1 : 1) / largest;
+  for (Samples* each : {&constant, &u, &w, &xx, &xy, &yy})
+    for (double& value : *each) value *= factor;
+  const std::size_t at = add_curve(conic, {CurveSource::Kind::conic, surface, factor});
+  (factor < 0 ? formula.literals[at].inside : formula.literals[at].outside) |= bit(surface);
+}
+
+/// Adds the two parallel lines that are the roots of a quadratic in one coordinate.
 bool SliceCurves::add_strip(std::size_t surface, bool along_v, const std::array<Samples, 6>& c) {
   const Samples &c0 = c[0], &b = along_v ? c[1] : c[2], &a = along_v ? c[3] : c[5];
   const bool is_inside = a[kMiddle] < 0;
@@ -145,6 +187,9 @@ bool SliceCurves::add_surface(std::size_t surface, Shape shape, const std::array
       add_line(curve, {CurveSource::Kind::line, surface, 1}, bit(surface));
       return true;
     }
+    case Shape::conic:
+      add_conic(surface, c);
+      return true;
     case Shape::circle:
       break;
   }
@@ -227,7 +272,10 @@ SliceCurves::Status SliceCurves::simplify() {
   constexpr double kFar = 1e6;
   Range x{-kFar, kFar}, y{-kFar, kFar};
   const auto bound = [&](std::size_t i, bool outside) {
-    const Range u = range_of(curves[i], 0), w = range_of(curves[i], 1), c = range_of(curves[i], 2);
+    if (curves[i].is_conic()) return;
+    const auto& series = curves[i].series;
+    const Range u = range_of(series[0], curves[i]), w = range_of(series[1], curves[i]),
+                c = range_of(series[2], curves[i]);
     if (curves[i].is_circle()) {
       if (outside) return;
       const double radius = std::sqrt(std::fmax(0, c.high));
@@ -279,6 +327,9 @@ SliceCurves::Status SliceCurves::simplify() {
     clause = is_single || (some & formula.constant) != 0 ? f.any.erase(clause) : clause + 1;
   }
   remove_irrelevant();
+  const std::array<double, 2> half_widths = {std::fmax(-x.low, x.high), std::fmax(-y.low, y.high)};
+  for (BoundaryCurve& curve : curves)
+    if (curve.is_conic() && !curve.find_graphs(half_widths)) return Status::unresolved;
   return Status::filled;
 }
 

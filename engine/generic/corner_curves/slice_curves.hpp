@@ -21,11 +21,13 @@ struct Frame {
 
 /// The constraint from which a boundary curve originates; derivatives need it.
 struct CurveSource {
-  enum class Kind : std::uint8_t { circle, line, lower_root, upper_root, v_bound, limit };
+  enum class Kind : std::uint8_t { circle, line, conic, lower_root, upper_root, v_bound, limit };
   Kind kind;
   /// Index of the surface; v_bound: 0 for the lower and 1 for the upper bound; limit: index of the limit.
   std::size_t surface;
-  double sign;  ///< 1 or -1: whether a line's normal has the direction of the surface's gradient or the opposite one
+  /// 1 or -1: direction of a line's normal relative to the gradient of the surface; conic: factor by which the surface
+  /// is multiplied.
+  double sign;
 };
 
 /// Values at the Chebyshev nodes of a segment of all registers from which the boundary curves are computed.
@@ -50,6 +52,7 @@ struct SliceCurves {
 
  private:
   bool add_surface(std::size_t surface, Shape shape, const std::array<Samples, 6>& c);
+  void add_conic(std::size_t surface, const std::array<Samples, 6>& c);
   bool add_strip(std::size_t surface, bool along_v, const std::array<Samples, 6>& c);
   void add_line(BoundaryCurve& line, CurveSource source, Signs positive, std::size_t* number = nullptr);
   void add_bound(BoundaryCurve& line, bool upper);

@@ -68,13 +68,13 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
     if (!worst->integral.refine()) break;
   }
   for (const Segment& segment : segments) {
-    const auto& [ranges, undecided, unbalanced, functions] = segment.integral.decomposition;
-    // In an undecided interval, three curves miss a common point by about the square root of the rounding error, 1e-7.
-    // The area between them is of the order of its square, and one decision applies to all three curves.
-    double per_slice = unbalanced + undecided * 1e-12;
-    // The error of a curve changes the area by at most the length of its arc in the frame, which is less than the
-    // frame's perimeter 8, times its displacement, which is at most sqrt(2) tails.
-    for (const BoundaryCurve& curve : segment.slices.curves) per_slice += 12 * curve.tail;
+    const Decomposition& decomposition = segment.integral.decomposition;
+    // In an undecided interval, three curves miss a common point by about the square root of the rounding error, 1e-7;
+    // the area that they enclose is of the order of its square. All three curves are affected by the same decision.
+    double per_slice = decomposition.unbalanced + decomposition.undecided * 1e-12;
+    // An arc in the frame is shorter than the perimeter of the frame, 8; its centre is displaced by at most sqrt(2)
+    // tails, and a conic by about the tails of its six coefficients, divided by the magnitude of its gradient.
+    for (const BoundaryCurve& curve : segment.slices.curves) per_slice += (curve.is_conic() ? 200 : 12) * curve.tail;
     total.error += scale(segment) * per_slice * 0.5 * (segment.upper.at - segment.lower.at);
   }
   // if no feasible point was found, let planar slices decide whether the workspace is empty or was missed

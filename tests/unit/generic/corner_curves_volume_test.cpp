@@ -73,7 +73,8 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CornerCurveVolumes,
-                         ::testing::Values("3-rpr", "gough", "linear-delta", "orthoglide", "4ppa-2par", "rotary-delta"),
+                         ::testing::Values("3-rpr", "gough", "linear-delta", "orthoglide", "4ppa-2par", "rotary-delta",
+                                           "2t1r-p-hybrid"),
                          [](const auto& name) { return test::test_name(name.param); });
 
 /// A limit on x and theta that is no polynomial, |sin(beta_1 + beta_2)| of 4PPa-2PaR, between thresholds that cut all
@@ -138,6 +139,41 @@ TEST(CornerCurveDesigns, OfThinStrokesLieInTheCertifiedBounds) {
   EXPECT_GT(found.volume, 5.614e-6);
   EXPECT_LT(found.volume, 5.902e-6);
   EXPECT_LT(found.error, 1e-6);
+}
+
+/// The bend of the hybrid robot's auxiliary chain bounds its slices by hyperbolas. Derivatives against differences, and
+/// the volume against certified bounds.
+TEST(CornerCurveDesigns, BoundedByConicsHaveTheDerivativesOfDifferences) {
+  const Mechanism& mechanism = *test::described("2t1r-p-hybrid");
+  std::vector<double> design = test::nominal(mechanism.info());
+  for (std::size_t i = 0; i < design.size(); ++i) design[i] *= 1 + 0.002 * static_cast<double>(i % 7);
+  const WorkspacePlan plan = test::columns(mechanism.info());
+  const auto evaluator = mechanism.columns()->prepare(plan, *plan.columns(), {});
+  const auto volume = [&](const std::vector<double>& changed) {
+    WorkspaceResult<double> result;
+    evaluate_once<double>(*evaluator, changed, result);
+    return result;
+  };
+  const WorkspaceResult<double> found = volume(design);
+  EXPECT_LT(found.error, 1e-8);
+  EXPECT_NE(found.columns, test::survey(mechanism, design, plan, {.fields = {&kConditioning}}).columns);
+  const VolumeBounds bounds = mechanism.bounds()->volume(design, plan, "", {.gap = 0.1, .max_boxes = 100'000U});
+  EXPECT_LT(bounds.lower, found.volume);
+  EXPECT_GT(bounds.upper, found.volume);
+  for (const char* name : {"a", "c", "d", "e", "L1", "L3", "f", "fp", "h1", "phi_max", "mu_max", "psiC_max"}) {
+    SCOPED_TRACE(name);
+    const auto i = static_cast<std::size_t>(std::ranges::find(mechanism.info().parameters, name, &Parameter::name) -
+                                            mechanism.info().parameters.begin());
+    std::vector<Dual4> duals(design.begin(), design.end());
+    duals[i] = Dual4::variable(design[i], 0);
+    WorkspaceResult<Dual4> with_derivative;
+    evaluate_once<Dual4>(*evaluator, duals, with_derivative);
+    constexpr double kStep = 1e-6;
+    std::vector<double> above = design, below = design;
+    above[i] += kStep;
+    below[i] -= kStep;
+    EXPECT_NEAR(with_derivative.volume.v[0], (volume(above).volume - volume(below).volume) / (2 * kStep), 2e-7);
+  }
 }
 
 /// Symmetry puts several events at one place, at which rounding decides single signs.

@@ -1,0 +1,55 @@
+// Crossings of a general conic with another curve, as functions of tau.
+//
+// There are up to four of them, and no simple closed form that follows one of them: between two consecutive roots of
+// the discriminant their number is constant, and each is interpolated in homogeneous coordinates (X : Y : W), (x, y) =
+// (X, Y)/W, in which crossings that pass through infinity are smooth, too.
+#pragma once
+
+#include <vector>
+
+#include "engine/generic/corner_curves/boundary_curve.hpp"
+#include "engine/math/quadrature.hpp"
+
+namespace pkm::generic::corner_curves {
+
+/// (X, Y, W) with magnitude 1.
+using Homogeneous = std::array<double, 3>;
+
+/// W^2 h((X, Y)/W) of a curve.
+double homogeneous_value(const CurveAt& curve, const Homogeneous& p);
+
+/// Finds all real crossings of a conic with another curve. @return their number
+std::size_t find_crossings(const CurveAt& conic, const CurveAt& other, std::array<Homogeneous, 4>& points);
+
+/// Function that vanishes where two of the crossings of a conic with another curve, real or complex ones, merge.
+void conic_discriminant(const BoundaryCurve& conic, const BoundaryCurve& other, Sampled& result);
+
+/// Improves a simple root of this function: at roots, crossings vary like the square root of the distance, so that an
+/// error of the root would be magnified.
+double refine_contact(const BoundaryCurve& conic, const BoundaryCurve& other, double tau);
+
+/// Values of a curve at the nodes of a range of tau.
+/// @param tau  values of tau at the nodes
+void sample_curve(const BoundaryCurve& curve, const Subinterval<double>& range, const Samples& tau,
+                  std::array<CurveAt, kNodes>& at);
+
+/// One crossing in a range of tau.
+struct CrossingPath {
+  Subinterval<double> range;      ///< at an end with a square root the crossing merges with another one
+  std::array<Samples, 3> values;  ///< X, Y and W at the nodes of map_node()
+  std::array<Samples, 3> series;  ///< Chebyshev coefficients of X, Y and W in the variable of map_node()
+  std::size_t terms = kNodes;
+  double error = 0;  ///< interpolation error
+
+  /// The crossing of the two curves, improved by Newton's method.
+  Vector at(double tau, const CurveAt& first, const CurveAt& second) const;
+};
+
+/// Follows the crossings of a conic with another curve.
+/// @param range  range in which the discriminant has no root; a square root is allowed at one end
+/// @param paths  the crossings are appended, in pieces where one series is not sufficient
+/// @return false if they are not resolved
+bool follow_crossings(const BoundaryCurve& conic, const BoundaryCurve& other, const Subinterval<double>& range,
+                      std::vector<CrossingPath>& paths);
+
+}  // namespace pkm::generic::corner_curves
