@@ -1,3 +1,4 @@
+// The search on the grid, and the results of the refinement.
 #include "engine/workspace/largest_solid.hpp"
 
 #include <algorithm>
@@ -7,357 +8,22 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/geometry/pose_product.hpp"
-#include "engine/math/quadratic_program.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 #include "engine/workspace/solid_margins.hpp"
+#include "engine/workspace/solid_refinement.hpp"
 #include "engine/workspace/visualisation_plan.hpp"
 #include "engine/workspace/workspace_fields.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kCellsOfSearch = 40;  // cells per axis of the initial search, for plans of columns
-// sample intervals along a radius: first run, second run, final test
-constexpr int kCoarseDensity = 2, kSampleDensity = 4, kFinalDensity = 6;
-// value of CriticalPoint::margin that stands for a face of the search box
-constexpr std::size_t kBoxFace = std::size_t(-1);
+constexpr std::int64_t kCellsOfSearch = 40;                               // per axis, for plans of columns
+constexpr int kCoarseDensity = 2, kSampleDensity = 4, kFinalDensity = 6;  // intervals per radius
 
 /// Determinant of the Jacobian G of a pose; NaN if it is undefined.
 double determinant_of(const PoseReport& report) {
   return report.det_G.value_or(std::numeric_limits<double>::quiet_NaN());
 }
-
-using Faces = std::array<std::array<double, 2>, 3>;
-
-/// Variables of the optimisation: free coordinates of the solid's centre, then its sizes, divided by a length, unit().
-class SolidVariables {
- public:
-  SolidVariables(const SolidSpec& spec, const Solid& start) : spec_(spec) {
-    for (std::size_t axis = 0; axis < spec.shape.axes(); ++axis)
-      if (!spec.centre[axis]) free_.push_back(axis);
-    unit_ = *std::ranges::max_element(start.dimensions);
-  }
-
-  double unit() const { return unit_; }
-  Eigen::Index sizes() const { return spec_.ratio.empty() ? static_cast<Eigen::Index>(spec_.shape.balls()) : 1; }
-  Eigen::Index count() const { return first_size() + sizes(); }
-  Eigen::Index first_size() const { return static_cast<Eigen::Index>(free_.size()); }
-
-  Eigen::VectorXd values(const Solid& solid) const {
-    Eigen::VectorXd x(count());
-    for (std::size_t i = 0; i < free_.size(); ++i) x[static_cast<Eigen::Index>(i)] = solid.centre[free_[i]] / unit_;
-    for (Eigen::Index i = 0; i < sizes(); ++i)
-      x[first_size() + i] = solid.dimensions[static_cast<std::size_t>(i)] / ratio(static_cast<std::size_t>(i)) / unit_;
-    return x;
-  }
-  Solid solid(const Eigen::VectorXd& x, const Solid& like) const {
-    Solid made = like;
-    for (std::size_t i = 0; i < free_.size(); ++i) made.centre[free_[i]] = x[static_cast<Eigen::Index>(i)] * unit_;
-    for (std::size_t ball = 0; ball < spec_.shape.balls(); ++ball)
-      made.dimensions[ball] = x[variable_of(ball)] * ratio(ball) * unit_;
-    return made;
-  }
-  /// Gradient of CriticalPoint::distance with respect to the variables; the distance, too, is divided by unit().
-  Eigen::VectorXd gradient(const CriticalPoint& point) const {
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(count());
-    for (std::size_t i = 0; i < free_.size(); ++i) g[static_cast<Eigen::Index>(i)] = point.normal[free_[i]];
-    for (std::size_t axis = 0; axis < spec_.shape.axes(); ++axis) {
-      const std::size_t ball = spec_.shape.ball_of(axis);
-      g[variable_of(ball)] += point.normal[axis] * point.unit[axis] / 2 * ratio(ball);
-    }
-    return g;
-  }
-  /// Logarithm of the solid's volume (without a constant), its gradient and the diagonal of its Hessian, which is
-  /// diagonal.
-  double log_volume(const Eigen::VectorXd& x, Eigen::VectorXd& gradient, Eigen::VectorXd& hessian) const {
-    double sum = 0;
-    gradient = hessian = Eigen::VectorXd::Zero(count());
-    for (std::size_t ball = 0; ball < spec_.shape.balls(); ++ball) {
-      const double power = static_cast<double>(spec_.shape.axes_of(ball).size());
-      const Eigen::Index i = variable_of(ball);
-      sum += power * std::log(x[i]);
-      gradient[i] += power / x[i];
-      hessian[i] -= power / (x[i] * x[i]);
-    }
-    return sum;
-  }
-
- private:
-  double ratio(std::size_t ball) const { return spec_.ratio.empty() ? 1 : spec_.ratio[ball]; }
-  Eigen::Index variable_of(std::size_t ball) const {
-    return first_size() + (spec_.ratio.empty() ? static_cast<Eigen::Index>(ball) : 0);
-  }
-
-  const SolidSpec& spec_;
-  std::vector<std::size_t> free_;
-  double unit_ = 1;
-};
-
-/// Sequential quadratic programming with a trust region and the L-infinity merit function
-/// -log(volume) + penalty * (largest violation); every step is followed by a second-order correction.
-class SolidRefinement {
- public:
-  SolidRefinement(const SolidSpec& spec, const Faces& faces, SolidMargins& margins, const Solid& start)
-      : spec_(spec), faces_(faces), margins_(margins), variables_(spec, start), like_(start) {}
-
-  /// A point x of the iteration, with the constraints linearised there.
-  struct Iterate {
-    Eigen::VectorXd x;
-    std::vector<CriticalPoint> points;
-    Eigen::VectorXd multipliers = {};  ///< Lagrange multiplier of each critical point
-    double log_volume = 0;
-    Eigen::VectorXd gradient, hessian;
-    double violation = 0;            ///< largest constraint violation, in units of SolidVariables::unit()
-    Eigen::MatrixXd curvature = {};  ///< approximate Hessian of the Lagrangian at the end of a run
-  };
-
-  /// Iterates until convergence.
-  /// @param last  result of an earlier run with fewer samples, from which this run continues. If a constraint is
-  ///              violated there, the earlier run has missed a minimum of its margin, and this run starts anew
-  Iterate run(const SolidSamples& samples, const Iterate* last = nullptr) {
-    samples_ = &samples;
-    constexpr double kMissed = 1e-6;  // violation in units of the size
-    Iterate now = evaluate(last ? last->x : variables_.values(like_), nullptr, 1);
-    if (last && now.violation > kMissed) {
-      last = nullptr;
-      now = evaluate(variables_.values(like_), nullptr, 1);
-    }
-    Eigen::MatrixXd curvature = last ? last->curvature : initial_curvature(now);
-    double radius = 0.3;
-    int final_steps = 0;
-    for (int iteration = 0;; ++iteration) {
-      const auto [step, multipliers, predicted] = solve_step(now, curvature, radius);
-      now.multipliers = multipliers;
-      const double length = step.lpNorm<Eigen::Infinity>();
-      residual_ = length + now.violation;
-      // Predicted decreases of the merit function below this value are dominated by rounding errors times the penalty.
-      constexpr double kRounding = 1e-10;
-      const bool is_final = predicted < kRounding;
-      if (residual_ < kTolerance || iteration == kMaxIterations || final_steps == kMaxFinalSteps ||
-          radius < kTolerance) {
-        // Compute the final multipliers with the initial curvature: an almost singular update may have made the current
-        // one very large.
-        now.multipliers = solve_step(now, initial_curvature(now), kNearby).multipliers;
-        now.curvature = curvature;
-        return now;
-      }
-      final_steps += is_final ? 1 : 0;
-      if (final_steps == kMaxFinalSteps / 2) curvature = initial_curvature(now);
-      const Iterate trial = corrected(evaluate(now.x + step, &now, length), radius);
-      const double actual = merit(now) - merit(trial);
-      if (!(is_final ? actual > -kRounding : actual >= 0.05 * predicted)) {
-        if (!add_points(trial, now)) radius = std::min(radius, length) / 4;
-        continue;
-      }
-      if (actual > 0.7 * predicted && length > 0.9 * radius) radius = std::min(2 * radius, 0.5);
-      update(curvature, now, trial);
-      now = trial;
-    }
-  }
-
-  /// Shrinks the solid of the last iterate until no constraint is violated at `dense`, a set of more samples.
-  /// @return the solid; all its dimensions are 0 if this fails
-  Solid finish(Iterate& last, const SolidSamples& dense) {
-    Solid found = solid(last.x);
-    constexpr int kMaxRounds = 60;
-    for (int round = 0; round < kMaxRounds; ++round) {
-      double violation = 0;
-      for (const CriticalPoint& point : critical_points(found, dense)) violation = std::max(violation, -point.distance);
-      if (violation <= 1e-14 * variables_.unit()) return found;
-      const double smallest = *std::ranges::min_element(found.dimensions);
-      const double factor = std::max(0.5, 1 - 2.1 * violation / smallest);
-      for (double& dimension : found.dimensions) dimension *= factor;
-    }
-    found.dimensions.assign(found.dimensions.size(), 0.0);
-    return found;
-  }
-
-  double residual() const { return residual_; }
-  Solid solid(const Eigen::VectorXd& x) const { return variables_.solid(x, like_); }
-  double unit() const { return variables_.unit(); }
-
- private:
-  static constexpr int kMaxIterations = 80, kMaxFinalSteps = 25;
-  static constexpr double kTolerance = 1e-12, kPenalty = 1e3, kNearby = 1e-2;
-
-  /// Hessian of -log(volume), made positive definite.
-  Eigen::MatrixXd initial_curvature(const Iterate& at) const {
-    Eigen::MatrixXd curvature = Eigen::MatrixXd::Identity(variables_.count(), variables_.count()) * 1e-3;
-    curvature.diagonal() -= at.hessian;
-    return curvature;
-  }
-
-  std::vector<CriticalPoint> critical_points(const Solid& solid, const SolidSamples& samples) {
-    const double range = *std::ranges::max_element(solid.dimensions);
-    std::vector<CriticalPoint> points = margins_.critical_points(solid, range, samples);
-    add_faces(solid, points);
-    return points;
-  }
-
-  /// Appends, for each face of the search box, the point of the solid nearest to it.
-  void add_faces(const Solid& solid, std::vector<CriticalPoint>& points) const {
-    for (std::size_t axis = 0; axis < spec_.shape.axes(); ++axis)
-      for (std::size_t end = 0; end < 2; ++end) {
-        const double sign = end == 0 ? 1 : -1;
-        CriticalPoint face{kBoxFace, 0};
-        face.unit[axis] = -sign;
-        face.normal[axis] = sign;
-        face.norm = 1;
-        face.distance = sign * (solid.at(spec_.shape, face.unit)[axis] - faces_[axis][end]);
-        points.push_back(face);
-      }
-  }
-
-  /// Evaluates the objective and all constraints at x.
-  /// @param before  the iterate from which `x` was reached; null: none
-  /// @param length  length of the step from `before`; after a small step, the critical points of `before` are only
-  ///                updated
-  Iterate evaluate(const Eigen::VectorXd& x, const Iterate* before, double length) {
-    constexpr double kSmallStep = 0.02;
-    Iterate made{.x = x};
-    const Solid here = solid(x);
-    if (!before || length > kSmallStep) {
-      made.points = critical_points(here, *samples_);
-    } else {
-      for (const CriticalPoint& old : before->points) {
-        if (old.margin == kBoxFace) continue;
-        const CriticalPoint point = margins_.minimise(here, old.margin, old.orientation, old.unit);
-        if (std::isfinite(point.distance) && !nearest(made.points, point, 1e-6)) made.points.push_back(point);
-      }
-      add_faces(here, made.points);
-    }
-    // Keep points that were active in the last step, but are no local minima any more: a margin with many equal minima
-    // (a sphere in a cylinder) would otherwise be represented by different points in each iteration.
-    for (Eigen::Index k = 0; before && k < before->multipliers.size(); ++k) {
-      const CriticalPoint& old = before->points[static_cast<std::size_t>(k)];
-      if (old.margin == kBoxFace || old.norm == 0 || before->multipliers[k] < 1e-6 || nearest(made.points, old, 0.05))
-        continue;
-      const CriticalPoint kept = margins_.linearised(here, old.margin, old.orientation, old.unit);
-      if (std::isfinite(kept.distance)) made.points.push_back(kept);
-    }
-    made.log_volume = variables_.log_volume(x, made.gradient, made.hessian);
-    for (const CriticalPoint& point : made.points)
-      made.violation = std::max(made.violation, -point.distance / variables_.unit());
-    return made;
-  }
-
-  /// Adds the critical points of a rejected trial to the linear model, as a bundle method does: where a margin has many
-  /// minima, those on the other side of the solid stop the next step. @return false if there is no new point
-  bool add_points(const Iterate& trial, Iterate& now) {
-    constexpr double kNew = 0.05, kNear = 0.1;
-    const Solid here = solid(now.x);
-    const std::size_t before = now.points.size();
-    for (const CriticalPoint& point : trial.points) {
-      if (point.margin == kBoxFace || point.norm == 0 || point.distance > kNear * variables_.unit() ||
-          nearest(now.points, point, kNew))
-        continue;
-      const CriticalPoint added = margins_.linearised(here, point.margin, point.orientation, point.unit);
-      if (std::isfinite(added.distance)) now.points.push_back(added);
-    }
-    return now.points.size() > before;
-  }
-
-  /// The critical point of the same constraint that is nearest to `to` in the unit solid; null if none is within
-  /// `reach`.
-  static const CriticalPoint* nearest(const std::vector<CriticalPoint>& points, const CriticalPoint& to, double reach) {
-    const CriticalPoint* best = nullptr;
-    for (const CriticalPoint& point : points) {
-      if (point.margin != to.margin || point.orientation != to.orientation) continue;
-      const double apart =
-          std::hypot(point.unit[0] - to.unit[0], point.unit[1] - to.unit[1], point.unit[2] - to.unit[2]);
-      if (apart > reach) continue;
-      reach = apart;
-      best = &point;
-    }
-    return best;
-  }
-
-  static double merit(const Iterate& at) { return -at.log_volume + kPenalty * at.violation; }
-
-  struct Step {
-    Eigen::VectorXd step, multipliers;
-    double predicted = 0;  ///< predicted decrease of the merit function
-  };
-
-  /// Computes a step d: minimises c'd + d'Bd/2 + penalty * t for |d| <= radius, where t >= 0 relaxes the linearised
-  /// constraints. Constraints that are satisfied for all these d are omitted.
-  Step solve_program(const Iterate& at, const Eigen::MatrixXd& B, const Eigen::VectorXd& c, double radius) const {
-    std::vector<std::size_t> near;  // indices of the critical points that are not omitted
-    for (std::size_t k = 0; k < at.points.size(); ++k)
-      if (at.points[k].distance <= variables_.gradient(at.points[k]).lpNorm<1>() * radius * variables_.unit())
-        near.push_back(k);
-    const Eigen::Index n = variables_.count(), m = static_cast<Eigen::Index>(near.size());
-    QuadraticProgram program;
-    program.B = Eigen::MatrixXd::Identity(n + 1, n + 1) * 1e-8;
-    program.B.topLeftCorner(n, n) += B;
-    program.c = Eigen::VectorXd(n + 1);
-    program.c << c, kPenalty;
-    program.A = Eigen::MatrixXd::Zero(m + 1 + 2 * n, n + 1);
-    program.b = Eigen::VectorXd::Zero(m + 1 + 2 * n);
-    for (Eigen::Index k = 0; k < m; ++k) {
-      const CriticalPoint& point = at.points[near[static_cast<std::size_t>(k)]];
-      program.A.row(k).head(n) = variables_.gradient(point).transpose();
-      program.A(k, n) = 1;
-      program.b[k] = -point.distance / variables_.unit();
-    }
-    program.A(m, n) = 1;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double shrinkage = i < variables_.first_size() ? radius : std::min(radius, 0.9 * at.x[i]);
-      program.A(m + 1 + 2 * i, i) = 1;
-      program.b[m + 1 + 2 * i] = -shrinkage;
-      program.A(m + 2 + 2 * i, i) = -1;
-      program.b[m + 2 + 2 * i] = -radius;
-    }
-    const QuadraticSolution solution = solve(program);
-    Step found{solution.x.head(n), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.points.size()))};
-    for (std::size_t k = 0; k < near.size(); ++k)
-      found.multipliers[static_cast<Eigen::Index>(near[k])] = solution.multipliers[static_cast<Eigen::Index>(k)];
-    found.predicted = -c.dot(found.step) - 0.5 * found.step.dot(B * found.step) +
-                      kPenalty * (at.violation - std::max(0.0, solution.x[n]));
-    return found;
-  }
-  Step solve_step(const Iterate& now, const Eigen::MatrixXd& curvature, double radius) const {
-    return solve_program(now, curvature, -now.gradient, radius);
-  }
-
-  /// Second-order correction of a trial step: moves to the nearest point that satisfies the constraints, linearised at
-  /// the trial point. @return the corrected iterate, or `trial` if that has the lower merit function
-  Iterate corrected(Iterate trial, double radius) {
-    if (trial.violation < kTolerance / 10) return trial;
-    const Eigen::Index n = variables_.count();
-    const Step step = solve_program(trial, Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Zero(n), radius);
-    Iterate better = evaluate(trial.x + step.step, &trial, step.step.lpNorm<Eigen::Infinity>());
-    return merit(better) < merit(trial) ? better : trial;
-  }
-
-  /// Damped BFGS update of the Hessian of the Lagrangian (Nocedal and Wright, procedure 18.2).
-  void update(Eigen::MatrixXd& B, const Iterate& from, const Iterate& to) const {
-    const Eigen::VectorXd s = to.x - from.x;
-    if (s.norm() < 1e-9) return;  // differences of gradients would be rounding errors
-    Eigen::VectorXd y = from.gradient - to.gradient;
-    for (Eigen::Index k = 0; k < from.multipliers.size(); ++k) {
-      if (from.multipliers[k] < 1e-6) continue;
-      const CriticalPoint& old = from.points[static_cast<std::size_t>(k)];
-      if (old.margin == kBoxFace) continue;
-      const CriticalPoint* const same = nearest(to.points, old, 0.5);
-      if (!same) return;
-      y -= from.multipliers[k] * (variables_.gradient(*same) - variables_.gradient(old));
-    }
-    const Eigen::VectorXd Bs = B * s;
-    const double sBs = s.dot(Bs), sy = s.dot(y);
-    const double theta = sy >= 0.2 * sBs ? 1 : 0.8 * sBs / (sBs - sy);
-    const Eigen::VectorXd r = theta * y + (1 - theta) * Bs;
-    B += r * r.transpose() / s.dot(r) - Bs * Bs.transpose() / sBs;
-  }
-
-  const SolidSpec& spec_;
-  const Faces& faces_;
-  SolidMargins& margins_;
-  const SolidSamples* samples_ = nullptr;  ///< samples of the current run
-  SolidVariables variables_;
-  Solid like_;
-  double residual_ = 0;
-};
 
 }  // namespace
 
@@ -462,14 +128,23 @@ SolidMargins LargestSolidFinder::margins(std::span<const double> parameters, dou
 }
 
 LargestSolid LargestSolidFinder::find(std::span<const double> parameters) const {
+  constexpr std::size_t kRemembered = 8;
+  {
+    const std::lock_guard lock(memory_->mutex);
+    for (const auto& [design, solid] : memory_->solids)
+      if (std::ranges::equal(design, parameters)) return solid;
+  }
   const VoxelMap map = voxels_->map(parameters);
   LargestSolid found = find(parameters, map, false);
-  if (!is_regular_ || found.is_regular) return found;
-  return find(parameters, map, true);
+  if (is_regular_ && !found.is_regular) found = find(parameters, map, true);
+  const std::lock_guard lock(memory_->mutex);
+  memory_->solids.emplace_back(std::vector(parameters.begin(), parameters.end()), found);
+  if (memory_->solids.size() > kRemembered) memory_->solids.pop_front();
+  return found;
 }
 
 LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const VoxelMap& map, bool is_regular) const {
-  Faces faces;
+  SolidRefinement::Faces faces;
   for (std::size_t axis = 0; axis < 3; ++axis) faces[axis] = {map.lower[axis], map.upper[axis]};
   const VoxelGrid grid(map);
   SolidMargins tests = margins(parameters, 0);
@@ -535,7 +210,7 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
                     .multiplier = multiplier < kActive ? 0 : multiplier / (refinement.unit() * point.norm),
                     .margin = point.margin,
                     .unit = point.unit};
-    if (point.margin != kBoxFace) {
+    if (point.margin != SolidRefinement::kBoxFace) {
       contact.constraint = names[point.margin];
     } else {
       const auto axis = static_cast<std::size_t>(std::ranges::find_if(point.unit, [](double u) { return u != 0; }) -
@@ -564,7 +239,7 @@ Dual4 LargestSolidFinder::volume(std::span<const Dual4> parameters, const Larges
   for (const Contact& contact : found.contacts) {
     if (contact.multiplier == 0) continue;
     const double factor = found.volume * contact.multiplier;
-    if (contact.margin != kBoxFace) {
+    if (contact.margin != SolidRefinement::kBoxFace) {
       const Dual4 margin = constraints.by_parameters(parameters, contact.margin, contact.pose);
       for (int k = 0; k < 4; ++k) result.v[k] += factor * margin.v[k];
       continue;

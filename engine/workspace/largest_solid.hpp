@@ -7,6 +7,9 @@
 // margins are tested at samples of the whole solid and at the local minima that start from them.
 #pragma once
 
+#include <deque>
+#include <mutex>
+
 #include "engine/mechanism/abilities/bounds.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/workspace/solid_margins.hpp"
@@ -46,6 +49,7 @@ class LargestSolidFinder {
   LargestSolidFinder(const Mechanism& mechanism, const WorkspacePlan& plan, SolidSpec spec, bool is_regular,
                      std::vector<ReportMargin> reported = {});
 
+  /// Remembers the last few results.
   LargestSolid find(std::span<const double> parameters) const;
   /// The volume with derivatives by the envelope theorem, if one constraint decides each size: constraints that are
   /// limits of quantities without a formula, det(G) and faces of a search box that depends on the design are
@@ -72,6 +76,12 @@ class LargestSolidFinder {
                                              const SolidMargins& margins) const;
   LargestSolid find(std::span<const double> parameters, const VoxelMap& map, bool is_regular) const;
 
+  /// The solids that were found last, with their designs: certificates and pages show designs that were just evaluated.
+  struct Memory {
+    std::mutex mutex;
+    std::deque<std::pair<std::vector<double>, LargestSolid>> solids;
+  };
+
   const Mechanism& mechanism_;
   WorkspacePlan plan_;  ///< the study's plan, as a plan of voxels; with its fixed coordinates
   SolidSpec spec_;
@@ -81,6 +91,7 @@ class LargestSolidFinder {
   std::unique_ptr<const VoxelEvaluator> voxels_;
   std::unique_ptr<const PoseSides> sides_;  ///< null: det G is computed at each pose
   SolidSamples coarse_samples_, samples_, dense_samples_;
+  std::shared_ptr<Memory> memory_ = std::make_shared<Memory>();
 };
 
 }  // namespace pkm

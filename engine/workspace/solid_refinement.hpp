@@ -1,0 +1,158 @@
+// Refinement of a solid in the workspace: exchange of critical points with sequential quadratic programming
+// (largest_solid.hpp).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "engine/workspace/solid_margins.hpp"
+#include "engine/workspace/solid_on_grid.hpp"
+
+namespace pkm {
+
+/// The sizes and free coordinates of the centre as variables, in units of a length.
+class SolidVariables {
+ public:
+  SolidVariables(const SolidSpec& spec, const Solid& start) : spec_(spec) {
+    for (std::size_t axis = 0; axis < spec.shape.axes(); ++axis)
+      if (!spec.centre[axis]) free_.push_back(axis);
+    unit_ = *std::ranges::max_element(start.dimensions);
+  }
+
+  double unit() const { return unit_; }
+  Eigen::Index sizes() const { return spec_.ratio.empty() ? static_cast<Eigen::Index>(spec_.shape.balls()) : 1; }
+  Eigen::Index count() const { return first_size() + sizes(); }
+  Eigen::Index first_size() const { return static_cast<Eigen::Index>(free_.size()); }
+
+  Eigen::VectorXd values(const Solid& solid) const {
+    Eigen::VectorXd x(count());
+    for (std::size_t i = 0; i < free_.size(); ++i) x[static_cast<Eigen::Index>(i)] = solid.centre[free_[i]] / unit_;
+    for (Eigen::Index i = 0; i < sizes(); ++i)
+      x[first_size() + i] = solid.dimensions[static_cast<std::size_t>(i)] / ratio(static_cast<std::size_t>(i)) / unit_;
+    return x;
+  }
+  Solid solid(const Eigen::VectorXd& x, const Solid& like) const {
+    Solid made = like;
+    for (std::size_t i = 0; i < free_.size(); ++i) made.centre[free_[i]] = x[static_cast<Eigen::Index>(i)] * unit_;
+    for (std::size_t ball = 0; ball < spec_.shape.balls(); ++ball)
+      made.dimensions[ball] = x[variable_of(ball)] * ratio(ball) * unit_;
+    return made;
+  }
+  /// Derivatives of CriticalPoint::distance, in units of unit().
+  Eigen::VectorXd gradient(const CriticalPoint& point) const {
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(count());
+    for (std::size_t i = 0; i < free_.size(); ++i) g[static_cast<Eigen::Index>(i)] = point.normal[free_[i]];
+    for (std::size_t axis = 0; axis < spec_.shape.axes(); ++axis) {
+      const std::size_t ball = spec_.shape.ball_of(axis);
+      g[variable_of(ball)] += point.normal[axis] * point.unit[axis] / 2 * ratio(ball);
+    }
+    return g;
+  }
+  /// log(volume), its gradient and its Hessian, which is diagonal.
+  double log_volume(const Eigen::VectorXd& x, Eigen::VectorXd& gradient, Eigen::VectorXd& hessian) const {
+    double sum = 0;
+    gradient = hessian = Eigen::VectorXd::Zero(count());
+    for (std::size_t ball = 0; ball < spec_.shape.balls(); ++ball) {
+      const double power = static_cast<double>(spec_.shape.axes_of(ball).size());
+      const Eigen::Index i = variable_of(ball);
+      sum += power * std::log(x[i]);
+      gradient[i] += power / x[i];
+      hessian[i] -= power / (x[i] * x[i]);
+    }
+    return sum;
+  }
+
+ private:
+  double ratio(std::size_t ball) const { return spec_.ratio.empty() ? 1 : spec_.ratio[ball]; }
+  Eigen::Index variable_of(std::size_t ball) const {
+    return first_size() + (spec_.ratio.empty() ? static_cast<Eigen::Index>(ball) : 0);
+  }
+
+  const SolidSpec& spec_;
+  std::vector<std::size_t> free_;
+  double unit_ = 1;
+};
+
+/// Sequential quadratic programming with a trust region and the L-infinity merit function
+/// -log(volume) + penalty * (largest violation); every step is followed by a second-order correction.
+class SolidRefinement {
+ public:
+  using Faces = std::array<std::array<double, 2>, 3>;       ///< of the search box, by axis: lower and upper
+  static constexpr std::size_t kBoxFace = std::size_t(-1);  ///< CriticalPoint::margin of these faces
+
+  SolidRefinement(const SolidSpec& spec, const Faces& faces, SolidMargins& margins, const Solid& start)
+      : spec_(spec), faces_(faces), margins_(margins), variables_(spec, start), like_(start) {}
+
+  /// A point of the iteration.
+  struct Iterate {
+    Eigen::VectorXd x;
+    std::vector<CriticalPoint> points;
+    Eigen::VectorXd multipliers = {};  ///< by critical point
+    double log_volume = 0;
+    Eigen::VectorXd gradient, hessian;
+    double violation = 0;            ///< largest, in units of SolidVariables::unit()
+    Eigen::MatrixXd curvature = {};  ///< approximate Hessian of the Lagrangian at the end of a run
+  };
+
+  /// Iterates until convergence.
+  /// @param last  end of an earlier run, with fewer samples, which is continued unless a constraint is violated there:
+  ///              then they missed a minimum of its margin
+  Iterate run(const SolidSamples& samples, const Iterate* last = nullptr);
+
+  /// The same with the violations removed by shrinking, tested with other samples.
+  Solid finish(Iterate& last, const SolidSamples& dense);
+
+  double residual() const { return residual_; }
+  Solid solid(const Eigen::VectorXd& x) const { return variables_.solid(x, like_); }
+  double unit() const { return variables_.unit(); }
+
+ private:
+  static constexpr int kMaxIterations = 80, kMaxFinalSteps = 25;
+  static constexpr double kTolerance = 1e-12, kPenalty = 1e3, kNearby = 1e-2;
+
+  /// Hessian of -log(volume), made positive definite.
+  Eigen::MatrixXd initial_curvature(const Iterate& at) const;
+
+  std::vector<CriticalPoint> critical_points(const Solid& solid, const SolidSamples& samples);
+
+  /// Adds the points of the solid nearest to the faces of the search box.
+  void add_faces(const Solid& solid, std::vector<CriticalPoint>& points) const;
+
+  /// @param before  the iterate from which `x` was reached; null: none
+  /// @param length  of the step from there; after small steps only the critical points of `before` are followed
+  Iterate evaluate(const Eigen::VectorXd& x, const Iterate* before, double length);
+
+  /// Adds the critical points of a rejected trial to the linear model, as a bundle method does: where a margin has many
+  /// minima, those on the other side of the solid stop the next step. @return false if there is no new point
+  bool add_points(const Iterate& trial, Iterate& now);
+
+  /// The point of the same constraint nearest to another; null if none is within `reach` in the unit solid.
+  static const CriticalPoint* nearest(const std::vector<CriticalPoint>& points, const CriticalPoint& to, double reach);
+
+  static double merit(const Iterate& at) { return -at.log_volume + kPenalty * at.violation; }
+
+  struct Step {
+    Eigen::VectorXd step, multipliers;
+    double predicted = 0;  ///< decrease of the merit function
+  };
+
+  /// Minimises c'd + d'Bd/2 + penalty * t subject to the linearised constraints, which t >= 0 relaxes, and |d| <=
+  /// radius. Constraints that hold for all these d are omitted.
+  Step solve_program(const Iterate& at, const Eigen::MatrixXd& B, const Eigen::VectorXd& c, double radius) const;
+  Step solve_step(const Iterate& now, const Eigen::MatrixXd& curvature, double radius) const;
+
+  /// Second-order correction: the nearest point that satisfies the constraints, linearised at the trial point.
+  Iterate corrected(Iterate trial, double radius);
+
+  /// Damped BFGS update of the Hessian of the Lagrangian (Nocedal and Wright, procedure 18.2).
+  void update(Eigen::MatrixXd& B, const Iterate& from, const Iterate& to) const;
+
+  const SolidSpec& spec_;
+  const Faces& faces_;
+  SolidMargins& margins_;
+  const SolidSamples* samples_ = nullptr;  ///< of the current run
+  SolidVariables variables_;
+  Solid like_;
+  double residual_ = 0;
+};
+
+}  // namespace pkm
