@@ -253,7 +253,7 @@ std::string describe(const Study& study) {
                                                   : "adaptive: at most 2 % of the run time",
                            mark(!study.checkpoint_every)},
                           {"final", round, mark(!study.round)}};
-  if (parts.plan.voxels() && !parts.plan.home && parts.mechanism->columns())
+  if (parts.plan.voxels() && parts.mechanism->columns())
     run.push_back({"exact",
                    study.exact_seconds > 0
                        ? "exact values of final designs, at most " + with_unit(study.exact_seconds, "s")

@@ -47,8 +47,8 @@ std::vector<OptionSpec> analysis_keys() {
           table_key("cells", cells, "voxels: numbers of cells along the swept coordinates, at most 2^28 in all"),
           table_key("box", box, "box that restricts the workspace; with voxels it also defines the grid"),
           table_key("home", home,
-                    "voxels: count only the component of the workspace that holds this pose, which the robot can move "
-                    "in without leaving limits and without crossing a singularity"),
+                    "measure only the component of the workspace that holds this pose, which the robot can move in "
+                    "without leaving limits and without crossing a singularity"),
           {.name = "sweep",
            .kind = OptionKind::list,
            .meaning = "swept coordinates, one to three; default: those that are not fixed, or the mechanism's",

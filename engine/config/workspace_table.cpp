@@ -212,10 +212,6 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
     if (const auto cells = table.find("cells")) read_cells(*cells, info, plan);
   }
   if (const auto home = table.find("home")) {
-    if (!plan.voxels())
-      throw home->refusal(
-          "exact columns integrate over all components of the workspace, and cannot single out the one that holds the "
-          "home pose; set method = \"voxels\"");
     if (const auto fixed = std::ranges::find_if(plan.fixed, integrated); fixed != plan.fixed.end())
       throw home->refusal("components need a single value of " + axis_of(info, fixed->coordinate).name +
                           ", but the workspace analysis integrates over it; fix it at one value, or sweep it");
@@ -249,13 +245,14 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
     if (const auto certified = table->find("certified")) {
       auto* const columns = std::get_if<ColumnOptions>(&plan.method);
       if (!columns) throw error_of_other_method(*certified, plan);
+      if (plan.home && !(certified->is_flag() && !certified->flag()))
+        throw certified->refusal(
+            "certified bounds of a volume count all components of the workspace, but `home` singles out one; remove "
+            "`certified` or `home`");
       columns->certified = read_certified(*certified, *draft.parts.mechanism);
     }
     if (const auto exact = table->find("exact")) {
       if (!plan.voxels()) throw error_of_other_method(*exact, plan);
-      if (plan.home && !(exact->is_flag() && !exact->flag()))
-        throw exact->refusal("exact values count all components of the workspace, but `home` singles out one; remove " +
-                             std::string("`exact` or `home`"));
       draft.study.exact_seconds = read_exact(*exact, *draft.parts.mechanism, draft.study.exact_seconds);
     }
     if (const auto limits = table->find("limits")) read_limits(*limits, draft);

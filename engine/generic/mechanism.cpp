@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/expression/term_matrix.hpp"
 #include "engine/generic/bounds.hpp"
 #include "engine/generic/clearance.hpp"
 #include "engine/generic/column_evaluator.hpp"
@@ -19,6 +20,7 @@
 #include "engine/generic/pose_sides.hpp"
 #include "engine/generic/report_limits.hpp"
 #include "engine/generic/voxels.hpp"
+#include "engine/mechanism/abilities/sided_columns.hpp"
 #include "engine/mechanism/ordered_margins.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
 #include "engine/mechanism/total_mass.hpp"
@@ -33,7 +35,8 @@ class GenericMechanism final : public Mechanism,
                                public OrderedMargins,
                                public std::enable_shared_from_this<GenericMechanism>,
                                Voxels,
-                               Columns,
+                               public Columns,
+                               public SidedColumns,
                                RigorousBounds,
                                Velocities,
                                ForwardKinematics,
@@ -228,6 +231,16 @@ class GenericMechanism final : public Mechanism,
     return prepare_columns(e_, plan, columns, request);
   }
   bool supports_box() const override { return true; }
+  std::shared_ptr<const Mechanism> on_side(std::int8_t side) const override {
+    Model model = e_.model;
+    const std::size_t n = model.inputs.coordinates;
+    if (model.inputs.joints != n) return nullptr;
+    expression::TermMatrix J(model.graph, n, n);
+    for (std::size_t i = 0; i < n * n; ++i) J(i / n, i % n) = model.term(model.jacobian[i]);
+    const expression::Term determinant = expression::inverse_of(J).determinant * static_cast<double>(side);
+    model.margins.push_back({.name = "side of the singularities", .unit = "", .node = determinant.node()});
+    return std::make_shared<const GenericMechanism>(std::move(model), Accelerators{});
+  }
   void require_bounds(const WorkspacePlan& plan) const override { generic::require_bounds(e_.model, plan); }
   VolumeBounds volume(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                       const BoundsOptions& options) const override {

@@ -4,12 +4,17 @@
 #include <stdexcept>
 
 #include "engine/core/error.hpp"
+#include "engine/mechanism/abilities/sided_columns.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
 
 namespace pkm {
 namespace {
 
-class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, DynamicsDispatch<MechanismWithDriveTrains> {
+class MechanismWithDriveTrains final : public Mechanism,
+                                       public Columns,
+                                       public SidedColumns,
+                                       Voxels,
+                                       DynamicsDispatch<MechanismWithDriveTrains> {
  public:
   MechanismWithDriveTrains(std::shared_ptr<const Mechanism> bare, DriveTrains trains, std::vector<JointLimits> limits)
       : bare_(std::move(bare)),
@@ -97,6 +102,10 @@ class MechanismWithDriveTrains final : public Mechanism, Voxels, Columns, Dynami
     return bare_->columns()->prepare(plan, columns, add_rotors(request));
   }
   bool supports_box() const override { return bare_->columns()->supports_box(); }
+  std::shared_ptr<const Mechanism> on_side(std::int8_t side) const override {
+    auto other = columns_on_side(*bare_->columns(), side);
+    return other ? with_drive_trains(std::move(other), trains_, limits_) : nullptr;
+  }
 
   const std::vector<std::string>& mass_models() const override { return bare_->dynamics()->mass_models(); }
   const std::string& mass_model() const override { return bare_->dynamics()->mass_model(); }

@@ -208,9 +208,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
 
 bool has_exact_step(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
-  // if the study has a home pose, there are no exact values, because columns integrate over all components of the
-  // workspace
-  return parts.plan.voxels() && !parts.plan.home && parts.mechanism->columns() && study.exact_seconds > 0;
+  return parts.plan.voxels() && parts.mechanism->columns() && study.exact_seconds > 0;
 }
 
 void complete_final_record(const Study& study, StudyContents& contents,

@@ -159,20 +159,49 @@ class ComponentFinder::Search {
     return std::ranges::all_of(found, [&](std::int8_t side) { return are_compatible(found.front(), side); });
   }
 
+  /// Calls visit(cell) for the cells of components within two cells of the one that contains a pose, the nearest one
+  /// first, until it returns false.
+  template <class Visit>
+  void for_cells_near(const ConnectedComponents& components, const Pose<double>& pose, const Visit& visit) {
+    constexpr std::int64_t kNear = 2;
+    std::array<double, 3> at{};  // in cells
+    Cell from{}, end{1, 1, 1};
+    for (std::size_t axis = 0; axis < axes_; ++axis) {
+      const double value = pose[static_cast<std::size_t>(finder_.sweep_.swept[axis])];
+      at[axis] = grid_.step[axis] > 0 ? (value - grid_.lower[axis]) / grid_.step[axis] : 0;
+      const std::int64_t middle =
+          std::clamp(static_cast<std::int64_t>(at[axis]), std::int64_t{0}, grid_.cells[axis] - 1);
+      from[axis] = std::max<std::int64_t>(middle - kNear, 0);
+      end[axis] = std::min(middle + kNear + 1, grid_.cells[axis]);
+    }
+    near_.clear();
+    Cell cell;
+    for (cell[0] = from[0]; cell[0] < end[0]; ++cell[0])
+      for (cell[1] = from[1]; cell[1] < end[1]; ++cell[1])
+        for (cell[2] = from[2]; cell[2] < end[2]; ++cell[2]) {
+          if (components.label[grid_.index(cell)] == 0) continue;
+          double distance = 0;
+          for (std::size_t axis = 0; axis < axes_; ++axis) {
+            const double cells = static_cast<double>(cell[axis]) + 0.5 - at[axis];
+            distance += cells * cells;
+          }
+          near_.emplace_back(distance, grid_.index(cell));
+        }
+    std::ranges::sort(near_);
+    for (const auto& [distance, candidate] : near_)
+      if (!visit(candidate)) return;
+  }
+
   /// The nearest cell of a component that a straight line connects with a pose. Throws DesignError.
   std::size_t cell_near(const ConnectedComponents& components, const std::array<double, 3>& at,
                         const std::string& what) {
     const MechanismInfo& info = finder_.mechanism_.info();
     std::vector<std::string> words;
     bool is_outside = false;
-    std::array<std::int64_t, 3> middle{};
     for (std::size_t axis = 0; axis < axes_; ++axis) {
       const AxisInfo& named = info.coordinates[static_cast<std::size_t>(finder_.sweep_.swept[axis])];
       words.push_back(named.name + " = " + with_degrees(at[axis], named.unit));
       is_outside = is_outside || !(at[axis] >= grid_.lower[axis] && at[axis] <= grid_.upper[axis]);
-      if (!is_outside && grid_.step[axis] > 0)
-        middle[axis] = std::min(static_cast<std::int64_t>((at[axis] - grid_.lower[axis]) / grid_.step[axis]),
-                                grid_.cells[axis] - 1);
     }
     const std::string name = what + " " + join(words);
     const Pose<double> given = pose(at);
@@ -185,26 +214,13 @@ class ComponentFinder::Search {
     if (is_outside) throw DesignError(name + " is outside of the box of the workspace");
     if (own == PoseSides::kSingular && finder_.crossing_ == Crossing::forbidden)
       throw DesignError(name + " is singular");
-    // Cells within two cells of the one that contains the pose, the nearest one first.
-    constexpr std::int64_t kNear = 2;
-    std::vector<std::pair<double, std::size_t>> near;
-    Cell cell{};
-    const auto from = [&](std::size_t axis) { return std::max<std::int64_t>(middle[axis] - kNear, 0); };
-    const auto end = [&](std::size_t axis) { return std::min(middle[axis] + kNear + 1, grid_.cells[axis]); };
-    for (cell[0] = from(0); cell[0] < end(0); ++cell[0])
-      for (cell[1] = from(1); cell[1] < end(1); ++cell[1])
-        for (cell[2] = from(2); cell[2] < end(2); ++cell[2]) {
-          if (components.label[grid_.index(cell)] == 0) continue;
-          double distance = 0;
-          for (std::size_t axis = 0; axis < axes_; ++axis) {
-            const double cells = (grid_.centre(axis, cell[axis]) - at[axis]) / grid_.step[axis];
-            distance += cells * cells;
-          }
-          near.emplace_back(distance, grid_.index(cell));
-        }
-    std::ranges::sort(near);
-    for (const auto& [distance, candidate] : near)
-      if (is_free(given, centre(candidate))) return candidate;
+    std::optional<std::size_t> nearest;
+    for_cells_near(components, given, [&](std::size_t candidate) {
+      if (!is_free(given, centre(candidate))) return true;
+      nearest = candidate;
+      return false;
+    });
+    if (nearest) return *nearest;
     throw DesignError("no cell of the grid near " + name + " is connected with it; expected more cells");
   }
 
@@ -219,6 +235,7 @@ class ComponentFinder::Search {
   std::array<bool, 3> is_periodic_{};
   std::vector<std::int8_t> sides_;
   std::vector<Pose<double>> poses_;
+  std::vector<std::pair<double, std::size_t>> near_;
 };
 
 ComponentFinder::ComponentFinder(const Mechanism& mechanism, const WorkspacePlan& plan, const std::string& mode,
@@ -319,6 +336,55 @@ std::uint32_t ComponentFinder::holding(std::span<const double> parameters, const
                                        const std::string& what, Scratch& scratch) const {
   Search search(*this, parameters, map, scratch);
   return components.label[search.cell_near(components, at, what)];
+}
+
+bool ComponentFinder::ends_at_singularity(const VoxelMap& map, const ConnectedComponents& components,
+                                          std::uint32_t label) const {
+  const VoxelGrid grid(map);
+  const std::array<std::size_t, 3> stride = {grid.index({1, 0, 0}), grid.index({0, 1, 0}), 1};
+  const auto side = [&](std::size_t cell) {
+    const std::uint32_t own = components.label[cell];
+    return own > 0 ? components.all[own - 1].side : PoseSides::kSingular;
+  };
+  const auto ends_between = [&](std::size_t cell, std::size_t next) {
+    return map.feasible[cell] != 0 && map.feasible[next] != 0 && side(cell) != side(next) &&
+           (components.label[cell] == label || components.label[next] == label);
+  };
+  Cell cell;
+  for (cell[0] = 0; cell[0] < grid.cells[0]; ++cell[0])
+    for (cell[1] = 0; cell[1] < grid.cells[1]; ++cell[1])
+      for (cell[2] = 0; cell[2] < grid.cells[2]; ++cell[2])
+        for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
+          if (cell[axis] + 1 < grid.cells[axis] && ends_between(grid.index(cell), grid.index(cell) + stride[axis]))
+            return true;
+  return false;
+}
+
+void ComponentFinder::find_members(std::span<const double> parameters, const VoxelMap& map,
+                                   const ConnectedComponents& components, std::uint32_t home,
+                                   std::span<const Pose<double>> poses, Scratch& scratch,
+                                   std::vector<std::int8_t>& inside) const {
+  Search search(*this, parameters, map, scratch);
+  const std::size_t labels = components.all.size() + 1;  // the sets are those of the labels, followed by the poses
+  DisjointSets sets(labels + poses.size());
+  std::vector<std::uint32_t> tried;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    check_stop();
+    if (i > 0 && search.is_free(poses[i - 1], poses[i])) sets.unite(labels + i - 1, labels + i);
+    tried.clear();
+    search.for_cells_near(components, poses[i], [&](std::size_t cell) {
+      const std::uint32_t label = components.label[cell];
+      if (std::ranges::find(tried, label) != tried.end()) return true;
+      tried.push_back(label);
+      if (search.is_free(poses[i], search.centre(cell))) sets.unite(label, labels + i);
+      return true;
+    });
+  }
+  inside.resize(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::size_t root = sets.root(labels + i);
+    inside[i] = root == sets.root(home) ? 1 : root < labels ? 0 : -1;
+  }
 }
 
 ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, const VoxelMap& map,

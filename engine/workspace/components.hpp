@@ -52,6 +52,18 @@ class ComponentFinder {
   /// @param what  name of the pose in messages: "the home pose"
   std::uint32_t holding(std::span<const double> parameters, const VoxelMap& map, const ConnectedComponents& components,
                         const std::array<double, 3>& at, const std::string& what, Scratch& scratch) const;
+  /// @return true if a cell of a component has a feasible neighbour that is singular or on the other side of the
+  /// singularities
+  bool ends_at_singularity(const VoxelMap& map, const ConnectedComponents& components, std::uint32_t label) const;
+  /// Determines which poses are in the component that holds a pose. Poses are connected by straight lines with the one
+  /// before and with cells near them, so that they can also connect components of the grid.
+  /// @param home    number of the component
+  /// @param inside  receives for each pose 1 if it is in the component, 0 if it is in another one, and -1 if no cell
+  /// and
+  ///                no pose is connected with it
+  void find_members(std::span<const double> parameters, const VoxelMap& map, const ConnectedComponents& components,
+                    std::uint32_t home, std::span<const Pose<double>> poses, Scratch& scratch,
+                    std::vector<std::int8_t>& inside) const;
   /// A polyline within one component from one pose to another, through centres of connected cells. It prefers cells far
   /// from the boundary of the component: the shortest path (Dijkstra's algorithm) with the cost 1 + 8 / d^2 of a cell
   /// at the distance d from the boundary, in cells. Every two neighbouring points are connected by a straight line

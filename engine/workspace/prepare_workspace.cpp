@@ -5,6 +5,7 @@
 
 #include "engine/core/team.hpp"
 #include "engine/workspace/cellwise_voxels.hpp"
+#include "engine/workspace/home_columns.hpp"
 #include "engine/workspace/home_component.hpp"
 #include "engine/workspace/with_gradients.hpp"
 
@@ -94,14 +95,14 @@ std::unique_ptr<const WorkspaceEvaluator> prepare_one(const Mechanism& mechanism
     const std::string why = mechanism.why_no_columns();
     if (!mechanism.columns())
       throw std::invalid_argument("mechanism " + name + " has no columns" + (why.empty() ? "" : ": " + why) + remedy);
-    if (plan.home)
-      throw std::invalid_argument("columns integrate over all components of the workspace, and not only over the one " +
-                                  std::string("that holds the home pose") + remedy);
     if (const PoseQuantity* const cellwise = first_cellwise_field(request))
       throw std::invalid_argument("columns do not compute " + std::string(cellwise->meaning) + remedy);
     if (columns->box && !mechanism.columns()->supports_box())
       throw std::invalid_argument("columns of mechanism " + name + " do not support a box" + remedy);
-    return mechanism.columns()->prepare(plan, *columns, request);
+    if (!plan.home) return mechanism.columns()->prepare(plan, *columns, request);
+    return prepare_home_columns(
+        mechanism, plan, request,
+        prepare_voxels(mechanism, grid_of_components(mechanism.info(), plan), {.mode = request.mode}));
   }
   return prepare_voxels(mechanism, plan, request);
 }

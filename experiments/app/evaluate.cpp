@@ -130,7 +130,6 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
     json["touches_box"] = plan.box() ? Json(survey.touches_box) : Json();
     rows.push_back({"feasible cells", std::to_string(survey.feasible_cells) + " of " + std::to_string(survey.cells)});
     rows.push_back({"cell volume", number(survey.cell_volume, unit)});
-    if (plan.home) rows.push_back({"component", "only the one that holds the home pose counts"});
     if (plan.box() && survey.touches_box)
       rows.push_back({"warning", "the feasible set touches the box: it may extend beyond"});
   } else {
@@ -148,6 +147,7 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
       rows.push_back(
           {"relative error", number(survey.error) + (survey.is_sampled ? ", as far as sampled" : ", estimated")});
   }
+  if (plan.home) rows.push_back({"component", "only the one that holds the home pose counts"});
   if (!note.empty()) rows.push_back({"note", note});
   out.json["workspace"] = json;
   out.add_table("workspace", rows);

@@ -80,7 +80,17 @@ TEST_F(Connect, HomePoseSelectsOneSideOfAFiveBar) {
   EXPECT_THAT(failed.out + failed.err, HasSubstr("the home pose x = 0 m, y = 0.31 m is infeasible"));
 }
 
-TEST_F(Connect, HomePoseNeedsVoxels) {
+/// reference: half of the exact volume of the whole workspace, by symmetry
+TEST_F(Connect, HomePoseSelectsOneSideOfAnExactWorkspace) {
+  const auto evaluated = run({"evaluate", kConnectivity + "3-rpr-side.toml", "--json"});
+  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  const auto workspace = evaluated.json()["workspace"];
+  EXPECT_NEAR(workspace["volume"].get<double>(), 0.115496444715 / 2, 1e-10);
+  EXPECT_LT(workspace["relative_error"].get<double>(), 1e-3);
+  EXPECT_FALSE(workspace["certified"].get<bool>());
+}
+
+TEST_F(Connect, HomePoseIsRead) {
   const std::string mechanism =
                         "[mechanism]\nfile = \"" + kFiveBar + "\"\n[variables]\nl_a = { min = 0.1, max = 0.4 }\n",
                     objective = "[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\n";
@@ -88,10 +98,10 @@ TEST_F(Connect, HomePoseNeedsVoxels) {
     folder_.write("study.toml", mechanism + "[workspace]\n" + workspace + objective);
     return run({"check", "study.toml"}).err;
   };
-  EXPECT_THAT(error_of("home = { x = 0, y = 0.3 }\n"), HasSubstr("set method = \"voxels\""));
+  EXPECT_THAT(error_of("certified = true\nhome = { x = 0, y = 0.3 }\n"), HasSubstr("remove `certified` or `home`"));
   EXPECT_THAT(error_of("method = \"voxels\"\nhome = { x = 0 }\n"), HasSubstr("home.y"));
   EXPECT_THAT(error_of("method = \"voxels\"\nhome = { x = 0, y = 0.3, q = 1 }\n"), HasSubstr("home.q"));
-  EXPECT_THAT(error_of("method = \"voxels\"\nexact = true\nhome = { x = 0, y = 0.3 }\n"), HasSubstr("exact values"));
+  EXPECT_EQ(error_of("method = \"voxels\"\nexact = true\nhome = { x = 0, y = 0.3 }\n"), "");
   EXPECT_EQ(error_of("method = \"voxels\"\nhome = { x = 0, y = \"300 mm\" }\n"), "");
   EXPECT_THAT(run({"check", "study.toml"}).out, HasSubstr("home"));
   EXPECT_THAT(run({"certify", "study.toml"}).err, HasSubstr("remove home"));

@@ -146,12 +146,7 @@ TEST(Components, OfADesignWithoutAFeasibleHomePoseAreFailures) {
   EXPECT_THROW(test::survey(*wide, test::nominal(wide->info()), plan, {}), DesignError);  // singular
 }
 
-TEST(Components, AreNoneOfColumnsAndOfIntegratedCoordinates) {
-  const auto mechanism = test::two_telescopes(1, 1.8, 1.5);
-  WorkspacePlan plan = cells_of(mechanism->info(), {50, 50, 1});
-  plan.home = {0, 1.2, 0};
-  plan.method = ColumnOptions{};
-  EXPECT_THROW(prepare_workspace(*mechanism, plan, {}), std::invalid_argument);
+TEST(Components, AreNoneOfIntegratedCoordinates) {
   const Mechanism& planar = *test::described("3-rpr");
   WorkspacePlan integrated = cells_of(planar.info(), {20, 20, 1});
   integrated.swept = {0, 1};

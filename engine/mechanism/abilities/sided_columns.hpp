@@ -1,0 +1,27 @@
+// Ability of Columns that also end at singularities.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+namespace pkm {
+
+class Mechanism;
+
+/// Implemented by classes that also implement Columns; both have to be public base classes.
+class SidedColumns {
+ public:
+  virtual ~SidedColumns() = default;
+  /// The same mechanism with poses on one side of its singularities only, for its columns; null if this is not
+  /// supported. @param side  PoseSides::kPositive or PoseSides::kNegative
+  virtual std::shared_ptr<const Mechanism> on_side(std::int8_t side) const = 0;
+};
+
+/// Calls SidedColumns::on_side() of columns; null if they do not implement it.
+template <class Columns>
+std::shared_ptr<const Mechanism> columns_on_side(const Columns& columns, std::int8_t side) {
+  const auto* const sided = dynamic_cast<const SidedColumns*>(&columns);
+  return sided ? sided->on_side(side) : nullptr;
+}
+
+}  // namespace pkm
