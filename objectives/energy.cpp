@@ -2,14 +2,20 @@
 // of the motors (torque times speed) if there are drive trains. With recuperation the integral of the total power,
 // without it that of the positive powers of the single drives.
 //
+// With `law`, the motion is the fastest one along the same path (cycle_time.cpp), and the rule is applied to the
+// intervals of its nodes.
+//
 // The value depends on the design only. If the mechanism does not assemble at a sample, the value is NaN and the design
 // `failed`, unless the constraint `motion` has rejected it.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
+#include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/mechanism/inverse_dynamics.hpp"
-#include "engine/problem/motion_options.hpp"
+#include "engine/problem/fastest_options.hpp"
 #include "engine/problem/pose_options.hpp"
 #include "objectives/list.hpp"
 
@@ -72,28 +78,75 @@ class Energy final : public Quantity {
   bool recuperates_;
 };
 
+/// The energy over the fastest motion.
+class EnergyOfFastest final : public Quantity {
+ public:
+  EnergyOfFastest(const EntryContext& context, FastestLaw law)
+      : fastest_(context, law), recuperates_(context.options.flag("recuperation")) {}
+
+  Unsupported why_no_derivatives() const override {
+    return "the energy over a fastest motion has no derivatives; use an optimiser without gradients";
+  }
+  double value(const DesignView<double>& design) const override {
+    try {
+      return fastest_.with_times(
+          design, [&](const MovesOfMotion& moves, const ShortestTimes& times, const DesignWithLimits& at) {
+            return energy_of(moves, times, at, recuperates_);
+          });
+    } catch (const DesignError&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  Dual4 smooth(const DesignView<Dual4>&) const override { throw std::logic_error(*why_no_derivatives()); }
+  std::string why_undefined(const DesignView<double>& design) const override { return fastest_.why_undefined(design); }
+
+ private:
+  FastestOfDesign fastest_;
+  bool recuperates_;
+};
+
+std::unique_ptr<Quantity> make_energy(const EntryContext& context) {
+  const std::string& law = context.options.word("law");
+  if (law != "given")
+    return std::make_unique<EnergyOfFastest>(context, law == "own" ? FastestLaw::own : FastestLaw::optimal);
+  for (const char* const limit : {"tool_speed", "tool_acceleration"})
+    if (context.options.has(limit))
+      throw std::invalid_argument(std::string(limit) +
+                                  " limits the fastest motion; give law = \"optimal\" or law = \"own\", too");
+  return std::make_unique<Energy>(context);
+}
+
 }  // namespace
 
 ObjectiveEntry energy() {
+  std::vector<OptionSpec> options = {
+      motion_option(),
+      {.name = "recuperation",
+       .kind = OptionKind::flag,
+       .initial = false,
+       .meaning = "true: drives that brake return their energy; false: it is lost"},
+      {.name = "law",
+       .kind = OptionKind::word,
+       .initial = std::string("given"),
+       .choices = {"given", "optimal", "own"},
+       .meaning = "given: the motion itself; otherwise the fastest motion along its path, as of cycle-time"},
+      samples_option(),
+      mode_option(),
+      wrench_option()};
+  std::ranges::move(fastest_options(), std::back_inserter(options));
   return {
       .name = "energy",
       .meaning = "energy of the drives over a motion: of the motors with drive trains, otherwise of the joints",
       .direction = Direction::minimise,
-      .options = {motion_option(),
-                  {.name = "recuperation",
-                   .kind = OptionKind::flag,
-                   .initial = false,
-                   .meaning = "true: drives that brake return their energy; false: it is lost"},
-                  samples_option(),
-                  mode_option(),
-                  wrench_option()},
+      .options = std::move(options),
       .unit = [](const EntryContext&) { return std::string("J"); },
       .refusal = [](const Mechanism& mechanism) { return check_dynamics("energy", mechanism); },
-      .make = [](const EntryContext& context) { return std::make_unique<Energy>(context); },
+      .make = make_energy,
       .detail =
           [](const EntryContext& context) {
-            return "energy of the drives over the motion " + context.options.word("motion") +
-                   (context.options.flag("recuperation") ? ", with recuperation" : "");
+            return std::string("energy of the drives over the ") +
+                   (context.options.word("law") == "given" ? "motion " : "fastest motion along ") +
+                   context.options.word("motion") + (context.options.flag("recuperation") ? ", with recuperation" : "");
           },
       .uses_workspace = false,
   };

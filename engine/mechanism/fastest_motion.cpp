@@ -345,6 +345,32 @@ ShortestTimes shortest_times(const MovesOfMotion& moves, const DesignWithLimits&
   return found;
 }
 
+double energy_of(const MovesOfMotion& moves, const ShortestTimes& found, const DesignWithLimits& design,
+                 bool recuperates) {
+  const DriveTrains* const trains = design.mechanism.drive_trains();
+  const auto power = [&](const PathPoint<double>& p, double y, double u) {
+    double sum = 0;
+    for (std::size_t joint = 0; joint < p.q1.size(); ++joint) {
+      const double speed = p.q1[joint] * std::sqrt(y);
+      const double own = trains ? motor_torque(p, joint, y, u, (*trains)[joint]) * speed * (*trains)[joint].ratio
+                                : (p.A[joint] * u + p.B[joint] * y + p.C[joint]) * speed;
+      if (recuperates || own > 0) sum += own;
+    }
+    return sum;
+  };
+  double energy = 0;
+  for (std::size_t k = 0; k < found.moves.size(); ++k) {
+    const MoveStates<double> move = states_of(moves.moves()[k], found.moves[k]);
+    for (std::size_t i = 0; i < move.accelerations.size(); ++i) {
+      const double x = move.squares[i] * found.thermal_factor, next = move.squares[i + 1] * found.thermal_factor,
+                   u = move.accelerations[i] * found.thermal_factor;
+      const double duration = 2 * (*move.steps)[i] / (std::sqrt(x) + std::sqrt(next));
+      energy += 0.5 * duration * (power((*move.points)[i], x, u) + power((*move.points)[i + 1], next, u));
+    }
+  }
+  return energy;
+}
+
 Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes& found, const DesignWithLimits& design,
                                 std::span<const Dual4> parameters) {
   const DriveTrains* const trains = design.mechanism.drive_trains();
@@ -368,24 +394,15 @@ Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes&
       path_points<Dual4>(design.mechanism, parameters, design.mode, {&result.limiting, 1}, design.wrench, at);
       const PathPoint<Dual<1>> constant = constant_point<Dual<1>>(points_at(design, {&result.limiting, 1})[0]);
       Dual4 factor(result.factor);
-      int number = 0;
       if (result.limit.is_speed) {
-        visit_speed_bounds(at[0], design.limits, trains, [&](const LimitOfMotion&, const SpeedBound<Dual4>& bound) {
-          if (number++ == result.limit.number) factor = bound.bound;
-        });
+        factor = speed_bound(at[0], design.limits, trains, result.limit.number);
       } else {
-        Dual4 value(0.0);
-        visit_linear_limits(at[0], factor, design.limits, trains,
-                            [&](const LimitOfMotion&, const LinearLimit<Dual4>& limit) {
-                              if (number++ == result.limit.number) value = limit.violation(Dual4(0.0));
-                            });
-        double slope = 0;
-        number = 0;
-        visit_linear_limits(constant, Dual<1>::variable(result.factor, 0), design.limits, trains,
-                            [&](const LimitOfMotion&, const LinearLimit<Dual<1>>& limit) {
-                              if (number++ == result.limit.number) slope = limit.violation(Dual<1>(0.0)).v[0];
-                            });
-        factor = factor - value / slope;
+        const Dual4 value =
+            linear_limit(at[0], factor, design.limits, trains, result.limit.number).violation(Dual4(0.0));
+        const Dual<1> along =
+            linear_limit(constant, Dual<1>::variable(result.factor, 0), design.limits, trains, result.limit.number)
+                .violation(Dual<1>(0.0));
+        factor = factor - value / along.v[0];
       }
       factor.a = result.factor;
       state.squares.assign(result.points.size(), factor);

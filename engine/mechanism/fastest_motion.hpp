@@ -94,6 +94,13 @@ ShortestTimes shortest_times(const MovesOfMotion& moves, const DesignWithLimits&
 Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes& found, const DesignWithLimits& design,
                                 std::span<const Dual4> parameters);
 
+/// Energy of the drives over the fastest motion [J], by the trapezoidal rule over the nodes: of the motors if there are
+/// drive trains, otherwise of the joints. The mechanism must have dynamics.
+/// @param found        result of shortest_times() for the design
+/// @param recuperates  true: drives that brake return their energy; false: it is lost
+double energy_of(const MovesOfMotion& moves, const ShortestTimes& found, const DesignWithLimits& design,
+                 bool recuperates);
+
 /// Returns the limits with the peak torques and torque curves of all motors multiplied by a factor.
 MotionLimits with_torques(const MotionLimits& limits, double factor);
 

@@ -170,17 +170,33 @@ struct AccelerationInterval {
 AccelerationInterval<double> acceleration_interval(const PathPoint<double>& p, double y, const MotionLimits& limits,
                                                    const DriveTrains* trains, double scale = 1);
 
-/// The value of the path acceleration u at which the linear limit of the given number is attained: an end of the
-/// interval of path accelerations.
+/// The speed bound of the given number, in the order of visit_speed_bounds().
+template <class S>
+S speed_bound(const PathPoint<S>& p, const MotionLimits& limits, const DriveTrains* trains, int number) {
+  S found(0.0);
+  visit_speed_bounds(p, limits, trains, [&](const LimitOfMotion&, const SpeedBound<S>& bound) {
+    if (number-- == 0) found = bound.bound;
+  });
+  return found;
+}
+
+/// The linear limit of the given number, in the order of visit_linear_limits().
+template <class S>
+LinearLimit<S> linear_limit(const PathPoint<S>& p, const S& y, const MotionLimits& limits, const DriveTrains* trains,
+                            int number) {
+  LinearLimit<S> found{};
+  visit_linear_limits(p, y, limits, trains, [&](const LimitOfMotion&, const LinearLimit<S>& limit) {
+    if (number-- == 0) found = limit;
+  });
+  return found;
+}
+
+/// The end of the interval of path accelerations that the linear limit of the given number determines.
 template <class S>
 S end_of_interval(const PathPoint<S>& p, const S& y, const MotionLimits& limits, const DriveTrains* trains,
                   int number) {
-  S end(0.0);
-  int k = 0;
-  visit_linear_limits(p, y, limits, trains, [&](const LimitOfMotion&, const LinearLimit<S>& limit) {
-    if (k++ == number) end = (limit.limit - limit.offset) / limit.slope;
-  });
-  return end;
+  const LinearLimit<S> found = linear_limit(p, y, limits, trains, number);
+  return (found.limit - found.offset) / found.slope;
 }
 
 /// The maximum of the squared path speed y that the speed bounds allow (infinite if there are none), and the number of

@@ -141,10 +141,7 @@ ProfileWithDerivatives differentiate(const SpeedProfile& profile, std::span<cons
     if (upper.by == By::next && lower.by == By::floor) lower.by = By::deceleration;
     const double x = profile.controllable[i], step2 = 2 * profile.steps[i];
     if (upper.by == By::speed) {
-      int number = 0;
-      visit_speed_bounds(derivatives[i], limits, trains, [&](const LimitOfMotion&, const SpeedBound<Dual4>& bound) {
-        if (number++ == upper.number) reachable[i] = bound.bound;
-      });
+      reachable[i] = speed_bound(derivatives[i], limits, trains, upper.number);
       continue;
     }
     // The largest controllable squared speed is the x at which the upper and the lower end of the interval of path

@@ -74,6 +74,9 @@ TEST(CliTrajectory, FastestMotionOfAStudyKeepsTheLimitsOfItsMotors) {
     const json found = result.json();
     EXPECT_EQ(found["fastest"]["moves"].size(), 6u);
     EXPECT_EQ(found["fastest"]["bounded_by"][0]["limit"], "continuous torque");
+    const double error = found["fastest"]["discretisation_error"];
+    EXPECT_GE(error, 0);
+    EXPECT_LT(error, 2e-3);
     for (const auto& [joint, torque] : found["summary"]["peak_motor_torque"].items()) EXPECT_LE(torque, 1.91 + 1e-9);
     double rms = 0;
     for (const auto& [joint, torque] : found["summary"]["rms_motor_torque"].items())
@@ -110,6 +113,22 @@ TEST(CliTrajectory, FastestMotionAcceptsLimitsOfTheCommandLine) {
   EXPECT_THAT(complaint({"--tool-speed", "-1"}), HasSubstr("a number > 0 m/s"));
   EXPECT_THAT(complaint({"--tool-acceleration", "5", "--nodes", "7"}), HasSubstr("an even number"));
   EXPECT_THAT(complaint({"--motor", "200 W"}), HasSubstr("--motors"));
+  const std::string motors = PKM_EXPERIMENTS "/mechanisms/motors/";
+  const auto mounted = pkmopt({"trajectory", motors + "rotary-delta.toml", "--motion", "m.toml", "--fastest", "--json",
+                               "--motors", motors + "motors.toml", "--motor", "100 W"},
+                              folder.path());
+  ASSERT_EQ(mounted.exit_code, 0) << mounted.err;
+  double rms = 0;  // the continuous torque is 0.32 N m
+  const json with_motor = mounted.json();
+  for (const auto& [joint, torque] : with_motor["summary"]["rms_motor_torque"].items())
+    rms = std::max(rms, torque.get<double>());
+  EXPECT_LE(rms, 0.32 * (1 + 1e-9));
+  EXPECT_GE(rms, 0.32 * 0.99);
+  const json by_nodes = fastest({"--peak-acceleration", "all=50", "--nodes", "40"}).json(),
+             by_more_nodes = fastest({"--peak-acceleration", "all=50", "--nodes", "4000"}).json();
+  const double change = by_nodes["duration"].get<double>() - by_more_nodes["duration"].get<double>();
+  EXPECT_LT(std::fabs(change), 4 * by_nodes["fastest"]["discretisation_error"].get<double>());
+  EXPECT_LT(by_more_nodes["fastest"]["discretisation_error"], by_nodes["fastest"]["discretisation_error"]);
   const auto slow = pkmopt({"trajectory", delta, "--motion", "m.toml", "--tool-speed", "1"}, folder.path());
   EXPECT_THAT(slow.err, HasSubstr("--tool-speed: this option needs --fastest"));
 }

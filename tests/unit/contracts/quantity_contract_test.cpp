@@ -75,7 +75,8 @@ Options some_options(const std::vector<OptionSpec>& specs, const MechanismInfo& 
     if (spec.name == "quantity") options.set(spec.name, test::some_quantity(info));
     if (spec.name == "region") options.set(spec.name, std::string("task"));
     if (spec.name == "motion" && spec.required) options.set(spec.name, std::string("swing"));
-    if (spec.name == "tool_acceleration") options.set(spec.name, 50.0);
+    // a limit of the fastest motion
+    if (spec.name == "tool_acceleration" && options.word("law") != "given") options.set(spec.name, 50.0);
   }
   return options;
 }
