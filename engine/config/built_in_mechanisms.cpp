@@ -6,6 +6,7 @@
 #include "engine/accelerators/crr_cru/accelerators.hpp"
 #include "engine/accelerators/four_ppa_two_par/accelerators.hpp"
 #include "engine/accelerators/hybrid/accelerators.hpp"
+#include "engine/config/built_in_files.hpp"
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/mechanism_files.hpp"
 #include "engine/generic/mechanism.hpp"
@@ -49,6 +50,18 @@ std::shared_ptr<const Mechanism> built_in_mechanism(const std::string& name, con
     if (each == name) return build(name, accelerators, "", study);
   throw std::invalid_argument("mechanism " + name +
                               " is written in C++; [[quantity]] and limits of quantities need a mechanism file");
+}
+
+std::shared_ptr<const Mechanism> built_in_mechanism(const std::string& name, const StudyAdditions& study,
+                                                    const std::vector<LimbParameter>& own) {
+  const auto file = own.empty() ? std::nullopt : find_built_in_file(name);
+  return file ? read_mechanism_toml(file->text, file->file_name, own, study) : built_in_mechanism(name, study);
+}
+
+std::optional<SourceText> find_built_in_file(const std::string& name) {
+  for (const auto& [each, text] : mechanism_files())
+    if (each == name) return SourceText{text, name + ".toml"};
+  return {};
 }
 
 const std::string& mechanism_file_text(const std::string& name) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/config/assignments.hpp"
+#include "engine/config/built_in_files.hpp"
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/mechanism_file.hpp"
@@ -134,7 +135,8 @@ std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDr
                         "); it is either built in or described by a file");
   if (type) {
     const std::string& name = type->word(names);
-    if (additions) return type->explained([&] { return built_in_mechanism(name, additions); });
+    if (additions || !draft.copies.empty())
+      return type->explained([&] { return built_in_mechanism(name, additions, draft.copies); });
     return std::ranges::find(draft.catalogues.mechanisms, name, &MechanismEntry::name)->get();
   }
   if (!file) throw table.error_of("neither type nor file", either);

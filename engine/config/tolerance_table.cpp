@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/config/built_in_files.hpp"
 #include "engine/config/study_draft.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
@@ -95,10 +96,18 @@ std::vector<LimbParameter> find_copies(const std::vector<Tolerance>& tolerances,
   std::vector<std::string> common;
   for (const Tolerance& each : tolerances)
     if (each.is_independent && !contains(common, each.common)) common.push_back(each.common);
-  const auto& description = draft.study.description;
+  const std::optional<SourceText> description =
+      draft.study.description ? draft.study.description : find_built_in_file(draft.info().name);
   std::vector<LimbParameter> copies;
   if (description && !common.empty())
     copies = limb_copies(description->text, description->file_name, common, draft.limb_parameters);
+  if (!draft.study.description) {
+    // A built-in mechanism may describe several limbs by the formulas of one; its only copy would not be a real part.
+    const auto all = copies;
+    std::erase_if(copies, [&all](const LimbParameter& copy) {
+      return std::ranges::count(all, copy.parameter, &LimbParameter::parameter) < 2;
+    });
+  }
   for (const Tolerance& each : tolerances) {
     const auto is_it = [&each](const LimbParameter& copy) {
       return each.name == copy.name() || each.name == copy.parameter;
@@ -115,10 +124,10 @@ std::vector<LimbParameter> find_copies(const std::vector<Tolerance>& tolerances,
           nearest_name(each.name, names));
     }
     if (each.says_so && each.is_independent)
-      throw each.value.refusal(
-          description ? "no joint or limit of a single limb depends on " + each.name + "; expected copies = \"common\""
-                      : "the limbs of a built-in mechanism share their parameters; expected copies = \"common\", or a "
-                        "mechanism file");
+      throw each.value.refusal(draft.study.description ? "no joint or limit of a single limb depends on " + each.name +
+                                                             "; expected copies = \"common\""
+                                                       : "the limbs of this mechanism share " + each.name +
+                                                             "; expected copies = \"common\", or a mechanism file");
   }
   return copies;
 }

@@ -5,9 +5,11 @@
 #include <limits>
 
 #include "engine/config/assignments.hpp"
+#include "engine/config/built_in_files.hpp"
 #include "engine/config/built_in_mechanisms.hpp"
 #include "engine/config/motion_table.hpp"
 #include "engine/config/study_additions.hpp"
+#include "engine/config/study_changes.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
@@ -46,10 +48,12 @@ MechanismOrStudy find_by_name(const Catalogues& catalogues, const std::string& n
   std::vector<std::string> known;
   for (const auto& mechanism : catalogues.mechanisms) {
     known.push_back(mechanism.name());
-    if (known.back() == name)
-      return changes.joint_error.empty()
-                 ? mechanism.get()
-                 : built_in_mechanism(name, joint_error_addition(mechanism.get()->info(), changes.joint_error));
+    if (known.back() != name) continue;
+    const std::vector<LimbParameter> own = limb_parameters(changes);
+    if (changes.joint_error.empty() && own.empty()) return mechanism.get();
+    StudyAdditions additions;
+    if (!changes.joint_error.empty()) additions = joint_error_addition(mechanism.get()->info(), changes.joint_error);
+    return built_in_mechanism(name, additions, own);
   }
   if (looks_like_file(name)) return load_mechanism_or_study(name, catalogues, changes);
   throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "engine/config/built_in_files.hpp"
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/text_file.hpp"
 #include "engine/core/catalogue.hpp"
@@ -67,9 +68,10 @@ double size_of(const Deviation& deviation, const Parameter& parameter) {
   return *size;
 }
 
-/// The text of the target's mechanism file; std::nullopt for a built-in mechanism.
+/// The text of the target's mechanism file; std::nullopt for a mechanism that is written in C++.
 std::optional<SourceText> description_of(const Target& target, const std::string& name) {
   if (target.study) return target.study->description;
+  if (auto built_in = find_built_in_file(name)) return built_in;
   if (!looks_like_file(name)) return {};
   return SourceText{read_text_file(name, "a mechanism in TOML"), name};
 }

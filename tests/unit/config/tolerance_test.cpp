@@ -263,6 +263,26 @@ TEST(Tolerance, MachinesThatCannotBeBuilt) {
   EXPECT_EQ(yield.yield->failed + yield.yield->good, 20U);
 }
 
+TEST(Tolerance, LimbsOfABuiltInMechanismHaveErrorsOfTheirOwn) {
+  const auto study = [](const std::string& tolerance) {
+    return testing::read_real(
+        "[mechanism]\ntype = \"3crr-r-cru\"\n[variables]\nl_11 = { min = 0.15, max = 0.2 }\n[workspace]\n"
+        "method = \"voxels\"\ncells = { x = 8, y = 8, z = 8 }\n[[objective]]\ntype = \"workspace-volume\"\n"
+        "robust = \"worst\"\n[[stage]]\noptimiser = \"ga\"\n[tolerance]\nsamples = 4\n" +
+        tolerance);
+  };
+  const Study independent = study("rho_max = \"5 mm\"\n");
+  std::vector<std::string> names;
+  for (const ParameterError& error : independent.tolerances->errors) names.push_back(error.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"limb1.rho_max", "limb2.rho_max", "limb3.rho_max", "limb4.rho_max"}));
+  const DesignReport report = nominal_report(independent);
+  EXPECT_EQ(report.status, Status::feasible) << report.reason;
+  EXPECT_GT(report.objectives[0], 0);
+  EXPECT_EQ(study("rho_max = { bound = \"5 mm\", copies = \"common\" }\n").tolerances->errors.size(), 1U);
+  const Study one = study("limb2.rho_max = \"5 mm\"\n");
+  EXPECT_EQ(one.tolerances->errors.size(), 1U);
+}
+
 TEST(Tolerance, ErrorsOfTheReader) {
   const std::pair<std::string, std::string> cases[] = {
       {kVolumeObjective + "robust = \"mean\"\n",
@@ -297,7 +317,7 @@ TEST(Tolerance, ErrorsOfTheReader) {
                                "[variables]\na = { min = 0.1, max = 0.2 }\n[tolerance]\n";
   EXPECT_EQ(testing::real_complaint(built_in + "l_u = 1e-4\n"), "accepted");
   EXPECT_THAT(testing::real_complaint(built_in + "l_u = { bound = 1e-4, copies = \"independent\" }\n"),
-              HasSubstr("the limbs of a built-in mechanism share their parameters"));
+              HasSubstr("the limbs of this mechanism share l_u; expected copies = \"common\""));
 }
 
 }  // namespace
