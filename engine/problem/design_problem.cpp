@@ -1,3 +1,4 @@
+// Evaluation of a design: workspace analyses, quantities, derivatives.
 #include "engine/problem/design_problem.hpp"
 
 #include <algorithm>
@@ -8,20 +9,11 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
-#include "engine/core/stop.hpp"
-#include "engine/core/team.hpp"
+#include "engine/problem/design_problem_buffers.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 namespace {
-
-/// The margin of a constraint, from the value of its quantity and its bounds.
-template <class S>
-S margin_of(const NamedQuantity& named, const S& value) {
-  if (named.lower_bound) return value - *named.lower_bound;
-  if (named.upper_bound) return *named.upper_bound - value;
-  return value;
-}
 
 /// For each workspace analysis, whether a quantity uses it: first the analysis of the workspace, then those of the
 /// regions.
@@ -33,11 +25,7 @@ std::vector<bool> used_analyses(const ProblemParts& parts) {
   return used;
 }
 
-/// Placeholder for the value of an external function that is not called.
-const ExternalValue kNotCalled{.failure = "the function is not called here", .is_computed = true};
-
-/// Throws DesignError if the relative error of a volume is so large that even its order of magnitude is unknown: an
-/// optimiser must not select such a design.
+/// Throws DesignError if not even the order of magnitude of a volume is known: a search must not choose such a design.
 void refuse_unknown(double volume, double relative_error) {
   if (!(volume > 0) || relative_error < 1) return;
   std::ostringstream text;
@@ -47,16 +35,6 @@ void refuse_unknown(double volume, double relative_error) {
 }
 
 }  // namespace
-
-struct DesignProblem::Buffers {
-  std::vector<double> parameters;
-  std::vector<Dual4> duals;  ///< the parameters with derivatives
-  WorkspaceResults<double> workspaces;
-  WorkspaceResults<Dual4> dual_workspaces;
-  MachineValues machines;        ///< values of the built machines of the design that was evaluated last
-  std::vector<Scratch> workers;  ///< scratch memory for the machines, by worker
-  std::vector<double> machine;   ///< parameters of the machine that this thread evaluates
-};
 
 struct DesignProblem::OtherRows {
   std::mutex mutex;
@@ -235,108 +213,6 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
   }
 }
 
-void DesignProblem::evaluate_machine(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
-                                     Scratch& scratch, std::span<double> objectives, std::span<double> margins,
-                                     std::span<double> derivatives) const {
-  if (parts_.mechanism->refuse(parameters)) return;
-  WorkspaceResults<double>& workspaces = scratch.get<Buffers>().workspaces;
-  DesignView<double> view{*parts_.mechanism, parameters, nullptr, scratch};
-  bool violated = false;
-  std::size_t margin = 0;
-  for (const auto& q : parts_.design_margins) {
-    margins[margin] = margin_of(q, q.quantity->value(view));
-    violated = violated || !(margins[margin++] >= 0);
-  }
-  if (violated && parts_.objectives.empty()) return;
-  if (by)
-    differentiate(parameters, *by, derivatives, scratch);
-  else
-    analyse(parameters, false, scratch, workspaces);
-  const auto value = [&](const NamedQuantity& q) {
-    view.workspace = &workspaces[q.analysis];
-    return q.quantity->value(view);
-  };
-  for (const auto& q : parts_.workspace_margins) margins[margin++] = margin_of(q, value(q));
-  for (std::size_t i = 0; i < objectives.size(); ++i) objectives[i] = value(parts_.objectives[i]);
-}
-
-void DesignProblem::evaluate_machines(std::span<const double> parameters,
-                                      std::optional<std::span<const std::size_t>> by, Scratch& scratch) const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  // interval of checks for a stop request; for machines that take microseconds, longer evaluations check themselves
-  constexpr std::size_t kMachinesPerCheck = 64;
-  const ToleranceModel& tolerances = parts_.built->tolerances;
-  const std::shared_ptr<const DesignProblem>& problem = parts_.built->problem;
-  Buffers& buffers = scratch.get<Buffers>();
-  MachineValues& values = buffers.machines;
-  values.machines = tolerances.samples;
-  const EvaluationShape shape{by ? by->size() : 0, problem->objectives().size(), problem->margins().size(), 0,
-                              by ? Detail::derivatives : Detail::enough};
-  values.objectives.assign(values.machines * shape.objectives, nan);
-  values.margins.assign(values.machines * shape.margins, nan);
-  values.derivatives.assign(values.machines * shape.derivatives(), nan);
-  if (buffers.workers.size() < workers()) buffers.workers.resize(workers());
-  parallel_for(values.machines, [&](std::size_t begin, std::size_t end, std::size_t worker) {
-    Scratch& own = buffers.workers[worker];
-    for (std::size_t k = begin; k < end; ++k) {
-      if (k % kMachinesPerCheck == 0) check_stop();
-      const auto part = [k](std::vector<double>& all, std::size_t width) {
-        return std::span(all).subspan(k * width, width);
-      };
-      std::vector<double>& machine = own.get<Buffers>().machine;
-      tolerances.sample(k, parameters, machine);
-      try {
-        problem->evaluate_machine(machine, by, own, part(values.objectives, shape.objectives),
-                                  part(values.margins, shape.margins), part(values.derivatives, shape.derivatives()));
-      } catch (const DesignError&) {  // the values of this machine remain NaN
-      }
-    }
-  });
-}
-
-double DesignProblem::statistic(const SampledValue& sampled, Scratch& scratch) const {
-  const MachineValues& values = scratch.get<Buffers>().machines;
-  if (sampled.is_yield()) return yield_statistic(sampled, yield_of(values));
-  const std::size_t width = values.objectives.size() / values.machines;
-  std::vector<double> each(values.machines);
-  for (std::size_t k = 0; k < each.size(); ++k) each[k] = values.objectives[k * width + sampled.row];
-  double sum = 0;
-  for (const auto& [machine, weight] : sample_weights(sampled, each)) sum += weight * each[machine];
-  return sum;
-}
-
-Dual4 DesignProblem::smooth_statistic(const SampledValue& sampled, std::size_t first, std::size_t count,
-                                      std::size_t directions, Scratch& scratch) const {
-  const MachineValues& values = scratch.get<Buffers>().machines;
-  const std::size_t width = values.derivatives.size() / values.machines;
-  const auto row = [&](std::size_t machine) {
-    return &values.derivatives[machine * width + sampled.row * (1 + directions)];
-  };
-  std::vector<double> each(values.machines);
-  for (std::size_t k = 0; k < each.size(); ++k) each[k] = *row(k);
-  Dual4 sum(0.0);
-  for (const auto& [machine, weight] : sample_weights(sampled, each)) {
-    const double* const own = row(machine);
-    sum.a += weight * own[0];
-    for (std::size_t k = 0; k < count; ++k) sum.v[static_cast<int>(k)] += weight * own[1 + first + k];
-  }
-  return sum;
-}
-
-std::string DesignProblem::why_machine_fails(std::span<const double> parameters) const {
-  const auto& [tolerances, problem] = *parts_.built;
-  std::vector<double> machine;
-  for (std::size_t k = 0; k < tolerances.samples; ++k) {
-    tolerances.sample(k, parameters, machine);
-    Unsupported reason = problem->parts().mechanism->refuse(machine);
-    if (!reason)
-      if (const std::string failure = problem->report(machine).reason; !failure.empty()) reason = failure;
-    if (reason)
-      return "built machine " + std::to_string(k + 1) + " of " + std::to_string(tolerances.samples) + ": " + *reason;
-  }
-  return {};
-}
-
 std::vector<double> DesignProblem::derivatives(std::span<const double> parameters,
                                                std::span<const std::size_t> by) const {
   std::vector<double> values((objectives_.size() + margins_.size()) * (1 + by.size()));
@@ -356,97 +232,6 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
   } catch (const DesignError&) {
     result.status = Status::failed;
   }
-}
-
-std::string DesignProblem::store(std::span<const ExternalValue> values, const EvaluationSlot& result) const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const bool has_failed_before = result.status == Status::failed;
-  std::string failure;
-  const auto value_of_call = [&](const std::string& call) {
-    const ExternalValue& found = values[static_cast<std::size_t>(std::ranges::find(calls_, call) - calls_.begin())];
-    if (found.failure.empty() && std::isfinite(found.value)) return found.value;
-    const std::string reason = found.failure.empty() ? "the value is not a finite number" : found.failure;
-    if (!has_failed_before) parts_.functions->note_failure(call, reason);
-    if (failure.empty()) failure = call + ": " + reason;
-    return nan;
-  };
-  bool satisfied = true;
-  std::size_t margin = parts_.design_margins.size();
-  for (const auto& q : parts_.workspace_margins) {
-    if (const std::string* const call = q.quantity->external_call()) {
-      result.margins[margin] = margin_of(q, value_of_call(*call));
-      satisfied = satisfied && result.margins[margin] >= 0;
-    }
-    ++margin;
-  }
-  for (std::size_t i = 0; i < parts_.objectives.size(); ++i)
-    if (const std::string* const call = parts_.objectives[i].quantity->external_call())
-      result.objectives[i] = value_of_call(*call);
-  if (!failure.empty())
-    result.status = Status::failed;
-  else if (!satisfied && result.status == Status::feasible)
-    result.status = Status::infeasible;
-  // Outputs are set last: a failed call of an output does not change the status of the design.
-  for (std::size_t i = 0; i < parts_.reports.size(); ++i)
-    if (const std::string* const call = parts_.reports[i].quantity->external_call())
-      result.reports[i] = value_of_call(*call);
-  return result.status == Status::failed ? failure : "";
-}
-
-void DesignProblem::complete(std::span<EvaluatedDesign> rows) const {
-  // The external functions of a rejected design are called only if all values are requested; those of a failed design
-  // are never called.
-  const auto is_wanted = [](const EvaluatedDesign& row) {
-    return row.slot.status == Status::feasible || row.slot.status == Status::infeasible ||
-           (row.slot.status == Status::rejected && row.slot.detail != Detail::enough);
-  };
-  std::vector<std::size_t> wanted;
-  std::vector<double> parameters;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (!is_wanted(rows[k])) {
-      if (rows[k].slot.status == Status::failed) store(std::vector(calls_.size(), kNotCalled), rows[k].slot);
-      rows[k].is_complete = true;
-      continue;
-    }
-    wanted.push_back(k);
-    const std::vector<double> all = this->parameters(rows[k].design);
-    parameters.insert(parameters.end(), all.begin(), all.end());
-  }
-  const std::size_t count = wanted.size();
-  std::vector<std::vector<ExternalValue>> values(calls_.size(), std::vector<ExternalValue>(count));
-  const auto store_computed = [&] {
-    std::vector<ExternalValue> of_design(calls_.size());
-    for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t c = 0; c < calls_.size(); ++c) of_design[c] = values[c][k];
-      EvaluatedDesign& row = rows[wanted[k]];
-      row.is_complete = std::ranges::all_of(of_design, &ExternalValue::is_computed);
-      for (const ExternalValue& each : of_design) row.seconds += each.seconds;
-      if (row.is_complete) store(of_design, row.slot);
-    }
-  };
-  try {
-    for (std::size_t c = 0; count > 0 && c < calls_.size(); ++c) evaluate_external(calls_[c], parameters, values[c]);
-  } catch (const Stopped&) {
-    store_computed();
-    throw;
-  }
-  store_computed();
-}
-
-std::string DesignProblem::complete(std::span<const double> parameters, const EvaluationSlot& result) const {
-  if (calls_.empty()) return {};
-  std::vector<ExternalValue> values(calls_.size(), kNotCalled);
-  const bool is_wanted = result.status != Status::failed;
-  for (std::size_t c = 0; is_wanted && c < calls_.size(); ++c)
-    evaluate_external(calls_[c], parameters, {&values[c], 1});
-  const std::string failure = store(values, result);
-  return is_wanted ? failure : "";
-}
-
-void DesignProblem::evaluate_external(const std::string& call, std::span<const double> parameters,
-                                      std::span<ExternalValue> values) const {
-  if (FunctionCaller* const caller = parts_.functions->caller.get()) return caller->evaluate(call, parameters, values);
-  std::ranges::fill(values, kNotCalled);
 }
 
 /// Returns the reason stated by the first quantity whose value is not finite and that states a reason. The order is
@@ -512,8 +297,8 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
     Scratch scratch;
     const EvaluationSlot slot{report.objectives, report.margins, report.reports, report.status, Detail::complete};
     report.status = compute(parameters, scratch, slot, true);
-    if (const MachineValues& machines = scratch.get<Buffers>().machines; !machines.margins.empty())
-      report.yield = yield_of(machines);
+    if (const Buffers& buffers = scratch.get<Buffers>(); !buffers.machines.margins.empty())
+      report.yield = buffers.yield;
     if (auto& workspaces = scratch.get<Buffers>().workspaces; !workspaces.empty())
       report.workspace = std::move(workspaces.front());
     report.reason = complete(parameters, slot);
