@@ -69,6 +69,34 @@ std::vector<SliceOutline::Loop> PlotFrame::to_pixels(const std::vector<SliceOutl
   return drawn;
 }
 
+void draw_axes(const PlotAxis& across, const PlotAxis& up, Picture& picture) {
+  using Anchor = Picture::Anchor;
+  constexpr double kMinAcross = 48, kMinUp = 20;  // minimum distance of labels [pixel]
+  const double left = across.pixel, right = left + across.length, bottom = up.pixel, top = bottom + up.length;
+  const auto is_labelled = [](const PlotAxis& axis, const std::vector<double>& ticks, std::size_t k, double distance) {
+    if (ticks.size() < 2) return true;
+    const double spacing = std::fabs(axis.to_pixels(ticks[1] * axis.unit) - axis.to_pixels(ticks[0] * axis.unit));
+    const double number = std::round(ticks[k] / (ticks[1] - ticks[0]));
+    return std::fmod(number, std::ceil(distance / spacing)) == 0;
+  };
+  const std::vector<double> across_ticks = across.ticks(), up_ticks = up.ticks();
+  for (std::size_t k = 0; k < across_ticks.size(); ++k) {
+    const double x = across.to_pixels(across_ticks[k] * across.unit);
+    picture.grid.push_back({x, bottom, x, top});
+    if (is_labelled(across, across_ticks, k, kMinAcross))
+      picture.texts.push_back({x, bottom + 18, formatted("%.6g", across_ticks[k]), Anchor::middle});
+  }
+  for (std::size_t k = 0; k < up_ticks.size(); ++k) {
+    const double y = up.to_pixels(up_ticks[k] * up.unit);
+    picture.grid.push_back({left, y, right, y});
+    if (is_labelled(up, up_ticks, k, kMinUp))
+      picture.texts.push_back({left - 8, y + 4, formatted("%.6g", up_ticks[k]), Anchor::end});
+  }
+  picture.frames.push_back({left, top, across.length, -up.length});
+  picture.texts.push_back({(left + right) / 2, bottom + 44, across.title, Anchor::middle});
+  picture.texts.push_back({left - 66, (top + bottom) / 2, up.title, Anchor::middle, false, 90});
+}
+
 PlotFrame plot_frame(const SliceOutline& outline, const std::vector<std::string>& lines, double right) {
   using Anchor = Picture::Anchor;
   // Space to the left of the frame and below it, height of a text line, and limits of the frame and the text width
@@ -94,19 +122,7 @@ PlotFrame plot_frame(const SliceOutline& outline, const std::vector<std::string>
 
   Picture picture{.width = kLeft + std::max(width + right, kMinText + 16), .height = above + height + kBelow};
   picture.texts = std::move(head);
-  for (const double tick : across.ticks()) {
-    const double x = across.to_pixels(tick * across.unit);
-    picture.grid.push_back({x, up.pixel, x, above});
-    picture.texts.push_back({x, up.pixel + 18, formatted("%.6g", tick), Anchor::middle});
-  }
-  for (const double tick : up.ticks()) {
-    const double y = up.to_pixels(tick * up.unit);
-    picture.grid.push_back({kLeft, y, kLeft + width, y});
-    picture.texts.push_back({kLeft - 8, y + 4, formatted("%.6g", tick), Anchor::end});
-  }
-  picture.frame = {kLeft, above, width, height};
-  picture.texts.push_back({kLeft + width / 2, up.pixel + 44, across.title, Anchor::middle});
-  picture.texts.push_back({24, above + height / 2, up.title, Anchor::middle, false, 90});
+  draw_axes(across, up, picture);
   return {std::move(picture), across, up};
 }
 

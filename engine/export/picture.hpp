@@ -1,4 +1,4 @@
-// Vector drawing of a planar workspace slice, from which the SVG and the PNG file are rendered.
+// Vector drawing of planar workspace slices and curves, from which the SVG and the PNG file are rendered.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace pkm {
 
 /// A vector drawing. Coordinates are pixels from the upper left corner, y downwards. Drawing order: grid, areas, lines,
-/// outline, texts, frame.
+/// outline, texts, frames.
 struct Picture {
   enum class Anchor { begin, middle, end };
   struct Text {
@@ -31,10 +31,12 @@ struct Picture {
   struct Area {
     std::vector<SliceOutline::Loop> loops;  ///< closed polygons, which are filled by the even-odd rule
     Colour colour;
+    double opacity = 1;  ///< from 0 (transparent) to 1
   };
   struct Polyline {
     std::vector<PlanePoint> points;
     Colour colour;
+    double width = 1;  ///< [pixel]
   };
 
   double width = 0, height = 0;
@@ -44,7 +46,8 @@ struct Picture {
   std::vector<Polyline> lines;
   std::vector<SliceOutline::Loop> outline;  ///< closed polygons of the outline of the slice
   bool outline_is_filled = true;            ///< true: the outline is filled in one colour, by the even-odd rule
-  std::array<double, 4> frame{};            ///< position of the left and upper edge, width and height [pixel]
+  /// Frames of plots: position of the left and upper edge, width and height [pixel].
+  std::vector<std::array<double, 4>> frames = {};
 };
 
 /// Draws a slice with axes labelled in mm or degrees.

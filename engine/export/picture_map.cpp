@@ -45,15 +45,6 @@ std::string range_text(const ContourLevels& levels, const std::string& unit) {
   return "from " + text(levels.minimum) + " to " + text(levels.maximum);
 }
 
-std::vector<SliceOutline::Loop> simplified(std::vector<SliceOutline::Loop> loops) {
-  for (SliceOutline::Loop& loop : loops) {
-    loop.push_back(loop.front());
-    loop = simplify_line(loop, kTolerance);
-    loop.pop_back();
-  }
-  return loops;
-}
-
 SliceOutline::Loop rectangle(double left, double top, double right, double bottom) {
   return {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
 }
@@ -75,7 +66,8 @@ class Bands {
 void draw_regions(const FieldMap& map, const Bands& bands, const std::vector<double>& thresholds, PlotFrame& plot) {
   Picture& picture = plot.picture;
   const auto area = [&](const FieldRegion& region, const Colour& colour) {
-    if (!region.loops.empty()) picture.areas.push_back({simplified(plot.to_pixels(region.loops)), colour});
+    if (!region.loops.empty())
+      picture.areas.push_back({simplify_loops(plot.to_pixels(region.loops), kTolerance), colour});
   };
   area(map.undefined, kUndefined);
   area(map.defined, bands.colour(0));
@@ -110,12 +102,13 @@ void draw_regions(const FieldMap& map, const Bands& bands, const std::vector<dou
 /// @param title  name and unit of the field
 void draw_colour_bar(const ContourLevels& levels, const Bands& bands, const std::string& title, bool has_undefined,
                      Picture& picture) {
-  const double left = picture.frame[0] + picture.frame[2] + kBarGap, right = left + kBarWidth;
+  const auto& [frame_left, frame_top, frame_width, frame_height] = picture.frames.front();
+  const double left = frame_left + frame_width + kBarGap, right = left + kBarWidth;
   const double below = has_undefined ? 30 : 0;  // height of the legend for undefined values [pixel]
-  double top = picture.frame[1], bottom = top + picture.frame[3] - below;
+  double top = frame_top, bottom = top + frame_height - below;
   const double text = right + 8;
   if (has_undefined) {
-    const double lower = top + picture.frame[3], upper = lower - 14;
+    const double lower = top + frame_height, upper = lower - 14;
     picture.areas.push_back({{rectangle(left, upper, right, lower)}, kUndefined});
     picture.texts.push_back({text, lower - 3, "undefined"});
   }

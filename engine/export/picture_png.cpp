@@ -47,15 +47,16 @@ std::vector<SliceOutline::Loop> in_dots(std::vector<SliceOutline::Loop> loops) {
 
 std::string png_file(const Picture& picture) {
   RasterImage image(kDots * picture.width, kDots * picture.height);
-  const auto line = [&image](double x1, double y1, double x2, double y2, const RasterImage::Colour& colour) {
-    image.draw_line(kDots * x1, kDots * y1, kDots * x2, kDots * y2, kDots * kHalfWidth, colour);
+  const auto line = [&image](double x1, double y1, double x2, double y2, const RasterImage::Colour& colour,
+                             double width = 1) {
+    image.draw_line(kDots * x1, kDots * y1, kDots * x2, kDots * y2, kDots * kHalfWidth * width, colour);
   };
   for (const auto& [x1, y1, x2, y2] : picture.grid) line(x1, y1, x2, y2, kGrid);
-  for (const Picture::Area& area : picture.areas) image.fill_polygons(in_dots(area.loops), area.colour, 1);
+  for (const Picture::Area& area : picture.areas) image.fill_polygons(in_dots(area.loops), area.colour, area.opacity);
   for (const Picture::Polyline& polyline : picture.lines)
     for (std::size_t k = 0; k + 1 < polyline.points.size(); ++k) {
       const auto &a = polyline.points[k], &b = polyline.points[k + 1];
-      line(a[0], a[1], b[0], b[1], polyline.colour);
+      line(a[0], a[1], b[0], b[1], polyline.colour, polyline.width);
     }
   constexpr double kOpacity = 0.45;
   if (picture.outline_is_filled) image.fill_polygons(in_dots(picture.outline), kFill, kOpacity);
@@ -65,11 +66,12 @@ std::string png_file(const Picture& picture) {
       line(a[0], a[1], b[0], b[1], kOutline);
     }
   for (const Picture::Text& text : picture.texts) draw_text(text, image);
-  const auto [left, top, width, height] = picture.frame;
-  line(left, top, left + width, top, kFrame);
-  line(left, top + height, left + width, top + height, kFrame);
-  line(left, top, left, top + height, kFrame);
-  line(left + width, top, left + width, top + height, kFrame);
+  for (const auto& [left, top, width, height] : picture.frames) {
+    line(left, top, left + width, top, kFrame);
+    line(left, top + height, left + width, top + height, kFrame);
+    line(left, top, left, top + height, kFrame);
+    line(left + width, top, left + width, top + height, kFrame);
+  }
   return image.png();
 }
 

@@ -46,6 +46,11 @@ std::string path_data(const std::vector<SliceOutline::Loop>& loops) {
   return data;
 }
 
+/// An attribute whose default value is 1; "" for this value.
+std::string attribute(const std::string& name, double value) {
+  return value == 1 ? "" : " " + name + "=\"" + formatted("%.4g", value) + "\"";
+}
+
 }  // namespace
 
 std::string svg_file(const Picture& picture) {
@@ -58,18 +63,20 @@ std::string svg_file(const Picture& picture) {
     svg += "<path class=\"grid\" d=\"M" + pixels(line.x1) + " " + pixels(line.y1) + "L" + pixels(line.x2) + " " +
            pixels(line.y2) + "\"/>\n";
   for (const Picture::Area& area : picture.areas)
-    svg += "<path class=\"area\" fill=\"" + text_of(area.colour) + "\" fill-rule=\"evenodd\" d=\"" +
-           path_data(area.loops) + "\"/>\n";
+    svg += "<path class=\"area\" fill=\"" + text_of(area.colour) + "\"" + attribute("fill-opacity", area.opacity) +
+           " fill-rule=\"evenodd\" d=\"" + path_data(area.loops) + "\"/>\n";
   for (const Picture::Polyline& line : picture.lines)
-    svg += "<path class=\"line\" fill=\"none\" stroke=\"" + text_of(line.colour) + "\" d=\"" + path_data(line.points) +
-           "\"/>\n";
-  svg += std::string("<path class=\"outline\" fill=\"") +
-         (picture.outline_is_filled ? "#4a7fb5\" fill-opacity=\"0.45\" fill-rule=\"evenodd" : "none") +
-         "\" stroke=\"#1f4e79\" d=\"" + path_data(picture.outline) + "\"/>\n";
+    svg += "<path class=\"line\" fill=\"none\" stroke=\"" + text_of(line.colour) + "\"" +
+           attribute("stroke-width", line.width) + " d=\"" + path_data(line.points) + "\"/>\n";
+  if (!picture.outline.empty())
+    svg += std::string("<path class=\"outline\" fill=\"") +
+           (picture.outline_is_filled ? "#4a7fb5\" fill-opacity=\"0.45\" fill-rule=\"evenodd" : "none") +
+           "\" stroke=\"#1f4e79\" d=\"" + path_data(picture.outline) + "\"/>\n";
   for (const Picture::Text& text : picture.texts) svg += text_element(text);
-  const auto& [left, top, width, height] = picture.frame;
-  return svg + "<rect x=\"" + pixels(left) + "\" y=\"" + pixels(top) + "\" width=\"" + pixels(width) + "\" height=\"" +
-         pixels(height) + "\" fill=\"none\" stroke=\"#222\"/>\n</svg>\n";
+  for (const auto& [left, top, width, height] : picture.frames)
+    svg += "<rect x=\"" + pixels(left) + "\" y=\"" + pixels(top) + "\" width=\"" + pixels(width) + "\" height=\"" +
+           pixels(height) + "\" fill=\"none\" stroke=\"#222\"/>\n";
+  return svg + "</svg>\n";
 }
 
 }  // namespace pkm

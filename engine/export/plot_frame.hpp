@@ -5,11 +5,11 @@
 
 namespace pkm {
 
-/// An axis of a plot, which maps a coordinate of the slice to pixels. Its labels are in mm or degrees.
+/// An axis of a plot, which maps a quantity to pixels.
 struct PlotAxis {
   std::string title;
   double unit = 1;              ///< SI value of the unit in which the axis is labelled
-  double lower = 0, upper = 0;  ///< range of the coordinate, in SI
+  double lower = 0, upper = 0;  ///< range of the quantity, in SI
   /// Pixel position of `lower`, and signed distance from there to the position of `upper` [pixel].
   double pixel = 0, length = 0;
 
@@ -17,6 +17,9 @@ struct PlotAxis {
   /// Values at which the axis is labelled: four to ten round numbers within the range, in the unit of the labels.
   std::vector<double> ticks() const;
 };
+
+/// Draws a frame with ticks, labels, grid lines and titles. Labels that would be too close to each other are omitted.
+void draw_axes(const PlotAxis& across, const PlotAxis& up, Picture& picture);
 
 struct PlotFrame {
   Picture picture;  ///< the drawing of the frame, without areas, lines and outline

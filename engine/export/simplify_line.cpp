@@ -39,4 +39,13 @@ std::vector<PlanePoint> simplify_line(const std::vector<PlanePoint>& points, dou
   return simplified;
 }
 
+std::vector<SliceOutline::Loop> simplify_loops(std::vector<SliceOutline::Loop> loops, double tolerance) {
+  for (SliceOutline::Loop& loop : loops) {
+    loop.push_back(loop.front());
+    loop = simplify_line(loop, tolerance);
+    loop.pop_back();
+  }
+  return loops;
+}
+
 }  // namespace pkm
